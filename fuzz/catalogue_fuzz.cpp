@@ -15,15 +15,15 @@ namespace {
 using namespace airtruth;
 
 // The scene of a sequence over a video of 300 frames.
-std::string scene_of(const dataset::Catalogue& catalogue, dataset::Item item) {
-  dataset::place(item, catalogue, {"/fuzz/clip.mkv", {}, 640, 480, 30, 300});
+std::string scene_of(const catalogue::Catalogue& catalogue, catalogue::Item item) {
+  catalogue::place(item, catalogue, {"/fuzz/clip.mkv", {}, 640, 480, 30, 300});
   return scene::toml_from_scene(item.scene);
 }
 
-void check(const dataset::Catalogue& catalogue,
-           const dataset::Expansion& sequences,
+void check(const catalogue::Catalogue& catalogue,
+           const catalogue::Expansion& sequences,
            std::int64_t index) {
-  const dataset::Item item = sequences.at(index);
+  const catalogue::Item item = sequences.at(index);
   if (item.index != index || item.name.empty() || item.frame_count < 0 ||
       item.background >= catalogue.backgrounds.size())
     std::abort();
@@ -46,8 +46,8 @@ void check(const dataset::Catalogue& catalogue,
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    const dataset::Catalogue catalogue = dataset::parse_catalogue(text, "/fuzz/catalogue.toml");
-    const dataset::Expansion sequences(catalogue);
+    const catalogue::Catalogue catalogue = catalogue::parse_catalogue(text, "/fuzz/catalogue.toml");
+    const catalogue::Expansion sequences(catalogue);
     if (sequences.size() < 1) std::abort();
     for (const std::int64_t index : {std::int64_t{0}, sequences.size() / 2, sequences.size() - 1})
       check(catalogue, sequences, index);

@@ -87,7 +87,7 @@ void draw_sheet(const std::string& filter,
   for (const std::string& name : names) {
     if (context.stop.stop_requested()) throw Interrupted();
     tiles.push_back(
-        {type_of(name), sequence::aircraft_tile(aircraft::load_aircraft(name, load, {}))});
+        {type_of(name), demo::aircraft_tile(aircraft::load_aircraft(name, load, {}))});
   }
   video::write_still(
       out, drawing::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
@@ -138,7 +138,7 @@ void show(const ShowArguments& arguments, Context& context) {
   if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));
   for (const std::string& livery : liveries) console.result("    " + livery);
   if (arguments.out.empty()) return;
-  video::write_still(arguments.out, sequence::aircraft_sheet(loaded));
+  video::write_still(arguments.out, demo::aircraft_sheet(loaded));
   console.result("  " + arguments.out);
 }
 

@@ -21,7 +21,7 @@
 #include "foundation/base/output_check.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/frame/mask_picture.h"
+#include "sequence/insertion/masks.h"
 #include "show/plot/gnuplot.h"
 
 namespace airtruth::cli {
@@ -173,7 +173,7 @@ void find_mask(const MaskArguments& arguments, Context& context) {
   };
   const image::Mask mask = own_aircraft::find_own_aircraft(arguments.video, options);
   console.end_progress();
-  video::write_still(arguments.out, sequence::picture_of(mask));
+  video::write_still(arguments.out, insertion::picture_of(mask));
   const auto own = std::count(mask.free.begin(), mask.free.end(), 0);
   console.result(fmt::format("{}: the own aircraft covers {:.1f} % of the picture",
                              arguments.out,

@@ -5,10 +5,10 @@
 
 #include "cli/commands.h"
 #include "dataset/build/build.h"
+#include "dataset/build/check.h"
 #include "dataset/build/plan.h"
 #include "dataset/build/slurm.h"
 #include "dataset/build/verify.h"
-#include "dataset/catalogue/check.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::cli {
@@ -18,8 +18,8 @@ struct DatasetArguments {
   std::string catalogue;
   std::string folder;
   std::vector<std::string> backgrounds;  // NAME=VIDEO
-  dataset::BuildOptions build;
-  dataset::SlurmOptions slurm;
+  build::BuildOptions build;
+  build::SlurmOptions slurm;
   bool on_slurm = false;
   bool finish = false;
   bool deep = false;
@@ -27,13 +27,14 @@ struct DatasetArguments {
   int verify_jobs = 0;
 };
 
-std::map<std::string, dataset::fs::path> videos_of(const std::vector<std::string>& backgrounds) {
-  std::map<std::string, dataset::fs::path> videos;
+std::map<std::string, std::filesystem::path> videos_of(
+    const std::vector<std::string>& backgrounds) {
+  std::map<std::string, std::filesystem::path> videos;
   for (const std::string& given : backgrounds) {
     const auto equals = given.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == given.size())
       throw Error("--background is '" + given + "'; expected NAME=VIDEO");
-    videos[given.substr(0, equals)] = dataset::fs::absolute(given.substr(equals + 1));
+    videos[given.substr(0, equals)] = std::filesystem::absolute(given.substr(equals + 1));
   }
   return videos;
 }
@@ -47,16 +48,16 @@ std::string time_of(double seconds) {
 }
 
 void build(DatasetArguments arguments, Context& context) {
-  const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
+  const catalogue::Catalogue catalogue = catalogue::read_catalogue(arguments.catalogue);
   Console& console = context.console();
-  dataset::BuildOptions& options = arguments.build;
+  build::BuildOptions& options = arguments.build;
   options.videos = videos_of(arguments.backgrounds);
   options.warn = console.warn();
   options.stop = context.stop;
-  options.progress = [&console](const dataset::BuildProgress& p) {
+  options.progress = [&console](const build::BuildProgress& p) {
     console.progress(p.stage, p.done, p.total, p.stage == "building" ? "sequences" : "frames");
   };
-  const dataset::BuildSummary summary = dataset::build(catalogue, arguments.folder, options);
+  const build::BuildSummary summary = build::build_set(catalogue, arguments.folder, options);
   console.result(fmt::format("{}: {} sequences made ({} frames, {}), {} were there, {} failed{}",
                              arguments.folder,
                              summary.made,
@@ -65,7 +66,7 @@ void build(DatasetArguments arguments, Context& context) {
                              summary.kept,
                              summary.failures.size(),
                              summary.complete ? "; complete" : ""));
-  for (const dataset::Failure& failure : summary.failures)
+  for (const build::Failure& failure : summary.failures)
     console.error(failure.name + ": " + failure.reason);
   if (!summary.failures.empty()) context.exit_code = 1;
 }
@@ -83,13 +84,13 @@ std::string distractors_of(const scene::Scene& scene) {
 }
 
 // "r000012   90  day   c172/news at 31 px"
-std::string plan_line(const dataset::Catalogue& catalogue, const dataset::Item& item) {
+std::string plan_line(const catalogue::Catalogue& catalogue, const catalogue::Item& item) {
   std::string aircraft;
   for (std::size_t k = 0; k < item.scene.intruders.size(); ++k) {
     if (!is_aircraft(item.scene.intruders[k])) continue;
     aircraft += (k > 0 ? ", " : "") + item.scene.intruders[k].aircraft;
     if (k >= item.drawn.encounters.size()) continue;
-    const dataset::Encounter& encounter = item.drawn.encounters[k];
+    const catalogue::Encounter& encounter = item.drawn.encounters[k];
     if (encounter.approach)
       aircraft += fmt::format(" nearest at {:.1f} s, on course {:.0f}",
                               item.scene.intruders[k].encounter->cpa_time_s,
@@ -108,7 +109,7 @@ std::string plan_line(const dataset::Catalogue& catalogue, const dataset::Item& 
 }
 
 // "8 to 120 px, half of them below 31 px"
-std::string spread_words(const dataset::Spread& spread, const char* unit) {
+std::string spread_words(const build::Spread& spread, const char* unit) {
   return fmt::format("{:.0f} to {:.0f} {}, half of them below {:.0f} {}",
                      spread.low(),
                      spread.high(),
@@ -117,7 +118,7 @@ std::string spread_words(const dataset::Spread& spread, const char* unit) {
                      unit);
 }
 
-void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
+void say_what_is_drawn(const build::Plan& plan, Console& console) {
   std::string types;
   std::size_t liveries = 0;
   for (const auto& [type, by_livery] : plan.aircraft) {
@@ -148,15 +149,15 @@ void say_what_is_drawn(const dataset::Plan& plan, Console& console) {
 
 // Frames and bytes are rounded, because the cost of a sequence is known only after it is made.
 void plan(const DatasetArguments& arguments, Context& context) {
-  const dataset::Catalogue catalogue = dataset::with_videos(
-      dataset::read_catalogue(arguments.catalogue), videos_of(arguments.backgrounds));
-  dataset::check_sources(catalogue, {});
+  const catalogue::Catalogue catalogue = build::with_videos(
+      catalogue::read_catalogue(arguments.catalogue), videos_of(arguments.backgrounds));
+  build::check_sources(catalogue, {});
   constexpr std::int64_t kMaxListed = 50;
   Console& console = context.console();
-  const auto list = [&](const dataset::Item& item) {
+  const auto list = [&](const catalogue::Item& item) {
     if (item.index < kMaxListed) console.result(plan_line(catalogue, item));
   };
-  const dataset::Plan plan = dataset::plan_of(catalogue, list, context.stop);
+  const build::Plan plan = build::plan_of(catalogue, list, context.stop);
   if (plan.sequences > kMaxListed)
     console.result(fmt::format("... and {} more", plan.sequences - kMaxListed));
   say_what_is_drawn(plan, console);
@@ -177,7 +178,7 @@ void plan(const DatasetArguments& arguments, Context& context) {
 }
 
 void status(const DatasetArguments& arguments, Context& context) {
-  const dataset::Status status = dataset::status(arguments.folder);
+  const build::Status status = build::status(arguments.folder);
   Console& console = context.console();
   console.result(fmt::format("{}: {} of {} sequences are there{}{}{}",
                              status.name,
@@ -191,11 +192,11 @@ void status(const DatasetArguments& arguments, Context& context) {
 
 void submit(DatasetArguments arguments, Context& context) {
   if (!arguments.on_slurm) throw Error("no engine is named; expected --slurm");
-  const dataset::Catalogue catalogue = dataset::read_catalogue(arguments.catalogue);
-  dataset::SlurmOptions& options = arguments.slurm;
+  const catalogue::Catalogue catalogue = catalogue::read_catalogue(arguments.catalogue);
+  build::SlurmOptions& options = arguments.slurm;
   options.videos = videos_of(arguments.backgrounds);
-  options.program = dataset::fs::read_symlink("/proc/self/exe");
-  const dataset::Submitted submitted = dataset::submit(catalogue, arguments.folder, options);
+  options.program = std::filesystem::read_symlink("/proc/self/exe");
+  const build::Submitted submitted = build::submit(catalogue, arguments.folder, options);
   if (options.dry_run)
     context.console().result("not submitted: sbatch " + submitted.work_script.string() + ", then " +
                              submitted.verify_script.string());
@@ -206,16 +207,16 @@ void submit(DatasetArguments arguments, Context& context) {
 
 void verify(const DatasetArguments& arguments, Context& context) {
   Console& console = context.console();
-  if (arguments.finish && !dataset::finish(arguments.folder))
+  if (arguments.finish && !build::finish(arguments.folder))
     console.warning("sequences are missing; no manifest is written");
-  dataset::VerifyOptions options;
+  build::VerifyOptions options;
   options.stop = context.stop;
   options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("verifying", done, total, "sequences");
   };
   options.jobs = arguments.verify_jobs;
   if (arguments.deep) options.deep_every = arguments.deep_every;
-  const dataset::VerifyResult result = dataset::verify(arguments.folder, options);
+  const build::VerifyResult result = build::verify(arguments.folder, options);
   for (const std::string& fault : result.faults) console.error(fault);
   console.result(fmt::format(
       "{}: {} sequences, {} frames, an intruder in view by geometry {} times ({} without "

@@ -7,7 +7,7 @@
 #include "cli/picture_size.h"
 #include "dataset/labelled/export.h"
 #include "dataset/labelled/import.h"
-#include "dataset/page/report.h"
+#include "dataset/set_report/report.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::cli {
@@ -21,23 +21,23 @@ struct Export {
   std::string split = "by-background";
   std::string boxes = "covered";
   std::vector<double> shares = {0.8, 0.1, 0.1};
-  dataset::ExportOptions options;
+  labelled::ExportOptions options;
 };
 
-dataset::Images images_from_name(const std::string& name) {
-  if (name == "jpg") return dataset::Images::kJpg;
-  if (name == "png") return dataset::Images::kPng;
-  if (name == "none") return dataset::Images::kNone;
+labelled::Images images_from_name(const std::string& name) {
+  if (name == "jpg") return labelled::Images::kJpg;
+  if (name == "png") return labelled::Images::kPng;
+  if (name == "none") return labelled::Images::kNone;
   throw Error("--images is '" + name + "'; expected jpg, png or none");
 }
 
 void run_export(Export arguments, Context& context) {
   Console& console = context.console();
-  dataset::ExportOptions& options = arguments.options;
+  labelled::ExportOptions& options = arguments.options;
   options.format = exchange::format_from_name(arguments.format);
   if (!arguments.images.empty()) options.images = images_from_name(arguments.images);
-  options.split = dataset::split_from_name(arguments.split);
-  options.boxes = dataset::boxes_from_name(arguments.boxes);
+  options.split = labelled::split_from_name(arguments.split);
+  options.boxes = sequences::boxes_from_name(arguments.boxes);
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) sum += options.shares[i] = arguments.shares[i];
   if (!(sum > 0)) throw Error("--shares are all 0; expected a share for one part at least");
@@ -47,7 +47,8 @@ void run_export(Export arguments, Context& context) {
   options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("exporting", done, total, "sequences");
   };
-  const dataset::ExportSummary summary = dataset::export_set(arguments.set, arguments.out, options);
+  const labelled::ExportSummary summary =
+      labelled::export_set(arguments.set, arguments.out, options);
   std::string parts;
   for (const auto& [part, frames] : summary.frames_of_part)
     parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", part, frames);
@@ -68,12 +69,12 @@ struct Import {
   std::string size;
   std::vector<std::string> videos;
   std::vector<std::string> classes;
-  dataset::ImportOptions options;
+  labelled::ImportOptions options;
 };
 
 void run_import(Import arguments, Context& context) {
   Console& console = context.console();
-  dataset::ImportOptions& options = arguments.options;
+  labelled::ImportOptions& options = arguments.options;
   options.format = exchange::format_from_name(arguments.format);
   if (!arguments.size.empty()) options.read.size = size_from(arguments.size);
   for (const std::string& given : arguments.videos) {
@@ -84,10 +85,10 @@ void run_import(Import arguments, Context& context) {
       options.videos[given.substr(0, equals)] = given.substr(equals + 1);
   }
   for (const std::string& given : arguments.classes)
-    options.classes.push_back(dataset::object_class_from(given));
+    options.classes.push_back(labelled::object_class_from(given));
   options.warn = console.warn();
-  const dataset::ImportSummary summary =
-      dataset::import_set(arguments.source, arguments.out, options);
+  const labelled::ImportSummary summary =
+      labelled::import_set(arguments.source, arguments.out, options);
   console.result(fmt::format("{}: {} clips, {} frames, {} boxes",
                              arguments.out,
                              summary.clips,
@@ -98,7 +99,7 @@ void run_import(Import arguments, Context& context) {
 struct Report {
   std::string set;
   std::string out = "report.html";
-  dataset::ReportOptions options;
+  set_report::ReportOptions options;
 };
 
 void run_report(Report arguments, Context& context) {
@@ -107,7 +108,7 @@ void run_report(Report arguments, Context& context) {
   arguments.options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("looking", done, total, "sequences");
   };
-  dataset::write_report(arguments.set, arguments.out, arguments.options);
+  set_report::write_report(arguments.set, arguments.out, arguments.options);
   console.result(arguments.out);
 }
 

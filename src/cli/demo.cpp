@@ -9,8 +9,8 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "scene/scene/scene.h"
+#include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
-#include "sequence/sequence/sequence.h"
 
 namespace airtruth::cli {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 struct DemoArguments {
   std::string out = "demo";
   bool overwrite = false;
-  sequence::DemoOptions demo;
+  demo::DemoOptions demo;
 };
 
 void demo(DemoArguments arguments, Context& context) {
@@ -30,7 +30,7 @@ void demo(DemoArguments arguments, Context& context) {
                                 const std::string& stage, std::int64_t done, std::int64_t total) {
     console.progress(stage, done, total);
   };
-  const sequence::Summary summary = sequence::make_demo(arguments.out, arguments.demo);
+  const pipeline::Summary summary = demo::make_demo(arguments.out, arguments.demo);
   console.result(fmt::format("{}: {} frames, an intruder visible in {}",
                              summary.folder.string(),
                              summary.frames,

@@ -17,7 +17,7 @@ struct EvisionArguments {
   bool level = false;
   bool still = false;
   bool overwrite = false;
-  sequence::EvisionOptions options;
+  evision::EvisionOptions options;
 };
 
 constexpr const char* kHead =
@@ -26,7 +26,7 @@ constexpr const char* kHead =
     "                          theirs  ours      median                median                "
     "median   95 %\n";
 
-std::string line(const sequence::EvisionRow& row) {
+std::string line(const evision::EvisionRow& row) {
   return fmt::format(
       "{:<10} {:>6} {:>6} {:>7} {:>5}    {:>5.0f} ({:>4.1f} px, {:>4.1f} %) {:>5.0f} ({:>4.1f} px, "
       "{:>4.1f} %) {:>7.1f} {:>6.1f}  {}",
@@ -46,7 +46,7 @@ std::string line(const sequence::EvisionRow& row) {
       row.sizes_hold() ? "" : "beyond 2 px and 10 %");
 }
 
-std::string csv_line(const sequence::EvisionFramePair& pair) {
+std::string csv_line(const evision::EvisionFramePair& pair) {
   const PixelBox& p = pair.published;
   const std::string ours =
       pair.ours
@@ -66,10 +66,10 @@ void evision(EvisionArguments arguments, Context& context) {
   std::string frames =
       "sequence,frame,x,y,width,height,published_x,published_y,published_width,published_height\n";
   if (!arguments.frames.empty())
-    arguments.options.each = [&frames](const sequence::EvisionFramePair& pair) {
+    arguments.options.each = [&frames](const evision::EvisionFramePair& pair) {
       frames += csv_line(pair);
     };
-  const auto rows = sequence::evision_table(arguments.folder, arguments.options, console.warn());
+  const auto rows = evision::evision_table(arguments.folder, arguments.options, console.warn());
   if (!arguments.frames.empty()) write_file(arguments.frames, frames);
   console.result(fmt::format("B737 as {}, C172 as {}, scale {}, a spread of {} px\n",
                              arguments.options.airliner,
@@ -101,7 +101,7 @@ void add_evision(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand(
       "evision", "Compare the published E-Vision annotations with boxes of our own");
   auto arguments = std::make_shared<EvisionArguments>();
-  sequence::EvisionOptions& options = arguments->options;
+  evision::EvisionOptions& options = arguments->options;
   command->add_option("DIR", arguments->folder, "Folder with groundtruth/*.xml and positions/*.csv")
       ->required();
   command->add_option("--airliner", options.airliner, "Aircraft of the B737 sequences")

@@ -17,8 +17,8 @@
 #include "picture/video/still.h"
 #include "scene/flight_log/local_path.h"
 #include "scene/flight_log/log_rates.h"
+#include "sequence/setup/from_scene.h"
 #include "sequence/setup/motion_source.h"
-#include "sequence/setup/own_log.h"
 
 namespace airtruth::cli {
 namespace {
@@ -86,7 +86,7 @@ struct LogShowArguments {
 };
 
 void show(const LogShowArguments& arguments, Context& context) {
-  context.console().result(description(sequence::read_log(arguments.file)));
+  context.console().result(description(setup::read_log(arguments.file)));
 }
 
 struct AlignArguments {
@@ -114,7 +114,7 @@ std::vector<motion::FrameMotion> motion_of(const AlignArguments& arguments, Cont
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, size.width, size.height);
   const std::int64_t total = reader.info().frame_count_estimate - arguments.first_frame;
-  auto motion = sequence::measure_motion(
+  auto motion = setup::measure_motion(
       reader,
       motion::Estimator(lens_of(arguments, size), {}, mask ? &*mask : nullptr),
       context.stop,
@@ -124,7 +124,7 @@ std::vector<motion::FrameMotion> motion_of(const AlignArguments& arguments, Cont
 }
 
 void align(const AlignArguments& arguments, Context& context) {
-  const FlightLog log = sequence::read_log(arguments.log);
+  const FlightLog log = setup::read_log(arguments.log);
   const auto rates = flight_log::gyro_samples(log);
   if (rates.size() < 2)
     throw Error(

@@ -123,11 +123,11 @@ void measure(const MotionArguments& arguments, Context& context) {
       lens ? motion::Estimator(*lens, options, own_aircraft)
            : motion::Estimator(info.width, info.height, options, own_aircraft);
   auto all =
-      sequence::measure_motion(reader, std::move(estimator), context.stop, [&](std::int64_t done) {
+      setup::measure_motion(reader, std::move(estimator), context.stop, [&](std::int64_t done) {
         console.progress("measuring", done, info.frame_count_estimate);
       });
-  const auto gyro = lens ? sequence::gyro_of(arguments.video) : std::vector<gyro::GyroSample>();
-  report_gyro(sequence::bridge_by_gyro(gyro, all), !gyro.empty(), console);
+  const auto gyro = lens ? setup::gyro_of(arguments.video) : std::vector<gyro::GyroSample>();
+  report_gyro(setup::bridge_by_gyro(gyro, all), !gyro.empty(), console);
   all = enum_named<scene::MotionReference>(arguments.reference) == scene::MotionReference::kSmoothed
             ? motion::smoothed(all, options)
             : motion::within_reach(std::move(all), info.width, info.height);

@@ -19,15 +19,15 @@ struct OverlayArguments {
 };
 
 void overlay(const OverlayArguments& arguments, Context& context) {
-  const sequence::Finished finished = sequence::open_finished(arguments.folder);
+  const replay::Finished finished = replay::open_finished(arguments.folder);
   Console& console = context.console();
-  sequence::OverlayOptions options;
+  replay::OverlayOptions options;
   options.overwrite = arguments.overwrite;
   options.stop = context.stop;
   options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("overlay", done, total);
   };
-  sequence::write_overlay(finished, arguments.out, options);
+  replay::write_overlay(finished, arguments.out, options);
   console.result(fmt::format("{}: {} frames", arguments.out, finished.truth.frames.size()));
 }
 
@@ -42,10 +42,10 @@ struct InspectArguments {
 
 void inspect(const InspectArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, arguments.overwrite);
-  const sequence::Finished finished = sequence::open_finished(arguments.folder);
+  const replay::Finished finished = replay::open_finished(arguments.folder);
   video::write_still(
       arguments.out,
-      sequence::inspect(finished, arguments.frame, arguments.intruder, arguments.zoom));
+      replay::inspect(finished, arguments.frame, arguments.intruder, arguments.zoom));
   context.console().result(arguments.out);
 }
 

@@ -12,6 +12,7 @@
 #include "foundation/base/error.h"
 #include "picture/video/still.h"
 #include "scene/scene/scene.h"
+#include "sequence/pipeline/resolved_scene.h"
 
 namespace airtruth::cli {
 namespace {
@@ -25,21 +26,21 @@ struct PreviewArguments {
 
 void draw(const PreviewArguments& arguments, Context& context) {
   Console& console = context.console();
-  sequence::Options options;
+  pipeline::Options options;
   options.warn = console.warn();
   options.stop = context.stop;
   const scene::Scene scene = scene::read_scene(arguments.scene);
   if (arguments.motion) {
-    options.progress = [&console](const sequence::Progress& progress) {
+    options.progress = [&console](const pipeline::Progress& progress) {
       console.progress(
           "measuring the camera's motion", progress.frames_done, progress.frames_total);
     };
-    sequence::measure_ahead(scene, options);
+    pipeline::measure_ahead(scene, options);
     console.end_progress();
   }
-  const auto made = sequence::preview(scene, options);
+  const auto made = preview::preview_of(scene, options);
   video::write_still(arguments.out, made.picture, Flush::kLater);
-  std::string text = sequence::table_text(made.rows);
+  std::string text = preview::table_text(made.rows);
   for (const std::string& line : made.approaches) text += line + "\n";
   console.result(text + arguments.out);
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequence/pipeline/render.h"
+
 #include <algorithm>
 #include <memory>
 
@@ -7,7 +9,6 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "scene/scene/scene.h"
-#include "sequence/sequence/sequence.h"
 
 namespace airtruth::cli {
 namespace {
@@ -22,8 +23,8 @@ struct RenderArguments {
   std::string gpu;
 };
 
-sequence::Options options_from(const RenderArguments& arguments, Context& context) {
-  sequence::Options options;
+pipeline::Options options_from(const RenderArguments& arguments, Context& context) {
+  pipeline::Options options;
   options.overwrite = arguments.overwrite;
   options.threads = arguments.threads;
   options.use_cache = !arguments.no_cache;
@@ -38,18 +39,18 @@ sequence::Options options_from(const RenderArguments& arguments, Context& contex
   Console& console = context.console();
   options.warn = console.warn();
   options.stop = context.stop;
-  options.progress = [&console](const sequence::Progress& progress) {
+  options.progress = [&console](const pipeline::Progress& progress) {
     console.progress(progress.stage, progress.frames_done, progress.frames_total);
   };
   return options;
 }
 
 // Each stage's CPU and wall time a frame, and the CPU time of the run's parts.
-std::string timings(const sequence::Summary& summary) {
-  const sequence::StageTimes& s = summary.stages;
+std::string timings(const pipeline::Summary& summary) {
+  const pipeline::StageTimes& s = summary.stages;
   const double ms_per_frame =
       1000.0 / static_cast<double>(std::max<std::int64_t>(1, summary.frames));
-  const auto stages = [&](double sequence::StageTime::*time) {
+  const auto stages = [&](double pipeline::StageTime::*time) {
     return fmt::format(
         "read {:.2f} ms, move {:.2f} ms, render {:.2f} ms, composite {:.2f} ms, write {:.2f} ms",
         s.read.*time * ms_per_frame,
@@ -64,9 +65,9 @@ std::string timings(const sequence::Summary& summary) {
       "CPU time a frame: {}, codec and other threads {:.2f} ms\n"
       "wall time a frame: {}\n"
       "CPU time of the run: start {:.2f} s, frames {:.2f} s, end {:.2f} s",
-      stages(&sequence::StageTime::cpu_s),
+      stages(&pipeline::StageTime::cpu_s),
       s.other_threads_cpu_s * ms_per_frame,
-      stages(&sequence::StageTime::wall_s),
+      stages(&pipeline::StageTime::wall_s),
       s.start_cpu_s,
       frames_s,
       s.end_cpu_s);
@@ -74,8 +75,8 @@ std::string timings(const sequence::Summary& summary) {
 
 void render(const RenderArguments& arguments, Context& context) {
   const scene::Scene scene = scene::read_scene(arguments.scene);
-  const sequence::Summary summary =
-      sequence::render(scene, arguments.out, options_from(arguments, context));
+  const pipeline::Summary summary =
+      pipeline::render(scene, arguments.out, options_from(arguments, context));
   context.console().result(
       fmt::format("{}: {} frames, an intruder visible in {}, {:.1f} s ({:.1f} frames/s)",
                   summary.folder.string(),

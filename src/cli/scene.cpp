@@ -26,14 +26,14 @@ void new_scene(const NewArguments& arguments, Context& context) {
                               : std::filesystem::path(arguments.video).stem().string() + ".toml";
   check_output_file(out, arguments.overwrite);
   Console& console = context.console();
-  sequence::NewSceneOptions options;
+  new_scene::NewSceneOptions options;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
   options.warn = console.warn();
   options.stop = context.stop;
   options.progress = [&console](std::int64_t done, std::int64_t total) {
     console.progress("looking for lens and motion", done, total);
   };
-  const std::string text = sequence::new_scene(arguments.video, options);
+  const std::string text = new_scene::scene_text(arguments.video, options);
   console.end_progress();
   write_file(out, text);
   console.result(fmt::format("{}\nnext: airtruth preview {}", out, out));

@@ -10,7 +10,7 @@
 #include "foundation/base/output_check.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
-#include "sequence/frame/mask_picture.h"
+#include "sequence/insertion/masks.h"
 
 namespace airtruth::cli {
 namespace {
@@ -42,7 +42,7 @@ void synth(SynthArguments arguments, Context& context) {
     options.lens = lens::read_calibration(arguments.lens_file, {options.width, options.height});
   Console& console = context.console();
   const fs::path out = arguments.out;
-  sequence::VirtualFlightOptions how;
+  demo::VirtualFlightOptions how;
   how.format = video::format_of_file(out);
   how.quality = arguments.quality;
   how.stop = context.stop;
@@ -50,10 +50,10 @@ void synth(SynthArguments arguments, Context& context) {
     console.progress("flying", done, total);
   };
   const synthetic::Flight flight(options);
-  sequence::write_flight(flight, out, how);
+  demo::write_flight(flight, out, how);
   if (!arguments.truth.empty()) write_file(arguments.truth, synthetic::csv_from_flight(flight));
   if (!arguments.mask.empty())
-    video::write_still(arguments.mask, sequence::picture_of(flight.own_aircraft()));
+    video::write_still(arguments.mask, insertion::picture_of(flight.own_aircraft()));
   console.result(fmt::format(
       "{}: {} frames of {}x{}", arguments.out, options.frame_count, options.width, options.height));
 }

@@ -27,8 +27,8 @@
 #include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/sequence/sequence.h"
-#include "sequence/sequence/staging.h"
+#include "sequence/pipeline/render.h"
+#include "sequence/pipeline/staged_folder.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 
@@ -129,7 +129,7 @@ class Comparing {
  private:
   void load(const scene::Scene& given) {
     const video::StreamInfo info = video::Reader(real_, {.threads = 1}).info();
-    lens_ = sequence::lens_of(given.lens, {info.width, info.height});
+    lens_ = setup::lens_of(given.lens, {info.width, info.height});
     rate_hz_ = info.frame_rate.value();
     const scene::Intruder& intruder = given.intruders[0];
     aircraft::LoadOptions load;
@@ -275,7 +275,7 @@ class Comparing {
                      double scale,
                      const fs::path& folder,
                      bool reports) {
-    sequence::Options how;
+    pipeline::Options how;
     // The path is that of a place in the picture; that no aircraft can fly it is no news.
     if (reports)
       how.warn = [this](const std::string& message) {
@@ -283,10 +283,10 @@ class Comparing {
       };
     how.stop = options_.stop;
     if (reports)
-      how.progress = [&](const sequence::Progress& p) {
+      how.progress = [&](const pipeline::Progress& p) {
         if (options_.progress) options_.progress(p.frames_done, 2 * p.frames_total);
       };
-    sequence::render(placed_beside(given, boxes, scale), folder, how);
+    pipeline::render(placed_beside(given, boxes, scale), folder, how);
   }
 
   void render(const scene::Scene& given, double scale) {
@@ -366,7 +366,7 @@ class Comparing {
   fs::path real_;
   match::RealBoxes boxes_;  // tight
   Options options_;
-  sequence::StagedFolder staged_;
+  pipeline::StagedFolder staged_;
   std::optional<lens::Lens> lens_;
   double rate_hz_ = 0;
   aircraft::Aircraft aircraft_;

@@ -10,10 +10,11 @@
 #include "benchmark/appearance/segment.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
-#include "sequence/frame/paint.h"
+#include "sequence/insertion/ambient.h"
+#include "sequence/insertion/paint.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
-#include "sequence/surroundings/ambient.h"
 
 namespace airtruth::match {
 namespace {
@@ -119,11 +120,11 @@ class Lit {
  public:
   Lit(const scene::Scene& scene, const std::vector<SunFrame>& frames, const std::stop_token& stop)
       : scene_(scene),
-        world_(sequence::load_world(
+        world_(setup::load_world(
             scene, {frames[0].picture->width, frames[0].picture->height}, {}, stop)) {
     for (const SunFrame& frame : frames) {
       View view{frame.picture,
-                sequence::moment_at(world_, 0, frame.time_s, {}),
+                setup::moment_at(world_, 0, frame.time_s, {}),
                 contrast_in(*frame.picture, frame.real, {})};
       if (view.moment.boxes[0].box && !view.real.empty()) views_.push_back(std::move(view));
     }
@@ -135,10 +136,9 @@ class Lit {
     Agreement agreement;
     for (const View& view : views_) {
       if (stop.stop_requested()) throw Interrupted();
-      sequence::AmbientEstimator light(
-          scene_.light, sequence::tone_of(scene_.camera_model), nullptr);
+      insertion::AmbientEstimator light(scene_.light, setup::tone_of(scene_.camera_model), nullptr);
       image::Picture painted = view.picture->clone();
-      sequence::make_painter(scene_, world_, nullptr, {})
+      insertion::make_painter(scene_, world_, nullptr, {})
           ->paint(painted, view.moment, light.next(painted, view.moment.sight, {}));
       const auto made = appearance::seen_in(painted, *view.moment.boxes[0].box);
       if (!made) continue;
@@ -152,12 +152,12 @@ class Lit {
   // What is the same under every sun.
   struct View {
     const image::Picture* picture = nullptr;
-    sequence::Moment moment;
+    setup::Moment moment;
     cv::Mat real;  // what the real aircraft adds to its surroundings
   };
 
   scene::Scene scene_;
-  sequence::World world_;
+  setup::World world_;
   std::vector<View> views_;
 };
 

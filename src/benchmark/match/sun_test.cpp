@@ -6,9 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "benchmark/appearance/segment.h"
-#include "sequence/frame/paint.h"
+#include "sequence/insertion/ambient.h"
+#include "sequence/insertion/paint.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
-#include "sequence/surroundings/ambient.h"
 
 namespace airtruth::match {
 namespace {
@@ -54,12 +55,12 @@ TEST(Sun, IsFoundFromAnInsertedAircraft) {
   scene::Scene lit = scene_under(130, 40);
   lit.camera_model.point_spread_px = 0.8;
   image::Picture picture = blue_sky();
-  const sequence::World world = sequence::load_world(lit, {kWide, kHigh}, {});
-  const sequence::Moment moment = sequence::moment_at(world, 0, 0.5, {});
+  const setup::World world = setup::load_world(lit, {kWide, kHigh}, {});
+  const setup::Moment moment = setup::moment_at(world, 0, 0.5, {});
   ASSERT_TRUE(moment.boxes[0].box);
-  sequence::AmbientEstimator ambient(lit.light, {}, nullptr);
-  const sequence::Ambient light = ambient.next(picture, moment.sight, {});
-  sequence::make_painter(lit, world, nullptr, {})->paint(picture, moment, light);
+  insertion::AmbientEstimator ambient(lit.light, {}, nullptr);
+  const insertion::Ambient light = ambient.next(picture, moment.sight, {});
+  insertion::make_painter(lit, world, nullptr, {})->paint(picture, moment, light);
   scene::Scene unlit = scene_under(0, 90);
   // Beside it, where the sky is free.
   for (Vector3& point : unlit.intruders[0].waypoints_ned_m) point.y() += 60;

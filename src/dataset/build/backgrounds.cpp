@@ -6,28 +6,28 @@
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
-#include "sequence/frame/mask_picture.h"
+#include "sequence/insertion/masks.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 namespace {
 
 // Flight options with the sun and the lens of the background.
-synthetic::FlightOptions flight_over(const Background& background,
+synthetic::FlightOptions flight_over(const catalogue::Background& background,
                                      synthetic::FlightOptions flight) {
   flight.sun_azimuth_deg = background.light.sun_azimuth_deg;
   flight.sun_elevation_deg = background.light.sun_elevation_deg;
-  flight.lens = sequence::lens_of(background.lens, {flight.width, flight.height});
+  flight.lens = setup::lens_of(background.lens, {flight.width, flight.height});
   return flight;
 }
 
-BackgroundFiles fly(const Background& background,
-                    const synthetic::FlightOptions& wanted,
-                    const Folder& folder,
-                    const BuildOptions& options) {
+catalogue::BackgroundFiles fly(const catalogue::Background& background,
+                               const synthetic::FlightOptions& wanted,
+                               const catalogue::Folder& folder,
+                               const BuildOptions& options) {
   const fs::path stem = folder.backgrounds() / background.name;
-  BackgroundFiles files;
+  catalogue::BackgroundFiles files;
   files.video = stem.string() + ".mp4";
   files.mask = stem.string() + ".mask.png";
   // The video is the last file that appears.
@@ -35,20 +35,20 @@ BackgroundFiles fly(const Background& background,
   fs::create_directories(folder.backgrounds());
   const synthetic::Flight flight(flight_over(background, wanted));
   write_file(stem.string() + ".csv", synthetic::csv_from_flight(flight));
-  video::write_still(*files.mask, sequence::picture_of(flight.own_aircraft()));
-  sequence::VirtualFlightOptions how;
+  video::write_still(*files.mask, insertion::picture_of(flight.own_aircraft()));
+  demo::VirtualFlightOptions how;
   how.stop = options.stop;
   how.progress = [&](std::int64_t done, std::int64_t total) {
     if (options.progress) options.progress({done, total, "flying " + background.name});
   };
-  sequence::write_flight(flight, files.video, how);
+  demo::write_flight(flight, files.video, how);
   return files;
 }
 
-BackgroundFiles files_of(const Background& background,
-                         const Folder& folder,
-                         const BuildOptions& options) {
-  BackgroundFiles files;
+catalogue::BackgroundFiles files_of(const catalogue::Background& background,
+                                    const catalogue::Folder& folder,
+                                    const BuildOptions& options) {
+  catalogue::BackgroundFiles files;
   if (const auto given = options.videos.find(background.name); given != options.videos.end()) {
     files.video = given->second;
     return files;
@@ -62,15 +62,15 @@ BackgroundFiles files_of(const Background& background,
 
 }  // namespace
 
-BackgroundFiles prepare(const Background& background,
-                        const Folder& folder,
-                        const BuildOptions& options) {
-  BackgroundFiles files = files_of(background, folder, options);
+catalogue::BackgroundFiles prepare(const catalogue::Background& background,
+                                   const catalogue::Folder& folder,
+                                   const BuildOptions& options) {
+  catalogue::BackgroundFiles files = files_of(background, folder, options);
   add_facts(files);
   return files;
 }
 
-void add_facts(BackgroundFiles& files) {
+void add_facts(catalogue::BackgroundFiles& files) {
   const video::StreamInfo info = video::Reader(files.video, {.threads = 1}).info();
   files.width = info.width;
   files.height = info.height;
@@ -78,4 +78,4 @@ void add_facts(BackgroundFiles& files) {
   files.frames = info.frame_count_estimate;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -4,17 +4,17 @@
 #include "dataset/build/build.h"
 #include "dataset/catalogue/folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 
 // Returns the files of a background: an existing video, or a virtual flight, which is made where it
 // does not exist yet. A flight's files appear whole or not at all. Two processes that make the same
 // flight at the same time write the same bytes.
-BackgroundFiles prepare(const Background& background,
-                        const Folder& folder,
-                        const BuildOptions& options);
+catalogue::BackgroundFiles prepare(const catalogue::Background& background,
+                                   const catalogue::Folder& folder,
+                                   const BuildOptions& options);
 
 // Fills in size, rate and number of frames from the video. Throws Error where the video cannot be
 // read.
-void add_facts(BackgroundFiles& files);
+void add_facts(catalogue::BackgroundFiles& files);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "dataset/build/backgrounds.h"
+#include "dataset/build/check.h"
 #include "dataset/build/manifest.h"
-#include "dataset/catalogue/check.h"
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_lock.h"
@@ -20,11 +20,11 @@
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/pattern.h"
 #include "foundation/base/stopwatch.h"
-#include "sequence/sequence/frame_maker.h"
-#include "sequence/sequence/sequence.h"
+#include "sequence/pipeline/frame_maker.h"
+#include "sequence/pipeline/render.h"
 #include "sequence/setup/shared_inputs.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 namespace {
 
 // Sequences that are put in the order of their aircraft at a time: enough for dozens of each of a
@@ -34,7 +34,9 @@ constexpr std::int64_t kMaxOrdered = 4096;
 // One build: it makes its share of the catalogue on several threads.
 class Work {
  public:
-  Work(const Catalogue& catalogue, const Folder& folder, const BuildOptions& options)
+  Work(const catalogue::Catalogue& catalogue,
+       const catalogue::Folder& folder,
+       const BuildOptions& options)
       : catalogue_(catalogue), folder_(folder), options_(options), expansion_(catalogue) {
     jobs_ = options.jobs > 0 ? options.jobs
                              : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -54,7 +56,7 @@ class Work {
   }
 
  private:
-  bool is_wanted(const Item& item) const { return matches(options_.only, item.name); }
+  bool is_wanted(const catalogue::Item& item) const { return matches(options_.only, item.name); }
 
   // Collects the work, the backgrounds that it needs, and how many of their frames.
   void count() {
@@ -62,7 +64,7 @@ class Work {
     is_used_.assign(catalogue_.backgrounds.size(), false);
     bool any = false;
     for (std::int64_t i = options_.share; i < expansion_.size(); i += options_.shares) {
-      const Item item = expansion_.at(i);
+      const catalogue::Item item = expansion_.at(i);
       if (!is_wanted(item)) continue;
       any = true;
       ++total_;
@@ -73,7 +75,7 @@ class Work {
       ++missing_;
       is_used_[item.background] = true;
       // A clip that begins at a random frame is measured from its own first frame, when it is made.
-      if (item.rule != nullptr && item.rule->start == ClipStart::kRandom) continue;
+      if (item.rule != nullptr && item.rule->start == catalogue::ClipStart::kRandom) continue;
       auto& needed = needed_[item.background];
       needed =
           item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);
@@ -96,25 +98,25 @@ class Work {
 
   // Measures the motion and the camera of a background once for all the sequences over it.
   void measure(std::size_t i) {
-    scene::Scene scene = scene_over(catalogue_, i);
+    scene::Scene scene = catalogue::scene_over(catalogue_, i);
     scene.background.video = files_[i].video;
     scene.background.mask = files_[i].mask;
     scene.background.first_frame = catalogue_.backgrounds[i].first_frame;
     if (needed_[i].value_or(0) > 0) scene.background.frame_count = *needed_[i];
-    sequence::Options how;
+    pipeline::Options how;
     how.cache = folder_.cache();
     how.shared = shared_;
     how.stop = options_.stop;
     how.warn = options_.warn;
     const std::string& name = catalogue_.backgrounds[i].name;
     std::string stage = "measuring the motion of " + name;
-    how.progress = [&](const sequence::Progress& p) {
+    how.progress = [&](const pipeline::Progress& p) {
       report({p.frames_done, p.frames_total, stage});
     };
-    if (needed_[i]) sequence::measure_ahead(scene, how);
+    if (needed_[i]) pipeline::measure_ahead(scene, how);
     stage = "measuring the camera of " + name;
     try {
-      sequence::calibrate_ahead(scene, how);
+      pipeline::calibrate_ahead(scene, how);
       // Each sequence over this background reports the error; the others are made.
     } catch (const Error&) {
     }
@@ -130,7 +132,7 @@ class Work {
   std::vector<std::int64_t> missing_by_aircraft(std::int64_t first, std::int64_t last) const {
     std::vector<std::pair<std::string, std::int64_t>> ordered;
     for (std::int64_t i = first; i < last; ++i) {
-      const Item item = expansion_.at(options_.share + i * options_.shares);
+      const catalogue::Item item = expansion_.at(options_.share + i * options_.shares);
       if (!is_wanted(item) || folder_.holds(item)) continue;
       const auto& intruders = item.scene.intruders;
       ordered.emplace_back(intruders.empty() ? "" : intruders.front().aircraft, item.index);
@@ -146,15 +148,15 @@ class Work {
         indices.size(),
         jobs_,
         [&](std::size_t i) {
-          Item item = expansion_.at(indices[i]);
+          catalogue::Item item = expansion_.at(indices[i]);
           make(item);
         },
         {},
         options_.stop);
   }
 
-  void make(Item& item) {
-    sequence::Options how;
+  void make(catalogue::Item& item) {
+    pipeline::Options how;
     how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
     how.cache = folder_.cache();
     how.shared = shared_;
@@ -164,11 +166,11 @@ class Work {
       warn(options_.warn, item.name + ": " + message);
     };
     try {
-      place(item, catalogue_, files_[item.background], shared_.get());
+      catalogue::place(item, catalogue_, files_[item.background], shared_.get());
       // A numbered folder is made here and not by the run, which removes an empty one on failure.
       const fs::path place = folder_.sequence(item).parent_path();
       fs::create_directories(place);
-      const sequence::Summary done = sequence::render(item.scene, place, how);
+      const pipeline::Summary done = pipeline::render(item.scene, place, how);
       const std::lock_guard lock(mutex_);
       ++summary_.made;
       summary_.frames += done.frames;
@@ -189,27 +191,29 @@ class Work {
     if (options_.progress) options_.progress(progress);
   }
 
-  const Catalogue& catalogue_;
-  const Folder& folder_;
+  const catalogue::Catalogue& catalogue_;
+  const catalogue::Folder& folder_;
   const BuildOptions& options_;
-  Expansion expansion_;
+  catalogue::Expansion expansion_;
   int jobs_ = 1;
   std::int64_t total_ = 0;
   std::int64_t missing_ = 0;
   std::vector<bool> is_used_;  // by background
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
-  std::vector<BackgroundFiles> files_;
+  std::vector<catalogue::BackgroundFiles> files_;
   // Aircraft are the same in every set: their openness is kept where `render` keeps it.
-  std::shared_ptr<sequence::SharedInputs> shared_ =
-      std::make_shared<sequence::SharedInputs>(sequence::openness_cache({}));
+  std::shared_ptr<setup::SharedInputs> shared_ =
+      std::make_shared<setup::SharedInputs>(pipeline::openness_cache({}));
   std::mutex mutex_;
   BuildSummary summary_;
 };
 
 }  // namespace
 
-BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options) {
+BuildSummary build_set(const catalogue::Catalogue& catalogue,
+                       const fs::path& out,
+                       const BuildOptions& options) {
   check(options.share >= 0 && options.share < options.shares, "a share is one of the shares");
   const Stopwatch watch;
   // Sequence records hold full background paths, because virtual flights lie in the data set.
@@ -217,8 +221,8 @@ BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildO
   for (const auto& [name, video] : options.videos) require_utf8(fs::absolute(video));
   expect_backgrounds(catalogue, options.videos);
   check_sources(catalogue, options.videos);
-  const Folder folder = open_folder(catalogue, out, options.max_in_a_folder);
-  const FolderLock lock(folder, options.shares > 1);
+  const catalogue::Folder folder = catalogue::open_folder(catalogue, out, options.max_in_a_folder);
+  const catalogue::FolderLock lock(folder, options.shares > 1);
   BuildSummary summary = Work(catalogue, folder, options).run();
   write_failures(folder.failed(options.share, options.shares), summary.failures);
   // With several workers none can know that it is the last, so `finish` writes their manifest.
@@ -228,10 +232,10 @@ BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildO
 }
 
 bool finish(const fs::path& root) {
-  const Folder folder{root};
-  const Catalogue catalogue = read_catalogue(folder.catalogue());
-  const FolderLock lock(folder, false);
+  const catalogue::Folder folder{root};
+  const catalogue::Catalogue catalogue = catalogue::read_catalogue(folder.catalogue());
+  const catalogue::FolderLock lock(folder, false);
   return write_manifest(catalogue, folder);
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -22,7 +22,9 @@
 //   manifest/00000.jsonl  one line per sequence, 10,000 lines per file
 //   dataset.json          written last, once every sequence exists
 //   failed.jsonl          the sequences that could not be made, with the reason
-namespace airtruth::dataset {
+namespace airtruth::build {
+
+namespace fs = std::filesystem;
 
 struct BuildProgress {
   // Sequences of this run's share that were made, or found whole.
@@ -38,7 +40,7 @@ struct BuildOptions {
   // Pattern; only sequences with a matching name are made.
   std::string only = "*";
   // A set of more sequences that is begun now has them in numbered folders with as many each.
-  std::int64_t max_in_a_folder = kMaxSequencesInAFolder;
+  std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder;
   // Maps a background's name to the video that replaces the catalogue's.
   std::map<std::string, fs::path> videos;
   // This run makes the sequences whose number is congruent to `share` modulo `shares`.
@@ -69,10 +71,12 @@ struct BuildSummary {
 // is listed in `failures`, and the build continues with the others. Throws Error where `out` was
 // begun with another catalogue, another build is at work in it, the video of a background cannot be
 // read, or no sequence's name matches the pattern. Throws Interrupted on stop.
-BuildSummary build(const Catalogue& catalogue, const fs::path& out, const BuildOptions& options);
+BuildSummary build_set(const catalogue::Catalogue& catalogue,
+                       const fs::path& out,
+                       const BuildOptions& options);
 
 // Writes the manifest of a folder that several workers have filled. Returns false where a sequence
 // is missing. Throws Error while any worker is active.
 bool finish(const fs::path& root);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -4,24 +4,24 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "dataset/build/build.h"
+#include "dataset/build/check.h"
 #include "dataset/build/verify.h"
-#include "dataset/catalogue/check.h"
 #include "dataset/catalogue/folder.h"
-#include "dataset/catalogue/small_catalogue.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/small_catalogue.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 namespace {
 
 using testing::HasSubstr;
 
 std::string error_of(const std::string& text) {
   try {
-    parse_catalogue(text, "c.toml");
+    catalogue::parse_catalogue(text, "c.toml");
   } catch (const Error& error) {
     return error.what();
   }
@@ -29,8 +29,9 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(Catalogue, AProductMakesEveryCombinationOnce) {
-  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
-  const Expansion expansion(catalogue);
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
+  const catalogue::Expansion expansion(catalogue);
   ASSERT_EQ(expansion.size(), 4);
   std::set<std::string> names;
   for (std::int64_t i = 0; i < 4; ++i) names.insert(expansion.at(i).name);
@@ -41,7 +42,7 @@ TEST(Catalogue, AProductMakesEveryCombinationOnce) {
 }
 
 TEST(Catalogue, WhatItNamesMustBeThere) {
-  std::string text = kCatalogue;
+  std::string text = test_support::kCatalogue;
   const auto with = [&](const std::string& more) { return error_of(text + more); };
   EXPECT_THAT(with("[[sequence]]\nname = \"a\"\nbackground = \"sjy\"\ntrajectory = "
                    "\"across\"\naircraft = \"b737\"\n"),
@@ -59,39 +60,40 @@ TEST(Catalogue, WhatItNamesMustBeThere) {
 }
 
 TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
-  const Catalogue catalogue = parse_catalogue(
-      std::string(kCatalogue) +
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
+      std::string(test_support::kCatalogue) +
           "[[random]]\ncount = 1000000\nframe_count = 30\naircraft = [\"738/*\", \"c172/*\"]\n",
       "c.toml");
-  const Expansion expansion(catalogue);
+  const catalogue::Expansion expansion(catalogue);
   EXPECT_EQ(expansion.size(), 1000004);
-  const Item last = expansion.at(1000003);
+  const catalogue::Item last = expansion.at(1000003);
   EXPECT_EQ(last.name, "r999999");
   // The items do not depend on the order of the calls.
-  const Item again = Expansion(catalogue).at(1000003);
+  const catalogue::Item again = catalogue::Expansion(catalogue).at(1000003);
   EXPECT_EQ(again.scene.intruders[0].waypoints_ned_m, last.scene.intruders[0].waypoints_ned_m);
 }
 
 TEST(Catalogue, AVideoTakesThePlaceOfABackgroundByItsName) {
-  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
-  const Catalogue changed = with_videos(catalogue, {{"sky", "/clips/own.mp4"}});
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
+  const catalogue::Catalogue changed = build::with_videos(catalogue, {{"sky", "/clips/own.mp4"}});
   EXPECT_EQ(std::get<fs::path>(changed.backgrounds.at(0).source), "/clips/own.mp4");
   EXPECT_FALSE(changed.backgrounds.at(0).mask);
-  EXPECT_THROW(with_videos(catalogue, {{"sjy", "/clips/own.mp4"}}), Error);
+  EXPECT_THROW(build::with_videos(catalogue, {{"sjy", "/clips/own.mp4"}}), Error);
 }
 
 // At some moment of the clip a random intruder is at the requested range in the requested
 // direction.
 TEST(Catalogue, DrawnIntrudersComeIntoTheRangesThatWereAskedFor) {
-  const Catalogue catalogue =
-      parse_catalogue(std::string(kCatalogue) +
-                          "[[random]]\ncount = 200\nframe_count = 90\naircraft = "
-                          "[\"738/*\"]\nrange_m = [300, 500]\nazimuth_deg = [-10, 10]\n"
-                          "elevation_deg = [2, 8]\nspeed_mps = [50, 60]\n",
-                      "c.toml");
-  const Expansion expansion(catalogue);
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(std::string(test_support::kCatalogue) +
+                                     "[[random]]\ncount = 200\nframe_count = 90\naircraft = "
+                                     "[\"738/*\"]\nrange_m = [300, 500]\nazimuth_deg = [-10, 10]\n"
+                                     "elevation_deg = [2, 8]\nspeed_mps = [50, 60]\n",
+                                 "c.toml");
+  const catalogue::Expansion expansion(catalogue);
   for (std::int64_t i = 4; i < expansion.size(); ++i) {
-    const Item item = expansion.at(i);
+    const catalogue::Item item = expansion.at(i);
     const auto& points = item.scene.intruders[0].waypoints_ned_m;
     const double speed = *item.scene.intruders[0].speed_mps;
     EXPECT_GE(speed, 50);
@@ -111,11 +113,6 @@ TEST(Catalogue, DrawnIntrudersComeIntoTheRangesThatWereAskedFor) {
 
 class Build : public testing::Test {
  protected:
-  Build() : root_(fs::temp_directory_path() / ("airtruth_dataset_" + std::to_string(::getpid()))) {
-    fs::create_directories(root_);
-  }
-  ~Build() override { fs::remove_all(root_); }
-
   // The SHA-256 of every file of the sequences and the manifest, by name.
   static std::map<std::string, std::string> bytes_of(const fs::path& folder) {
     std::map<std::string, std::string> result;
@@ -129,24 +126,26 @@ class Build : public testing::Test {
     return result;
   }
 
-  fs::path root_;
+  test_support::TemporaryFolder temporary_;
+  fs::path root_ = temporary_.path();
 };
 
 TEST_F(Build, GoesOnWhereItWasAndGivesTheSameBytesForAnyNumberOfJobs) {
-  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
   BuildOptions options;
   options.jobs = 1;
-  const BuildSummary first = build(catalogue, root_ / "one", options);
+  const BuildSummary first = build_set(catalogue, root_ / "one", options);
   EXPECT_EQ(first.made, 4);
   EXPECT_TRUE(first.complete);
   options.jobs = 2;
   options.only = "sky*";
-  const BuildSummary part = build(catalogue, root_ / "two", options);
+  const BuildSummary part = build_set(catalogue, root_ / "two", options);
   EXPECT_EQ(part.made, 2);
   EXPECT_FALSE(part.complete);
-  EXPECT_EQ(dataset::status(root_ / "two").missing.size(), 2u);
+  EXPECT_EQ(build::status(root_ / "two").missing.size(), 2u);
   options.only = "*";
-  const BuildSummary rest = build(catalogue, root_ / "two", options);
+  const BuildSummary rest = build_set(catalogue, root_ / "two", options);
   EXPECT_EQ(rest.made, 2);
   EXPECT_EQ(rest.kept, 2);
   EXPECT_TRUE(rest.complete);
@@ -164,13 +163,13 @@ TEST_F(Build, GoesOnWhereItWasAndGivesTheSameBytesForAnyNumberOfJobs) {
 TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
   const auto error = [&](const std::string& text) -> std::string {
     try {
-      build(parse_catalogue(text, "c.toml"), root_ / "never", {});
+      build_set(catalogue::parse_catalogue(text, "c.toml"), root_ / "never", {});
     } catch (const Error& e) {
       return e.what();
     }
     return "no error";
   };
-  const std::string text = kCatalogue;
+  const std::string text = test_support::kCatalogue;
   EXPECT_THAT(error(text + "[[aircraft]]\nname = \"none\"\naircraft = \"738/738-Ryanaair\"\n"),
               testing::MatchesRegex(
                   "c.toml:[0-9]+:12: unknown aircraft '738/738-Ryanaair'.*738-Ryanair.*"));
@@ -184,10 +183,11 @@ TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
 }
 
 TEST_F(Build, OneBadSequenceDoesNotStopTheOthers) {
-  std::string text = kCatalogue;
+  std::string text = test_support::kCatalogue;
   write_file(root_ / "broken.ac", "this is no model");
   text += "[[aircraft]]\nname = \"none\"\naircraft = \"" + (root_ / "broken.ac").string() + "\"\n";
-  const BuildSummary summary = build(parse_catalogue(text, "c.toml"), root_ / "bad", {});
+  const BuildSummary summary =
+      build_set(catalogue::parse_catalogue(text, "c.toml"), root_ / "bad", {});
   EXPECT_EQ(summary.made, 4);
   ASSERT_EQ(summary.failures.size(), 2u);
   EXPECT_THAT(summary.failures[0].reason, HasSubstr("broken.ac"));
@@ -196,8 +196,9 @@ TEST_F(Build, OneBadSequenceDoesNotStopTheOthers) {
 }
 
 TEST_F(Build, VerifyFindsWhatWasChanged) {
-  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
-  build(catalogue, root_ / "set", {});
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
+  build_set(catalogue, root_ / "set", {});
   const fs::path truth = root_ / "set" / "sequences" / "sky-across-b737" / "truth.jsonl";
   const std::string text = read_file(truth);
   write_file(truth, text.substr(0, text.size() / 2));
@@ -207,14 +208,16 @@ TEST_F(Build, VerifyFindsWhatWasChanged) {
 }
 
 TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
-  const Catalogue catalogue = parse_catalogue(kCatalogue, "c.toml");
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
   BuildOptions little;
   little.only = "sky-across-c172";
-  build(catalogue, root_ / "set", little);
-  const Catalogue other = parse_catalogue(std::string(kCatalogue) + "quality = 20\n", "c.toml");
-  const auto error_of_build = [&](const Catalogue& one) -> std::string {
+  build_set(catalogue, root_ / "set", little);
+  const catalogue::Catalogue other = catalogue::parse_catalogue(
+      std::string(test_support::kCatalogue) + "quality = 20\n", "c.toml");
+  const auto error_of_build = [&](const catalogue::Catalogue& one) -> std::string {
     try {
-      build(one, root_ / "set", little);
+      build_set(one, root_ / "set", little);
     } catch (const Error& error) {
       return error.what();
     }
@@ -223,9 +226,9 @@ TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   EXPECT_THAT(error_of_build(other), HasSubstr("catalogue"));
   EXPECT_EQ(error_of_build(catalogue), "no error");
   // While another process is at work in it: flock() counts two openings of one file as two.
-  const FolderLock elsewhere(Folder{root_ / "set"}, false);
+  const catalogue::FolderLock elsewhere(catalogue::Folder{root_ / "set"}, false);
   EXPECT_THAT(error_of_build(catalogue), HasSubstr("at work"));
 }
 
 }  // namespace
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -9,14 +9,14 @@
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kLinesInAFile = 10'000;
 
-Json manifest_line(const Folder& folder, const Item& item) {
+Json manifest_line(const catalogue::Folder& folder, const catalogue::Item& item) {
   const JsonDocument record(folder.sequence(item) / "sequence.json");
   const JsonObject summary = record.object("summary");
   Json line = {
@@ -46,8 +46,8 @@ void write_failures(const fs::path& file, const std::vector<Failure>& failures) 
   write_file(file, text);
 }
 
-bool write_manifest(const Catalogue& catalogue, const Folder& folder) {
-  const Expansion expansion(catalogue);
+bool write_manifest(const catalogue::Catalogue& catalogue, const catalogue::Folder& folder) {
+  const catalogue::Expansion expansion(catalogue);
   for (std::int64_t i = 0; i < expansion.size(); ++i)
     if (!folder.holds(expansion.at(i))) return false;
   fs::create_directories(folder.manifest());
@@ -77,4 +77,4 @@ bool write_manifest(const Catalogue& catalogue, const Folder& folder) {
   return true;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

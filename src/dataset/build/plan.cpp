@@ -8,12 +8,12 @@
 #include "dataset/build/backgrounds.h"
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/error.h"
-#include "sequence/sequence/sequence.h"
+#include "sequence/pipeline/render.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 namespace {
 
 // Cost of a frame of 1280x960 (docs/scaling.md); the cost of other sizes is proportional to their
@@ -27,12 +27,12 @@ constexpr double kUsualPixels = 1280.0 * 960.0;
 
 class Planner {
  public:
-  explicit Planner(const Catalogue& catalogue) : catalogue_(catalogue) {
+  explicit Planner(const catalogue::Catalogue& catalogue) : catalogue_(catalogue) {
     facts_.resize(catalogue.backgrounds.size());
     is_used_.resize(catalogue.backgrounds.size(), false);
   }
 
-  void add(const Item& item) {
+  void add(const catalogue::Item& item) {
     const Facts& facts = facts_of(item.background);
     const std::int64_t frames = frames_of(item, facts);
     ++plan_.sequences;
@@ -42,7 +42,7 @@ class Planner {
     plan_.bytes +=
         static_cast<double>(frames) * facts.size * kBytesPerFrame + kBytesPerSequence * facts.size;
     count_things(item.scene);
-    for (const Encounter& encounter : item.drawn.encounters) {
+    for (const catalogue::Encounter& encounter : item.drawn.encounters) {
       if (encounter.size_px) plan_.sizes_px.add(*encounter.size_px);
       if (encounter.range_m) plan_.ranges_m.add(*encounter.range_m);
     }
@@ -58,7 +58,7 @@ class Planner {
     for (const scene::Intruder& intruder : scene.intruders) {
       if (is_aircraft(intruder)) {
         ++aircraft;
-        ++plan_.aircraft[category_of(intruder.aircraft)][intruder.aircraft];
+        ++plan_.aircraft[sequences::category_of(intruder.aircraft)][intruder.aircraft];
       } else {
         ++plan_.distractors[enum_name(intruder.distractor->kind)];
       }
@@ -69,7 +69,7 @@ class Planner {
   }
 
   struct Facts {
-    BackgroundFiles files;
+    catalogue::BackgroundFiles files;
     // Pixels of a frame relative to 1280x960.
     double size = 1;
   };
@@ -79,7 +79,7 @@ class Planner {
     Facts& facts = facts_[i];
     if (is_used_[i]) return facts;
     is_used_[i] = true;
-    const Background& background = catalogue_.backgrounds[i];
+    const catalogue::Background& background = catalogue_.backgrounds[i];
     const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
     if (flight != nullptr) {
       facts.files.width = flight->width;
@@ -93,14 +93,14 @@ class Planner {
     facts.size = double(facts.files.width) * facts.files.height / kUsualPixels;
     const double whole = static_cast<double>(facts.files.frames) * facts.size;
     if (flight != nullptr) plan_.core_s += whole * kCoreSecondsPerFlownFrame;
-    if (sequence::needs_calibration(scene_over(catalogue_, i))) {
+    if (pipeline::needs_calibration(catalogue::scene_over(catalogue_, i))) {
       plan_.calibration_s += whole * kCoreSecondsPerCalibratedFrame;
       plan_.core_s += whole * kCoreSecondsPerCalibratedFrame;
     }
     return facts;
   }
 
-  std::int64_t frames_of(const Item& item, const Facts& facts) const {
+  std::int64_t frames_of(const catalogue::Item& item, const Facts& facts) const {
     if (item.frame_count > 0) return item.frame_count;
     const std::int64_t first_frame = catalogue_.backgrounds[item.background].first_frame;
     return std::max<std::int64_t>(0, facts.files.frames - first_frame);
@@ -111,8 +111,8 @@ class Planner {
                                      const trajectory::Path& camera,
                                      double clip_s) {
     try {
-      return sequence::words_beyond_limits(
-          intruder.aircraft, sequence::path_of(intruder, camera), 0, clip_s);
+      return setup::words_beyond_limits(
+          intruder.aircraft, setup::path_of(intruder, camera), 0, clip_s);
     } catch (const Error& error) {
       if (!intruder.encounter) throw;
       return error.message();  // a drawn encounter that no path fulfils
@@ -121,8 +121,8 @@ class Planner {
 
   // The speed, climb and bank of random paths are known before place(); the range does not change
   // them.
-  void fly(const Item& item, double clip_s) {
-    const trajectory::Path camera = sequence::camera_path(item.scene.camera);
+  void fly(const catalogue::Item& item, double clip_s) {
+    const trajectory::Path camera = setup::camera_path(item.scene.camera);
     for (const scene::Intruder& intruder : item.scene.intruders) {
       // The path of what is seen follows from the measured motion.
       if (!intruder.seen.empty() || !is_aircraft(intruder)) continue;
@@ -134,7 +134,7 @@ class Planner {
     }
   }
 
-  const Catalogue& catalogue_;
+  const catalogue::Catalogue& catalogue_;
   std::vector<Facts> facts_;
   std::vector<bool> is_used_;
   Plan plan_;
@@ -161,18 +161,18 @@ double Spread::median() const {
   return *middle;
 }
 
-Plan plan_of(const Catalogue& catalogue,
-             const std::function<void(const Item&)>& each,
+Plan plan_of(const catalogue::Catalogue& catalogue,
+             const std::function<void(const catalogue::Item&)>& each,
              const std::stop_token& stop) {
-  const Expansion expansion(catalogue);
+  const catalogue::Expansion expansion(catalogue);
   Planner planner(catalogue);
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     if (stop.stop_requested()) throw Interrupted();
-    const Item item = expansion.at(i);
+    const catalogue::Item item = expansion.at(i);
     planner.add(item);
     if (each) each(item);
   }
   return planner.result();
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -10,7 +10,7 @@
 
 #include "dataset/catalogue/expand.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 
 // Minimum, maximum and median of many numbers in bounded memory. Beyond 65,536 numbers the median
 // is that of every second one, every fourth one, and so on.
@@ -62,8 +62,8 @@ struct Plan {
 
 // Calls `each` for every sequence in order. Throws Error, as video::Reader does, for a background
 // whose video cannot be read, and Interrupted on stop.
-Plan plan_of(const Catalogue& catalogue,
-             const std::function<void(const Item&)>& each,
+Plan plan_of(const catalogue::Catalogue& catalogue,
+             const std::function<void(const catalogue::Item&)>& each,
              const std::stop_token& stop);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

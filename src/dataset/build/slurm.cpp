@@ -11,13 +11,13 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
-#include "dataset/catalogue/check.h"
+#include "dataset/build/check.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 namespace {
 
 constexpr std::int64_t kMaxTasks = 1000;
@@ -37,12 +37,13 @@ std::string quoted(const std::string& text) {
 
 // The options of the catalogue, then those of the command line. Where two have the same name, the
 // later one counts.
-std::vector<std::string> options_of(const Catalogue& catalogue, const SlurmOptions& options) {
+std::vector<std::string> options_of(const catalogue::Catalogue& catalogue,
+                                    const SlurmOptions& options) {
   std::vector<std::string> result = catalogue.slurm;
   if (!options.partition.empty()) result.push_back("--partition=" + options.partition);
   for (const std::string& given : options.sbatch) {
     try {
-      result.push_back(sbatch_option(given));
+      result.push_back(catalogue::sbatch_option(given));
     } catch (const Error& error) {
       throw Error("--sbatch: " + error.message());
     }
@@ -59,12 +60,12 @@ std::string head(const std::string& name,
   return text;
 }
 
-std::string work_script(const Catalogue& catalogue,
+std::string work_script(const catalogue::Catalogue& catalogue,
                         const fs::path& out,
                         const SlurmOptions& options,
                         std::int64_t tasks) {
   std::string text = head("airtruth",
-                          sbatch_log((out / "slurm").string(), "work-%a.log"),
+                          catalogue::sbatch_log((out / "slurm").string(), "work-%a.log"),
                           options_of(catalogue, options));
   text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n", tasks - 1);
   text += fmt::format(
@@ -79,11 +80,11 @@ std::string work_script(const Catalogue& catalogue,
   return text + "\n";
 }
 
-std::string verify_script(const Catalogue& catalogue,
+std::string verify_script(const catalogue::Catalogue& catalogue,
                           const fs::path& out,
                           const SlurmOptions& options) {
   return head("airtruth-verify",
-              sbatch_log((out / "slurm").string(), "verify.log"),
+              catalogue::sbatch_log((out / "slurm").string(), "verify.log"),
               options_of(catalogue, options)) +
          fmt::format("exec {} dataset verify {} --finish --jobs \"${{SLURM_CPUS_ON_NODE:-1}}\"\n",
                      quoted(options.program.string()),
@@ -108,7 +109,9 @@ std::string first_line(const std::string& command) {
 
 }  // namespace
 
-Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOptions& options) {
+Submitted submit(const catalogue::Catalogue& catalogue,
+                 const fs::path& out,
+                 const SlurmOptions& options) {
   const fs::path root = fs::absolute(out).lexically_normal();
   require_utf8(root);
   const auto odd = [](char c) {
@@ -119,14 +122,14 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
     throw Error("'" + options.partition + "' is no name of a Slurm partition");
   expect_backgrounds(catalogue, options.videos);
   check_sources(catalogue, options.videos);
-  const std::int64_t sequences = Expansion(catalogue).size();
+  const std::int64_t sequences = catalogue::Expansion(catalogue).size();
   const std::int64_t tasks = options.array_size > 0
                                  ? std::min<std::int64_t>(options.array_size, sequences)
                                  : std::min(kMaxTasks, sequences);
   // All checks come before the folder is made.
   const std::string work = work_script(catalogue, root, options, tasks);
   const std::string verify = verify_script(catalogue, root, options);
-  open_folder(catalogue, root, options.max_in_a_folder);
+  catalogue::open_folder(catalogue, root, options.max_in_a_folder);
   fs::create_directories(root / "slurm");
   Submitted submitted{root / "slurm" / "work.sh", root / "slurm" / "verify.sh", {}, {}};
   write_file(submitted.work_script, work);
@@ -141,4 +144,4 @@ Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOpt
   return submitted;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

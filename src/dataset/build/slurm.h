@@ -7,13 +7,13 @@
 
 #include "dataset/catalogue/folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 
 struct SlurmOptions {
   // Number of tasks; 0 means one per sequence, at most 1,000.
   int array_size = 0;
   // As BuildOptions::max_in_a_folder.
-  std::int64_t max_in_a_folder = kMaxSequencesInAFolder;
+  std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder;
   std::string partition;
   // Options as --sbatch states them ("--time=2:00:00"). They take precedence over the options of
   // the catalogue's [slurm].
@@ -39,6 +39,8 @@ struct Submitted {
 // verifies the set. A task that is requeued continues where it stopped. Throws Error where a job
 // script cannot hold an option or a path (dataset/catalogue/slurm_options.h), and where sbatch is
 // missing or refuses; no job is then left running.
-Submitted submit(const Catalogue& catalogue, const fs::path& out, const SlurmOptions& options);
+Submitted submit(const catalogue::Catalogue& catalogue,
+                 const fs::path& out,
+                 const SlurmOptions& options);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

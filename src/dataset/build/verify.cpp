@@ -14,26 +14,26 @@
 #include "labels/annotation/lens_facts.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
-#include "sequence/frame/masks.h"
+#include "sequence/insertion/masks.h"
 #include "sequence/replay/finished.h"
 #include "sequence/replay/recompose.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 namespace {
 
 constexpr std::size_t kMaxNamed = 100;
 // Results that wait for their place in the order, so that memory does not grow with the set.
 constexpr std::int64_t kMaxHeldResults = 4096;
 
-Catalogue catalogue_of(const Folder& folder) {
+catalogue::Catalogue catalogue_of(const catalogue::Folder& folder) {
   if (!fs::exists(folder.catalogue()))
     throw Error("is no data set: it holds no catalogue.toml", {folder.root.string()});
-  return read_catalogue(folder.catalogue());
+  return catalogue::read_catalogue(folder.catalogue());
 }
 
-bool is_at_work(const Folder& folder) {
+bool is_at_work(const catalogue::Folder& folder) {
   try {
-    const FolderLock lock(folder, false);
+    const catalogue::FolderLock lock(folder, false);
     return false;
   } catch (const Error&) {
     return true;
@@ -50,7 +50,7 @@ bool is_below(const fs::path& folder, const fs::path& name) {
 // Verifies one sequence of a data set.
 class Check {
  public:
-  Check(const Folder& folder, const Item& item, const VerifyOptions& options)
+  Check(const catalogue::Folder& folder, const catalogue::Item& item, const VerifyOptions& options)
       : name_(item.name), folder_(folder.sequence(item)), options_(options) {}
 
   VerifyResult run() {
@@ -66,7 +66,7 @@ class Check {
   void whole() {
     try {
       files(JsonDocument(folder_ / "sequence.json"));
-      const sequence::Finished finished = sequence::open_finished(folder_);
+      const replay::Finished finished = replay::open_finished(folder_);
       truth(finished);
       if (options_.deep_every > 0) deep(finished);
     } catch (const Error& error) {
@@ -94,7 +94,7 @@ class Check {
         fault(entry.path().filename().string() + " is not of this sequence");
   }
 
-  void truth(const sequence::Finished& finished) {
+  void truth(const replay::Finished& finished) {
     video::Reader reader(finished.video, {.threads = 1});
     const int width = reader.info().width;
     const int height = reader.info().height;
@@ -113,8 +113,8 @@ class Check {
     result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
   }
 
-  void deep(const sequence::Finished& finished) {
-    const auto recomposed = sequence::recompose(finished, options_.deep_every, options_.stop);
+  void deep(const replay::Finished& finished) {
+    const auto recomposed = replay::recompose(finished, options_.deep_every, options_.stop);
     result_.recomposed += recomposed.compared;
     for (const std::string& what : recomposed.faults) fault(what);
   }
@@ -149,12 +149,12 @@ class Check {
 
   // Every visible intruder has a mask, no other mask exists, and the mask's pixels are those of the
   // covered box.
-  void mask(const sequence::Finished& finished,
+  void mask(const replay::Finished& finished,
             const annotation::Frame& frame,
             const annotation::Intruder& intruder) {
     const std::string where = "frame " + std::to_string(frame.frame) + ", " + intruder.id + ": ";
     const auto mask =
-        sequence::read_alpha_mask(finished.folder, finished.truth.lens, intruder.id, frame.frame);
+        insertion::read_alpha_mask(finished.folder, finished.truth.lens, intruder.id, frame.frame);
     if (mask && intruder.state != annotation::State::kVisible)
       return fault(where + "a mask, and not visible");
     const auto bounds = mask ? composite::covered_box(*mask) : std::nullopt;
@@ -177,7 +177,7 @@ void add(const VerifyResult& one, VerifyResult& all) {
   all.faults.insert(all.faults.end(), one.faults.begin(), one.faults.end());
 }
 
-void check_manifest(const Folder& folder, VerifyResult& result) {
+void check_manifest(const catalogue::Folder& folder, VerifyResult& result) {
   if (!fs::exists(folder.record())) {
     result.faults.emplace_back("dataset.json is not there: the data set is not complete");
     return;
@@ -202,14 +202,14 @@ void check_manifest(const Folder& folder, VerifyResult& result) {
 }  // namespace
 
 Status status(const fs::path& root) {
-  const Folder folder{root};
-  const Catalogue catalogue = catalogue_of(folder);
-  const Expansion expansion(catalogue);
+  const catalogue::Folder folder{root};
+  const catalogue::Catalogue catalogue = catalogue_of(folder);
+  const catalogue::Expansion expansion(catalogue);
   Status status;
   status.name = catalogue.name;
   status.sequences = expansion.size();
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
-    const Item item = expansion.at(i);
+    const catalogue::Item item = expansion.at(i);
     const fs::path place = folder.sequence(item);
     if (folder.holds(item))
       ++status.whole;
@@ -225,8 +225,8 @@ Status status(const fs::path& root) {
 namespace {
 
 // The results of `count` sequences from number `first` on, in their order.
-std::vector<VerifyResult> results_of(const Folder& folder,
-                                     const Expansion& expansion,
+std::vector<VerifyResult> results_of(const catalogue::Folder& folder,
+                                     const catalogue::Expansion& expansion,
                                      std::int64_t first,
                                      std::int64_t count,
                                      const VerifyOptions& options) {
@@ -235,7 +235,7 @@ std::vector<VerifyResult> results_of(const Folder& folder,
       results.size(),
       options.jobs,
       [&](std::size_t i) {
-        const Item item = expansion.at(first + static_cast<std::int64_t>(i));
+        const catalogue::Item item = expansion.at(first + static_cast<std::int64_t>(i));
         results[i] = Check(folder, item, options).run();
       },
       [&](std::int64_t done, std::int64_t) {
@@ -248,9 +248,9 @@ std::vector<VerifyResult> results_of(const Folder& folder,
 }  // namespace
 
 VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
-  const Folder folder{root};
-  const Catalogue catalogue = catalogue_of(folder);
-  const Expansion expansion(catalogue);
+  const catalogue::Folder folder{root};
+  const catalogue::Catalogue catalogue = catalogue_of(folder);
+  const catalogue::Expansion expansion(catalogue);
   VerifyResult result;
   for (std::int64_t first = 0; first < expansion.size(); first += kMaxHeldResults) {
     const std::int64_t count = std::min(kMaxHeldResults, expansion.size() - first);
@@ -261,4 +261,4 @@ VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
   return result;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -9,7 +9,7 @@
 
 #include "dataset/catalogue/folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::build {
 
 // The progress of a data set, read from its folder alone.
 struct Status {
@@ -52,4 +52,4 @@ struct VerifyResult {
 };
 VerifyResult verify(const fs::path& root, const VerifyOptions& options);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::build

@@ -5,15 +5,12 @@
 #include <set>
 #include <utility>
 
-#include "dataset/catalogue/drawn_rule.h"
-#include "dataset/catalogue/encounter_rule.h"
-#include "dataset/catalogue/names.h"
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/files.h"
 #include "scene/scene/parse_encounter.h"
 #include "scene/scene/tables.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 using scene::TableReader;
@@ -243,4 +240,4 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   return catalogue;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

@@ -5,11 +5,9 @@
 #include <cmath>
 
 #include "aircraft/fleet/flight_limits.h"
-#include "dataset/catalogue/sun_position.h"
-#include "foundation/base/seed.h"
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 // Defaults where the rule states no value and the type has no class
@@ -18,19 +16,6 @@ constexpr Range kAnySpeedMps{40, 140};
 constexpr Range kAnyHours{8, 17};
 constexpr double kAnyBankDeg = 30;
 constexpr double kUsualClimbDeg = 5;
-
-double drawn(Random& random, const Range& range) { return random.uniform(range.low, range.high); }
-
-double drawn_evenly_in_logarithm(Random& random, const Range& range) {
-  return range.low * std::pow(range.high / range.low, random.uniform());
-}
-
-template <typename T>
-const T& drawn(Random& random, const std::vector<T>& things) {
-  return things[std::min(
-      things.size() - 1,
-      static_cast<std::size_t>(random.uniform() * static_cast<double>(things.size())))];
-}
 
 // One number selects a type and then its livery: its integer part and its fraction.
 const std::string& drawn_aircraft(Random& random, const std::vector<AircraftType>& types) {
@@ -125,16 +110,13 @@ DrawnSequence draw(const Drawn& rule, std::uint64_t seed_value, std::int64_t ind
   const auto stream = [&](const std::string& of) { return seed.stream(of + rule.name, number); };
   DrawnSequence result;
   Random random = stream("sequence ");
-  result.background = drawn(random, rule.backgrounds);
+  result.background = one_of(random, rule.backgrounds);
   result.encounters.push_back(
       drawn_encounter(random, {stream("bank of sequence "), stream("path of sequence ")}, rule));
   if (rule.sun_azimuth_deg) result.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);
   if (rule.sun_elevation_deg) result.sun_elevation_deg = drawn(random, *rule.sun_elevation_deg);
   Random of_count = stream("intruders of sequence ");
-  const auto kinds = static_cast<double>(rule.most_intruders - rule.fewest_intruders + 1);
-  const std::int64_t count =
-      std::min(rule.most_intruders,
-               rule.fewest_intruders + static_cast<std::int64_t>(of_count.uniform() * kinds));
+  const std::int64_t count = drawn(of_count, rule.intruders);
   for (std::int64_t k = 1; k < count; ++k) {
     const std::string which = std::to_string(k + 1) + " of sequence ";
     Random other = stream("intruder " + which);
@@ -161,4 +143,43 @@ bool is_chosen(const std::string& what, double share, std::uint64_t seed, std::i
   return std::floor(before + share) > std::floor(before);
 }
 
-}  // namespace airtruth::dataset
+namespace {
+
+constexpr double kObliquityDeg = 23.45;
+constexpr double kDegreesPerHour = 15;
+
+// P. I. Cooper, The absorption of radiation in solar stills, Solar Energy 12 (1969).
+double declination_rad(int day_of_year) {
+  return radians(kObliquityDeg * std::sin(radians(360.0 * (284 + day_of_year) / 365)));
+}
+
+}  // namespace
+
+SunPosition sun_position(double hour, double latitude_deg, int day_of_year) {
+  const double declination = declination_rad(day_of_year);
+  const double latitude = radians(latitude_deg);
+  const double turn = radians(kDegreesPerHour * (hour - 12));
+  // The sun's direction in axes east, north, up.
+  const double east = -std::cos(declination) * std::sin(turn);
+  const double north = std::cos(latitude) * std::sin(declination) -
+                       std::sin(latitude) * std::cos(declination) * std::cos(turn);
+  const double up = std::sin(latitude) * std::sin(declination) +
+                    std::cos(latitude) * std::cos(declination) * std::cos(turn);
+  const double azimuth_deg = degrees(std::atan2(east, north));
+  return {azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg,
+          degrees(std::asin(std::clamp(up, -1.0, 1.0)))};
+}
+
+std::optional<Range> daylight_hours(double latitude_deg, int day_of_year) {
+  const double declination = declination_rad(day_of_year);
+  const double latitude = radians(latitude_deg);
+  const double lowest =
+      std::sin(radians(kLowestSunDeg)) - std::sin(latitude) * std::sin(declination);
+  const double widest = std::cos(latitude) * std::cos(declination);
+  if (lowest >= widest) return std::nullopt;  // polar night
+  const double half_h =
+      lowest <= -widest ? 12 : degrees(std::acos(lowest / widest)) / kDegreesPerHour;
+  return Range{12 - half_h, 12 + half_h};
+}
+
+}  // namespace airtruth::catalogue

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/drawn_rule.h"
+#include "scene/scene/scene.h"
 
 // The random values of a rule of [[random]] for one sequence. No file is read for them.
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 
 // The geometry with which an intruder passes the camera.
 struct Encounter {
@@ -51,4 +52,19 @@ DrawnSequence draw(const Drawn& rule, std::uint64_t seed, std::int64_t index);
 // seed and `what` decide for which.
 bool is_chosen(const std::string& what, double share, std::uint64_t seed, std::int64_t index);
 
-}  // namespace airtruth::dataset
+struct SunPosition {
+  double azimuth_deg = 0;  // from north towards east, 0 to 360
+  double elevation_deg = 0;
+};
+
+// Returns the sun's position at a local solar time (at 12 h the sun is due south or north), from
+// the declination of Cooper (1969), accurate to half a degree. day_of_year is 1 on the first of
+// January.
+SunPosition sun_position(double hour, double latitude_deg, int day_of_year);
+
+// The hours between which the sun is at least kLowestSunDeg (degrees) above the horizon; empty on a
+// day without such an hour.
+constexpr double kLowestSunDeg = 3;
+std::optional<Range> daylight_hours(double latitude_deg, int day_of_year);
+
+}  // namespace airtruth::catalogue

@@ -12,20 +12,19 @@
 #include "aircraft/fleet/flight_limits.h"
 #include "dataset/build/plan.h"
 #include "dataset/catalogue/expand.h"
-#include "dataset/catalogue/small_catalogue.h"
-#include "dataset/catalogue/sun_position.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "support/small_catalogue.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 using testing::HasSubstr;
 
 Catalogue with_random(const std::string& keys) {
-  std::string text = kCatalogue;
+  std::string text = test_support::kCatalogue;
   text.resize(text.find("[[product]]"));
   return parse_catalogue(text + "[output]\nvideo = \"mkv\"\n[[random]]\n" + keys, "c.toml");
 }
@@ -118,7 +117,7 @@ TEST(Drawing, TheNumberOfIntrudersIsEvenOverItsRange) {
 
 // What is drawn where nothing is stated is flyable for its type: speed, climb and bank.
 trajectory::Path path_of_first(const scene::Scene& scene) {
-  return sequence::path_of(scene.intruders[0], sequence::camera_path(scene.camera));
+  return setup::path_of(scene.intruders[0], setup::camera_path(scene.camera));
 }
 
 TEST(Drawing, WhatSuitsTheTypeIsFlyable) {
@@ -132,10 +131,10 @@ TEST(Drawing, WhatSuitsTheTypeIsFlyable) {
     const aircraft::FlightLimits& limits = *aircraft::flight_limits(intruder.aircraft);
     EXPECT_GE(*intruder.speed_mps, limits.usual_low_mps);
     EXPECT_LE(*intruder.speed_mps, limits.usual_high_mps);
-    EXPECT_EQ(sequence::words_beyond_limits(intruder.aircraft, path_of_first(item.scene), 0, 3), "")
+    EXPECT_EQ(setup::words_beyond_limits(intruder.aircraft, path_of_first(item.scene), 0, 3), "")
         << item.name;
   }
-  const Plan plan = plan_of(catalogue, {}, {});
+  const build::Plan plan = build::plan_of(catalogue, {}, {});
   EXPECT_EQ(plan.not_flyable, 0);
   EXPECT_EQ(plan.aircraft.size(), 6u);
   EXPECT_EQ(plan.ranges_m.count(), 300);
@@ -144,9 +143,9 @@ TEST(Drawing, WhatSuitsTheTypeIsFlyable) {
 TEST(Drawing, ThePlanNamesPathsThatAreNotFlyable) {
   const Catalogue catalogue =
       with_random("count = 20\naircraft = [\"c172/*\"]\nspeed_mps = [131, 131]\n");
-  const Plan plan = plan_of(catalogue, {}, {});
+  const build::Plan plan = build::plan_of(catalogue, {}, {});
   EXPECT_EQ(plan.not_flyable, 20);
-  ASSERT_EQ(plan.not_flyable_words.size(), Plan::kMaxNamed);
+  ASSERT_EQ(plan.not_flyable_words.size(), build::Plan::kMaxNamed);
   EXPECT_THAT(plan.not_flyable_words[0],
               testing::MatchesRegex("r000000: c172/.*light piston.*131.0 m/s.*92 m/s"));
 }
@@ -248,7 +247,7 @@ TEST(Drawing, WhatHasNoNewKeysIsDrawnAsBefore) {
 // 200,000 numbers 0, 7, 14, ... modulo 200,000, each once: the kept ones are thinned to a quarter,
 // and their median stays within a thousandth.
 TEST(Drawing, ASpreadHoldsItsEndsAndItsMedianInLittleMemory) {
-  Spread spread;
+  build::Spread spread;
   for (std::int64_t i = 0; i < 200'000; ++i) spread.add(static_cast<double>(i * 7 % 200'000));
   EXPECT_EQ(spread.count(), 200'000);
   EXPECT_EQ(spread.low(), 0);
@@ -271,4 +270,4 @@ TEST(Drawing, AnEndlessTurnIsOneLine) {
 }
 
 }  // namespace
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

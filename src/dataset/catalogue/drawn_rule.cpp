@@ -2,15 +2,17 @@
 #include "dataset/catalogue/drawn_rule.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "aircraft/fleet/fleet.h"
-#include "dataset/catalogue/names.h"
-#include "dataset/catalogue/sun_position.h"
+#include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/drawing.h"
+#include "foundation/base/error.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 using scene::TableReader;
@@ -18,21 +20,6 @@ using scene::TableReader;
 constexpr std::int64_t kMaxIntruders = 100;
 constexpr std::int64_t kMaxDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
 constexpr const char* kSuitsType = "type";
-
-Range range_in(const TableReader& table, std::string_view key, const scene::Limits& limits) {
-  const auto values = table.tuple(key, {limits, limits});
-  if ((*values)[0] > (*values)[1])
-    table.fail(key, std::string(key) + " falls; expected [low, high]");
-  return {(*values)[0], (*values)[1]};
-}
-
-// The range at `key`; empty where the key is absent.
-std::optional<Range> maybe_range(const TableReader& table,
-                                 std::string_view key,
-                                 const scene::Limits& limits) {
-  if (!table.has(key)) return std::nullopt;
-  return range_in(table, key, limits);
-}
 
 // Reads "type" or [low, high]; empty for "type".
 std::optional<Range> range_or_type(const TableReader& table,
@@ -88,20 +75,7 @@ void read_intruders(const TableReader& table, double usual_negatives, Drawn& dra
       table.number("negatives", {.expected = "a share from 0 to 1", .low = 0, .high = 1})
           .value_or(usual_negatives);
   drawn.numbers_intruders = table.has("intruders");
-  if (!drawn.numbers_intruders) return;
-  if (table.is_array("intruders")) {
-    const Range range = range_in(
-        table,
-        "intruders",
-        {.expected = "a whole number from 1 to 100", .low = 1, .high = double(kMaxIntruders)});
-    drawn.fewest_intruders = static_cast<std::int64_t>(range.low);
-    drawn.most_intruders = static_cast<std::int64_t>(range.high);
-    if (double(drawn.fewest_intruders) != range.low || double(drawn.most_intruders) != range.high)
-      table.fail("intruders", "intruders is no whole number; expected a number or [low, high]");
-    return;
-  }
-  drawn.fewest_intruders = *table.whole("intruders", 1, kMaxIntruders);
-  drawn.most_intruders = drawn.fewest_intruders;
+  drawn.intruders = whole_range(table, "intruders", kMaxIntruders).value_or(drawn.intruders);
 }
 
 // A clip may begin at a random frame only where the camera flies equally steadily at any time. A
@@ -150,10 +124,7 @@ void read_paths(const TableReader& table, Drawn& drawn) {
 Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   Drawn drawn;
   drawn.where = table.where();
-  drawn.name = table.file_name("name").value_or("r{index}");
-  expect_parts(table, drawn.name, {"{index}"});
-  if (drawn.name.find("{index}") == std::string::npos)
-    table.fail("name", "name has no {index}; every sequence needs its own");
+  drawn.name = index_pattern(table, "r{index}");
   drawn.count = table.whole("count", 1, kMost).value_or(1);
   drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
   drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
@@ -207,4 +178,155 @@ std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalog
   return result;
 }
 
-}  // namespace airtruth::dataset
+namespace {
+
+std::optional<DrawnNumber> number_in(const TableReader& table,
+                                     std::string_view key,
+                                     const scene::Limits& limits) {
+  if (!table.has(key)) return std::nullopt;
+  DrawnNumber drawn;
+  if (table.is_table(key)) {
+    drawn.any_of =
+        table.table(key, {"any_of"}).numbers("any_of", limits).value_or(std::vector<double>{});
+    if (drawn.any_of.empty())
+      table.fail(key, fmt::format("{} has no any_of; expected a list of numbers", key));
+  } else if (table.is_array(key)) {
+    const Range range = range_in(table, key, limits);
+    drawn.low = range.low;
+    drawn.high = range.high;
+  } else {
+    drawn.low = drawn.high = *table.number(key, limits);
+  }
+  return drawn;
+}
+
+DrawnNumber fixed(double value) { return {value, value, {}}; }
+
+void read_pixel(const TableReader& table, DrawnSeen& seen) {
+  table.exclude("pixel", {"x_px", "y_px"});
+  const auto pixel = table.tuple("pixel", {scene::kPixel, scene::kPixel});
+  const auto x_px = number_in(table, "x_px", scene::kPixel);
+  const auto y_px = number_in(table, "y_px", scene::kPixel);
+  if (!pixel && !(x_px && y_px))
+    throw Error("[[random.seen]] has no pixel; expected pixel = [x, y], or x_px and y_px",
+                table.where());
+  seen.x_px = pixel ? fixed((*pixel)[0]) : *x_px;
+  seen.y_px = pixel ? fixed((*pixel)[1]) : *y_px;
+}
+
+DrawnSeen seen_from(const TableReader& table) {
+  DrawnSeen seen;
+  seen.where = table.where();
+  const auto time_s = number_in(table, "time_s", scene::kTime);
+  if (!time_s) throw Error("[[random.seen]] has no time_s; expected seconds", table.where());
+  seen.time_s = *time_s;
+  read_pixel(table, seen);
+  table.exclude("range_m", {"width_px"});
+  seen.range_m = number_in(table, "range_m", scene::kRangeToAircraft);
+  seen.width_px = number_in(table, "width_px", scene::kApparentSize);
+  if (!seen.range_m && !seen.width_px)
+    throw Error("[[random.seen]] has no range_m and no width_px; expected one of them",
+                table.where());
+  return seen;
+}
+
+}  // namespace
+
+double DrawnNumber::least() const {
+  return any_of.empty() ? low : *std::min_element(any_of.begin(), any_of.end());
+}
+
+double DrawnNumber::greatest() const {
+  return any_of.empty() ? high : *std::max_element(any_of.begin(), any_of.end());
+}
+
+double DrawnNumber::draw(Random& random) const {
+  return any_of.empty() ? random.uniform(low, high) : one_of(random, any_of);
+}
+
+double DrawnNumber::draw_in_logarithm(Random& random) const {
+  return any_of.empty() ? low * std::pow(high / low, random.uniform()) : one_of(random, any_of);
+}
+
+scene::Encounter DrawnApproach::draw(Random random, double usual_speed_mps) const {
+  const auto maybe = [&](const std::optional<DrawnNumber>& number) {
+    return number ? std::optional(number->draw(random)) : std::nullopt;
+  };
+  scene::Encounter encounter;
+  encounter.cpa_time_s = maybe(cpa_time_s).value_or(0);
+  encounter.cpa_right_m = maybe(cpa_right_m);
+  encounter.cpa_ahead_m = maybe(cpa_ahead_m);
+  encounter.cpa_above_m = cpa_above_m.draw(random);
+  encounter.course_deg = course_deg.draw(random);
+  encounter.speed_mps = maybe(speed_mps).value_or(usual_speed_mps);
+  encounter.climb_mps = climb_mps.draw(random);
+  encounter.turn_rate_dps = turn_rate_dps.draw(random);
+  encounter.where = where;
+  return encounter;
+}
+
+scene::Seen DrawnSeen::draw(Random& random) const {
+  scene::Seen seen;
+  seen.time_s = time_s.draw(random);
+  seen.pixel.x() = x_px.draw(random);
+  seen.pixel.y() = y_px.draw(random);
+  if (range_m) seen.range_m = range_m->draw_in_logarithm(random);
+  if (width_px) seen.width_px = width_px->draw_in_logarithm(random);
+  seen.where = where;
+  return seen;
+}
+
+std::optional<DrawnApproach> drawn_approach_in(const TableReader& rule) {
+  if (!rule.has("encounter")) return std::nullopt;
+  const TableReader table = rule.table("encounter",
+                                       {"cpa_time_s",
+                                        "cpa_right_m",
+                                        "cpa_above_m",
+                                        "cpa_ahead_m",
+                                        "course_deg",
+                                        "speed_mps",
+                                        "climb_mps",
+                                        "turn_rate_dps"});
+  DrawnApproach drawn;
+  drawn.where = table.where();
+  drawn.cpa_time_s = number_in(table, "cpa_time_s", scene::kTime);
+  drawn.cpa_right_m = number_in(table, "cpa_right_m", scene::kMiss);
+  drawn.cpa_ahead_m = number_in(table, "cpa_ahead_m", scene::kMiss);
+  drawn.cpa_above_m = number_in(table, "cpa_above_m", scene::kMiss).value_or(drawn.cpa_above_m);
+  drawn.course_deg = number_in(table, "course_deg", scene::kTurn).value_or(drawn.course_deg);
+  drawn.speed_mps = number_in(table, "speed_mps", scene::kSpeed);
+  drawn.climb_mps = number_in(table, "climb_mps", scene::kClimb).value_or(drawn.climb_mps);
+  drawn.turn_rate_dps =
+      number_in(table, "turn_rate_dps", scene::kTurnRate).value_or(drawn.turn_rate_dps);
+  table.exclude("cpa_right_m", {"cpa_ahead_m"});  // drawn apart, they are no closest approach
+  const double steepest_mps =
+      std::max(std::abs(drawn.climb_mps.least()), std::abs(drawn.climb_mps.greatest()));
+  if (drawn.speed_mps && steepest_mps > drawn.speed_mps->least())
+    table.fail("climb_mps",
+               fmt::format("climb_mps reaches {} at a speed_mps of {}; expected no more than the "
+                           "speed",
+                           scene::shown(steepest_mps),
+                           scene::shown(drawn.speed_mps->least())));
+  return drawn;
+}
+
+std::vector<DrawnSeen> drawn_seen_in(const TableReader& rule) {
+  std::vector<DrawnSeen> result;
+  for (const TableReader& table :
+       rule.tables("seen", {"time_s", "pixel", "x_px", "y_px", "range_m", "width_px"})) {
+    result.push_back(seen_from(table));
+    if (result.size() < 2) continue;
+    const DrawnSeen& before = result[result.size() - 2];
+    if (!(result.back().time_s.least() > before.time_s.greatest()))
+      table.fail("time_s",
+                 fmt::format("time_s may be {}, not after the {} of the [[random.seen]] before; "
+                             "expected later times",
+                             scene::shown(result.back().time_s.least()),
+                             scene::shown(before.time_s.greatest())));
+  }
+  if (result.size() == 1)
+    throw Error("[[random.seen]] is alone; expected at least two of them", result[0].where);
+  return result;
+}
+
+}  // namespace airtruth::catalogue

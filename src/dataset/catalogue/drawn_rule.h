@@ -1,12 +1,122 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/table_values.h"
+#include "foundation/base/enum_names.h"
+#include "foundation/base/seed.h"
+#include "scene/scene/scene.h"
 #include "scene/scene/table_reader.h"
 
-namespace airtruth::dataset {
+// The tables [[random]] of a catalogue. Its paths may be given as a scene gives them, by closest
+// approach or by what is seen, with numbers to draw.
+namespace airtruth::catalogue {
+
+struct Catalogue;
+
+// A number that a rule draws: evenly from low to high, or one of a list. In a file it is a number,
+// [low, high] or { any_of = [...] }.
+struct DrawnNumber {
+  double low = 0;
+  double high = 0;
+  std::vector<double> any_of;  // empty: the range holds
+
+  double least() const;
+  double greatest() const;
+  double draw(Random& random) const;
+  // Evenly in the logarithm, for sizes and ranges.
+  double draw_in_logarithm(Random& random) const;
+};
+
+// [random.encounter]. Empty: as in a scene, but for cpa_time_s (the meeting moment) and speed_mps
+// (one that suits the type).
+struct DrawnApproach {
+  std::optional<DrawnNumber> cpa_time_s, cpa_right_m, cpa_ahead_m, speed_mps;
+  DrawnNumber cpa_above_m, climb_mps, turn_rate_dps;
+  DrawnNumber course_deg{0, 360, {}};
+  Where where;
+
+  // `usual_speed_mps` stands for a speed that the rule does not state. A cpa_time_s that it does
+  // not state is 0.
+  scene::Encounter draw(Random random, double usual_speed_mps) const;
+};
+
+// [[random.seen]]
+struct DrawnSeen {
+  DrawnNumber time_s, x_px, y_px;
+  std::optional<DrawnNumber> range_m, width_px;
+  Where where;
+
+  scene::Seen draw(Random& random) const;
+};
+
+// An aircraft of the list with its liveries: "738" with "738/738-Ryanair" and others.
+struct AircraftType {
+  std::string name;
+  std::vector<std::string> liveries;  // names of `airtruth aircraft list`
+};
+
+// The sun at a random time of day, at a given place and on a given day (drawing.h).
+struct DaytimeRange {
+  // Local solar time in hours; empty: hours that suit the type.
+  std::optional<Range> hours;
+  double latitude_deg = 45;
+  int day_of_year = 172;
+};
+
+// The frame of the background at which a clip begins: the background's first_frame, or a random
+// frame at which the clip fits.
+enum class ClipStart { kFirst, kRandom };
+
+constexpr auto enum_names(ClipStart) {
+  return std::to_array<EnumName<ClipStart>>(
+      {{ClipStart::kFirst, "first"}, {ClipStart::kRandom, "random"}});
+}
+
+// A rule for random intruders that cross the view. At a moment within the clip, the meeting moment,
+// each intruder has the range and direction from the camera that the rule draws. It flies straight
+// or, with a bank, in a coordinated turn.
+struct Drawn {
+  std::string name;  // pattern with {index}
+  Where where;
+  std::int64_t count = 0;
+  std::int64_t frame_count = 90;
+  std::vector<std::size_t> backgrounds;
+  // The type is drawn first, then a livery of that type.
+  std::vector<AircraftType> types;
+  Range range_m{100, 2000};
+  // Replaces range_m: longest side of the exact box at the meeting moment, in px.
+  std::optional<Range> size_px;
+  // Angle from the boresight, positive to the right.
+  Range azimuth_deg{-30, 30};
+  Range elevation_deg{-5, 20};  // positive up
+  // Empty: a speed that suits the type.
+  std::optional<Range> speed_mps;
+  Range heading_deg{0, 360};
+  // Empty: within 5 degrees and the limits of the type.
+  std::optional<Range> climb_deg;
+  // Positive with the right wing down. Empty: straight flight, or a bank that suits the type.
+  std::optional<Range> bank_deg;
+  bool bank_suits_type = false;
+  // Each in place of all from range_m to bank_deg.
+  std::optional<DrawnApproach> approach;
+  std::vector<DrawnSeen> seen;
+  // Empty: the sun of the background.
+  std::optional<Range> sun_azimuth_deg, sun_elevation_deg;
+  // Replaces the two sun ranges.
+  std::optional<DaytimeRange> daytime;
+  // Share of sequences without an intruder, from 0 to 1.
+  double negatives = 0;
+  WholeRange intruders;
+  // True: ids are intruder-1, intruder-2, ...; false: the id is "intruder".
+  bool numbers_intruders = false;
+  ClipStart start = ClipStart::kFirst;
+};
 
 // Reads the tables [[random]] of a catalogue whose backgrounds have been read. Throws Error with
 // line and column.
@@ -15,4 +125,10 @@ std::vector<Drawn> drawn_rules(const scene::TableReader& root, const Catalogue& 
 // The key `aircraft` of a table: the aircraft of the list that fit its patterns, by type.
 std::vector<AircraftType> types_in(const scene::TableReader& table);
 
-}  // namespace airtruth::dataset
+// The table `encounter` of a rule; empty where it has none.
+std::optional<DrawnApproach> drawn_approach_in(const scene::TableReader& rule);
+// The tables `seen` of a rule. Throws Error for a single one, and where the times of two neighbours
+// overlap.
+std::vector<DrawnSeen> drawn_seen_in(const scene::TableReader& rule);
+
+}  // namespace airtruth::catalogue

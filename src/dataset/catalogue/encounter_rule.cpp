@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/catalogue/encounter_rule.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "aircraft/fleet/flight_limits.h"
+#include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/drawing.h"
 #include "dataset/catalogue/drawn_rule.h"
 #include "dataset/catalogue/folder.h"
-#include "dataset/catalogue/names.h"
+#include "dataset/catalogue/meeting.h"
 #include "encounter/model/sampler.h"
+#include "encounter/sets/draw_encounter.h"
 #include "encounter/track/track.h"
+#include "foundation/base/error.h"
 #include "foundation/base/seed.h"
+#include "sequence/setup/from_scene.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 using scene::Limits;
@@ -78,15 +86,6 @@ encounter::Cut cut_in(const TableReader& table) {
   return cut;
 }
 
-// A key that has no effect is refused.
-void refuse_keys(const TableReader& table,
-                 std::initializer_list<const char*> keys,
-                 const char* kind) {
-  for (const char* key : keys)
-    if (table.has(key))
-      table.fail(key, fmt::format("{} has no effect with kind = \"{}\"", key, kind));
-}
-
 void read_geometry(const TableReader& table, EncounterRule& rule) {
   encounter::GeometricOptions& geometry = rule.geometry;
   const double clip_s = static_cast<double>(rule.frame_count) / kUsualRateHz;
@@ -129,10 +128,7 @@ void read_model(const TableReader& table, const Catalogue& catalogue, EncounterR
 EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   EncounterRule rule;
   rule.where = table.where();
-  rule.name = table.file_name("name").value_or("e{index}");
-  expect_parts(table, rule.name, {"{index}"});
-  if (rule.name.find("{index}") == std::string::npos)
-    table.fail("name", "name has no {index}; every sequence needs its own");
+  rule.name = index_pattern(table, "e{index}");
   rule.seed = Seed(catalogue.seed).stream("encounters of " + rule.name)();
   rule.count = table.whole("count", 1, kMost).value_or(1);
   rule.frame_count = table.whole("frame_count", 1, kMaxFrames).value_or(rule.frame_count);
@@ -188,4 +184,193 @@ std::vector<EncounterRule> encounter_rules(const TableReader& root, const Catalo
   return rules;
 }
 
-}  // namespace airtruth::dataset
+namespace {
+
+constexpr double kOwnStep_s = 0.25;
+// The spline through a track loses its curvature at its ends, by a factor of 0.27 a sample.
+constexpr double kMargin_s = 8;
+constexpr std::uint64_t kMaxTracks = 100;
+// Where the indices of a next intruder and of a next attempt begin; sets are smaller.
+constexpr std::uint64_t kNextIntruder = std::uint64_t{1} << 56;
+constexpr std::uint64_t kNextAttempt = std::uint64_t{1} << 48;
+
+// What a track asks of an aircraft.
+struct Demands {
+  double slowest_mps = HUGE_VAL, fastest_mps = 0, mean_mps = 0;
+  double climb_mps = 0, descent_mps = 0, bank_deg = 0;
+};
+
+Demands demands_of(const encounter::Track& track) {
+  Demands demands;
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    const Vector3& velocity = track.velocities_ned_mps[i];
+    const double speed = velocity.norm();
+    demands.slowest_mps = std::min(demands.slowest_mps, speed);
+    demands.fastest_mps = std::max(demands.fastest_mps, speed);
+    demands.mean_mps += speed / static_cast<double>(track.size());
+    demands.climb_mps = std::max(demands.climb_mps, -velocity.z());
+    demands.descent_mps = std::max(demands.descent_mps, velocity.z());
+    if (i == 0) continue;
+    const Vector3& before = track.velocities_ned_mps[i - 1];
+    const double turned = std::atan2(before.x() * velocity.y() - before.y() * velocity.x(),
+                                     before.head<2>().dot(velocity.head<2>()));
+    const double rate = std::abs(turned) / (track.times_s[i] - track.times_s[i - 1]);
+    // A coordinated turn.
+    demands.bank_deg = std::max(demands.bank_deg,
+                                degrees(std::atan(speed * rate / aircraft::kStandardGravityMps2)));
+  }
+  return demands;
+}
+
+// The largest ratio of what is asked to what the class can; up to 1 where it flies the track.
+double strain(const aircraft::FlightLimits& limits, const Demands& demands) {
+  const double slowness =
+      limits.slowest_mps > 0 ? limits.slowest_mps / std::max(demands.slowest_mps, 1e-9) : 0;
+  return std::max({slowness,
+                   demands.fastest_mps / limits.fastest_mps,
+                   demands.climb_mps / limits.most_climb_mps,
+                   demands.descent_mps / limits.most_descent_mps,
+                   demands.bank_deg / limits.most_bank_deg});
+}
+
+// The types that fly the track, only those at their usual speed where there are some. Where none
+// flies it, those that come nearest. A type without a class flies everything.
+struct Fitting {
+  std::vector<const AircraftType*> types;
+  bool can_fly = false;
+};
+Fitting fitting_types(const EncounterRule& rule, const Demands& demands) {
+  std::vector<const AircraftType*> usual, able, nearest;
+  double least = HUGE_VAL;
+  for (const AircraftType& type : rule.types) {
+    const auto* limits = aircraft::flight_limits(type.name);
+    const double asked = limits == nullptr ? 0 : strain(*limits, demands);
+    if (asked < least) nearest.clear();
+    least = std::min(least, asked);
+    if (asked == least) nearest.push_back(&type);
+    if (asked > 1) continue;
+    able.push_back(&type);
+    if (limits != nullptr && demands.mean_mps >= limits->usual_low_mps &&
+        demands.mean_mps <= limits->usual_high_mps)
+      usual.push_back(&type);
+  }
+  if (able.empty()) return {nearest, false};
+  return {usual.empty() ? able : usual, true};
+}
+
+encounter::Track own_track(const scene::Scene& scene, const EncounterRule& rule) {
+  const trajectory::Path path = setup::camera_path(scene.camera);
+  encounter::Track own{"own", {}, {}, {}};
+  for (int i = 0; i * kOwnStep_s <= rule.length_s; ++i) {
+    const auto state = path.at(i * kOwnStep_s);
+    if (!state) continue;
+    own.times_s.push_back(i * kOwnStep_s);
+    own.positions_ned_m.push_back(state->position_in_world);
+    own.velocities_ned_mps.push_back(state->velocity_in_world_mps);
+  }
+  if (own.size() < 2 || own.times_s.front() > 0 ||
+      own.times_s.back() < rule.geometry.cpa_time_s.high())
+    throw Error(fmt::format("the camera's path of the background does not hold 0 to {:.1f} s, the "
+                            "times of the closest approach",
+                            rule.geometry.cpa_time_s.high()),
+                rule.where);
+  return own;
+}
+
+bool is_high_enough(const encounter::Track& track, const encounter::Track& own, double cpa_s) {
+  if (encounter::state_at(own, cpa_s).position_ned_m.z() > -kLowestFlightM) return true;
+  return std::all_of(track.positions_ned_m.begin(),
+                     track.positions_ned_m.end(),
+                     [](const Vector3& p) { return p.z() <= -kLowestFlightM; });
+}
+
+struct Passage {
+  encounter::Track track;
+  double weight = 1;
+};
+
+// An intruder from the model. `number` counts sequences and intruders.
+Passage from_model(const EncounterRule& rule, const encounter::Track& own, std::uint64_t number) {
+  Random random = Seed(rule.seed).stream("closest approach", number);
+  encounter::PairingOptions options;
+  options.cpa_time_s = std::clamp(
+      std::round(rule.geometry.cpa_time_s.quantile(random.uniform())), 0.0, own.times_s.back());
+  options.hmd_m = rule.geometry.hmd_m;
+  options.vmd_m = rule.geometry.vmd_m;
+  const auto draw = encounter::model_pairs(rule.tracks, own, options, rule.seed);
+  for (std::uint64_t attempt = 0; attempt < kMaxTracks; ++attempt) {
+    encounter::DrawnEncounter drawn = draw(number + attempt * kNextAttempt);
+    Passage passage{std::move(drawn.encounter.aircraft[1]), drawn.encounter.weight};
+    if (!is_high_enough(passage.track, own, options.cpa_time_s)) continue;
+    if (fitting_types(rule, demands_of(passage.track)).can_fly) return passage;
+  }
+  throw Error(
+      fmt::format("none of {} tracks of the model is flown by an aircraft of the rule, {:.0f} "
+                  "m above the ground or more; expected other aircraft, or a higher vmd_m",
+                  kMaxTracks,
+                  kLowestFlightM),
+      rule.where);
+}
+
+Passage from_geometry(const EncounterRule& rule,
+                      const encounter::Track& own,
+                      std::uint64_t index,
+                      std::uint64_t intruder) {
+  const std::uint64_t seed = Seed(rule.seed).stream("geometry of intruder", intruder)();
+  const encounter::GeometricSampler sampler(
+      rule.geometry, seed, static_cast<std::uint64_t>(rule.count));
+  const encounter::Geometry geometry = sampler.draw(index);
+  Passage passage{encounter::geometric_track(own, geometry, -kMargin_s, rule.length_s + kMargin_s),
+                  1};
+  if (is_high_enough(passage.track, own, geometry.approach.time_s)) return passage;
+  throw Error(
+      fmt::format("an intruder {:.0f} m above the own aircraft that climbs at {:.1f} m/s "
+                  "would be less than {:.0f} m above the ground; expected a higher vmd_m or "
+                  "climb_mps",
+                  geometry.approach.vmd_m,
+                  geometry.climb_mps,
+                  kLowestFlightM),
+      rule.where);
+}
+
+// True for the share of the sequences that have two intruders. A rotation by the golden ratio
+// spreads them evenly, and independently of the negatives, which are evenly spaced.
+bool has_second(const EncounterRule& rule, std::int64_t index) {
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const double turned = Seed(rule.seed).stream("second intruders").uniform() +
+                        std::fmod(static_cast<double>(index) * kGoldenRatio, 1.0);
+  return std::fmod(turned, 1.0) < rule.two_intruders;
+}
+
+}  // namespace
+
+std::size_t background_of(const EncounterRule& rule, std::int64_t index) {
+  Random random = Seed(rule.seed).stream("background", static_cast<std::uint64_t>(index));
+  return one_of(random, rule.backgrounds);
+}
+
+void add_encounter(scene::Scene& scene, const EncounterRule& rule, std::int64_t index) {
+  if (is_chosen("negatives", rule.negatives, rule.seed, index)) return;
+  const bool has_two = has_second(rule, index);
+  const encounter::Track own = own_track(scene, rule);
+  double weight = 1;
+  for (std::uint64_t k = 0; k < (has_two ? 2 : 1); ++k) {
+    const std::uint64_t number = static_cast<std::uint64_t>(index) + k * kNextIntruder;
+    Passage passage = rule.tracks ? from_model(rule, own, number)
+                                  : from_geometry(rule, own, static_cast<std::uint64_t>(index), k);
+    weight *= passage.weight;
+    Random random = Seed(rule.seed).stream("aircraft", number);
+    const AircraftType& type =
+        *one_of(random, fitting_types(rule, demands_of(passage.track)).types);
+    scene::Intruder intruder;
+    intruder.id = rule.two_intruders > 0 ? fmt::format("intruder-{}", k + 1) : "intruder";
+    intruder.aircraft = one_of(random, type.liveries);
+    intruder.waypoints_ned_m = std::move(passage.track.positions_ned_m);
+    intruder.times_s = std::move(passage.track.times_s);
+    intruder.where = rule.where;
+    scene.intruders.push_back(std::move(intruder));
+  }
+  if (rule.tracks) scene.weight = weight;
+}
+
+}  // namespace airtruth::catalogue

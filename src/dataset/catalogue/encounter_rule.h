@@ -1,12 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/drawn_rule.h"
+#include "encounter/pairing/geometric.h"
+#include "foundation/base/error.h"
+#include "scene/scene/scene.h"
 #include "scene/scene/table_reader.h"
 
-namespace airtruth::dataset {
+// The tables [[encounter_model]] of a catalogue and their encounters. Each encounter depends on the
+// rule and its index alone.
+namespace airtruth::encounter {
+class Sampler;
+}
+
+namespace airtruth::catalogue {
+
+namespace fs = std::filesystem;
+
+struct Catalogue;
+
+// A rule for encounters: intruders that pass the own aircraft as a model of traffic or a stated
+// geometry says, whether or not the camera sees them (encounter/pairing/pair.h).
+struct EncounterRule {
+  std::string name;  // pattern with {index}
+  Where where;
+  std::int64_t count = 0;
+  std::int64_t frame_count = 240;
+  std::vector<std::size_t> backgrounds;
+  // One whose class flies the intruder's track is chosen, then a livery of it.
+  std::vector<AircraftType> types;
+  // The seed of all that is drawn; it follows from the catalogue's and the rule's name.
+  std::uint64_t seed = 1;
+  // The tracks of `kind = "bayes"` and their file; empty: the geometry below is drawn.
+  std::shared_ptr<const encounter::Sampler> tracks;
+  fs::path model_file;
+  // Times are those of the clip. Tracks of a model use only the time and the miss distances.
+  encounter::GeometricOptions geometry;
+  // How long the tracks are, in seconds of the clip.
+  int length_s = 0;
+  // Shares of the sequences, from 0 to 1: without an intruder, and of the others with two.
+  double negatives = 0;
+  double two_intruders = 0;
+};
 
 // Encounters are drawn before the frame rate of a video is known, for clips of this rate or more.
 constexpr double kSlowestRateHz = 24;
@@ -20,4 +61,18 @@ fs::path kept_model(const fs::path& folder, const fs::path& model_file);
 std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
                                            const Catalogue& catalogue);
 
-}  // namespace airtruth::dataset
+// The background of sequence `index`.
+std::size_t background_of(const EncounterRule& rule, std::int64_t index);
+
+// Gives the scene, whose camera is the own aircraft, the intruders of sequence `index` and, where
+// they come from a model, its weight: the product of those of the intruders. A negative sequence
+// gets none. The aircraft is one of the rule whose class flies the track; at its usual speed where
+// there is one. Where the own aircraft is higher than kLowestFlightM, so is every intruder.
+//
+// A track of a model that is too low, or that no aircraft of the rule flies, is drawn again; its
+// closest approach falls on a whole second. Throws Error at the rule where no draw of many is
+// possible, where a stated geometry goes too low, or where the camera's path ends before the
+// closest approach.
+void add_encounter(scene::Scene& scene, const EncounterRule& rule, std::int64_t index);
+
+}  // namespace airtruth::catalogue

@@ -17,8 +17,9 @@
 #include "foundation/base/files.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 using testing::HasSubstr;
@@ -35,14 +36,7 @@ aircraft = ["c172/*", "738/738-Ryanair", "Cub/*"]
 
 class EncounterModel : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("airtruth-encounter-rule-") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    write_file(folder_ / "small.txt", encounter::kSmallModel);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { write_file(folder_ / "small.txt", encounter::kSmallModel); }
 
   Catalogue with(const std::string& keys) const {
     return parse_catalogue(kBackground + keys, folder_ / "c.toml");
@@ -55,7 +49,8 @@ class EncounterModel : public testing::Test {
     }
     return "no error";
   }
-  fs::path folder_;
+  test_support::TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path();
 };
 
 constexpr const char* kBayes = "kind = \"bayes\"\nmodel = \"small.txt\"\n";
@@ -65,8 +60,8 @@ struct Closest {
 };
 // The horizontal closest approach of the two paths as the renderer has them, in steps of 1 ms.
 Closest closest_of(const scene::Scene& scene, const scene::Intruder& intruder, double end_s) {
-  const trajectory::Path own = sequence::camera_path(scene.camera);
-  const trajectory::Path path = sequence::path_of(intruder, sequence::camera_path(scene.camera));
+  const trajectory::Path own = setup::camera_path(scene.camera);
+  const trajectory::Path path = setup::path_of(intruder, setup::camera_path(scene.camera));
   Closest closest;
   for (double t = 0; t <= end_s; t += 1e-3) {
     const Vector3 apart = path.at(t)->position_in_world - own.at(t)->position_in_world;
@@ -110,12 +105,12 @@ TEST_F(EncounterModel, TracksOfAModelPassInTheRangeAndCarryTheirWeight) {
     EXPECT_LE(closest.distance_m, 90.1) << i;
     EXPECT_LE(std::abs(closest.above_m), 40 + 5) << i;  // climbs in what the approach is off
     // The aircraft flies its track.
-    EXPECT_EQ(sequence::words_beyond_limits(
-                  intruder.aircraft,
-                  sequence::path_of(intruder, sequence::camera_path(item.scene.camera)),
-                  0,
-                  8),
-              "")
+    EXPECT_EQ(
+        setup::words_beyond_limits(intruder.aircraft,
+                                   setup::path_of(intruder, setup::camera_path(item.scene.camera)),
+                                   0,
+                                   8),
+        "")
         << i;
     EXPECT_EQ(scene::toml_from_scene(again.scene), scene::toml_from_scene(item.scene));
     EXPECT_THAT(scene::toml_from_scene(item.scene), HasSubstr("\nweight = "));
@@ -136,7 +131,7 @@ TEST_F(EncounterModel, TheAircraftFitsTheSpeed) {
   // No aircraft of the rule flies 400 m/s: the fastest comes nearest, and the plan says so.
   const Catalogue fast = with("kind = \"geometric\"\ncount = 2\nspeed_mps = 400\n");
   EXPECT_THAT(Expansion(fast).at(0).scene.intruders.at(0).aircraft, testing::StartsWith("738/"));
-  EXPECT_EQ(plan_of(fast, {}, {}).not_flyable, 2);
+  EXPECT_EQ(build::plan_of(fast, {}, {}).not_flyable, 2);
 }
 
 TEST_F(EncounterModel, NegativesAndSecondIntrudersAreTheSharesThatWereAskedFor) {
@@ -220,4 +215,4 @@ TEST_F(EncounterModel, ATrackBelowTheGroundIsRefusedOrDrawnAgain) {
 }
 
 }  // namespace
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "dataset/catalogue/encounter_item.h"
+#include "dataset/catalogue/encounter_rule.h"
 #include "dataset/catalogue/meeting.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 // Frame rate that is assumed for a background of unknown rate.
@@ -212,7 +212,7 @@ std::int64_t random_first_frame(const Item& item,
 void place(Item& item,
            const Catalogue& catalogue,
            const BackgroundFiles& files,
-           sequence::SharedInputs* shared) {
+           setup::SharedInputs* shared) {
   const Background& background = catalogue.backgrounds[item.background];
   scene::Background& placed = item.scene.background;
   placed.video = files.video;
@@ -233,4 +233,4 @@ void place(Item& item,
   lay_distractors(item.scene, item.distractors, clip, size, shared);
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

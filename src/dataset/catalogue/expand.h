@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "dataset/catalogue/catalogue.h"
-#include "dataset/catalogue/distractor_drawing.h"
+#include "dataset/catalogue/distractors.h"
 #include "dataset/catalogue/drawing.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 class SharedInputs;
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 
 // The files of a background on this machine, and the facts of its video.
 struct BackgroundFiles {
@@ -68,6 +68,6 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);
 void place(Item& item,
            const Catalogue& catalogue,
            const BackgroundFiles& files,
-           sequence::SharedInputs* shared = nullptr);
+           setup::SharedInputs* shared = nullptr);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

@@ -11,7 +11,7 @@
 #include "dataset/catalogue/encounter_rule.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 
 namespace {
 
@@ -42,7 +42,7 @@ Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_
   if (failed) throw Error("cannot create: " + failed.message(), {root.string()});
   if (!fs::exists(folder.catalogue())) {
     // The catalogue is written last: with it, the layout is fixed.
-    folder.layout = layout_for(Expansion(catalogue).size(), max_in_a_folder);
+    folder.layout = sequences::layout_for(Expansion(catalogue).size(), max_in_a_folder);
     write_layout(folder.sequences(), folder.layout);
     write_file(folder.catalogue(), catalogue.text);
   } else if (read_file(folder.catalogue()) != catalogue.text) {
@@ -66,4 +66,4 @@ FolderLock::FolderLock(const Folder& folder, bool shared) {
 
 FolderLock::~FolderLock() { ::close(file_); }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

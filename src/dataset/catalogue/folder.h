@@ -10,15 +10,15 @@
 #include "dataset/catalogue/expand.h"
 #include "dataset/sequences/layout.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 
 // The paths within a data set's folder.
 struct Folder {
   // Reads the layout of a set that was begun. Throws Error as read_layout does.
-  explicit Folder(fs::path at) : root(std::move(at)), layout(read_layout(sequences())) {}
+  explicit Folder(fs::path at) : root(std::move(at)), layout(sequences::read_layout(sequences())) {}
 
   fs::path root;
-  Layout layout;
+  sequences::Layout layout;
 
   fs::path catalogue() const { return root / "catalogue.toml"; }
   fs::path backgrounds() const { return root / "backgrounds"; }
@@ -43,7 +43,7 @@ struct Folder {
 // layout whatever `max_in_a_folder` is. Throws Error where it holds the set of another catalogue.
 Folder open_folder(const Catalogue& catalogue,
                    const fs::path& root,
-                   std::int64_t max_in_a_folder = kMaxSequencesInAFolder);
+                   std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder);
 
 // A lock that is held during a build; the kernel releases it when the process ends. Workers that
 // each make their own share hold it together (`shared`); a whole build holds it alone.
@@ -58,4 +58,4 @@ class FolderLock {
   int file_ = -1;
 };
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

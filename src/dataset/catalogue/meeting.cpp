@@ -15,7 +15,7 @@
 #include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 // A smaller bank counts as straight flight.
@@ -110,7 +110,7 @@ class Sizer {
         const lens::ImageSize& size,
         const trajectory::State& camera,
         double meets_s)
-      : lens_(sequence::lens_of(scene.lens, size)), camera_(camera), meets_s_(meets_s) {
+      : lens_(setup::lens_of(scene.lens, size)), camera_(camera), meets_s_(meets_s) {
     sight_.lens = &lens_;
     sight_.cam_from_world =
         (camera.world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()})
@@ -170,17 +170,17 @@ struct Outline {
 
 Outline outline_of(const scene::Intruder& intruder,
                    const trajectory::Path& path,
-                   sequence::SharedInputs* shared) {
+                   setup::SharedInputs* shared) {
   if (shared != nullptr) {
     const auto type = shared->type_of(intruder, path, {}, {});
     return {type, type->silhouette};
   }
-  const auto aircraft = sequence::aircraft_of(intruder, path, {});
+  const auto aircraft = setup::aircraft_of(intruder, path, {});
   return {aircraft, {&aircraft->mesh, aircraft::silhouette_points(aircraft->mesh)}};
 }
 
 trajectory::State camera_at(const scene::Camera& camera, double time_s) {
-  const auto state = sequence::camera_path(camera).at(time_s);
+  const auto state = setup::camera_path(camera).at(time_s);
   if (!state)
     throw Error(
         fmt::format("the camera's path does not reach {:.2f} s, where an intruder meets it; "
@@ -233,7 +233,7 @@ void meet(scene::Scene& scene,
           const Encounter& encounter,
           const DrawnClip& clip,
           const lens::ImageSize& size,
-          sequence::SharedInputs* shared) {
+          setup::SharedInputs* shared) {
   // Length for the first estimate of the range.
   constexpr double kUsualLengthM = 15;
   scene::Intruder& intruder = scene.intruders[k];
@@ -249,7 +249,7 @@ void meet(scene::Scene& scene,
   const Sizer sizer(scene, size, camera, meets_s);
   const double guess_m = sizer.focal_px() * kUsualLengthM / *encounter.size_px;
   lay_through(intruder, encounter, camera.position_in_world + guess_m * direction, clip);
-  const trajectory::Path path = sequence::path_of(intruder, sequence::camera_path(scene.camera));
+  const trajectory::Path path = setup::path_of(intruder, setup::camera_path(scene.camera));
   const Outline outline = outline_of(intruder, path, shared);
   const auto position = sizer.position(outline.silhouette,
                                        path.at(meets_s)->world_from_body,
@@ -268,4 +268,4 @@ void meet(scene::Scene& scene,
   lay_through(intruder, encounter, *position, clip);
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

@@ -8,11 +8,11 @@
 #include "scene/scene/scene.h"
 
 // Turns the random values of an encounter into a path in the world.
-namespace airtruth::sequence {
+namespace airtruth::setup {
 class SharedInputs;
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 
 // The length of a sequence, as far as it is known.
 struct DrawnClip {
@@ -56,6 +56,6 @@ void meet(scene::Scene& scene,
           const Encounter& encounter,
           const DrawnClip& clip,
           const lens::ImageSize& size,
-          sequence::SharedInputs* shared = nullptr);
+          setup::SharedInputs* shared = nullptr);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

@@ -15,7 +15,6 @@
 
 #include <gtest/gtest.h>
 #include <toml++/toml.h>
-#include <unistd.h>
 
 #include "camera/lens/calibration_file.h"
 #include "dataset/catalogue/catalogue.h"
@@ -26,9 +25,10 @@
 #include "scene/scene/table_reader.h"
 #include "scene/trajectory/path.h"
 #include "sequence/demo/virtual_flight.h"
-#include "sequence/sequence/sequence.h"
+#include "sequence/pipeline/render.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 using Number = std::variant<double, std::int64_t>;
@@ -152,30 +152,29 @@ const std::string kProfile =
 class NumberRanges : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    root_ = fs::temp_directory_path() / ("airtruth_number_ranges_" + std::to_string(::getpid()));
-    fs::create_directories(root_);
+    root_ = temporary_.emplace().path();
     synthetic::FlightOptions options;
     options.width = 64;
     options.height = 64;
     options.frame_count = 2;
-    sequence::VirtualFlightOptions how;
+    demo::VirtualFlightOptions how;
     how.format = video::Format::kMkv;
-    write_flight(synthetic::Flight(options), root_ / "sky.mkv", how);
+    demo::write_flight(synthetic::Flight(options), root_ / "sky.mkv", how);
     write_file(root_ / "box.obj",
                "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
     write_file(root_ / "path.csv",
                "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n"
                "0,60,-3,-150,90,1,2\n1,61,4,-151,91,2,3\n");
   }
-  static void TearDownTestSuite() { fs::remove_all(root_); }
+  static void TearDownTestSuite() { temporary_.reset(); }
 
   // Renders two frames: they are whole, or an Error says what is wrong.
   static void render(const scene::Scene& scene) {
-    sequence::Options options;
+    pipeline::Options options;
     options.use_cache = false;
     options.overwrite = true;
     options.threads = 1;
-    const sequence::Summary summary = sequence::render(scene, root_ / "out", options);
+    const pipeline::Summary summary = pipeline::render(scene, root_ / "out", options);
     for (const auto& frame : annotation::read_truth(summary.folder / "truth.jsonl").frames)
       EXPECT_TRUE(std::isfinite(frame.time_s));
     // What a data set records must be readable again.
@@ -294,6 +293,7 @@ class NumberRanges : public testing::Test {
       }
   }
 
+  static inline std::optional<test_support::TemporaryFolder> temporary_;
   static inline fs::path root_;
 };
 
@@ -469,4 +469,4 @@ TEST_F(NumberRanges, OfAPathFile) {
 }
 
 }  // namespace
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

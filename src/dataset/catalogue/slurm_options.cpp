@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 namespace {
 
 // Options that a job script of airtruth sets itself, or that would make sbatch do something other
@@ -164,4 +164,4 @@ std::string sbatch_log(const std::string& folder, std::string_view pattern) {
   return result + "/" + std::string(pattern) + "\"";
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

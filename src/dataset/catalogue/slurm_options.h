@@ -10,7 +10,7 @@
 
 // The user's options for Slurm's sbatch: the table [slurm] of a catalogue, and --sbatch of
 // `airtruth dataset submit`. Each option becomes one line "#SBATCH --name=value" of a job script.
-namespace airtruth::dataset {
+namespace airtruth::catalogue {
 
 // Returns the option as "--name=value" or "--name". Accepts "--name=value", "--name value" and
 // "--name"; the value is one word. Throws Error at `where` for any other form; for a character with
@@ -30,4 +30,4 @@ std::vector<std::string> slurm_in(const scene::TableReader& root);
 // with a backslash, because a backslash switches off the replacement of patterns.
 std::string sbatch_log(const std::string& folder, std::string_view pattern);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::catalogue

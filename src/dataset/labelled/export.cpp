@@ -16,7 +16,7 @@
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -53,23 +53,23 @@ Json options_json(const fs::path& set, const ExportOptions& options) {
       {"split", split},
       {"shares", options.shares},
       {"seed", options.seed},
-      {"boxes", name(options.boxes)},
+      {"boxes", sequences::name(options.boxes)},
       {"one_class", options.one_class}};
   if (options.mot_classes) json["mot_classes"] = true;
   return json;
 }
 
-std::string boxes_text(Boxes boxes) {
+std::string boxes_text(dataset::Boxes boxes) {
   switch (boxes) {
-    case Boxes::kCovered:
+    case dataset::Boxes::kCovered:
       return "Boxes are the covered ones (`covered_box_px` of truth.jsonl): bounds of the pixels "
              "that the aircraft covers with an alpha of 0.08 or more. An aircraft that covers no "
              "pixel "
              "so far has no box.\n";
-    case Boxes::kExact:
+    case dataset::Boxes::kExact:
       return "Boxes are the exact ones (`exact_box_px` of truth.jsonl), cut by the frame: bounds "
              "of the projected shape, in fractions of a pixel.\n";
-    case Boxes::kVisible:
+    case dataset::Boxes::kVisible:
       break;
   }
   return "Boxes are the visible ones (`visible_box_px` of truth.jsonl): bounds of the pixels that "
@@ -339,7 +339,7 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   require_utf8(fs::absolute(set));
   require_utf8(fs::absolute(out));
   for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
-  if (options.boxes == Boxes::kCovered)
+  if (options.boxes == dataset::Boxes::kCovered)
     for (const std::string& name : labelled.names()) labelled.expect_covered_boxes(name);
   const Place place(out, options_json(set, options));
   if (place.is_complete()) {
@@ -360,4 +360,4 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   return Export(labelled, place, options).run();
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

@@ -14,7 +14,7 @@
 #include "foundation/base/log.h"
 #include "labels/exchange/exchange.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 
 enum class Images { kJpg, kPng, kNone };
 
@@ -27,7 +27,7 @@ struct ExportOptions {
   // Shares of train, val and test (split.h).
   std::array<double, 3> shares{0.8, 0.1, 0.1};
   std::uint64_t seed = 1;
-  Boxes boxes = Boxes::kCovered;
+  dataset::Boxes boxes = dataset::Boxes::kCovered;
   // Every label has the class "aircraft"; otherwise its class is the aircraft's type.
   bool one_class = false;
   // For MOT only: classes are numbered from 1. Otherwise every aircraft has class 1.
@@ -57,4 +57,4 @@ struct ExportSummary {
 // mot_classes is set for a format other than MOT.
 ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& options);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

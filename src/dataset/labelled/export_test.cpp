@@ -8,11 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "dataset/build/build.h"
 #include "dataset/build/verify.h"
-#include "dataset/catalogue/small_catalogue.h"
 #include "dataset/labelled/import.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -20,8 +18,10 @@
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/replay/finished.h"
+#include "support/small_catalogue.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 namespace {
 
 using testing::ElementsAre;
@@ -31,13 +31,13 @@ using testing::HasSubstr;
 class Made : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    root_ = fs::temp_directory_path() / ("airtruth_export_" + std::to_string(::getpid()));
-    fs::create_directories(root_);
-    write_file(root_ / "c.toml", std::string(kCatalogue) + "masks = true\n");
-    const BuildSummary summary = build(read_catalogue(root_ / "c.toml"), set(), {});
+    root_ = temporary_.emplace().path();
+    write_file(root_ / "c.toml", std::string(test_support::kCatalogue) + "masks = true\n");
+    const build::BuildSummary summary =
+        build::build_set(catalogue::read_catalogue(root_ / "c.toml"), set(), {});
     ASSERT_EQ(summary.made, 4);
   }
-  static void TearDownTestSuite() { fs::remove_all(root_); }
+  static void TearDownTestSuite() { temporary_.reset(); }
 
   static fs::path set() { return root_ / "set"; }
   fs::path fresh() {
@@ -67,9 +67,10 @@ class Made : public testing::Test {
     std::string record = read_file(folder / "sequence.json");
     record.replace(record.find(before), before.size(), sha256_of(truth));
     write_file(folder / "sequence.json", record);
-    finish(copy);  // writes the manifest as well
+    build::finish(copy);  // writes the manifest as well
     return copy;
   }
+  static inline std::optional<test_support::TemporaryFolder> temporary_;
   inline static fs::path root_;
 };
 
@@ -268,10 +269,10 @@ TEST_F(Made, EveryNthFrameAndOneClass) {
 TEST_F(Made, LabelsAreTheBoxesThatAreAskedFor) {
   const LabelledSet set_of_boxes(set());
   const std::string name = "sky-across-b737";
-  const auto truth = sequence::open_finished(set_of_boxes.folder(name)).truth.frames;
+  const auto truth = replay::open_finished(set_of_boxes.folder(name)).truth.frames;
   const auto covered = set_of_boxes.clip(name).frames;
-  const auto exact = set_of_boxes.clip(name, Boxes::kExact).frames;
-  const auto visible = set_of_boxes.clip(name, Boxes::kVisible).frames;
+  const auto exact = set_of_boxes.clip(name, dataset::Boxes::kExact).frames;
+  const auto visible = set_of_boxes.clip(name, dataset::Boxes::kVisible).frames;
   for (std::size_t k = 0; k < truth.size(); ++k) {
     const annotation::Intruder& one = truth[k].intruders[0];
     ASSERT_TRUE(one.covered_box_px && one.visible_box_px && one.exact_box_px);
@@ -291,16 +292,16 @@ TEST_F(Made, LabelsAreTheBoxesThatAreAskedFor) {
   ExportOptions options;
   options.format = exchange::Format::kCvat;
   options.images = Images::kNone;
-  for (const auto& [boxes, key] : {std::pair(Boxes::kCovered, "`covered_box_px`"),
-                                   std::pair(Boxes::kExact, "`exact_box_px`"),
-                                   std::pair(Boxes::kVisible, "`visible_box_px`")}) {
+  for (const auto& [boxes, key] : {std::pair(dataset::Boxes::kCovered, "`covered_box_px`"),
+                                   std::pair(dataset::Boxes::kExact, "`exact_box_px`"),
+                                   std::pair(dataset::Boxes::kVisible, "`visible_box_px`")}) {
     options.boxes = boxes;
     const fs::path out = fresh();
     export_set(set(), out, options);
     EXPECT_THAT(read_file(out / "LOSS.md"), HasSubstr(key));
   }
-  EXPECT_EQ(boxes_from_name("exact"), Boxes::kExact);
-  EXPECT_THROW(boxes_from_name("tight"), Error);
+  EXPECT_EQ(sequences::boxes_from_name("exact"), dataset::Boxes::kExact);
+  EXPECT_THROW(sequences::boxes_from_name("tight"), Error);
 }
 
 TEST_F(Made, CocoHoldsThePixelsOfSetsThatHaveMasks) {
@@ -321,11 +322,11 @@ TEST_F(Made, CocoHoldsThePixelsOfSetsThatHaveMasks) {
 }
 
 TEST_F(Made, VerificationHoldsMasksToTheirBoxes) {
-  EXPECT_THAT(verify(set(), {}).faults, ElementsAre());
+  EXPECT_THAT(build::verify(set(), {}).faults, ElementsAre());
   const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["covered_box_px"][2] = intruder["covered_box_px"][2].get<int>() - 1;
   });
-  EXPECT_THAT(verify(copy, {}).faults,
+  EXPECT_THAT(build::verify(copy, {}).faults,
               ElementsAre(HasSubstr("its mask is not of its covered box")));
 }
 
@@ -351,13 +352,13 @@ TEST_F(Made, AnOlderSetIsRefusedWithOneLineOrTakenByItsVisibleBoxes) {
   EXPECT_THAT(said, HasSubstr("--boxes visible"));
   EXPECT_EQ(said.find('\n'), std::string::npos);
   EXPECT_FALSE(fs::exists(refused));
-  options.boxes = Boxes::kVisible;
+  options.boxes = dataset::Boxes::kVisible;
   EXPECT_EQ(export_set(old, fresh(), options).frames, 32);
   std::vector<std::string> warnings;
   const Warn warn = [&](const std::string& w) { warnings.push_back(w); };
-  EXPECT_EQ(LabelledSet(old).usual_boxes(warn), Boxes::kVisible);
+  EXPECT_EQ(LabelledSet(old).usual_boxes(warn), dataset::Boxes::kVisible);
   EXPECT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(LabelledSet(set()).usual_boxes(warn), Boxes::kCovered);
+  EXPECT_EQ(LabelledSet(set()).usual_boxes(warn), dataset::Boxes::kCovered);
   EXPECT_EQ(warnings.size(), 1u);
 }
 
@@ -369,36 +370,36 @@ TEST_F(Made, WhatIsImportedCanBeLookedAt) {
   write_file(csv, "frame,x,y,w,h\n0,10,20,30,40\n5,11.5,20,30,40\n");
   options.videos[""] = LabelledSet(set()).clip("sky-across-b737").media;
   import_set(csv, out, options);
-  const auto finished = sequence::open_finished(out / "sequences" / "boxes");
+  const auto finished = replay::open_finished(out / "sequences" / "boxes");
   ASSERT_EQ(finished.truth.frames.size(), 6u);
   EXPECT_EQ(*finished.truth.frames[5].intruders[0].visible_box_px, (PixelBox{11, 20, 31, 40}));
-  sequence::write_overlay(finished, root_ / "look.mp4", {});
+  replay::write_overlay(finished, root_ / "look.mp4", {});
   EXPECT_TRUE(fs::exists(root_ / "look.mp4"));
   EXPECT_THROW(import_set(csv, out, options), Error);
 }
 
 TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
-  VerifyOptions options;
+  build::VerifyOptions options;
   options.deep_every = 1;
-  const VerifyResult sound = verify(set(), options);
+  const build::VerifyResult sound = build::verify(set(), options);
   EXPECT_THAT(sound.faults, ElementsAre());
   EXPECT_EQ(sound.recomposed, 32);
   // One visible box is moved by one pixel.
   const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["visible_box_px"][0] = intruder["visible_box_px"][0].get<int>() + 1;
   });
-  EXPECT_THAT(verify(copy, options).faults,
+  EXPECT_THAT(build::verify(copy, options).faults,
               testing::Contains(HasSubstr("has another truth when it is computed again")));
 }
 
 TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
-  EXPECT_GT(verify(set(), {}).in_view, 16);
+  EXPECT_GT(build::verify(set(), {}).in_view, 16);
   const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["state"] = "outside";
     intruder.erase("visible_box_px");
     intruder.erase("covered_box_px");
   });
-  const VerifyResult result = verify(copy, {});
+  const build::VerifyResult result = build::verify(copy, {});
   EXPECT_EQ(result.in_view_without_box, 1);
   EXPECT_THAT(result.faults,
               ElementsAre(HasSubstr("in view by its position, and without a box"),
@@ -406,4 +407,4 @@ TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
 }
 
 }  // namespace
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

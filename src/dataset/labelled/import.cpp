@@ -16,7 +16,7 @@
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -197,7 +197,8 @@ ImportSummary import_set(const fs::path& source,
   classify(clips, options);
   // All input is read before the first file is written.
   const fs::path sequences = out / "sequences";
-  const Layout layout = layout_for(std::ssize(clips), options.max_in_a_folder);
+  const sequences::Layout layout =
+      sequences::layout_for(std::ssize(clips), options.max_in_a_folder);
   std::error_code reported_below;
   fs::create_directories(sequences, reported_below);
   write_layout(sequences, layout);
@@ -213,4 +214,4 @@ ImportSummary import_set(const fs::path& source,
   return summary;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

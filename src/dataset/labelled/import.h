@@ -10,7 +10,7 @@
 #include "foundation/base/log.h"
 #include "labels/exchange/exchange.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 
 namespace fs = std::filesystem;
 
@@ -29,7 +29,7 @@ struct ImportOptions {
   };
   std::vector<ObjectClass> classes;
   // More clips lie in numbered folders with as many each (dataset/sequences/layout.h).
-  std::int64_t max_in_a_folder = kMaxSequencesInAFolder;
+  std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder;
   Warn warn;
 };
 
@@ -49,4 +49,4 @@ ImportOptions::ObjectClass object_class_from(const std::string& text);
 // not empty, for a class that is none, and for a pattern that fits no clip.
 ImportSummary import_set(const fs::path& source, const fs::path& out, const ImportOptions& options);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

@@ -13,17 +13,17 @@
 #include "labels/exchange/pixel_mask.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
-#include "sequence/frame/masks.h"
+#include "sequence/insertion/masks.h"
 #include "sequence/replay/finished.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 namespace {
 
 // The pixels whose alpha is kCoveredAlpha or more; covered_box_px bounds them.
-std::optional<exchange::PixelMask> pixels_of_mask(const sequence::Finished& finished,
+std::optional<exchange::PixelMask> pixels_of_mask(const replay::Finished& finished,
                                                   const std::string& id,
                                                   std::int64_t frame) {
-  const auto mask = sequence::read_alpha_mask(finished.folder, finished.truth.lens, id, frame);
+  const auto mask = insertion::read_alpha_mask(finished.folder, finished.truth.lens, id, frame);
   const auto box = mask ? composite::covered_box(*mask) : std::nullopt;
   if (!box) return std::nullopt;
   const auto width = static_cast<std::size_t>(mask->patch.width);
@@ -33,7 +33,7 @@ std::optional<exchange::PixelMask> pixels_of_mask(const sequence::Finished& fini
   });
 }
 
-exchange::Clip clip_of(const sequence::Finished& finished, Boxes boxes, bool with_masks) {
+exchange::Clip clip_of(const replay::Finished& finished, dataset::Boxes boxes, bool with_masks) {
   exchange::Clip clip;
   clip.name = finished.name;
   clip.media = finished.video;
@@ -41,7 +41,7 @@ exchange::Clip clip_of(const sequence::Finished& finished, Boxes boxes, bool wit
   clip.height = finished.truth.lens.height;
   clip.frame_rate_hz = video::Reader(finished.video, {.threads = 1}).info().frame_rate.value();
   for (const annotation::Frame& truth : finished.truth.frames) {
-    clip.frames.push_back(labels_of(truth, boxes, clip.width, clip.height));
+    clip.frames.push_back(sequences::labels_of(truth, boxes, clip.width, clip.height));
     if (!with_masks) continue;
     for (exchange::Label& label : clip.frames.back().labels) {
       const auto& intruder = truth.intruders[static_cast<std::size_t>(label.track) - 1];
@@ -53,26 +53,28 @@ exchange::Clip clip_of(const sequence::Finished& finished, Boxes boxes, bool wit
 
 }  // namespace
 
-LabelledSet::LabelledSet(const fs::path& root) : folders_(sequence_folders(root)) {
+LabelledSet::LabelledSet(const fs::path& root) : folders_(sequences::sequence_folders(root)) {
   if (fs::exists(root / "sequence.json")) return;  // a single sequence
-  const Folder folder{root};
+  const catalogue::Folder folder{root};
   if (fs::exists(folder.catalogue())) {
-    const Catalogue catalogue = read_catalogue(folder.catalogue());
-    missing_ = Expansion(catalogue).size() - std::ssize(names());
+    const catalogue::Catalogue catalogue = catalogue::read_catalogue(folder.catalogue());
+    missing_ = catalogue::Expansion(catalogue).size() - std::ssize(names());
   }
-  if (names().empty()) throw no_sequence_in(root);
+  if (names().empty()) throw sequences::no_sequence_in(root);
 }
 
 fs::path LabelledSet::folder(const std::string& name) const { return folders_.folder(name); }
 
 bool LabelledSet::is_imported(const std::string& name) const {
-  return fs::exists(folder(name) / kLabels);
+  return fs::exists(folder(name) / sequences::kLabels);
 }
 
-exchange::Clip LabelledSet::clip(const std::string& name, Boxes boxes, bool with_masks) const {
-  if (is_imported(name)) return exchange::read_labels(folder(name) / kLabels);
-  if (boxes == Boxes::kCovered) expect_covered_boxes(name);
-  const sequence::Finished finished = sequence::open_finished(folder(name));
+exchange::Clip LabelledSet::clip(const std::string& name,
+                                 dataset::Boxes boxes,
+                                 bool with_masks) const {
+  if (is_imported(name)) return exchange::read_labels(folder(name) / sequences::kLabels);
+  if (boxes == dataset::Boxes::kCovered) expect_covered_boxes(name);
+  const replay::Finished finished = replay::open_finished(folder(name));
   return clip_of(finished, boxes, with_masks && finished.scene && finished.scene->output.masks);
 }
 
@@ -89,16 +91,16 @@ void LabelledSet::expect_covered_boxes(const std::string& name) const {
         {folder(name).string()});
 }
 
-Boxes LabelledSet::usual_boxes(const Warn& warn) const {
+dataset::Boxes LabelledSet::usual_boxes(const Warn& warn) const {
   for (const std::string& name : names()) {
     if (has_covered_boxes(name)) continue;
     airtruth::warn(warn,
                    folder(name).string() +
                        ": was made before truth had covered boxes (covered_box_px); the visible "
                        "boxes are taken");
-    return Boxes::kVisible;
+    return dataset::Boxes::kVisible;
   }
-  return Boxes::kCovered;
+  return dataset::Boxes::kCovered;
 }
 
 bool LabelledSet::has_masks(const std::string& name) const {
@@ -118,7 +120,7 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     std::set<std::string> distractors;
     for (const scene::Intruder& intruder : scene.intruders)
       if (is_aircraft(intruder))
-        categories.insert(category_of(intruder.aircraft));
+        categories.insert(sequences::category_of(intruder.aircraft));
       else
         distractors.insert(enum_name(intruder.distractor->kind));
     for (const scene::LensMark& mark : scene.lens_marks) distractors.insert(enum_name(mark.kind));
@@ -134,4 +136,4 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
   return facts;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

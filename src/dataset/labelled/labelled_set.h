@@ -11,7 +11,7 @@
 #include "dataset/sequences/sequence_folders.h"
 #include "foundation/base/log.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 
 namespace fs = std::filesystem;
 
@@ -48,11 +48,11 @@ class LabelledSet {
   // which is returned for every value of `boxes`. Throws Error where covered boxes are requested
   // and the sequence is older than they are.
   exchange::Clip clip(const std::string& name,
-                      Boxes boxes = Boxes::kCovered,
+                      dataset::Boxes boxes = dataset::Boxes::kCovered,
                       bool with_masks = false) const;
   // Returns kCovered, or kVisible (with a warning) where a sequence of the set is older than
   // covered boxes are.
-  Boxes usual_boxes(const Warn& warn) const;
+  dataset::Boxes usual_boxes(const Warn& warn) const;
   // True where the sequence was made with [output] masks = true.
   bool has_masks(const std::string& name) const;
   fs::path folder(const std::string& name) const;
@@ -65,8 +65,8 @@ class LabelledSet {
   std::int64_t missing() const { return missing_; }
 
  private:
-  SequenceFolders folders_;
+  sequences::SequenceFolders folders_;
   std::int64_t missing_ = 0;
 };
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

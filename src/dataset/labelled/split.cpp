@@ -9,7 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 namespace {
 
 constexpr std::array<const char*, 3> kParts = {"train", "val", "test"};
@@ -128,4 +128,4 @@ std::map<std::string, std::string> parted(const std::vector<ClipFacts>& clips,
   return parts;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

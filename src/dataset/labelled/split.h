@@ -11,7 +11,7 @@
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/log.h"
 
-namespace airtruth::dataset {
+namespace airtruth::labelled {
 
 // How a data set is divided into train, val and test.
 enum class Split {
@@ -32,4 +32,4 @@ std::map<std::string, std::string> parted(const std::vector<ClipFacts>& clips,
                                           std::uint64_t seed,
                                           const Warn& warn);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::labelled

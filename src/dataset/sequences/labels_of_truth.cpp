@@ -9,7 +9,7 @@
 #include "foundation/geometry/transform.h"
 #include "labels/annotation/object_class.h"
 
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 namespace {
 
 constexpr double kEarthRadiusM = 6'371'000;
@@ -22,10 +22,13 @@ bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m
   return elevation > -dip;
 }
 
-std::optional<Box> box_of(const annotation::Intruder& intruder, Boxes boxes, const Box& frame) {
+std::optional<Box> box_of(const annotation::Intruder& intruder,
+                          dataset::Boxes boxes,
+                          const Box& frame) {
   if (intruder.state != annotation::State::kVisible) return std::nullopt;
-  if (boxes != Boxes::kExact) {
-    const auto& box = boxes == Boxes::kVisible ? intruder.visible_box_px : intruder.covered_box_px;
+  if (boxes != dataset::Boxes::kExact) {
+    const auto& box =
+        boxes == dataset::Boxes::kVisible ? intruder.visible_box_px : intruder.covered_box_px;
     return box ? std::optional(
                      Box{double(box->x), double(box->y), double(box->width), double(box->height)})
                : std::nullopt;
@@ -58,13 +61,16 @@ exchange::Label label_of(const annotation::Intruder& intruder,
 
 }  // namespace
 
-const char* name(Boxes boxes) {
-  return boxes == Boxes::kCovered ? "covered" : boxes == Boxes::kExact ? "exact" : "visible";
+const char* name(dataset::Boxes boxes) {
+  return boxes == dataset::Boxes::kCovered ? "covered"
+         : boxes == dataset::Boxes::kExact ? "exact"
+                                           : "visible";
 }
 
-Boxes boxes_from_name(const std::string& name) {
-  for (const Boxes boxes : {Boxes::kCovered, Boxes::kExact, Boxes::kVisible})
-    if (name == dataset::name(boxes)) return boxes;
+dataset::Boxes boxes_from_name(const std::string& name) {
+  for (const dataset::Boxes boxes :
+       {dataset::Boxes::kCovered, dataset::Boxes::kExact, dataset::Boxes::kVisible})
+    if (name == sequences::name(boxes)) return boxes;
   throw Error("--boxes is '" + name + "'; expected covered, exact or visible");
 }
 
@@ -80,7 +86,7 @@ std::string category_of(const annotation::Intruder& intruder) {
 }
 
 exchange::LabelledFrame labels_of(const annotation::Frame& truth,
-                                  Boxes boxes,
+                                  dataset::Boxes boxes,
                                   int width,
                                   int height) {
   const Box picture{0, 0, double(width), double(height)};
@@ -93,4 +99,4 @@ exchange::LabelledFrame labels_of(const annotation::Frame& truth,
   return frame;
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

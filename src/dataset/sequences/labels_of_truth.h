@@ -9,11 +9,11 @@
 #include "labels/annotation/truth.h"
 
 // The truth of a rendered sequence as labels. Needs neither the scene nor the video.
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 
-const char* name(Boxes boxes);  // "covered", "exact", "visible"
+const char* name(dataset::Boxes boxes);  // "covered", "exact", "visible"
 // Throws Error for any other name.
-Boxes boxes_from_name(const std::string& name);
+dataset::Boxes boxes_from_name(const std::string& name);
 
 // The type of an aircraft of the list ("738/738-Ryanair" gives "738"), or the name of a model file
 // without its extension.
@@ -25,8 +25,8 @@ std::string category_of(const annotation::Intruder& intruder);
 // The labels of one frame of a picture of this size: one for each intruder that is visible and has
 // the requested box. The track is the intruder's number in the scene, from 1.
 exchange::LabelledFrame labels_of(const annotation::Frame& truth,
-                                  Boxes boxes,
+                                  dataset::Boxes boxes,
                                   int width,
                                   int height);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 namespace {
 
 annotation::Intruder seen(const std::string& aircraft, const std::string& object_class) {
@@ -22,7 +22,7 @@ TEST(LabelsOfTruth, CarryTheClassAndADistractorsCategoryIsItsClass) {
       seen("738/738-Ryanair", "aircraft"), seen("bird", "bird"), seen("dirt", "dirt")};
   frame.intruders[1].range_m = 60;
   frame.intruders[1].position_ned_m = Vector3(60, 0, -160);
-  const exchange::LabelledFrame labelled = labels_of(frame, Boxes::kCovered, 640, 480);
+  const exchange::LabelledFrame labelled = labels_of(frame, dataset::Boxes::kCovered, 640, 480);
   ASSERT_EQ(labelled.labels.size(), 3U);
   EXPECT_EQ(labelled.labels[0].category, "738");
   EXPECT_EQ(labelled.labels[0].object_class, "aircraft");
@@ -36,4 +36,4 @@ TEST(LabelsOfTruth, CarryTheClassAndADistractorsCategoryIsItsClass) {
 }
 
 }  // namespace
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

@@ -10,7 +10,7 @@
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 namespace {
 
 constexpr const char* kFormat = "airtruth layout 1";
@@ -55,4 +55,4 @@ bool is_numbered_folder(const std::string& name) {
          std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

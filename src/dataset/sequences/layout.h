@@ -11,7 +11,7 @@
 //
 // Example: with 4,000 sequences in a folder, number 0 of 10,000 lies in sequences/0001, number
 // 4,000 in sequences/0002 and number 9,999 in sequences/0003. All of 3,000 lie in sequences.
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 
 namespace fs = std::filesystem;
 
@@ -43,4 +43,4 @@ void write_layout(const fs::path& sequences, const Layout& layout);
 // consists of digits.
 bool is_numbered_folder(const std::string& name);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

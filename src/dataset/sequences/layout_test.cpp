@@ -3,13 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "dataset/sequences/sequence_folders.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 namespace {
 
 using testing::ElementsAre;
@@ -17,11 +17,7 @@ using testing::HasSubstr;
 
 class LayoutTest : public testing::Test {
  protected:
-  LayoutTest()
-      : root_(fs::temp_directory_path() / ("airtruth_layout_" + std::to_string(::getpid()))) {
-    fs::create_directories(root_ / "sequences");
-  }
-  ~LayoutTest() override { fs::remove_all(root_); }
+  LayoutTest() { fs::create_directories(root_ / "sequences"); }
 
   // A folder that counts as a finished sequence.
   void add_sequence(const fs::path& place) const {
@@ -39,7 +35,8 @@ class LayoutTest : public testing::Test {
     return "no error";
   }
 
-  fs::path root_;
+  test_support::TemporaryFolder temporary_;
+  fs::path root_ = temporary_.path();
 };
 
 TEST(Layout, ASmallSetLiesInOneFolder) {
@@ -111,4 +108,4 @@ TEST_F(LayoutTest, ANameInTwoNumberedFoldersIsAnError) {
 }
 
 }  // namespace
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

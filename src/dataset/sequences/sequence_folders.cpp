@@ -5,7 +5,7 @@
 
 #include "dataset/sequences/layout.h"
 
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 namespace {
 
 bool is_sequence(const fs::path& folder) { return fs::exists(folder / "sequence.json"); }
@@ -67,4 +67,4 @@ Error no_sequence_in(const fs::path& folder) {
       {folder.string()});
 }
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

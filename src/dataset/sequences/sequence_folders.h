@@ -10,7 +10,7 @@
 
 // The finished sequences of a folder: a data set that `dataset build` made, complete or not; the
 // output of `dataset import`; or one or more sequences that `render` made.
-namespace airtruth::dataset {
+namespace airtruth::sequences {
 
 namespace fs = std::filesystem;
 
@@ -34,4 +34,4 @@ SequenceFolders sequence_folders(const fs::path& folder);
 // The Error for a folder without sequences.
 Error no_sequence_in(const fs::path& folder);
 
-}  // namespace airtruth::dataset
+}  // namespace airtruth::sequences

@@ -50,7 +50,7 @@ void add_encounters(scores::TruthSequence& truth) {
   }
 }
 
-scores::TruthSequence imported_truth(const dataset::LabelledSet& set, const std::string& name) {
+scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std::string& name) {
   exchange::Clip clip = set.clip(name);
   scores::TruthSequence truth;
   truth.name = name;
@@ -104,8 +104,9 @@ scores::TruthFrame frame_of(const annotation::Frame& truth,
   scores::TruthFrame frame;
   frame.frame = truth.frame;
   frame.time_s = truth.time_s;
-  const auto asked = dataset::labels_of(truth, boxes, lens.width, lens.height);
-  const auto visible = dataset::labels_of(truth, dataset::Boxes::kVisible, lens.width, lens.height);
+  const auto asked = sequences::labels_of(truth, boxes, lens.width, lens.height);
+  const auto visible =
+      sequences::labels_of(truth, dataset::Boxes::kVisible, lens.width, lens.height);
   for (const exchange::Label& shown : visible.labels) {
     const exchange::Label* label = label_of(asked, shown.track);
     const annotation::Intruder& intruder =
@@ -167,7 +168,7 @@ std::optional<double> recorded_violation_s(const JsonObject& record, const std::
 }
 
 // The violation of a volume that the record does not have.
-void ask_paths(const sequence::Finished& finished,
+void ask_paths(const replay::Finished& finished,
                std::size_t actor,
                const encounter::Volume& volume,
                scores::TruthEncounter& encounter) {
@@ -180,7 +181,7 @@ void ask_paths(const sequence::Finished& finished,
   encounter.violation_s = first_violation_s(volume, states, lookahead_s);
 }
 
-scores::TruthEncounter encounter_of(const sequence::Finished& finished,
+scores::TruthEncounter encounter_of(const replay::Finished& finished,
                                     const JsonObject* record,
                                     std::size_t actor,
                                     const std::string& volume) {
@@ -202,7 +203,7 @@ scores::TruthEncounter encounter_of(const sequence::Finished& finished,
   return encounter;
 }
 
-void add_recorded_encounters(const sequence::Finished& finished,
+void add_recorded_encounters(const replay::Finished& finished,
                              const JsonObject& record,
                              const std::string& volume,
                              scores::TruthSequence& truth) {
@@ -237,7 +238,7 @@ void add_times_to_approach(scores::TruthSequence& truth) {
 RenderedTruth rendered_truth(const fs::path& folder,
                              dataset::Boxes boxes,
                              const std::string& volume) {
-  const sequence::Finished finished = sequence::open_finished(folder);
+  const replay::Finished finished = replay::open_finished(folder);
   const JsonDocument record(folder / "sequence.json");
   RenderedTruth rendered;
   rendered.first_background_frame = finished.scene->background.first_frame;
@@ -429,7 +430,7 @@ double entry_s(const encounter::Volume& volume, const PairState& before, const P
 }  // namespace
 
 SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
-  const dataset::LabelledSet set(folder);
+  const labelled::LabelledSet set(folder);
   const dataset::Boxes boxes = set.usual_boxes(options.warn);
   SetTruth result;
   std::vector<std::int64_t> first_frames;

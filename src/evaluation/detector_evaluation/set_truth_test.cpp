@@ -17,8 +17,8 @@
 #include "runners/results/results_folder.h"
 #include "scene/scene/scene.h"
 #include "sequence/demo/virtual_flight.h"
+#include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
-#include "sequence/sequence/sequence.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
@@ -38,9 +38,9 @@ class OfRenderedSet : public testing::Test {
     options.height = 240;
     options.frame_count = kFrames;
     options.own_aircraft = false;
-    sequence::VirtualFlightOptions how;
+    demo::VirtualFlightOptions how;
     how.format = video::Format::kMkv;
-    sequence::write_flight(synthetic::Flight(options), root_ / "flight.mkv", how);
+    demo::write_flight(synthetic::Flight(options), root_ / "flight.mkv", how);
     render("asked", "[truth]\nvolumes = [\"f3442\"]\n");
     render("plain", "");
   }
@@ -56,9 +56,9 @@ class OfRenderedSet : public testing::Test {
                              "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
                              "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n"
                              "[output]\nvideo = \"mkv\"\n";
-    sequence::Options options;
+    pipeline::Options options;
     options.use_cache = false;
-    sequence::render(scene::parse_scene(text, root_ / "scene.toml"), root_ / "set", options);
+    pipeline::render(scene::parse_scene(text, root_ / "scene.toml"), root_ / "set", options);
   }
 
   static SetTruth truth(const std::string& volume = "") {
@@ -96,7 +96,7 @@ TEST_F(OfRenderedSet, HoldsWhatTruthJsonlStates) {
   EXPECT_EQ(one.weight, 3);
   EXPECT_EQ(one.background, "flight.mkv");
   EXPECT_EQ(one.width, 320);
-  const sequence::Finished finished = sequence::open_finished(root_ / "set" / "asked");
+  const replay::Finished finished = replay::open_finished(root_ / "set" / "asked");
   ASSERT_EQ(one.frames.size(), finished.truth.frames.size());
   EXPECT_NEAR(one.duration_s, kFrames / 30.0, 1e-3);  // Matroska counts milliseconds
   std::size_t counting = 0;

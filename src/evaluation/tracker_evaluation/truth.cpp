@@ -12,9 +12,9 @@
 namespace airtruth::tracker_evaluation {
 namespace {
 
-std::optional<lens::Lens> lens_of(const dataset::LabelledSet& set, const std::string& name) {
+std::optional<lens::Lens> lens_of(const labelled::LabelledSet& set, const std::string& name) {
   if (set.is_imported(name)) return std::nullopt;
-  return annotation::lens_of(sequence::open_finished(set.folder(name)).truth.lens);
+  return annotation::lens_of(replay::open_finished(set.folder(name)).truth.lens);
 }
 
 TruthClip truth_from(exchange::Clip clip) {
@@ -44,7 +44,7 @@ evaluation::VotTruth TruthClip::vot() const {
   return result;
 }
 
-std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn) {
+std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& warn) {
   const dataset::Boxes boxes = set.usual_boxes(warn);
   std::vector<TruthClip> truths;
   for (const std::string& name : set.names()) {

@@ -44,7 +44,7 @@ constexpr report::CutoutOptions kClose = {
 
 // Returns every object of every sequence, sorted by name, with its covered boxes
 // (LabelledSet::usual_boxes).
-std::vector<TruthClip> truths_of(const dataset::LabelledSet& set, const Warn& warn);
+std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& warn);
 
 // Reads the clip's video once and fills in the contrast of each frame and `stills` pictures spread
 // over the clip. A clip without a video gets neither.

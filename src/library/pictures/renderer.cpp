@@ -5,20 +5,20 @@
 #include "library/records/lens_state.h"
 #include "library/records/truth_values.h"
 #include "scene/scene/scene.h"
-#include "sequence/sequence/frame_by_frame.h"
+#include "sequence/pipeline/frame_by_frame.h"
 
 namespace airtruth {
 namespace {
 
-sequence::Options options_from(const RenderOptions& wanted) {
-  sequence::Options options;
+pipeline::Options options_from(const RenderOptions& wanted) {
+  pipeline::Options options;
   options.threads = wanted.threads;
   options.use_cache = wanted.use_cache;
   options.cache = wanted.cache;
   options.warn = wanted.warn;
   options.stop = wanted.stop;
   if (wanted.progress)
-    options.progress = [progress = wanted.progress](const sequence::Progress& now) {
+    options.progress = [progress = wanted.progress](const pipeline::Progress& now) {
       progress(now.frames_done, now.frames_total);
     };
   return options;
@@ -27,20 +27,20 @@ sequence::Options options_from(const RenderOptions& wanted) {
 }  // namespace
 
 struct Renderer::State {
-  sequence::FrameByFrame frames;
+  pipeline::FrameByFrame frames;
 };
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Renderer::Renderer(const std::filesystem::path& scene_file, const RenderOptions& options)
     : Renderer(std::unique_ptr<State>(new State{
-          sequence::FrameByFrame(scene::read_scene(scene_file), options_from(options))})) {}
+          pipeline::FrameByFrame(scene::read_scene(scene_file), options_from(options))})) {}
 
 Renderer Renderer::from_text(std::string_view scene,
                              const std::filesystem::path& folder,
                              const RenderOptions& options) {
   return Renderer(std::unique_ptr<State>(new State{
-      sequence::FrameByFrame(scene::parse_scene(scene, folder / "scene"), options_from(options))}));
+      pipeline::FrameByFrame(scene::parse_scene(scene, folder / "scene"), options_from(options))}));
 }
 
 Renderer::~Renderer() = default;

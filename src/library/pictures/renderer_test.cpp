@@ -10,7 +10,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "sequence/demo/virtual_flight.h"
-#include "sequence/sequence/sequence.h"
+#include "sequence/pipeline/render.h"
 
 namespace airtruth {
 namespace {
@@ -30,7 +30,7 @@ class InMemory : public testing::Test {
     options.height = kHeight;
     options.frame_count = kFrames;
     options.own_aircraft = false;
-    sequence::VirtualFlightOptions how;
+    demo::VirtualFlightOptions how;
     how.format = video::Format::kMkv;
     write_flight(synthetic::Flight(options), root_ / "flight.mkv", how);
   }
@@ -49,9 +49,9 @@ class InMemory : public testing::Test {
   }
 
   static fs::path rendered(const std::string& scene) {
-    sequence::Options options;
+    pipeline::Options options;
     options.use_cache = false;
-    return sequence::render(scene::parse_scene(scene, root_ / "scene.toml"), root_, options).folder;
+    return pipeline::render(scene::parse_scene(scene, root_ / "scene.toml"), root_, options).folder;
   }
 
   static RenderOptions without_cache(int threads) {

@@ -50,7 +50,7 @@ exchange::Clip labels_of(const Sequence& sequence,
   clip.width = truth.lens.width;
   clip.height = truth.lens.height;
   for (const annotation::Frame& frame : truth.frames)
-    clip.frames.push_back(dataset::labels_of(frame, boxes, clip.width, clip.height));
+    clip.frames.push_back(sequences::labels_of(frame, boxes, clip.width, clip.height));
   return clip;
 }
 
@@ -69,7 +69,7 @@ Sequence imported(const fs::path& folder) {
   Sequence sequence;
   sequence.folder = folder;
   sequence.is_imported = true;
-  sequence.labels = exchange::read_labels(folder / dataset::kLabels);
+  sequence.labels = exchange::read_labels(folder / sequences::kLabels);
   sequence.name = sequence.labels.name;
   sequence.video = sequence.labels.media;
   return sequence;
@@ -78,12 +78,12 @@ Sequence imported(const fs::path& folder) {
 }  // namespace
 
 struct DataSet::State {
-  dataset::SequenceFolders folders;
+  sequences::SequenceFolders folders;
 };
 
 DataSet::DataSet(const std::filesystem::path& folder)
-    : state_(std::make_shared<const State>(State{dataset::sequence_folders(folder)})) {
-  if (names().empty()) throw dataset::no_sequence_in(folder);
+    : state_(std::make_shared<const State>(State{sequences::sequence_folders(folder)})) {
+  if (names().empty()) throw sequences::no_sequence_in(folder);
 }
 
 const std::vector<std::string>& DataSet::names() const { return state_->folders.names; }
@@ -92,7 +92,7 @@ Sequence DataSet::sequence(const std::string& name, dataset::Boxes boxes) const 
   if (!std::binary_search(names().begin(), names().end(), name))
     throw Error("holds no sequence '" + name + "'", {state_->folders.root.string()});
   const fs::path folder = state_->folders.folder(name);
-  return fs::exists(folder / dataset::kLabels) ? imported(folder) : rendered(folder, boxes);
+  return fs::exists(folder / sequences::kLabels) ? imported(folder) : rendered(folder, boxes);
 }
 
 }  // namespace airtruth

@@ -37,7 +37,7 @@ video::ReaderOptions reader_options(const DetectionClip& clip, bool with_motion)
 
 }  // namespace
 
-DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name) {
+DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name) {
   DetectionClip clip;
   clip.name = name;
   if (set.is_imported(name)) {
@@ -47,7 +47,7 @@ DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name) 
     for (const exchange::LabelledFrame& frame : labelled.frames) clip.frames.push_back(frame.frame);
     return clip;
   }
-  const sequence::Finished finished = sequence::open_finished(set.folder(name));
+  const replay::Finished finished = replay::open_finished(set.folder(name));
   clip.media = finished.video;
   clip.lens = annotation::lens_of(finished.truth.lens);
   if (finished.scene) clip.own_aircraft = finished.scene->background.mask;
@@ -61,7 +61,7 @@ DetectionClip clip_of(const fs::path& video) {
   return clip;
 }
 
-std::vector<DetectionClip> backgrounds_of(const dataset::LabelledSet& set,
+std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
                                           const std::vector<std::string>& names,
                                           const Warn& warn) {
   using Part = std::tuple<fs::path, std::int64_t, std::int64_t>;
@@ -93,7 +93,7 @@ std::vector<DetectionClip> backgrounds_of(const dataset::LabelledSet& set,
   return clips;
 }
 
-std::vector<results::ExpectedSequence> sequences_of(const dataset::LabelledSet& set) {
+std::vector<results::ExpectedSequence> sequences_of(const labelled::LabelledSet& set) {
   std::vector<results::ExpectedSequence> sequences;
   for (const std::string& name : set.names())
     sequences.push_back({name, 0, 0, set.facts(name).frames});

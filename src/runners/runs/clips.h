@@ -36,12 +36,12 @@ struct DetectionClip {
 };
 
 // A sequence of a set with all its frames. Throws Error where it has no video.
-DetectionClip clip_of(const dataset::LabelledSet& set, const std::string& name);
+DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name);
 // The parts of background videos that the given sequences were made over, each once, in the order
 // of the sequences: pictures without any intruder of the scene. A part is named as its video, with
 // "-2" and so on where several have that name. Leaves out, with a warning, what is not there any
 // more; an imported sequence has none.
-std::vector<DetectionClip> backgrounds_of(const dataset::LabelledSet& set,
+std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
                                           const std::vector<std::string>& names,
                                           const Warn& warn);
 // A video as a clip of the name of its file.
@@ -49,7 +49,7 @@ DetectionClip clip_of(const fs::path& video);
 
 // What detections of the set have to fit: every sequence, in the order of the set. The size of the
 // pictures is not looked up.
-std::vector<results::ExpectedSequence> sequences_of(const dataset::LabelledSet& set);
+std::vector<results::ExpectedSequence> sequences_of(const labelled::LabelledSet& set);
 
 // A pinhole of 60 degrees across, for clips whose lens nothing states. Between 40 and 90 degrees,
 // the rotation that is measured through it moves a pixel by the same amount within some per cent,

@@ -295,7 +295,7 @@ class DetectorRun {
     }
   }
 
-  std::vector<DetectSummary> over(const dataset::LabelledSet& set) {
+  std::vector<DetectSummary> over(const labelled::LabelledSet& set) {
     std::vector<std::string> names;
     for (const std::string& name : set.names())
       if (matches(options_.only, name)) names.push_back(name);
@@ -404,8 +404,8 @@ std::vector<DetectSummary> detect(const fs::path& source,
   // A folder without sequences is one of pictures, unless it is a set that is still empty.
   const bool is_set = fs::is_directory(source) &&
                       (fs::exists(source / "dataset.json") || fs::exists(source / "sequences") ||
-                       !dataset::sequence_folders(source).names.empty());
-  if (is_set) return running.over(dataset::LabelledSet(source));
+                       !sequences::sequence_folders(source).names.empty());
+  if (is_set) return running.over(labelled::LabelledSet(source));
   return running.over(source);
 }
 

@@ -147,7 +147,7 @@ class TrackerRun {
   // folder there?
   bool check_folder() const { return is_record_of(summary_.folder / "tracker.json", own_record()); }
 
-  TrackSummary over(const dataset::LabelledSet& set) {
+  TrackSummary over(const labelled::LabelledSet& set) {
     std::vector<std::string> names;
     for (const std::string& name : set.names())
       if (matches(options_.only, name)) names.push_back(name);
@@ -379,7 +379,7 @@ void check_track(const fs::path& out, const TrackOptions& options) {
 }
 
 TrackSummary track(const fs::path& set, const fs::path& out, const TrackOptions& options) {
-  const dataset::LabelledSet labelled(set);
+  const labelled::LabelledSet labelled(set);
   return TrackerRun(out, options).over(labelled);
 }
 

@@ -105,7 +105,7 @@ struct Light {
   std::optional<std::array<double, 3>> ground_colour;
   // Share of the light of sun and sky that level ground reflects, 0..1. Empty: that of the ground
   // in the background, and where no ground is seen that of fields and roads
-  // (sequence/surroundings/ambient.h).
+  // (sequence/insertion/ambient.h).
   std::optional<double> ground_albedo;
   Where where;
 };

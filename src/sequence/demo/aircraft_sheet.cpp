@@ -11,7 +11,7 @@
 #include "picture/render/renderer.h"
 #include "show/drawing/tiles.h"
 
-namespace airtruth::sequence {
+namespace airtruth::demo {
 namespace {
 
 constexpr int kTilePx = 420;
@@ -96,4 +96,4 @@ image::Rgb8 aircraft_tile(const aircraft::Aircraft& aircraft) {
   return tile(aircraft, render::Model(aircraft.mesh), {"", -40, 18, 138}, kSmallTilePx);
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::demo

@@ -4,7 +4,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::sequence {
+namespace airtruth::demo {
 
 // Returns a contact sheet of one aircraft as the renderer sees it: nose, tail, both sides, above,
 // below, two oblique views, and its appearance at 40 and 10 pixels, each with its name.
@@ -13,4 +13,4 @@ image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft);
 // One view, from the front left and above, 150 px square: a tile of a sheet of many aircraft.
 image::Rgb8 aircraft_tile(const aircraft::Aircraft& aircraft);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::demo

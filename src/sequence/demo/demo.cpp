@@ -7,10 +7,10 @@
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
-#include "sequence/frame/mask_picture.h"
+#include "sequence/insertion/masks.h"
 #include "sequence/replay/finished.h"
 
-namespace airtruth::sequence {
+namespace airtruth::demo {
 namespace {
 
 // A Boeing 737 crosses from left to right and a Cessna overtakes on the right, both within a
@@ -91,7 +91,7 @@ std::function<void(std::int64_t, std::int64_t)> staged(const DemoOptions& option
 
 }  // namespace
 
-Summary make_demo(const fs::path& out, const DemoOptions& options) {
+pipeline::Summary make_demo(const std::filesystem::path& out, const DemoOptions& options) {
   refuse_existing(out / "demo", options.overwrite);
   std::error_code failed;
   fs::create_directories(out, failed);
@@ -102,23 +102,24 @@ Summary make_demo(const fs::path& out, const DemoOptions& options) {
   how.progress = staged(options, "flying");
   write_flight(flight, out / "flight.mp4", how);
   write_file(out / "flight.csv", synthetic::csv_from_flight(flight));
-  video::write_still(out / "own_aircraft.png", picture_of(flight.own_aircraft()));
+  video::write_still(out / "own_aircraft.png", insertion::picture_of(flight.own_aircraft()));
   write_file(out / "demo.toml", scene_text(flight.options(), options.seed));
-  Options render_options;
+  pipeline::Options render_options;
   render_options.overwrite = options.overwrite;
   render_options.warn = options.warn;
   render_options.stop = options.stop;
   const auto rendering = staged(options, "rendering");
-  render_options.progress = [rendering](const Progress& p) {
+  render_options.progress = [rendering](const pipeline::Progress& p) {
     if (rendering) rendering(p.frames_done, p.frames_total);
   };
-  const Summary summary = render(scene::read_scene(out / "demo.toml"), out, render_options);
-  OverlayOptions overlay;
+  const pipeline::Summary summary =
+      pipeline::render(scene::read_scene(out / "demo.toml"), out, render_options);
+  replay::OverlayOptions overlay;
   overlay.overwrite = true;
   overlay.stop = options.stop;
   overlay.progress = staged(options, "overlay");
-  write_overlay(open_finished(summary.folder), out / "overlay.mp4", overlay);
+  replay::write_overlay(replay::open_finished(summary.folder), out / "overlay.mp4", overlay);
   return summary;
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::demo

@@ -7,9 +7,9 @@
 #include <stop_token>
 #include <string>
 
-#include "sequence/sequence/sequence.h"
+#include "sequence/pipeline/render.h"
 
-namespace airtruth::sequence {
+namespace airtruth::demo {
 
 struct DemoOptions {
   std::uint64_t seed = 1;
@@ -24,6 +24,6 @@ struct DemoOptions {
 // flight.csv (its true camera), own_aircraft.png (its mask), demo.toml (the scene, a starting point
 // for the user's own), demo/ (the sequence) and overlay.mp4. Throws Error where <out>/demo exists
 // and overwrite is false.
-Summary make_demo(const fs::path& out, const DemoOptions& options);
+pipeline::Summary make_demo(const std::filesystem::path& out, const DemoOptions& options);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::demo

@@ -9,7 +9,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::sequence {
+namespace airtruth::demo {
 namespace {
 
 video::StreamInfo stream_of(const synthetic::FlightOptions& options, const image::Picture& first) {
@@ -66,4 +66,4 @@ void write_flight(const synthetic::Flight& flight,
   writer.finish();
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::demo

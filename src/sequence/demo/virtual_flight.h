@@ -9,7 +9,7 @@
 #include "picture/video/writer.h"
 #include "scene/synthetic/flight.h"
 
-namespace airtruth::sequence {
+namespace airtruth::demo {
 
 namespace fs = std::filesystem;
 
@@ -26,4 +26,4 @@ void write_flight(const synthetic::Flight& flight,
                   const fs::path& out,
                   const VirtualFlightOptions& options);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::demo

@@ -10,6 +10,7 @@
 
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
+#include "foundation/geometry/transform.h"
 
 // The published E-Vision annotations against boxes of our own making (docs/evision.md).
 //
@@ -22,7 +23,7 @@
 // Lanczos warps had spread. The motion is not published. Sequences over one background share it
 // frame by frame, so it is taken from the centres of their boxes; widths and heights have no part
 // in it.
-namespace airtruth::sequence {
+namespace airtruth::evision {
 
 namespace fs = std::filesystem;
 
@@ -40,7 +41,7 @@ struct EvisionOptions {
   // Pixels that a warp adds to each side of a box; the first frame is not warped.
   int spread_px = 3;
   // Recovers the motion from the centres of the boxes of all sequences over one background
-  // (evision_motion.h).
+  // (motion_from_sightings()).
   bool recover_motion = true;
   // True: the aircraft banks as in a coordinated turn along its path; false: its wings stay level.
   bool bank = true;
@@ -81,4 +82,25 @@ std::vector<EvisionRow> evision_table(const fs::path& folder,
                                       const EvisionOptions& options,
                                       const Warn& warn = {});
 
-}  // namespace airtruth::sequence
+// The position of an intruder without the camera's motion, and the position at which it was found.
+struct Sighting {
+  Pixel still_px;
+  Pixel found_px;
+};
+
+// Returns the homography of one frame from the sightings in that frame, over all the sequences that
+// share a background. It has four parameters: a shift (two), a roll, and a drift s. The drift
+// models what the paper's homographies accumulate while the aircraft flies on over the ground that
+// they follow, which draws everything above the horizon towards the horizon. With y down from the
+// horizon and s the distance flown divided by the height,
+//
+//   x' = x / (1 - s y),  y' = y / (1 - s y)
+//
+// The parameters are found by least squares (Gauss-Newton). Roll and s are held near 0 by 0.1 each,
+// so that one sighting gives a shift. `principal_point_px` lies on the horizon, because the nominal
+// camera is level. Returns the identity without a sighting.
+Homography motion_from_sightings(const std::vector<Sighting>& sightings,
+                                 const Pixel& principal_point_px,
+                                 double focal_px);
+
+}  // namespace airtruth::evision

@@ -5,7 +5,7 @@
 
 #include "sequence/evision/evision_table.h"
 
-namespace airtruth::sequence {
+namespace airtruth::evision {
 namespace {
 
 TEST(EvisionTable, SizesAreAsPublishedAndNoFrameInViewLacksABox) {
@@ -37,4 +37,4 @@ TEST(EvisionTable, ALongerAirlinerDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::evision

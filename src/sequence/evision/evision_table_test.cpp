@@ -7,9 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
-#include "sequence/evision/evision_motion.h"
 
-namespace airtruth::sequence {
+namespace airtruth::evision {
 namespace {
 
 // A camera that has flown s times its height over a plane: a point of the plane y below the horizon
@@ -51,4 +50,4 @@ TEST(EvisionTable, AFolderWithoutAnnotationsIsAnErrorThatNamesIt) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::evision

@@ -9,9 +9,9 @@
 #include "encounter/placement/by_approach.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
-#include "sequence/setup/sight.h"
+#include "sequence/setup/moment.h"
 
-namespace airtruth::sequence {
+namespace airtruth::new_scene {
 namespace {
 
 // An intruder that is nearest later than this begins as a dot of a pixel or two.
@@ -61,7 +61,7 @@ int moments_in_view(const scene::Encounter& encounter,
       const double time_s = std::min(duration_s, kMaxApproachS) * i / kSteps;
       const auto camera = own.at(time_s), state = path.at(time_s);
       if (!camera || !state) continue;
-      const auto sight = sight_of(lens, {}, own, *camera, time_s, shake_at(time_s));
+      const auto sight = setup::sight_of(lens, {}, own, *camera, time_s, shake_at(time_s));
       const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
       if (pixel && is_in_picture(*pixel, lens.size())) ++count;
     }
@@ -77,7 +77,7 @@ std::string first_encounter(const lens::Lens& lens,
                             const scene::Camera& camera,
                             double duration_s,
                             const std::function<Shake(double)>& shake_at) {
-  const trajectory::Path own = camera_path(camera);
+  const trajectory::Path own = setup::camera_path(camera);
   const Candidate* best = kCandidates.data();
   int most = -2;
   for (const Candidate& candidate : kCandidates) {
@@ -104,4 +104,22 @@ std::string first_encounter(const lens::Lens& lens,
       encounter.speed_mps);
 }
 
-}  // namespace airtruth::sequence
+Stretch steady_stretch(const std::vector<motion::FrameMotion>& motion,
+                       double turn_rad,
+                       std::size_t most) {
+  const auto rotation = [&](std::size_t k) {
+    return motion[k].rotation.value_or(Quaternion::Identity());
+  };
+  Stretch longest;
+  for (std::size_t first = 0; first < motion.size() && longest.frames < most; ++first) {
+    const Quaternion at_first = rotation(first);
+    std::size_t end = first + 1;
+    while (end < motion.size() && end - first < most && motion[end].state != motion::State::kCut &&
+           at_first.angularDistance(rotation(end)) <= turn_rad)
+      ++end;
+    if (end - first > longest.frames) longest = {first, end - first};
+  }
+  return longest;
+}
+
+}  // namespace airtruth::new_scene

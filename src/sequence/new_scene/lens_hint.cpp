@@ -7,7 +7,7 @@
 
 #include "camera/gyro/gpmf.h"
 
-namespace airtruth::sequence {
+namespace airtruth::new_scene {
 namespace {
 
 constexpr double kFilmDiagonalMm = 43.27;  // of 36 x 24 mm
@@ -70,4 +70,4 @@ lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size) {
   return {lens::Fisheye{{focal_px, focal_px}, middle_of(size), {0, 0, 0, 0}}, size};
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::new_scene

@@ -11,7 +11,7 @@
 #include "camera/lens/lens.h"
 
 // What a video's own files state about its lens.
-namespace airtruth::sequence {
+namespace airtruth::new_scene {
 
 struct LensHint {
   lens::Lens lens;
@@ -37,4 +37,4 @@ lens::Lens pinhole_from_equivalent(double equivalent_mm, lens::ImageSize size);
 // An equidistant fisheye with a diagonal view.
 lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::new_scene

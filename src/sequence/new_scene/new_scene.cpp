@@ -19,11 +19,10 @@
 #include "picture/video/telemetry.h"
 #include "sequence/new_scene/first_encounter.h"
 #include "sequence/new_scene/lens_hint.h"
-#include "sequence/new_scene/steady_stretch.h"
+#include "sequence/setup/from_scene.h"
 #include "sequence/setup/motion_source.h"
-#include "sequence/setup/own_log.h"
 
-namespace airtruth::sequence {
+namespace airtruth::new_scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,7 +132,7 @@ std::optional<fs::path> log_of(const fs::path& video) {
   const auto subtitles = subtitles_of(video);
   for (const fs::path& file : {subtitles.value_or(video), video}) {
     try {
-      read_log(file);
+      setup::read_log(file);
       return file;
     } catch (const Error&) {  // no log: the scene states a path of its own
     }
@@ -205,7 +204,7 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
   reader_options.with_cuts = true;
   video::Reader reader(video, reader_options, options.warn);
   const std::int64_t total = std::min(kMaxMotionFrames, reader.info().frame_count_estimate);
-  return measure_motion(
+  return setup::measure_motion(
       reader, motion::Estimator(lens, {}, nullptr), options.stop, [&](std::int64_t done) {
         if (options.progress) options.progress(done, total);
       });
@@ -259,7 +258,7 @@ std::string background_words(const fs::path& video, const Part& part, double dur
 
 }  // namespace
 
-std::string new_scene(const fs::path& video, const NewSceneOptions& options) {
+std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const video::StreamInfo info = video::Reader(video, {}, options.warn).info();
   const lens::ImageSize size{info.width, info.height};
   const LensWords lens = lens_for(video, size, options);
@@ -299,4 +298,4 @@ std::string new_scene(const fs::path& video, const NewSceneOptions& options) {
       first_encounter(lens.lens, camera.camera, duration_s, shake_at));
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::new_scene

@@ -10,7 +10,7 @@
 #include "foundation/base/log.h"
 
 // A first scene for a video: what its files and its picture tell, and a first encounter.
-namespace airtruth::sequence {
+namespace airtruth::new_scene {
 
 struct NewSceneOptions {
   // Calibration of the camera; empty: the lens is looked for.
@@ -31,6 +31,6 @@ struct NewSceneOptions {
 // minute. The encounter is one of a few common ones, the one that is in view longest.
 //
 // Throws Error where the video cannot be read, and Interrupted on stop.
-std::string new_scene(const std::filesystem::path& video, const NewSceneOptions& options);
+std::string scene_text(const std::filesystem::path& video, const NewSceneOptions& options);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::new_scene

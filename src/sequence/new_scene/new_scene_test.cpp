@@ -10,11 +10,12 @@
 #include <gtest/gtest.h>
 
 #include "sequence/demo/virtual_flight.h"
+#include "sequence/new_scene/first_encounter.h"
 #include "sequence/new_scene/lens_hint.h"
-#include "sequence/new_scene/steady_stretch.h"
 #include "sequence/preview/preview.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::sequence {
+namespace airtruth::new_scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,14 +74,13 @@ TEST(SteadyStretch, IsTheLongestWithinTheAngle) {
 }
 
 TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
-  const fs::path folder = fs::path(testing::TempDir()) / "new-scene";
-  fs::create_directories(folder);
+  const test_support::TemporaryFolder folder;
   const fs::path video = folder / "flight.mp4";
   synthetic::FlightOptions flight;
   flight.frame_count = 120;
   flight.width = 640;
   flight.height = 480;
-  write_flight(synthetic::Flight(flight), video, {});
+  demo::write_flight(synthetic::Flight(flight), video, {});
   std::ofstream(folder / "flight.srt")
       << "1\n00:00:00,000 --> 00:00:01,000\n[focal_len: 240] [latitude: 47.0] [longitude: 8.0] "
          "[rel_alt: 120 abs_alt: 500]\n\n"
@@ -88,17 +88,17 @@ TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
          "abs_alt: 500]\n\n"
          "3\n00:00:04,000 --> 00:00:05,000\n[latitude: 47.0008] [longitude: 8.0] [rel_alt: 120 "
          "abs_alt: 500]\n";
-  const std::string text = new_scene(video, {});
+  const std::string text = scene_text(video, {});
   EXPECT_THAT(text, testing::HasSubstr("flight.srt states 24 mm"));
   EXPECT_THAT(text, testing::HasSubstr("log = "));
   const scene::Scene scene = scene::parse_scene(text, folder / "flight.toml");
-  const Preview made = preview(scene, {});
-  const auto seen = std::count_if(made.rows.begin(), made.rows.end(), [](const PreviewRow& row) {
-    return row.box_px.has_value();
-  });
+  const preview::Preview made = preview::preview_of(scene, {});
+  const auto seen =
+      std::count_if(made.rows.begin(), made.rows.end(), [](const preview::PreviewRow& row) {
+        return row.box_px.has_value();
+      });
   EXPECT_GE(2 * seen, std::ssize(made.rows));
-  fs::remove_all(folder);
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::new_scene

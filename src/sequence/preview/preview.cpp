@@ -10,11 +10,10 @@
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
-#include "sequence/frame/frame_truth.h"
-#include "sequence/frame/paint.h"
+#include "sequence/insertion/frame_truth.h"
+#include "sequence/insertion/paint.h"
+#include "sequence/pipeline/resolved_scene.h"
 #include "sequence/preview/rows.h"
-#include "sequence/sequence/frame_maker.h"
-#include "sequence/sequence/resolve.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
@@ -22,7 +21,7 @@
 #include "show/drawing/flight_views.h"
 #include "show/drawing/pictures.h"
 
-namespace airtruth::sequence {
+namespace airtruth::preview {
 namespace {
 
 constexpr int kWidthPx = 1930;  // that of a contact sheet of three tiles
@@ -37,27 +36,18 @@ constexpr std::uintmax_t kMaxHashedBytes = std::uintmax_t{512} << 20;
 // What the pictures are made from.
 class Previewer {
  public:
-  Previewer(const scene::Scene& scene, const Options& options)
+  Previewer(const scene::Scene& scene, const pipeline::Options& options)
       : options_(options),
-        reader_(open_background(scene, options)),
-        scene_(plain(stated(scene, reader_.info()).scene)),
-        size_{reader_.info().width, reader_.info().height},
-        mask_(read_mask(scene_, size_)),
-        inputs_(openness_cache(options)),
-        world_(load_world(scene_, size_, options.warn, options.stop, &inputs_)),
+        opened_(pipeline::open_scene(scene, options)),
         motion_(known_motion()),
-        painter_(make_painter(scene_, world_, own_aircraft(), {{}, true, options.stop})),
-        rate_hz_(reader_.info().frame_rate.value()),
-        duration_s_(static_cast<double>(std::max<std::int64_t>(0, frame_count() - 1)) / rate_hz_) {
-    check_camera_path(world_.camera, used_stream(reader_.info(), scene_.background));
+        painter_(insertion::make_painter(
+            opened_.stated.scene, world(), opened_.mask.get(), nullptr, options.stop)),
+        rate_hz_(opened_.info.frame_rate.value()),
+        duration_s_(
+            static_cast<double>(std::max<std::int64_t>(0, opened_.info.frame_count_estimate - 1)) /
+            rate_hz_) {
     check_seen();
-    if (motion_)
-      place_seen(
-          scene_,
-          world_,
-          [&](const scene::Seen& seen) { return frame_near(*motion_, reader_.info(), seen); },
-          options.stop,
-          &inputs_);
+    if (motion_) pipeline::place_seen(opened_, *motion_, options.stop);
   }
 
   Preview make() {
@@ -65,8 +55,8 @@ class Previewer {
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
     result.has_motion = motion_.has_value();
-    result.rows = preview_rows(world_, times, [&](double time_s) { return moment(time_s); });
-    result.approaches = approach_lines(world_, result.rows, duration_s_);
+    result.rows = preview_rows(world(), times, [&](double time_s) { return moment(time_s); });
+    result.approaches = approach_lines(world(), result.rows, duration_s_);
     const auto seen = times_in_view(result.rows);
     std::vector<cv::Mat> parts = {title(result.approaches), top(result.rows, seen)};
     if (!seen.empty()) parts.push_back(moments(chosen(seen)));
@@ -76,32 +66,23 @@ class Previewer {
   }
 
  private:
-  // A preview draws by the matte method, which needs no OpenGL, and without the clip's codec.
-  static scene::Scene plain(scene::Scene scene) {
-    scene.motion.model = motion_model(scene);
-    scene.composite.method = scene::CompositeMethod::kMatte;
-    scene.camera_model.codec_step.reset();
-    return scene;
-  }
+  const scene::Scene& scene() const { return opened_.stated.scene; }
+  const setup::World& world() const { return opened_.world; }
+
   // The motion that an earlier run has measured; empty without one.
-  std::optional<MotionSource> known_motion() {
+  std::optional<setup::MotionSource> known_motion() const {
+    const std::filesystem::path& video = scene().background.video;
     std::error_code unknown;
-    const auto bytes = std::filesystem::file_size(scene_.background.video, unknown);
+    const auto bytes = std::filesystem::file_size(video, unknown);
     if (unknown || bytes > kMaxHashedBytes) return std::nullopt;
-    MotionSource motion(scene_,
-                        world_.lens,
-                        !world_.shutter.is_instant(),
-                        sha256_of_video(scene_.background.video, &inputs_),
-                        own_aircraft(),
-                        cache_of(options_, "motion"));
-    if (!motion.from_cache()) return std::nullopt;
-    return motion;
+    return setup::MotionSource::from_cache(pipeline::motion_inputs(
+        opened_, setup::sha256_of_video(video, opened_.inputs.get()), options_));
   }
   // The clip's length is its container's; render() refuses what no frame is at.
   void check_seen() const {
-    const video::StreamInfo& info = reader_.info();
-    if (frame_count() <= 0 || info.variable_frame_rate) return;
-    for (const scene::Intruder& intruder : scene_.intruders)
+    const video::StreamInfo& info = opened_.info;
+    if (info.frame_count_estimate <= 0 || info.variable_frame_rate) return;
+    for (const scene::Intruder& intruder : scene().intruders)
       for (const scene::Seen& seen : intruder.seen)
         if (seen.time_s > duration_s_ + 1 / rate_hz_)
           throw Error(fmt::format("time_s is {:.3f}, where the clip has no frame: it ends at "
@@ -112,18 +93,15 @@ class Previewer {
   }
   // What an aircraft cannot fly is said before it is rendered.
   void warn_not_flyable() const {
-    for (std::size_t i = 0; i < world_.actors.size(); ++i) {
-      const Actor& actor = world_.actors[i];
-      const std::string words = words_beyond_limits(actor.aircraft, actor.path, 0, duration_s_);
+    for (std::size_t i = 0; i < world().actors.size(); ++i) {
+      const setup::Actor& actor = world().actors[i];
+      const std::string words =
+          setup::words_beyond_limits(actor.aircraft, actor.path, 0, duration_s_);
       if (!words.empty())
         warn(options_.warn,
              fmt::format(
-                 "{}: intruder '{}': {}", to_string(scene_.intruders[i].where), actor.id, words));
+                 "{}: intruder '{}': {}", to_string(scene().intruders[i].where), actor.id, words));
     }
-  }
-  const image::Mask* own_aircraft() const { return mask_ ? &*mask_ : nullptr; }
-  std::int64_t frame_count() const {
-    return used_stream(reader_.info(), scene_.background).frame_count_estimate;
   }
   void stop_if_asked() const {
     if (options_.stop.stop_requested()) throw Interrupted();
@@ -147,24 +125,25 @@ class Previewer {
   }
 
   // The light in a frame; each frame is looked at alone.
-  Ambient ambient_in(const image::Picture& picture, const Moment& moment) const {
-    return AmbientEstimator(scene_.light, tone_of(scene_.camera_model), own_aircraft())
-        .next(picture, moment.sight, search_bounds(moment));
+  insertion::Ambient ambient_in(const image::Picture& picture, const setup::Moment& moment) const {
+    return insertion::AmbientEstimator(
+               scene().light, setup::tone_of(scene().camera_model), opened_.mask.get())
+        .next(picture, moment.sight, setup::search_bounds(moment));
   }
 
   video::Frame frame_at(double time_s) {
     stop_if_asked();
-    auto frame = reader_.at(time_s);
+    auto frame = opened_.background.at(time_s);
     if (!frame)
       throw Error(fmt::format("holds no frame at {:.2f} s", time_s),
-                  {scene_.background.video.string()});
+                  {scene().background.video.string()});
     return std::move(*frame);
   }
 
-  Moment moment(double time_s) const {
+  setup::Moment moment(double time_s) const {
     const Shake shake = motion_ ? motion_->nearest(time_s).shake : Shake{};
-    return moment_at(
-        world_, static_cast<std::int64_t>(std::llround(time_s * rate_hz_)), time_s, shake);
+    return setup::moment_at(
+        world(), static_cast<std::int64_t>(std::llround(time_s * rate_hz_)), time_s, shake);
   }
 
   // The time whose frame stands behind the paths: that of the nearest intruder in view.
@@ -178,7 +157,7 @@ class Previewer {
   // One frame with the intruders drawn at every second at which they are seen, the farthest first.
   cv::Mat main_picture(const std::vector<PreviewRow>& rows, const std::vector<double>& seen) {
     video::Frame frame = frame_at(main_time(rows));
-    const Ambient ambient = ambient_in(frame.picture, moment(main_time(rows)));
+    const insertion::Ambient ambient = ambient_in(frame.picture, moment(main_time(rows)));
     std::map<double, double> range_at;
     for (const PreviewRow& row : rows)
       if (row.box_px) range_at[row.time_s] = std::max(range_at[row.time_s], row.range_m);
@@ -187,7 +166,7 @@ class Previewer {
         order.begin(), order.end(), [&](double a, double b) { return range_at[a] > range_at[b]; });
     for (const double time_s : order) {
       stop_if_asked();
-      Moment here = moment(time_s);
+      setup::Moment here = moment(time_s);
       // What is on the lens covers the picture once.
       if (time_s != order.back()) here.spots.clear();
       painter_->paint(frame.picture, here, ambient);
@@ -199,7 +178,7 @@ class Previewer {
                                           static_cast<int>(std::lround(rgb.height * scale)),
                                           scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
     cv::Mat canvas = drawing::view(scaled).clone();
-    for (std::size_t actor = 0; actor < world_.actors.size(); ++actor)
+    for (std::size_t actor = 0; actor < world().actors.size(); ++actor)
       draw_path(canvas, actor, scale);
     return canvas;
   }
@@ -207,7 +186,7 @@ class Previewer {
   // The pixels of an intruder's centre, each in the frame of its time, joined, with the seconds
   // beside them.
   void draw_path(cv::Mat& canvas, std::size_t actor, double scale) const {
-    const trajectory::Path& path = world_.actors[actor].path;
+    const trajectory::Path& path = world().actors[actor].path;
     const cv::Scalar colour = drawing::intruder_colour(actor);
     std::optional<cv::Point> before;
     const auto steps = static_cast<int>(duration_s_ / kPathStepS);
@@ -217,8 +196,8 @@ class Previewer {
       const auto pixel =
           state ? projection::pixel_from_world(moment(time_s).sight, state->position_in_world)
                 : std::nullopt;
-      const bool is_near = pixel && std::abs(pixel->x()) < 4 * size_.width &&
-                           std::abs(pixel->y()) < 4 * size_.height;
+      const bool is_near = pixel && std::abs(pixel->x()) < 4 * world().lens.size().width &&
+                           std::abs(pixel->y()) < 4 * world().lens.size().height;
       if (!is_near) {
         before.reset();
         continue;
@@ -250,12 +229,12 @@ class Previewer {
   // The main picture with plan and height at its right.
   cv::Mat top(const std::vector<PreviewRow>& rows, const std::vector<double>& seen) {
     const cv::Mat main = main_picture(rows, seen);
-    std::vector<drawing::FlightLine> lines = {flight_of("own", world_.camera, drawing::kWhite)};
-    for (std::size_t actor = 0; actor < world_.actors.size(); ++actor)
+    std::vector<drawing::FlightLine> lines = {flight_of("own", world().camera, drawing::kWhite)};
+    for (std::size_t actor = 0; actor < world().actors.size(); ++actor)
       lines.push_back(flight_of(
-          world_.actors[actor].id, world_.actors[actor].path, drawing::intruder_colour(actor)));
+          world().actors[actor].id, world().actors[actor].path, drawing::intruder_colour(actor)));
     const int plan_px = main.rows * 2 / 3;
-    const auto camera = world_.camera.at(0);
+    const auto camera = world().camera.at(0);
     image::Rgb8 plan = drawing::plan_view(
         lines, yaw_pitch_roll(camera->world_from_body).yaw_deg, view_deg(), kSideWidthPx, plan_px);
     image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, main.rows - plan_px);
@@ -269,8 +248,10 @@ class Previewer {
 
   // The horizontal view between the middles of the left and the right edge.
   double view_deg() const {
-    const auto ray = [&](double x) { return world_.lens.ray_from_pixel({x, size_.height / 2.0}); };
-    const auto left = ray(0.5), right = ray(size_.width - 0.5);
+    const auto ray = [&](double x) {
+      return world().lens.ray_from_pixel({x, world().lens.size().height / 2.0});
+    };
+    const auto left = ray(0.5), right = ray(world().lens.size().width - 0.5);
     if (!left || !right) return 180;
     return degrees(std::acos(std::clamp(left->normalized().dot(right->normalized()), -1.0, 1.0)));
   }
@@ -280,10 +261,11 @@ class Previewer {
     drawing::ContactSheet sheet("", static_cast<std::int64_t>(times.size()), times.size());
     for (std::size_t i = 0; i < times.size(); ++i) {
       video::Frame frame = frame_at(times[i]);
-      const Moment here = moment(times[i]);
-      const Painted painted = painter_->paint(frame.picture, here, ambient_in(frame.picture, here));
+      const setup::Moment here = moment(times[i]);
+      const insertion::Painted painted =
+          painter_->paint(frame.picture, here, ambient_in(frame.picture, here));
       frame.index = here.frame;
-      annotation::Frame truth = frame_truth(world_, frame, {"none", {}}, here, painted);
+      annotation::Frame truth = insertion::frame_truth(world(), frame, {"none", {}}, here, painted);
       sheet.add(frame.picture, truth);
     }
     image::Rgb8 picture = sheet.sheet();
@@ -293,11 +275,11 @@ class Previewer {
   cv::Mat table(const std::vector<PreviewRow>& rows) const {
     std::vector<drawing::TableRow> shown;
     for (const PreviewRow& row : rows) {
-      const auto actor = std::find_if(world_.actors.begin(),
-                                      world_.actors.end(),
-                                      [&](const Actor& a) { return a.id == row.intruder; });
+      const auto actor = std::find_if(world().actors.begin(),
+                                      world().actors.end(),
+                                      [&](const setup::Actor& a) { return a.id == row.intruder; });
       shown.push_back(
-          {drawing::intruder_colour(static_cast<std::size_t>(actor - world_.actors.begin())),
+          {drawing::intruder_colour(static_cast<std::size_t>(actor - world().actors.begin())),
            table_cells(row)});
     }
     image::Rgb8 picture = drawing::table_picture(table_heading(), shown, kWidthPx);
@@ -311,9 +293,9 @@ class Previewer {
     drawing::text(
         canvas,
         drawing::fitted(fmt::format("{}: {:.1f} s of {} at {:.4g} frames/s, {}",
-                                    scene_.name,
+                                    scene().name,
                                     duration_s_,
-                                    scene_.background.video.filename().string(),
+                                    scene().background.video.filename().string(),
                                     rate_hz_,
                                     motion_ ? "each moment with the camera's measured motion"
                                             : "the camera's shake not shown"),
@@ -346,23 +328,20 @@ class Previewer {
     return drawing::from_mat(canvas);
   }
 
-  const Options& options_;
-  video::Reader reader_;
-  scene::Scene scene_;
-  lens::ImageSize size_;
-  std::optional<image::Mask> mask_;
-  SharedInputs inputs_;
-  World world_;
-  std::optional<MotionSource> motion_;
-  std::unique_ptr<Painter> painter_;
+  const pipeline::Options& options_;
+  pipeline::OpenedScene opened_;
+  std::optional<setup::MotionSource> motion_;
+  std::unique_ptr<insertion::Painter> painter_;
   double rate_hz_;
   double duration_s_;
 };
 
 }  // namespace
 
-Preview preview(const scene::Scene& scene, const Options& options) {
-  return Previewer(scene, options).make();
+Preview preview_of(const scene::Scene& scene, const pipeline::Options& options) {
+  pipeline::Options plain = options;
+  plain.is_preview = true;
+  return Previewer(scene, plain).make();
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::preview

@@ -1,32 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 #include "scene/scene/scene.h"
-#include "sequence/sequence/sequence.h"
+#include "sequence/pipeline/options.h"
+#include "sequence/preview/rows.h"
 
 // A look at a scene before it is rendered: where the intruders will be, how large and how far, on a
 // few frames of the clip.
-namespace airtruth::sequence {
-
-// An intruder at a whole second of the clip.
-struct PreviewRow {
-  double time_s = 0;
-  std::string intruder;
-  // The exact box; empty where the intruder is not in view.
-  std::optional<Box> box_px;
-  double range_m = 0;
-  // From the own course, right positive; empty where the own aircraft hovers.
-  std::optional<double> bearing_deg;
-  double above_m = 0;
-  std::optional<double> closing_mps;
-  std::optional<double> tcpa_s;
-};
+namespace airtruth::preview {
 
 struct Preview {
   // The paths over one frame with the intruder drawn at each whole second; beside it plan, height,
@@ -46,9 +31,6 @@ struct Preview {
 // turned from its first frame. Values of the camera model that would be measured are left out.
 // Throws Error as render() does for faults of the scene, and Interrupted on options.stop. A path
 // that its aircraft cannot fly is a warning.
-Preview preview(const scene::Scene& scene, const Options& options);
+Preview preview_of(const scene::Scene& scene, const pipeline::Options& options);
 
-// The rows as lines of text with a heading.
-std::string table_text(const std::vector<PreviewRow>& rows);
-
-}  // namespace airtruth::sequence
+}  // namespace airtruth::preview

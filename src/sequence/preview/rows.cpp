@@ -9,7 +9,7 @@
 #include "encounter/passage/passage.h"
 #include "encounter/separation/measures.h"
 
-namespace airtruth::sequence {
+namespace airtruth::preview {
 namespace {
 
 constexpr int kMaxTimes = 60;  // rows that fit a screen
@@ -18,7 +18,7 @@ std::string cell(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-PreviewRow row_of(const World& world, const Moment& moment, std::size_t actor) {
+PreviewRow row_of(const setup::World& world, const setup::Moment& moment, std::size_t actor) {
   const trajectory::State& state = *moment.states[actor];
   const encounter::Measures m =
       encounter::measures(encounter::mover_of(moment.camera), encounter::mover_of(state));
@@ -26,7 +26,7 @@ PreviewRow row_of(const World& world, const Moment& moment, std::size_t actor) {
   row.time_s = moment.time_s;
   row.intruder = world.actors[actor].id;
   const auto& box = moment.boxes[actor].box;
-  if (box && meets_frame(*box, world.lens.size())) row.box_px = box;
+  if (box && setup::meets_frame(*box, world.lens.size())) row.box_px = box;
   row.range_m = m.range_m;
   row.bearing_deg = m.relative_bearing_deg;
   row.above_m = m.above_m;
@@ -45,24 +45,25 @@ std::vector<double> whole_seconds(double duration_s) {
   return times;
 }
 
-std::vector<PreviewRow> preview_rows(const World& world,
-                                     const std::vector<double>& times_s,
-                                     const std::function<Moment(double time_s)>& moment_at_time) {
+std::vector<PreviewRow> preview_rows(
+    const setup::World& world,
+    const std::vector<double>& times_s,
+    const std::function<setup::Moment(double time_s)>& moment_at_time) {
   std::vector<PreviewRow> rows;
   for (const double time_s : times_s) {
-    const Moment moment = moment_at_time(time_s);
+    const setup::Moment moment = moment_at_time(time_s);
     for (std::size_t actor = 0; actor < world.actors.size(); ++actor)
       if (moment.states[actor]) rows.push_back(row_of(world, moment, actor));
   }
   return rows;
 }
 
-std::vector<std::string> approach_lines(const World& world,
+std::vector<std::string> approach_lines(const setup::World& world,
                                         const std::vector<PreviewRow>& rows,
                                         double duration_s) {
   std::vector<std::string> lines;
   for (std::size_t actor = 0; actor < world.actors.size(); ++actor) {
-    const Actor& intruder = world.actors[actor];
+    const setup::Actor& intruder = world.actors[actor];
     const auto closest = encounter::closest_approach(world.camera, intruder.path, 0, duration_s);
     if (!closest) {
       lines.push_back(fmt::format("{}: not in the world while the clip lasts", intruder.id));
@@ -80,7 +81,7 @@ std::vector<std::string> approach_lines(const World& world,
       return row.intruder == intruder.id && row.box_px;
     });
     if (!is_seen)
-      if (const auto nearest = nearest_approach(world, actor, duration_s))
+      if (const auto nearest = setup::nearest_approach(world, actor, duration_s))
         line +=
             fmt::format("; in view at no whole second, nearest at {:.2f} s, {:.1f} degrees outside",
                         nearest->time_s,
@@ -133,4 +134,4 @@ std::string table_text(const std::vector<PreviewRow>& rows) {
   return text;
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::preview

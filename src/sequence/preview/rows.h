@@ -2,29 +2,49 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "sequence/preview/preview.h"
+#include "foundation/geometry/box.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
 
-namespace airtruth::sequence {
+namespace airtruth::preview {
+
+// An intruder at a whole second of the clip.
+struct PreviewRow {
+  double time_s = 0;
+  std::string intruder;
+  // The exact box; empty where the intruder is not in view.
+  std::optional<Box> box_px;
+  double range_m = 0;
+  // From the own course, right positive; empty where the own aircraft hovers.
+  std::optional<double> bearing_deg;
+  double above_m = 0;
+  std::optional<double> closing_mps;
+  std::optional<double> tcpa_s;
+};
 
 // Whole seconds of a clip, at most 60 of them: where the clip is longer they are further apart.
 std::vector<double> whole_seconds(double duration_s);
 
 // Every intruder at every one of the times at which it is in the world.
-std::vector<PreviewRow> preview_rows(const World& world,
-                                     const std::vector<double>& times_s,
-                                     const std::function<Moment(double time_s)>& moment_at_time);
+std::vector<PreviewRow> preview_rows(
+    const setup::World& world,
+    const std::vector<double>& times_s,
+    const std::function<setup::Moment(double time_s)>& moment_at_time);
 
 // "b737: closest 61 m (60 right, 11 above) at 8.00 s", and where it never comes into view how near
 // it comes to it.
-std::vector<std::string> approach_lines(const World& world,
+std::vector<std::string> approach_lines(const setup::World& world,
                                         const std::vector<PreviewRow>& rows,
                                         double duration_s);
 
 std::vector<std::string> table_heading();
 std::vector<std::string> table_cells(const PreviewRow& row);
 
-}  // namespace airtruth::sequence
+// The rows as lines of text with a heading.
+std::string table_text(const std::vector<PreviewRow>& rows);
+
+}  // namespace airtruth::preview

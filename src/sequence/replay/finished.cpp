@@ -14,12 +14,13 @@
 #include "foundation/json/json_object.h"
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
-#include "sequence/frame/paint.h"
+#include "sequence/insertion/paint.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
 #include "show/drawing/pictures.h"
 
-namespace airtruth::sequence {
+namespace airtruth::replay {
 namespace {
 
 // Every frame up to the last that is labelled is held, and numbers in the names of pictures can be
@@ -118,9 +119,9 @@ Finished open_finished(const fs::path& folder) {
                 {record_file.string()});
   finished.has_covered_boxes = record.has("covered_alpha");
   finished.has_encounters = record.has("encounters");
-  finished.encounters = read_encounter_records(record);
+  finished.encounters = pipeline::read_encounter_records(record);
   finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
-  const auto format = format_of(finished.scene->output.video);
+  const auto format = setup::format_of(finished.scene->output.video);
   finished.video = folder / (finished.name + video::extension(format));
   if (!fs::exists(finished.video))
     throw Error("is missing; the folder is not whole", {finished.video.string()});
@@ -179,9 +180,10 @@ image::Rgb8 inspect(const Finished& sequence,
   const video::Frame before =
       frame_at(scene.background.video, scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);
-  const World world = load_world(scene, {before.picture.width, before.picture.height}, {});
-  const Moment moment = moment_at(world, truth.frame, truth.time_s, truth.shake);
-  const image::Layer layer = render_layer(scene, world, moment, Ambient{});
+  const setup::World world =
+      setup::load_world(scene, {before.picture.width, before.picture.height}, {});
+  const setup::Moment moment = setup::moment_at(world, truth.frame, truth.time_s, truth.shake);
+  const image::Layer layer = insertion::render_layer(scene, world, moment, insertion::Ambient{});
   const bool matte = scene.composite.method == scene::CompositeMethod::kMatte;
   return drawing::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
                           truth,
@@ -189,4 +191,4 @@ image::Rgb8 inspect(const Finished& sequence,
                           zoom);
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::replay

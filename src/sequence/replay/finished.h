@@ -12,10 +12,10 @@
 #include "foundation/image/picture.h"
 #include "labels/annotation/truth.h"
 #include "scene/scene/scene.h"
-#include "sequence/sequence/encounter_record.h"
+#include "sequence/pipeline/encounter_record.h"
 
 // Opens a folder that `render` or `dataset import` has made.
-namespace airtruth::sequence {
+namespace airtruth::replay {
 
 namespace fs = std::filesystem;
 
@@ -31,7 +31,7 @@ struct Finished {
   // True where the truth has the measures of encounters. Older sequences have none.
   bool has_encounters = false;
   // In the order of the scene; empty for an imported clip and an older sequence.
-  std::vector<EncounterRecord> encounters;
+  std::vector<pipeline::EncounterRecord> encounters;
 };
 
 // Throws Error where the folder is not whole: sequence.json or a file that it names is missing.
@@ -57,4 +57,4 @@ image::Rgb8 inspect(const Finished& sequence,
                     const std::string& intruder_id,
                     int zoom);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::replay

@@ -9,13 +9,15 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
-#include "sequence/frame/frame_truth.h"
-#include "sequence/frame/masks.h"
-#include "sequence/frame/paint.h"
+#include "sequence/insertion/frame_truth.h"
+#include "sequence/insertion/masks.h"
+#include "sequence/insertion/paint.h"
+#include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
 
-namespace airtruth::sequence {
+namespace airtruth::replay {
 namespace {
 
 // Mean difference of luma over a part of two pictures.
@@ -77,10 +79,11 @@ std::vector<std::string> mask_faults(const Finished& sequence,
                                      const image::Layer& layer,
                                      const image::Mask* own_aircraft) {
   const lens::ImageSize size{sequence.truth.lens.width, sequence.truth.lens.height};
-  const std::vector<MaskFile> made = mask_files(truth, layer, own_aircraft, size);
+  const std::vector<insertion::MaskFile> made =
+      insertion::mask_files(truth, layer, own_aircraft, size);
   std::vector<std::string> faults;
   for (const annotation::Intruder& intruder : truth.intruders) {
-    const std::string name = mask_name(intruder.id, truth.frame);
+    const std::string name = insertion::mask_name(intruder.id, truth.frame);
     const auto again =
         std::find_if(made.begin(), made.end(), [&](const auto& m) { return m.name == name; });
     const bool is_there = fs::exists(sequence.folder / name);
@@ -108,19 +111,19 @@ std::vector<std::string> truth_faults(const Finished& sequence,
 // What is computed again for one frame.
 struct PaintedAgain {
   const video::Frame& background;
-  const Moment& moment;
-  const Painted& painted;
+  const setup::Moment& moment;
+  const insertion::Painted& painted;
 };
 
 // What differs between a stored frame and the one that is computed again: truth, masks, picture.
 std::vector<std::string> frame_faults(const Finished& sequence,
-                                      const World& world,
+                                      const setup::World& world,
                                       const annotation::Frame& truth,
                                       const PaintedAgain& frame,
                                       const image::Picture& stored,
                                       const image::Mask* own_aircraft) {
   // The measured motion is the input of both; all else is computed again.
-  annotation::Frame again = frame_truth(
+  annotation::Frame again = insertion::frame_truth(
       world, frame.background, {truth.motion_state, truth.shake}, frame.moment, frame.painted);
   if (!sequence.has_covered_boxes) as_older_truth(again);
   if (!sequence.has_encounters)
@@ -135,53 +138,47 @@ std::vector<std::string> frame_faults(const Finished& sequence,
   return faults;
 }
 
-video::Reader background_of(const scene::Scene& scene) {
-  video::ReaderOptions options;
-  options.first_frame = scene.background.first_frame;
-  options.frame_count = scene.background.frame_count;
-  options.with_cuts = true;
-  return video::Reader(scene.background.video, options);
-}
-
 }  // namespace
 
 Recomposition recompose(const Finished& sequence, std::int64_t every, const std::stop_token& stop) {
   check(every > 0, "every n-th frame");
   if (!sequence.scene) throw Error("was imported, not rendered", {sequence.folder.string()});
-  const scene::Scene& scene = *sequence.scene;
-  video::Reader background = background_of(scene);
+  pipeline::Options options;
+  options.use_cache = false;
+  options.stop = stop;
+  pipeline::OpenedScene opened = pipeline::open_scene(*sequence.scene, options);
+  const scene::Scene& scene = opened.stated.scene;
+  const image::Mask* mask = opened.mask.get();
   video::Reader stored(sequence.video);
-  const lens::ImageSize size{background.info().width, background.info().height};
-  const World world = load_world(scene, size, {}, stop);
-  const auto mask = read_mask(scene, size);
-  const image::Mask* mask_ptr = mask ? &*mask : nullptr;
-  const auto painter = make_painter(scene, world, mask_ptr, {});
-  AmbientEstimator ambient(scene.light, tone_of(scene.camera_model), mask_ptr);
+  const auto painter =
+      insertion::make_painter(scene, opened.world, mask, std::move(opened.backdrop));
+  insertion::AmbientEstimator ambient(scene.light, setup::tone_of(scene.camera_model), mask);
   Recomposition result;
   const auto fault = [&](const annotation::Frame& truth, const std::string& what) {
     result.faults.push_back("frame " + std::to_string(truth.frame) + " " + what);
   };
   for (const annotation::Frame& truth : sequence.truth.frames) {
     if (stop.stop_requested()) throw Interrupted();
-    auto before = background.next();
+    auto before = opened.background.next();
     const auto after = stored.next();
     if (!before || !after) {
       fault(truth, before ? "is not in the video" : "is not in the background");
       break;
     }
-    const Moment moment = moment_at(world, truth.frame, before->time_s, truth.shake);
-    const Ambient light =
-        ambient.next(before->picture, moment.sight, search_bounds(moment), before->begins_shot);
+    const setup::Moment moment =
+        setup::moment_at(opened.world, truth.frame, before->time_s, truth.shake);
+    const insertion::Ambient light = ambient.next(
+        before->picture, moment.sight, setup::search_bounds(moment), before->begins_shot);
     const bool is_compared = truth.frame % every == 0;
     if (!is_compared && !painter->is_in_order()) continue;
-    const Painted painted = painter->paint(before->picture, moment, light);
+    const insertion::Painted painted = painter->paint(before->picture, moment, light);
     if (!is_compared) continue;
     ++result.compared;
-    for (const std::string& what :
-         frame_faults(sequence, world, truth, {*before, moment, painted}, after->picture, mask_ptr))
+    for (const std::string& what : frame_faults(
+             sequence, opened.world, truth, {*before, moment, painted}, after->picture, mask))
       fault(truth, what);
   }
   return result;
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::replay

@@ -8,7 +8,7 @@
 
 #include "sequence/replay/finished.h"
 
-namespace airtruth::sequence {
+namespace airtruth::replay {
 
 // Renders every n-th frame of a finished sequence again, from its record, its background and the
 // motion in its truth, and compares the results. The truth line must be equal; a lossless video
@@ -20,4 +20,4 @@ struct Recomposition {
 };
 Recomposition recompose(const Finished& sequence, std::int64_t every, const std::stop_token& stop);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::replay

@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -15,14 +14,15 @@
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
-#include "sequence/frame/masks.h"
+#include "sequence/insertion/masks.h"
+#include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
 #include "sequence/replay/recompose.h"
-#include "sequence/sequence/sequence.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::sequence {
+namespace airtruth::replay {
 namespace {
 
 constexpr int kReplayWidth = 160;
@@ -44,13 +44,12 @@ synthetic::FlightOptions turning_flight() {
 class TruthOf : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    root_ = fs::temp_directory_path() / ("airtruth_truth_of_test_" + std::to_string(::getpid()));
-    fs::create_directories(root_);
-    VirtualFlightOptions how;
+    root_ = temporary_.emplace().path();
+    demo::VirtualFlightOptions how;
     how.format = video::Format::kMkv;
-    write_flight(synthetic::Flight(turning_flight()), root_ / "flight.mkv", how);
+    demo::write_flight(synthetic::Flight(turning_flight()), root_ / "flight.mkv", how);
   }
-  static void TearDownTestSuite() { fs::remove_all(root_); }
+  static void TearDownTestSuite() { temporary_.reset(); }
 
   // The camera stands level at (0, 0, -150) and looks north.
   static Finished rendered(const std::string& intruders,
@@ -65,13 +64,15 @@ class TruthOf : public testing::Test {
                              "[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 75\n"
                              "[camera]\nposition_ned_m = [0, 0, -150]\n" +
                              tables + intruders + "[output]\nvideo = \"mkv\"\n" + output;
-    Options options;
+    pipeline::Options options;
     options.use_cache = false;
     options.threads = threads;
     return open_finished(
-        render(scene::parse_scene(text, root_ / "scene.toml"), root_ / "out", options).folder);
+        pipeline::render(scene::parse_scene(text, root_ / "scene.toml"), root_ / "out", options)
+            .folder);
   }
 
+  static inline std::optional<test_support::TemporaryFolder> temporary_;
   static inline fs::path root_;
 };
 
@@ -140,7 +141,7 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
     const Finished finished =
         rendered(replayed_intruder("one", "738/738-Ryanair", "[[300, 20, -170], [300, 80, -175]]"),
                  std::string("[motion]\nmodel = \"") + model + "\"\n");
-    const lens::Lens lens = lens_of(finished.scene->lens, {kReplayWidth, kReplayHeight});
+    const lens::Lens lens = setup::lens_of(finished.scene->lens, {kReplayWidth, kReplayHeight});
     double moved_deg = 0;
     for (const annotation::Frame& frame : finished.truth.frames) {
       SCOPED_TRACE(testing::Message() << model << ' ' << frame.frame);
@@ -246,7 +247,7 @@ TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
     std::vector<int> both(kReplayWidth * kReplayHeight, 0);
     for (const annotation::Intruder& one : frame.intruders) {
       SCOPED_TRACE(one.id + " " + std::to_string(frame.frame));
-      const std::string name = mask_name(one.id, frame.frame);
+      const std::string name = insertion::mask_name(one.id, frame.frame);
       EXPECT_EQ(name.substr(0, 6), "masks/");
       const fs::path file = finished.folder / name;
       ASSERT_EQ(fs::exists(file), one.state == annotation::State::kVisible);
@@ -296,4 +297,4 @@ TEST_F(TruthOf, WithoutMasksThereIsNoSuchFolder) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::replay

@@ -13,7 +13,7 @@
 #include "aircraft/fleet/flight_limits.h"
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 constexpr double kSampleStep_s = 0.05;
@@ -132,4 +132,4 @@ std::string words_beyond_limits(const std::string& aircraft,
   return fmt::format("{} ({}) cannot fly its path: {}", aircraft, name, words);
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

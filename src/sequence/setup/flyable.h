@@ -6,7 +6,7 @@
 
 #include "scene/trajectory/path.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 
 // A limit of an aircraft's class that its path exceeds, at the instant of the greatest excess.
 struct BeyondLimit {
@@ -33,4 +33,4 @@ std::string words_beyond_limits(const std::string& aircraft,
                                 double begin_s,
                                 double end_s);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

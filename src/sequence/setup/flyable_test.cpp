@@ -10,7 +10,7 @@
 #include "aircraft/fleet/flight_limits.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 using Quantity = BeyondLimit::Quantity;
@@ -106,4 +106,4 @@ TEST(Flyable, TypesOfTheListHaveAClass) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "camera/lens/lens.h"
@@ -11,13 +12,14 @@
 #include "foundation/image/tone_curve.h"
 #include "picture/composite/sensor.h"
 #include "picture/video/writer.h"
+#include "scene/flight_log/flight_log.h"
 #include "scene/scene/scene.h"
 #include "scene/trajectory/path.h"
 
 // What the tables of a scene file mean to the modules that work with them: one function for each
 // table. A scene holds choices and optional numbers as its file states them; lens, composite and
 // trajectory take values of their own.
-namespace airtruth::sequence {
+namespace airtruth::setup {
 
 // [lens]: read from its file, or built from the view or the focal lengths for a picture of `size`.
 // Error where a calibration cannot be read or is of another size.
@@ -37,8 +39,8 @@ std::vector<encounter::AskedVolume> volumes_of(const scene::Truth& truth);
 // [light]: the unit vector to the sun, in world axes.
 Vector3 to_sun_in_world(const scene::Light& light);
 
-// [shutter] of a camera model without "auto" keys (resolve.h). Defaults: exposure and read-out of 0
-// s.
+// [shutter] of a camera model without "auto" keys (pipeline/resolved_scene.h). Defaults: exposure
+// and read-out of 0 s.
 Shutter shutter_of(const scene::CameraModel& model);
 
 // [sensor] gamma: the curve from linear light to code values; sRGB's where gamma is not stated.
@@ -67,4 +69,20 @@ decltype(auto) at_place(const Where& where, Make make) {
   }
 }
 
-}  // namespace airtruth::sequence
+// Where the own aircraft really flew: the log of a scene's [camera].
+
+// Reads a flight log of any format, also out of a GoPro's video. Errors as of read_flight_log().
+flight_log::FlightLog read_log(const std::filesystem::path& path);
+
+// The camera's path from its log, on the clip's clock. The position at the first frame is the
+// stated one; without it the aircraft is over the origin at the log's height above take-off, or at
+// the default height of a scene where the log states none. The attitude at the first frame is the
+// stated one; without it it is the log's, and for a log without attitudes the aircraft is level and
+// heads along its path. It is held, since the measured motion turns the camera from there; where
+// follows_log_attitude is true it is the log's throughout.
+//
+// Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
+// not cover the first frame.
+trajectory::Path path_from_log(const scene::Camera& camera);
+
+}  // namespace airtruth::setup

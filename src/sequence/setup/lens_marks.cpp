@@ -6,7 +6,7 @@
 
 #include "foundation/base/seed.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 // Standard deviation of the amplitude of a dirt's first lobe; the k-th has a k-th of it. All lobes
@@ -102,4 +102,4 @@ std::optional<image::Spot> spot_of(const scene::LensMark& mark,
   return spot;
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -8,7 +8,7 @@
 #include "labels/projection/exact_box.h"
 #include "scene/scene/distractor.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 
 // The spot that a mark on the lens draws at a time of the clip; empty before its beginning and
 // after its end. A glint that follows the sun has its place in each frame from the sun's pixel; it
@@ -23,4 +23,4 @@ std::optional<image::Spot> spot_of(const scene::LensMark& mark,
 // True from the mark's beginning to its end.
 bool is_there(const scene::LensMark& mark, double time_s);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -8,7 +8,7 @@
 #include "camera/lens/lens.h"
 #include "picture/render/renderer.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 const lens::Lens kLens = lens::pinhole_from_vertical_fov(60, {1280, 960});
@@ -74,4 +74,4 @@ TEST(LensMarks, DirtHasAShapeOfItsOwnAndKeepsIt) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -2,7 +2,6 @@
 #include "sequence/setup/motion_source.h"
 
 #include <algorithm>
-#include <exception>
 
 #include <fmt/ranges.h>
 
@@ -14,7 +13,7 @@
 #include "picture/video/telemetry.h"
 #include "sequence/setup/shared_inputs.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 // The motion of a frame of a clip that does not shake.
@@ -60,24 +59,20 @@ scene::MotionModel motion_model(const scene::Scene& scene) {
   return paper ? scene::MotionModel::kHomography : scene::MotionModel::kRotation;
 }
 
-MotionSource::MotionSource(const scene::Scene& scene,
-                           const lens::Lens& lens,
-                           bool needs_change,
-                           const std::string& video_sha256,
-                           const image::Mask* mask,
-                           const disk_cache::Cache& cache)
-    : mask_(mask), size_(lens.size()), guard_(size_.width, size_.height) {
+MotionSource::MotionSource(const MotionInputs& inputs)
+    : mask_(inputs.mask), size_(inputs.lens.size()), guard_(size_.width, size_.height) {
+  const scene::Scene& scene = inputs.scene;
   const scene::MotionModel model = motion_model(scene);
   none_ = model == scene::MotionModel::kNone;
   smoothed_ = !none_ && scene.motion.reference == scene::MotionReference::kSmoothed;
-  needs_change_ = needs_change;
-  if (model == scene::MotionModel::kRotation) lens_ = lens;
+  needs_change_ = inputs.needs_change;
+  if (model == scene::MotionModel::kRotation) lens_ = inputs.lens;
   // The gyroscope's clock starts with the file.
   if (lens_ && scene.background.first_frame == 0) gyro_ = gyro_of(scene.background.video);
-  if (!video_sha256.empty() && !none_) cache_ = cache;
+  if (!inputs.video_sha256.empty() && !none_) cache_ = inputs.cache;
   options_.seed = scene.seed;
   options_.smoothing_s = scene.motion.smoothing_s;
-  key_.video_sha256 = video_sha256;
+  key_.video_sha256 = inputs.video_sha256;
   if (scene.background.mask) key_.mask_sha256 = sha256_of_file(*scene.background.mask);
   key_.first_frame = scene.background.first_frame;
   key_.frame_count = scene.background.frame_count.value_or(-1);
@@ -88,6 +83,17 @@ MotionSource::MotionSource(const scene::Scene& scene,
     from_cache_ = true;
     set_pass(std::move(*found));
   }
+}
+
+MotionSource::MotionSource(const MotionInputs& inputs, const MotionPass& pass)
+    : MotionSource(inputs) {
+  if (needs_pass(pass.for_all)) measure(pass);
+}
+
+std::optional<MotionSource> MotionSource::from_cache(const MotionInputs& inputs) {
+  MotionSource source(inputs);
+  if (!source.from_cache_) return std::nullopt;
+  return source;
 }
 
 motion::Estimator MotionSource::estimator(int width, int height) const {
@@ -104,20 +110,17 @@ void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
   ready_ = true;
 }
 
-void MotionSource::measure(video::Reader& reader,
-                           const std::stop_token& stop,
-                           const std::function<void(std::int64_t)>& seen) {
-  if (none_) {
-    while (const auto frame = reader.next()) {
-      if (stop.stop_requested()) throw Interrupted();
-      all_.push_back(still_at(*frame));
-      if (seen) seen(std::ssize(all_));
-    }
-    ready_ = true;
-    return;
+void MotionSource::measure(const MotionPass& pass) {
+  video::Reader reader = pass.open();
+  if (!none_)
+    return set_pass(measure_motion(
+        reader, estimator(reader.info().width, reader.info().height), pass.stop, pass.seen));
+  while (const auto frame = reader.next()) {
+    if (pass.stop.stop_requested()) throw Interrupted();
+    all_.push_back(still_at(*frame));
+    if (pass.seen) pass.seen(std::ssize(all_));
   }
-  set_pass(
-      measure_motion(reader, estimator(reader.info().width, reader.info().height), stop, seen));
+  ready_ = true;
 }
 
 MotionSource::Measured MotionSource::next(const video::Frame& frame) {
@@ -191,4 +194,4 @@ std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
   return result;
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

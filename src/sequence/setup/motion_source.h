@@ -11,13 +11,14 @@
 #include "camera/lens/lens.h"
 #include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
+#include "foundation/disk_cache/disk_cache.h"
 #include "foundation/image/layer.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"
 
 // Provides the homography of each frame from one of three sources: the cache, a preceding pass over
 // the clip, or an estimator that runs frame by frame.
-namespace airtruth::sequence {
+namespace airtruth::setup {
 
 class SharedInputs;
 
@@ -30,29 +31,35 @@ std::string sha256_of_video(const fs::path& video, SharedInputs* shared = nullpt
 // Text with every number of a lens, so that two lenses never share an entry of the cache.
 std::string words_of(const lens::Lens& lens);
 
+// What the motion of a scene's frames depends on.
+struct MotionInputs {
+  const scene::Scene& scene;
+  const lens::Lens& lens;
+  // next() must know how the shake continues within a frame. This needs the following frame, and
+  // therefore a preceding pass.
+  bool needs_change = false;
+  std::string video_sha256;           // "": no cache
+  const image::Mask* mask = nullptr;  // of the own aircraft
+  disk_cache::Cache cache;
+};
+
+// A preceding pass over all frames of the clip.
+struct MotionPass {
+  bool for_all = false;  // the motion of every frame must be known ahead, whatever the model needs
+  std::function<video::Reader()> open;
+  std::stop_token stop;
+  std::function<void(std::int64_t)> seen;  // called after each frame; may be empty
+};
+
 class MotionSource {
  public:
-  // The model kNone gives the identity for every frame. `needs_change`: next() must know how the
-  // shake continues within a frame. This needs the following frame, and therefore a preceding pass.
-  MotionSource(const scene::Scene& scene,
-               const lens::Lens& lens,
-               bool needs_change,
-               const std::string& video_sha256,
-               const image::Mask* mask,
-               const disk_cache::Cache& cache);
+  // The model kNone gives the identity for every frame. Makes the pass where it is required
+  // (reference kSmoothed, a shutter, a gyroscope, or `for_all`) and the cache does not hold its
+  // result. Throws Interrupted on stop.
+  MotionSource(const MotionInputs& inputs, const MotionPass& pass);
 
-  // True where a preceding pass over the frames is required (reference kSmoothed, a shutter or a
-  // gyroscope, and no entry in the cache).
-  bool needs_pass() const {
-    return (smoothed_ || needs_change_ || !gyro_.empty()) && !ready_ && !none_;
-  }
-  // True once the motion and time of every frame are known.
-  bool knows_all() const { return ready_; }
-  // Makes that pass over all frames of a reader, whatever needs it, and calls `seen` after each
-  // frame. Throws Interrupted on stop.
-  void measure(video::Reader& reader,
-               const std::stop_token& stop,
-               const std::function<void(std::int64_t)>& seen);
+  // The motion that an earlier run has measured; empty where the cache does not hold it.
+  static std::optional<MotionSource> from_cache(const MotionInputs& inputs);
 
   // Frames in order.
   struct Measured {
@@ -60,13 +67,18 @@ class MotionSource {
     Shake shake;
   };
   Measured next(const video::Frame& frame);
-  // The frame nearest to a time; only where knows_all() and the clip has a frame.
+  // The frame nearest to a time; only where all are known ahead and the clip has a frame.
   Measured nearest(double time_s) const;
   // Stores the measured motion for the next run, after the last frame.
   void store() const;
-  bool from_cache() const { return from_cache_; }
+  bool is_from_cache() const { return from_cache_; }
 
  private:
+  explicit MotionSource(const MotionInputs& inputs);
+  bool needs_pass(bool for_all) const {
+    return !ready_ && (for_all || (!none_ && (smoothed_ || needs_change_ || !gyro_.empty())));
+  }
+  void measure(const MotionPass& pass);
   void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
   // Frame k, where all are known.
@@ -113,4 +125,4 @@ std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
                                                 const std::stop_token& stop,
                                                 const std::function<void(std::int64_t)>& seen);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 // How long the path goes on beyond the first and the last moment.
@@ -176,4 +176,4 @@ scene::Intruder placed_as_seen(const scene::Intruder& intruder,
   return through_places(intruder, rays);
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -6,9 +6,9 @@
 #include "camera/lens/lens.h"
 #include "labels/projection/exact_box.h"
 #include "scene/scene/scene.h"
-#include "sequence/setup/sight.h"
+#include "sequence/setup/moment.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 
 // A frame as far as the places in its picture are concerned: its time and how the camera shook.
 struct FramePose {
@@ -49,4 +49,4 @@ constexpr double kWidthShare = 1e-4;
 constexpr double kUsualLengthM = 15;
 constexpr double kFastestMps = 1e4;  // as scene::kSpeed
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -9,10 +9,11 @@
 
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 constexpr double kRate_hz = 30;
@@ -212,4 +213,4 @@ TEST(Seen, APixelBeyondTheLensIsAnError) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

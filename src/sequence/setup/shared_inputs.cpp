@@ -11,7 +11,7 @@
 #include "foundation/base/files.h"
 #include "sequence/setup/world.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 // What decides how an intruder's aircraft is loaded.
@@ -177,4 +177,4 @@ std::string shared_sha256(const std::filesystem::path& file, SharedInputs* share
   return shared != nullptr ? shared->sha256_of_file(file) : airtruth::sha256_of_file(file);
 }
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

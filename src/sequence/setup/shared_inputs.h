@@ -22,7 +22,7 @@
 // Inputs that sequences of one process have in common, each read and prepared once: aircraft with
 // their textures, BVHs and silhouettes, and the SHA-256 of files. A sequence has the same bytes
 // with and without them, in any order.
-namespace airtruth::sequence {
+namespace airtruth::setup {
 
 // An aircraft that is ready to be drawn.
 struct Type {
@@ -92,4 +92,4 @@ class SharedInputs {
 // SHA-256 of a file, from `shared` where it is given.
 std::string shared_sha256(const std::filesystem::path& file, SharedInputs* shared);
 
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

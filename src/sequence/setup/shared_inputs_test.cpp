@@ -6,15 +6,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "aircraft/fleet/configuration.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "support/temporary_folder.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 constexpr double kKnotsInMps = 0.514444;
@@ -35,12 +35,6 @@ trajectory::Path straight_at(double speed_mps) {
 
 class SharedInputsTest : public testing::Test {
  protected:
-  SharedInputsTest()
-      : root_(fs::temp_directory_path() / ("airtruth_shared_" + std::to_string(::getpid()))) {
-    fs::create_directories(root_);
-  }
-  ~SharedInputsTest() override { fs::remove_all(root_); }
-
   // A triangle in FlightGear's axes, `span_m` wide.
   std::string triangle(double span_m) const {
     const std::string side = std::to_string(span_m / 2);
@@ -52,7 +46,8 @@ class SharedInputsTest : public testing::Test {
     return (root_ / "t.ac").string();
   }
 
-  fs::path root_;
+  test_support::TemporaryFolder temporary_;
+  fs::path root_ = temporary_.path();
 };
 
 TEST_F(SharedInputsTest, OneAircraftInOneConfigurationIsLoadedOnce) {
@@ -146,4 +141,4 @@ TEST(Configuration, OfABareModelFileIsEmpty) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -11,29 +11,13 @@
 #include "foundation/base/error.h"
 #include "labels/annotation/object_class.h"
 #include "sequence/setup/from_scene.h"
-#include "sequence/setup/lens_marks.h"
 #include "sequence/setup/shared_inputs.h"
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 constexpr double kMetresPerSecondInKnots = 1.943844;
 constexpr double kMetresInFeet = 3.280840;
-constexpr double kSearchMarginPx = 1.5;
-
-Box grown(const Box& box, double margin) {
-  return {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
-}
-
-// Returns the whole frame, for an aircraft so near that a part of it has no pixel.
-Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
-
-std::optional<Box> search_box(const projection::ExactBox& exact, const lens::ImageSize& size) {
-  if (!exact.box) return std::nullopt;
-  const Box box = exact.partly_unseen ? whole(size) : grown(*exact.box, kSearchMarginPx);
-  if (!meets_frame(box, size)) return std::nullopt;
-  return box;
-}
 
 struct Loaded {
   scene::Intruder intruder;  // with waypoints in place of what is seen
@@ -94,10 +78,6 @@ aircraft::Mesh mesh_of(const scene::Distractor& one) {
 }
 
 }  // namespace
-
-bool meets_frame(const Box& box, const lens::ImageSize& size) {
-  return box.right() > 0 && box.bottom() > 0 && box.x < size.width && box.y < size.height;
-}
 
 aircraft::LoadOptions load_options(const scene::Intruder& intruder,
                                    const trajectory::Path& path,
@@ -203,70 +183,4 @@ void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   }
 }
 
-std::optional<PixelBox> search_bounds(const Moment& moment) {
-  std::optional<PixelBox> all;
-  for (const auto& box : moment.search)
-    if (box) all = all ? bounds(*all, pixels_of(*box)) : pixels_of(*box);
-  return all;
-}
-
-Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake) {
-  const auto camera = world.camera.at(time_s);
-  if (!camera)
-    throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
-                " s, but the clip goes on at " + std::to_string(time_s) +
-                " s; expected a path as long as the clip");
-  Moment moment;
-  moment.frame = frame;
-  moment.time_s = time_s;
-  moment.camera = *camera;
-  moment.sight = sight_of(world.lens, world.shutter, world.camera, *camera, time_s, shake);
-  for (const Actor& actor : world.actors) {
-    const auto state = actor.path.at(time_s);
-    moment.states.push_back(state);
-    const Twist twist = state ? twist_of(actor.path, *state, time_s, world.shutter) : Twist{};
-    moment.twists.push_back(twist);
-    moment.boxes.push_back(
-        state ? projection::exact_box(
-                    moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s, twist)
-              : projection::ExactBox{});
-    moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
-  }
-  for (const scene::LensMark& mark : world.lens_marks)
-    moment.spots.push_back(spot_of(mark, moment.sight, world.to_sun_in_world, time_s, world.seed));
-  return moment;
-}
-
-std::optional<NearestApproach> nearest_approach(const World& world,
-                                                std::size_t actor,
-                                                double end_s) {
-  std::optional<NearestApproach> best;
-  const lens::ImageSize size = world.lens.size();
-  for (double time_s = 0; time_s <= end_s; time_s += std::max(end_s / 2000, 1e-3)) {
-    const auto state = world.actors[actor].path.at(time_s);
-    const auto camera = world.camera.at(time_s);
-    if (!state || !camera) continue;
-    const Rigid world_from_cam =
-        camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
-    const Vector3 p_in_cam = world_from_cam.inverse() * state->position_in_world;
-    // The nearest pixel of the image to the direction, through a coarse walk along the image's
-    // border.
-    double off = kPi;
-    for (int i = 0; i <= 64; ++i) {
-      const double s = i / 64.0;
-      for (const Pixel& edge : {Pixel(s * size.width, 0),
-                                Pixel(s * size.width, size.height),
-                                Pixel(0, s * size.height),
-                                Pixel(size.width, s * size.height)}) {
-        const auto ray = world.lens.ray_from_pixel(edge);
-        if (ray && p_in_cam.norm() > 0)
-          off = std::min(off, std::acos(std::clamp(ray->dot(p_in_cam.normalized()), -1.0, 1.0)));
-      }
-    }
-    if (!best || degrees(off) < best->off_view_deg)
-      best = NearestApproach{time_s, degrees(off), p_in_cam.norm()};
-  }
-  return best;
-}
-
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

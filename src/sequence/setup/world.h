@@ -13,10 +13,7 @@
 #include "camera/lens/lens.h"
 #include "encounter/separation/violation.h"
 #include "foundation/base/log.h"
-#include "foundation/image/spot.h"
-#include "labels/annotation/truth.h"
 #include "labels/projection/exact_box.h"
-#include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"
@@ -24,7 +21,7 @@
 #include "sequence/setup/seen.h"
 
 // A scene after everything that it names has been loaded: lens, paths, aircraft.
-namespace airtruth::sequence {
+namespace airtruth::setup {
 
 struct Type;
 class SharedInputs;
@@ -51,13 +48,11 @@ struct World {
   double lookahead_s = 180;
   // What is on the lens.
   std::vector<scene::LensMark> lens_marks;
-  // For glints that follow the sun: it is known once the scene's values are (resolve.h).
+  // For glints that follow the sun: it is known once the scene's values are
+  // (pipeline/resolved_scene.h).
   Vector3 to_sun_in_world{0, 0, -1};
   std::uint64_t seed = 1;
 };
-
-// True where a part of the box is in the picture.
-bool meets_frame(const Box& box, const lens::ImageSize& size);
 
 // How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
 // beginning of its path.
@@ -72,9 +67,9 @@ std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& int
                                                       const Warn& warn,
                                                       const std::stop_token& stop = {});
 
-// Loads a scene without "auto" keys (resolve.h). Intruders of [[intruder.seen]] are placed as if
-// the camera did not shake; place_seen() puts them right. Throws Interrupted on stop. `shared`
-// gives the aircraft where it is not nullptr.
+// Loads a scene without "auto" keys (pipeline/resolved_scene.h). Intruders of [[intruder.seen]] are
+// placed as if the camera did not shake; place_seen() puts them right. Throws Interrupted on stop.
+// `shared` gives the aircraft where it is not nullptr.
 World load_world(const scene::Scene& scene,
                  lens::ImageSize size,
                  const Warn& warn,
@@ -97,39 +92,4 @@ void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& 
 // Throws Error where one of them is missing or cannot be read.
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info);
 
-// The geometry of one frame, without its pixels.
-struct Moment {
-  std::int64_t frame = 0;
-  double time_s = 0;
-  trajectory::State camera;
-  projection::Sight sight;
-  // By actor; empty: the actor is not in the world at this time.
-  std::vector<std::optional<trajectory::State>> states;
-  // By actor: its motion after this moment.
-  std::vector<Twist> twists;
-  std::vector<projection::ExactBox> boxes;
-  // By actor: the box in which its pixels are searched (its box with a margin); empty: it is not
-  // in view.
-  std::vector<std::optional<Box>> search;
-  // By mark on the lens; empty: it is not there, or its sun is not in the lens's field.
-  std::vector<std::optional<image::Spot>> spots;
-};
-
-// The bounding box of all the search boxes.
-std::optional<PixelBox> search_bounds(const Moment& moment);
-
-// Throws Error where the camera's path does not reach that time.
-Moment moment_at(const World& world, std::int64_t frame, double time_s, const Shake& shake);
-
-// The moment at which an actor is nearest to being in view, for the warning about an intruder that
-// is never visible.
-struct NearestApproach {
-  double time_s = 0;
-  double off_view_deg = 0;  // angle from the nearest edge of the view
-  double range_m = 0;
-};
-std::optional<NearestApproach> nearest_approach(const World& world,
-                                                std::size_t actor,
-                                                double end_s);
-
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

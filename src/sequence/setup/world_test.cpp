@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace airtruth::sequence {
+namespace airtruth::setup {
 namespace {
 
 scene::Intruder flying(const std::string& id, const std::string& aircraft, double speed_mps) {
@@ -50,4 +50,4 @@ TEST(LoadWorld, GearThatIsDownIsAnotherType) {
 }
 
 }  // namespace
-}  // namespace airtruth::sequence
+}  // namespace airtruth::setup

@@ -36,7 +36,7 @@
     for (const [key, value] of Object.entries(data.card)) {
       byId('card').append(element('dt', key), element('dd', String(value)));
     }
-    // The bar charts are described by the program (dataset/page/totals.h).
+    // The bar charts are described by the program (dataset/set_report/totals.h).
     for (const canvas of document.querySelectorAll('canvas[data-plot]')) {
       const plot = data.plots[canvas.dataset.plot];
       if (plot) drawPlot(canvas, plot); else canvas.closest('figure').remove();

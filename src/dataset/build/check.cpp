@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build/check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "aircraft/fleet/fleet.h"
+#include "dataset/catalogue/expand.h"
+#include "foundation/base/error.h"
+#include "picture/video/reader.h"
+#include "sequence/pipeline/resolved_scene.h"
+
+namespace airtruth::build {
+namespace {
+
+void check_aircraft(const catalogue::Aircraft& aircraft) {
+  try {
+    aircraft::aircraft_file(aircraft.aircraft);
+  } catch (const Error& error) {
+    throw Error(error.message(), aircraft.where);
+  }
+}
+
+void check_video(const fs::path& video, const std::string& background, const Where& where) {
+  // The reader checks a pattern of numbered images.
+  if (video.string().find('%') == std::string::npos && !fs::exists(video))
+    throw Error(
+        "the video of background '" + background + "', " + video.string() + ", does not exist",
+        where);
+}
+
+video::StreamInfo stream_of(const synthetic::FlightOptions& flight) {
+  video::StreamInfo info;
+  info.width = flight.width;
+  info.height = flight.height;
+  info.frame_rate = {static_cast<int>(std::lround(1000 * flight.frame_rate_hz)), 1000};
+  return info;
+}
+
+// Checks mask, lens, camera file and path of a background. Each sequence decides how much of the
+// clip it uses, and the camera's path must cover only that part.
+void check_background(const catalogue::Catalogue& catalogue,
+                      std::size_t place,
+                      const std::map<std::string, fs::path>& videos) {
+  const catalogue::Background& background = catalogue.backgrounds[place];
+  scene::Scene scene = catalogue::scene_over(catalogue, place);
+  const auto given = videos.find(background.name);
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  video::StreamInfo info;
+  if (given == videos.end() && flight != nullptr) {
+    info = stream_of(*flight);
+  } else {
+    const bool own = given == videos.end();
+    const fs::path video = own ? std::get<fs::path>(background.source) : given->second;
+    check_video(video, background.name, own ? background.where : Where{});
+    info = video::Reader(video, {.threads = 1}).info();
+    if (own) scene.background.mask = background.mask;
+  }
+  info.frame_count_estimate = 0;  // unknown
+  pipeline::check_scene(scene, info);
+}
+
+// The names of one rule differ by construction, but names of two rules may coincide. Hashes are
+// compared because a million names must cost no more than eight bytes each.
+void check_names(const catalogue::Catalogue& catalogue) {
+  if (catalogue.rules.size() < 2) return;
+  const catalogue::Expansion expansion(catalogue);
+  std::vector<std::size_t> hashes;
+  hashes.reserve(static_cast<std::size_t>(expansion.size()));
+  const std::hash<std::string> hash;
+  for (std::int64_t i = 0; i < expansion.size(); ++i) hashes.push_back(hash(expansion.at(i).name));
+  std::vector<std::size_t> sorted = hashes;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twin == sorted.end()) return;
+  const auto first = std::find(hashes.begin(), hashes.end(), *twin);
+  const auto second = std::find(first + 1, hashes.end(), *twin);
+  const std::string name = expansion.at(first - hashes.begin()).name;
+  if (expansion.at(second - hashes.begin()).name == name)
+    throw Error("two sequences are named '" + name + "'", {catalogue.file.string()});
+}
+
+}  // namespace
+
+void check_sources(const catalogue::Catalogue& catalogue,
+                   const std::map<std::string, fs::path>& videos) {
+  for (const catalogue::Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
+  for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i)
+    check_background(catalogue, i, videos);
+  check_names(catalogue);
+}
+
+void expect_backgrounds(const catalogue::Catalogue& catalogue,
+                        const std::map<std::string, fs::path>& videos) {
+  for (const auto& [name, video] : videos) {
+    const bool known =
+        std::any_of(catalogue.backgrounds.begin(),
+                    catalogue.backgrounds.end(),
+                    [&, n = name](const catalogue::Background& b) { return b.name == n; });
+    if (!known)
+      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
+  }
+}
+
+catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
+                                 const std::map<std::string, fs::path>& videos) {
+  expect_backgrounds(catalogue, videos);
+  for (catalogue::Background& background : catalogue.backgrounds) {
+    const auto given = videos.find(background.name);
+    if (given == videos.end()) continue;
+    background.source = given->second;
+    background.mask.reset();
+  }
+  return catalogue;
+}
+
+}  // namespace airtruth::build

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/catalogue/distractors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "dataset/catalogue/meeting.h"
+#include "scene/scene/flock.h"
+
+namespace airtruth::catalogue {
+namespace {
+
+using scene::DistractorKind;
+using scene::Limits;
+using scene::TableReader;
+
+constexpr std::int64_t kMostOfAKind = 100;
+constexpr Limits kBodySize{
+    .expected = "[low, high] in metres from 0.05 to 20", .low = 0.05, .high = 20};
+constexpr Limits kSpreadM{.expected = "[low, high] in metres from 0 to 1e4", .low = 0, .high = 1e4};
+constexpr Limits kSpotPx{
+    .expected = "[low, high] in pixels from 1 to 5000", .low = 1, .high = 5000};
+constexpr Limits kSpotSpeed{
+    .expected = "[low, high] in pixels a second from 1 to 1e6", .low = 1, .high = 1e6};
+constexpr Limits kOpacity{.expected = "[low, high] from 0.01 to 1", .low = 0.01, .high = 1};
+
+const TableReader::Keys kAirKeys = {"size_m",
+                                    "range_m",
+                                    "size_px",
+                                    "azimuth_deg",
+                                    "elevation_deg",
+                                    "heading_deg",
+                                    "climb_deg",
+                                    "speed_mps",
+                                    "flock",
+                                    "spread_m"};
+const TableReader::Keys kBirdKeys = {"plumage", "glide"};
+const TableReader::Keys kLensKeys = {"spot_px", "opacity", "speed_px_s"};
+
+void read(const TableReader& table, std::string_view key, const Limits& limits, Range& range) {
+  range = maybe_range(table, key, limits).value_or(range);
+}
+
+// The values of a rule that states its kind and nothing else: gull to eagle, a toy to a freight
+// carrier, a party's to a weather station's balloon.
+DistractorRule usual_rule(DistractorKind kind) {
+  DistractorRule rule;
+  rule.kind = kind;
+  rule.plumages = {aircraft::Plumage::kGull,
+                   aircraft::Plumage::kDark,
+                   aircraft::Plumage::kBrown,
+                   aircraft::Plumage::kGrey};
+  switch (kind) {
+    case DistractorKind::kBird:
+      rule.size_m = {0.6, 2.2};
+      rule.speed_mps = {8, 18};
+      rule.climb_deg = {-5, 5};
+      break;
+    case DistractorKind::kMultirotor:
+      rule.size_m = {0.3, 1.2};
+      rule.speed_mps = {0.5, 18};
+      rule.climb_deg = {-10, 10};
+      break;
+    case DistractorKind::kBalloon:
+      // Risen by helium at 1 to 5 m/s and carried by the wind.
+      rule.size_m = {0.25, 2};
+      rule.speed_mps = {2, 9};
+      rule.climb_deg = {15, 60};
+      break;
+    case DistractorKind::kGlint:
+      rule.spot_px = {40, 200};
+      rule.opacity = {0.1, 0.4};
+      break;
+    case DistractorKind::kDirt:
+      rule.spot_px = {20, 120};
+      rule.opacity = {0.15, 0.5};
+      break;
+    case DistractorKind::kInsect:
+      rule.spot_px = {8, 30};
+      rule.opacity = {0.4, 0.8};
+      rule.speed_px_s = {600, 4000};
+      break;
+  }
+  return rule;
+}
+
+void read_air(const TableReader& table, DistractorRule& rule) {
+  refuse_keys(table, kLensKeys, enum_name(rule.kind));
+  table.exclude("size_px", {"range_m"});
+  read(table, "size_m", kBodySize, rule.size_m);
+  read(table, "range_m", scene::kRangeToAircraft, rule.range_m);
+  rule.size_px = maybe_range(table, "size_px", scene::kApparentSize);
+  read(table, "azimuth_deg", scene::kTurn, rule.azimuth_deg);
+  read(table, "elevation_deg", scene::kPitch, rule.elevation_deg);
+  read(table, "heading_deg", scene::kTurn, rule.heading_deg);
+  read(table, "climb_deg", scene::kPitch, rule.climb_deg);
+  read(table, "speed_mps", scene::kSpeed, rule.speed_mps);
+  rule.flock = whole_range(table, "flock", scene::kMaxFlock).value_or(rule.flock);
+  read(table, "spread_m", kSpreadM, rule.spread_m);
+  if (rule.kind != DistractorKind::kBird)
+    return refuse_keys(table, kBirdKeys, enum_name(rule.kind));
+  read(table, "glide", scene::kShare, rule.glide);
+  const auto words = table.texts("plumage");
+  if (!words) return;
+  rule.plumages.clear();
+  for (std::size_t i = 0; i < words->size(); ++i) {
+    const auto plumage = enum_named<aircraft::Plumage>((*words)[i]);
+    if (!plumage)
+      throw Error(fmt::format("plumage[{}] is '{}'; expected gull, dark, brown or grey",
+                              i,
+                              (*words)[i].substr(0, 60)),
+                  table.where("plumage", i));
+    rule.plumages.push_back(*plumage);
+  }
+}
+
+void read_lens(const TableReader& table, DistractorRule& rule) {
+  refuse_keys(table, kAirKeys, enum_name(rule.kind));
+  refuse_keys(table, kBirdKeys, enum_name(rule.kind));
+  read(table, "spot_px", kSpotPx, rule.spot_px);
+  read(table, "opacity", kOpacity, rule.opacity);
+  if (rule.kind != DistractorKind::kInsect)
+    return refuse_keys(table, {"speed_px_s"}, enum_name(rule.kind));
+  read(table, "speed_px_s", kSpotSpeed, rule.speed_px_s);
+}
+
+}  // namespace
+
+std::vector<DistractorRule> distractor_rules(const TableReader& root) {
+  TableReader::Keys keys = {"kind", "share", "count"};
+  for (const TableReader::Keys* more : {&kAirKeys, &kBirdKeys, &kLensKeys})
+    keys.insert(keys.end(), more->begin(), more->end());
+  std::vector<DistractorRule> rules;
+  for (const TableReader& table : root.tables("distractor", keys)) {
+    const auto kind = table.choice<DistractorKind>("kind");
+    if (!kind)
+      throw Error(
+          "[[distractor]] has no kind; expected bird, multirotor, balloon, glint, dirt or insect",
+          table.where());
+    DistractorRule rule = usual_rule(*kind);
+    rule.where = table.where();
+    rule.share = table.number("share", scene::kShare).value_or(1);
+    rule.count = whole_range(table, "count", kMostOfAKind).value_or(rule.count);
+    if (scene::is_on_lens(*kind))
+      read_lens(table, rule);
+    else
+      read_air(table, rule);
+    rules.push_back(std::move(rule));
+  }
+  return rules;
+}
+
+namespace {
+
+// Spans squared over wing areas (Pennycuick 1996, table 1): gulls, crows, buzzards and eagles,
+// pigeons.
+double usual_aspect_ratio(aircraft::Plumage plumage) {
+  switch (plumage) {
+    case aircraft::Plumage::kGull:
+      return 9.6;
+    case aircraft::Plumage::kDark:
+      return 6.5;
+    case aircraft::Plumage::kBrown:
+      return 6.3;
+    case aircraft::Plumage::kGrey:
+      break;
+  }
+  return 7.2;
+}
+
+// True for a share of the sequences; rule by rule another irrational number turns.
+bool is_in_share(const DistractorRule& rule, std::size_t place, double turn, std::int64_t index) {
+  constexpr std::array<double, 8> kPrimes = {2, 3, 7, 11, 13, 17, 19, 23};
+  const double step = std::sqrt(kPrimes[place % kPrimes.size()]);
+  const double turned = turn + static_cast<double>(index) * step;
+  return turned - std::floor(turned) < rule.share;
+}
+
+scene::Intruder drawn_leader(const DistractorRule& rule, Random& random) {
+  scene::Intruder leader;
+  leader.where = rule.where;
+  leader.aircraft = enum_name(rule.kind);
+  leader.distractor =
+      scene::usual_distractor(rule.kind, drawn_evenly_in_logarithm(random, rule.size_m));
+  scene::Distractor& one = *leader.distractor;
+  one.plumage = one_of(random, rule.plumages);
+  one.aspect_ratio = usual_aspect_ratio(one.plumage);
+  one.glide = drawn(random, rule.glide);
+  one.flap_phase = random.uniform(0, aircraft::kStrokesOfBout);
+  constexpr std::array<int, 3> kRotors = {4, 4, 6};
+  one.rotors = kRotors[static_cast<std::size_t>(random.uniform() * kRotors.size())];
+  if (rule.kind != scene::DistractorKind::kBird) {
+    // From black to white, most of it grey, with some colour.
+    const double grey = random.uniform(0.02, 0.6);
+    for (double& value : one.colour) value = std::clamp(grey * random.uniform(0.5, 1.5), 0.0, 1.0);
+  }
+  return leader;
+}
+
+DrawnFlock drawn_flock(const DistractorRule& rule, Random random) {
+  DrawnFlock flock;
+  flock.leader = drawn_leader(rule, random);
+  flock.count = drawn(random, rule.flock);
+  flock.spread_m = drawn(random, rule.spread_m);
+  flock.seed = random();
+  Encounter& encounter = flock.encounter;
+  encounter.aircraft = enum_name(rule.kind);
+  encounter.meeting_share = random.uniform(0.1, 0.9);
+  if (rule.size_px)
+    encounter.size_px = drawn_evenly_in_logarithm(random, *rule.size_px);
+  else
+    encounter.range_m = drawn_evenly_in_logarithm(random, rule.range_m);
+  encounter.azimuth_deg = drawn(random, rule.azimuth_deg);
+  encounter.elevation_deg = drawn(random, rule.elevation_deg);
+  encounter.heading_deg = drawn(random, rule.heading_deg);
+  encounter.climb_deg = drawn(random, rule.climb_deg);
+  encounter.speed_mps = drawn(random, rule.speed_mps);
+  flock.leader.speed_mps = encounter.speed_mps;
+  return flock;
+}
+
+DrawnMark drawn_mark(const DistractorRule& rule, Random random) {
+  DrawnMark result;
+  scene::LensMark& mark = result.mark;
+  mark = scene::usual_mark(rule.kind);
+  mark.where = rule.where;
+  const double slender = mark.length_px / mark.size_px;
+  mark.size_px = drawn_evenly_in_logarithm(random, rule.spot_px);
+  mark.length_px = slender * mark.size_px;
+  mark.opacity = drawn(random, rule.opacity);
+  mark.softness = random.uniform(rule.kind == scene::DistractorKind::kInsect ? 0.85 : 0.5, 1);
+  // Reflections of a sun in front of the camera lie beyond the image's centre.
+  mark.along = random.uniform(-1.2, -0.2);
+  result.across = random.uniform();
+  result.down = random.uniform();
+  result.meeting_share = random.uniform();
+  result.direction_rad = random.uniform(0, 2 * kPi);
+  if (rule.kind == scene::DistractorKind::kInsect)
+    result.speed_px_s = drawn_evenly_in_logarithm(random, rule.speed_px_s);
+  return result;
+}
+
+scene::Intruder laid(const scene::Scene& scene,
+                     const DrawnFlock& flock,
+                     const DrawnClip& clip,
+                     const lens::ImageSize& size,
+                     setup::SharedInputs* shared) {
+  // A range until the size of the picture is known.
+  constexpr double kProvisionalRangeM = 100;
+  if (size.width == 0) {
+    scene::Intruder leader = flock.leader;
+    lay_path(leader,
+             flock.encounter,
+             scene.camera,
+             clip,
+             flock.encounter.range_m.value_or(kProvisionalRangeM));
+    return leader;
+  }
+  scene::Scene alone = scene;
+  alone.intruders = {flock.leader};
+  meet(alone, 0, flock.encounter, clip, size, shared);
+  return alone.intruders.front();
+}
+
+scene::LensMark laid(const DrawnMark& drawn, const DrawnClip& clip, const lens::ImageSize& size) {
+  scene::LensMark mark = drawn.mark;
+  if (mark.kind == scene::DistractorKind::kGlint) return mark;
+  const Pixel middle(drawn.across * size.width, drawn.down * size.height);
+  mark.pixel = middle;
+  mark.velocity_px_s = Pixel::Zero();
+  if (mark.kind != scene::DistractorKind::kInsect) return mark;
+  // It crosses the whole picture.
+  const double crossing_s =
+      2 * (std::hypot(size.width, size.height) + mark.length_px) / drawn.speed_px_s;
+  const double meets_s = drawn.meeting_share * clip.duration_s();
+  mark.velocity_px_s =
+      drawn.speed_px_s * Pixel(std::cos(drawn.direction_rad), std::sin(drawn.direction_rad));
+  mark.begin_s = meets_s - crossing_s / 2;
+  mark.end_s = meets_s + crossing_s / 2;
+  mark.pixel = middle - crossing_s / 2 * mark.velocity_px_s;
+  return mark;
+}
+
+}  // namespace
+
+DrawnDistractors draw_distractors(const std::vector<DistractorRule>& rules,
+                                  std::uint64_t seed,
+                                  std::int64_t index) {
+  DrawnDistractors result;
+  std::map<scene::DistractorKind, int> numbers;
+  for (std::size_t place = 0; place < rules.size(); ++place) {
+    const DistractorRule& rule = rules[place];
+    const std::string name = fmt::format("distractor {} ", place + 1);
+    if (!is_in_share(rule, place, Seed(seed).stream(name + "turn").uniform(), index)) continue;
+    const auto number = static_cast<std::uint64_t>(index);
+    Random of_count = Seed(seed).stream(name + "count", number);
+    const std::int64_t count = drawn(of_count, rule.count);
+    for (std::int64_t k = 0; k < count; ++k) {
+      const Random random = Seed(seed).stream(fmt::format("{}thing {}", name, k), number);
+      const std::string id = fmt::format("{}-{}", enum_name(rule.kind), ++numbers[rule.kind]);
+      if (scene::is_on_lens(rule.kind)) {
+        result.marks.push_back(drawn_mark(rule, random));
+        result.marks.back().mark.id = id;
+      } else {
+        result.flocks.push_back(drawn_flock(rule, random));
+        result.flocks.back().leader.id = id;
+      }
+    }
+  }
+  return result;
+}
+
+void lay_distractors(scene::Scene& scene,
+                     const DrawnDistractors& drawn,
+                     const DrawnClip& clip,
+                     const lens::ImageSize& size,
+                     setup::SharedInputs* shared) {
+  std::erase_if(scene.intruders, [](const auto& intruder) { return !is_aircraft(intruder); });
+  scene.lens_marks.clear();
+  for (const DrawnFlock& flock : drawn.flocks) {
+    const scene::Intruder leader = laid(scene, flock, clip, size, shared);
+    for (scene::Intruder& one : scene::flock_of(leader, flock.count, flock.spread_m, flock.seed))
+      scene.intruders.push_back(std::move(one));
+  }
+  for (const DrawnMark& mark : drawn.marks) scene.lens_marks.push_back(laid(mark, clip, size));
+}
+
+}  // namespace airtruth::catalogue

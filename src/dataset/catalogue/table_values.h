@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "foundation/base/error.h"
+#include "foundation/base/pattern.h"
+#include "foundation/base/seed.h"
+#include "foundation/base/suggest.h"
+#include "scene/scene/table_reader.h"
+
+// What the tables of a catalogue have in common: names of other tables, and ranges to draw from.
+namespace airtruth::catalogue {
+
+// Upper bound for every count in a catalogue.
+constexpr std::int64_t kMost = 1'000'000'000;
+
+// Returns the index of the thing with that name. Throws Error at `where` with the nearest spelling.
+template <typename Things>
+std::size_t place_of(const Things& things,
+                     const std::string& name,
+                     const char* what,
+                     const Where& where) {
+  std::vector<std::string> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const auto nearest = nearest_spelling(name, names);
+  throw Error("there is no " + std::string(what) + " '" + name + "'" +
+                  (nearest ? "; did you mean '" + *nearest + "'?" : ""),
+              where);
+}
+
+// Returns the indices of the things whose names match a pattern of the array at `key`; all of them
+// where the key is absent.
+template <typename Things>
+std::vector<std::size_t> places_of(const scene::TableReader& table,
+                                   std::string_view key,
+                                   const Things& things,
+                                   const char* what) {
+  std::vector<std::size_t> result;
+  const auto patterns = table.texts(key);
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    const bool wanted =
+        !patterns ||
+        std::any_of(patterns->begin(), patterns->end(), [&](const std::string& pattern) {
+          return matches(pattern, things[i].name);
+        });
+    if (wanted) result.push_back(i);
+  }
+  for (const std::string& pattern : patterns.value_or(std::vector<std::string>{})) {
+    const bool used = std::any_of(things.begin(), things.end(), [&](const auto& thing) {
+      return matches(pattern, thing.name);
+    });
+    if (!used) place_of(things, pattern, what, table.where(key));
+  }
+  if (result.empty()) throw Error("there is no [[" + std::string(what) + "]]", table.where());
+  return result;
+}
+
+// The pattern of names at the key `name`, which has {index}. Throws Error for another part in
+// braces.
+std::string index_pattern(const scene::TableReader& table, const char* usual);
+
+// Throws Error where the pattern of names at the key `name` has a part in braces that is not one of
+// `known`, such as "{index}".
+void expect_parts(const scene::TableReader& table,
+                  const std::string& pattern,
+                  const std::vector<std::string>& known);
+
+// Throws Error for a key that has no effect with this kind.
+void refuse_keys(const scene::TableReader& table,
+                 const std::vector<std::string_view>& keys,
+                 const char* kind);
+
+// Both ends belong to the range.
+struct Range {
+  double low = 0;
+  double high = 0;
+};
+struct WholeRange {
+  std::int64_t low = 1;
+  std::int64_t high = 1;
+};
+
+// [low, high] at `key`, which is there.
+Range range_in(const scene::TableReader& table, std::string_view key, const scene::Limits& limits);
+// The range at `key`; empty where the key is absent.
+std::optional<Range> maybe_range(const scene::TableReader& table,
+                                 std::string_view key,
+                                 const scene::Limits& limits);
+// A whole number from 1, or [low, high] of whole numbers; empty where the key is absent.
+std::optional<WholeRange> whole_range(const scene::TableReader& table,
+                                      std::string_view key,
+                                      std::int64_t most);
+
+double drawn(Random& random, const Range& range);
+std::int64_t drawn(Random& random, const WholeRange& range);
+// For sizes and distances: each factor of them is equally frequent.
+double drawn_evenly_in_logarithm(Random& random, const Range& range);
+
+template <typename T>
+const T& one_of(Random& random, const std::vector<T>& things) {
+  const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(things.size()));
+  return things[std::min(at, things.size() - 1)];
+}
+
+}  // namespace airtruth::catalogue

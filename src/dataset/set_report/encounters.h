@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sequence/replay/finished.h"
+
+// What the data card and the report page say of encounters. Imported clips and sequences older than
+// the record of encounters have none.
+namespace airtruth::set_report {
+
+// One encounter of a sequence.
+struct Encountered {
+  pipeline::EncounterRecord record;
+  // North, east, down of both aircraft at the closest approach: between the two frames around it,
+  // in proportion to time. Empty where it comes after the last frame.
+  struct Closest {
+    std::array<double, 3> own_ned_m{};
+    std::array<double, 3> intruder_ned_m{};
+  };
+  std::optional<Closest> closest;
+};
+
+// North, east and down as the page's JSON holds them.
+std::array<double, 3> numbers(const Vector3& ned_m);
+
+std::vector<Encountered> encounters_of(const replay::Finished& finished);
+
+// One sentence for each kind of fact: how many encounters of each class, how close they come, when
+// they are first seen and which volumes they violate. `volumes`: the names of those that the truth
+// asks for. Empty without encounters.
+std::string encounters_text(const std::vector<pipeline::EncounterRecord>& records,
+                            const std::vector<std::string>& volumes);
+
+}  // namespace airtruth::set_report

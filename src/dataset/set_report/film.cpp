@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/set_report/film.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "show/drawing/thumbnails.h"
+
+namespace airtruth::set_report {
+namespace {
+
+constexpr int kLoopSide = 96;
+constexpr std::size_t kLoopFrames = 10;
+// Quality setting of libav's mjpeg encoder; a still takes about 10 kB.
+constexpr int kStillQuality = 7;
+constexpr int kLoopQuality = 5;
+
+std::optional<PixelBox> first_box(const annotation::Frame& frame) {
+  for (const annotation::Intruder& intruder : frame.intruders)
+    if (const auto box = annotation::box_to_show(intruder)) return box;
+  return std::nullopt;
+}
+
+// The frame whose intruder is largest, if possible one that the picture's edge does not cut.
+std::optional<std::size_t> largest_frame(const std::vector<annotation::Frame>& frames) {
+  std::optional<std::size_t> largest;
+  std::pair<bool, int> most;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    for (const annotation::Intruder& intruder : frames[i].intruders) {
+      const auto box = annotation::box_to_show(intruder);
+      if (!box) continue;
+      const std::pair<bool, int> here{!(intruder.cut_by_frame > 0),
+                                      std::max(box->width, box->height)};
+      if (largest && here <= most) continue;
+      largest = i;
+      most = here;
+    }
+  return largest;
+}
+
+std::vector<Film::Marked> marked(const annotation::Frame& frame,
+                                 const std::vector<std::string>& ids) {
+  std::vector<Film::Marked> boxes;
+  for (const annotation::Intruder& intruder : frame.intruders)
+    if (const auto box = annotation::box_to_show(intruder)) {
+      const auto place = std::find(ids.begin(), ids.end(), intruder.id) - ids.begin();
+      boxes.push_back({static_cast<std::size_t>(place), *box});
+    }
+  return boxes;
+}
+
+std::vector<bool> chosen(std::size_t count, const std::vector<std::size_t>& indices) {
+  std::vector<bool> result(count, false);
+  for (const std::size_t i : indices) result[i] = true;
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::size_t> thinned(std::size_t n, std::size_t most) {
+  std::vector<std::size_t> indices;
+  const std::size_t count = std::min(n, most);
+  for (std::size_t k = 0; k < count; ++k)
+    indices.push_back(count == 1 ? 0 : k * (n - 1) / (count - 1));
+  return indices;
+}
+
+namespace {
+
+// The frames of a sequence that its film shows.
+struct Selection {
+  // For each frame: whether it is a still, and whether it is in the loop.
+  std::vector<bool> is_still, is_in_loop;
+  // The frame with the largest box, and the last one with a box; empty if none has a box.
+  std::optional<std::size_t> poster, last_seen;
+};
+
+Selection selected_frames(const std::vector<annotation::Frame>& frames, std::size_t most_stills) {
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (first_box(frames[i])) seen.push_back(i);
+  std::vector<std::size_t> in_loop;
+  for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop.push_back(seen[k]);
+  Selection selected;
+  selected.is_in_loop = chosen(frames.size(), in_loop);
+  selected.is_still = chosen(frames.size(), thinned(frames.size(), most_stills));
+  selected.poster = largest_frame(frames);
+  if (selected.poster) selected.is_still[*selected.poster] = true;
+  if (!seen.empty()) selected.last_seen = seen.back();
+  return selected;
+}
+
+Film::Still still_of(const image::Picture& picture,
+                     const annotation::Frame& truth,
+                     const std::vector<std::string>& ids) {
+  const image::Rgb8 small =
+      drawing::small_copy(image::rgb8_from_picture(picture), Film::kStillWidth);
+  return {truth.frame, video::jpeg_of(small, kStillQuality), marked(truth, ids)};
+}
+
+}  // namespace
+
+Film film_of(const replay::Finished& finished, std::size_t most, const std::stop_token& stop) {
+  const auto& frames = finished.truth.frames;
+  const Selection selected = selected_frames(frames, most);
+  const std::vector<std::string> ids = replay::intruder_ids(finished.truth);
+  Film film;
+  std::vector<image::Rgb8> squares;
+  video::Reader reader(finished.video, {.threads = 1});
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (stop.stop_requested()) throw Interrupted();
+    const auto frame = reader.next();
+    if (!frame) {
+      if (!selected.last_seen || i > *selected.last_seen) break;
+      throw Error("holds fewer frames than its truth", {finished.video.string()});
+    }
+    if (selected.is_still[i]) {
+      if (i == selected.poster) film.poster = film.stills.size();
+      film.stills.push_back(still_of(frame->picture, frames[i], ids));
+    }
+    if (!selected.is_in_loop[i]) continue;
+    const PixelBox box = *first_box(frames[i]);
+    film.contrasts.push_back(drawing::contrast(frame->picture, box));
+    squares.push_back(
+        drawing::enlarged(frame->picture,
+                          {double(box.x), double(box.y), double(box.width), double(box.height)},
+                          kLoopSide));
+  }
+  if (squares.empty()) return film;
+  film.loop_frames = static_cast<int>(squares.size());
+  film.loop_side = kLoopSide;
+  film.loop_jpeg = video::jpeg_of(drawing::strip(squares), kLoopQuality);
+  return film;
+}
+
+}  // namespace airtruth::set_report

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/set_report/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dataset/set_report/card.h"
+#include "dataset/set_report/portrait.h"
+#include "dataset/set_report/totals.h"
+#include "foundation/base/base64.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
+#include "foundation/base/output_check.h"
+#include "show/html/page.h"
+#include "show/html/page_assets.h"
+#include "show/plot/plot_json.h"
+
+namespace airtruth::set_report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Upper bound for the stills of all sequences together; a still takes about 13 kB of the page.
+constexpr std::size_t kMaxStills = 1500;
+constexpr std::size_t kMaxStillsOfOne = 60;
+constexpr std::size_t kMinStillsOfOne = 4;
+
+template <typename T>
+Json json_of(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+Json rounded(const std::optional<double>& value, double unit) {
+  return value ? Json(rounded(*value, unit)) : Json();
+}
+
+// The data is stored in columns because a page of a thousand sequences holds a hundred thousand
+// points.
+Json series_of(const Portrait::Intruder& intruder) {
+  Json frame = Json::array(), range = frame, width = frame, height = frame, north = frame,
+       east = frame, down = frame, state = frame, to_closest = frame;
+  for (const Portrait::Point& p : intruder.points) {
+    frame.push_back(p.frame);
+    range.push_back(rounded(p.range_m, 0.1));
+    width.push_back(json_of(p.width_px));
+    height.push_back(json_of(p.height_px));
+    const auto at = [&](std::size_t i) {
+      return p.position_ned_m ? Json(rounded((*p.position_ned_m)[i], 0.1)) : Json();
+    };
+    north.push_back(at(0));
+    east.push_back(at(1));
+    down.push_back(at(2));
+    state.push_back(p.state);
+    to_closest.push_back(rounded(p.to_closest_s, 0.001));
+  }
+  return {{"id", intruder.id},
+          {"aircraft", intruder.aircraft},
+          {"frame", frame},
+          {"range_m", range},
+          {"width_px", width},
+          {"height_px", height},
+          {"north_m", north},
+          {"east_m", east},
+          {"down_m", down},
+          {"state", state},
+          {"to_closest_s", to_closest}};
+}
+
+// The records as sequence.json has them, with the places of the closest approach.
+Json encounters_json(const Portrait& portrait) {
+  std::vector<pipeline::EncounterRecord> records;
+  for (const Encountered& one : portrait.encounters) records.push_back(one.record);
+  Json list = pipeline::json_of(records);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto& closest = portrait.encounters[i].closest;
+    if (!closest) continue;
+    list[i]["own_ned_m"] = closest->own_ned_m;
+    list[i]["intruder_ned_m"] = closest->intruder_ned_m;
+  }
+  return list;
+}
+
+Json camera_of(const Portrait& portrait) {
+  Json frame = Json::array(), north = frame, east = frame, down = frame, yaw = frame, shift = frame,
+       roll = frame;
+  for (const Portrait::Camera& c : portrait.camera) {
+    frame.push_back(c.frame);
+    north.push_back(rounded(c.position_ned_m[0], 0.1));
+    east.push_back(rounded(c.position_ned_m[1], 0.1));
+    down.push_back(rounded(c.position_ned_m[2], 0.1));
+    yaw.push_back(rounded(c.yaw_deg, 0.01));
+    shift.push_back(rounded(c.shift_px, 0.01));
+    roll.push_back(rounded(c.roll_deg, 0.001));
+  }
+  return {{"frame", frame},
+          {"north_m", north},
+          {"east_m", east},
+          {"down_m", down},
+          {"yaw_deg", yaw},
+          {"shift_px", shift},
+          {"roll_deg", roll}};
+}
+
+// Of the containers that airtruth writes and imports, browsers play these.
+bool plays_in_browsers(const fs::path& video) {
+  return video.extension() == ".mp4" || video.extension() == ".webm";
+}
+
+Json film_json(const Film& film) {
+  Json stills = Json::array();
+  for (const Film::Still& still : film.stills) {
+    Json boxes = Json::array();
+    for (const Film::Marked& one : still.boxes)
+      boxes.push_back({one.intruder, one.box.x, one.box.y, one.box.width, one.box.height});
+    stills.push_back({{"frame", still.frame}, {"boxes", boxes}});
+  }
+  return stills;
+}
+
+// The mean contrast over the frames of the film; null without any.
+Json mean_contrast(const Film& film) {
+  if (film.contrasts.empty()) return {};
+  double sum = 0;
+  for (const double value : film.contrasts) sum += value;
+  return rounded(sum / static_cast<double>(film.contrasts.size()), 0.1);
+}
+
+Json intruders_json(const Portrait& portrait) {
+  Json intruders = Json::array();
+  for (const Portrait::Intruder& intruder : portrait.intruders)
+    intruders.push_back(series_of(intruder));
+  return intruders;
+}
+
+// A path as the page links to it.
+fs::path beside(const fs::path& page, const fs::path& path) {
+  return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
+}
+
+Json json_of(const Portrait& portrait, const fs::path& page) {
+  Json files = Json::array();
+  const fs::path folder = beside(page, portrait.folder);
+  for (const std::string& file : portrait.files) files.push_back((folder / file).generic_string());
+  return {{"name", portrait.facts.name},
+          {"background", fs::path(portrait.facts.background).filename().string()},
+          {"aircraft", portrait.facts.categories},
+          {"frames", portrait.facts.frames},
+          {"seconds", rounded(portrait.duration_s, 0.01)},
+          {"width", portrait.width},
+          {"height", portrait.height},
+          {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
+          {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
+          {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
+          {"motion_model", portrait.motion_model},
+          {"visible", portrait.frames_by_state[0]},
+          {"hidden", portrait.frames_by_state[1]},
+          {"contrast", mean_contrast(portrait.film)},
+          {"loop_frames", portrait.film.loop_frames},
+          {"loop_side", portrait.film.loop_side},
+          {"stills", film_json(portrait.film)},
+          {"poster", portrait.film.poster},
+          {"ids", portrait.ids},
+          {"video",
+           plays_in_browsers(portrait.video) ? Json(beside(page, portrait.video).generic_string())
+                                             : Json()},
+          {"intruders", intruders_json(portrait)},
+          {"camera", camera_of(portrait)},
+          {"encounters", encounters_json(portrait)},
+          {"files", files}};
+}
+
+// The sequences of a set, and the counts over them.
+struct Gallery {
+  std::vector<Portrait> portraits;
+  std::vector<bool> is_shown;
+  Totals totals;
+};
+
+// Of a sequence that is not shown, no frame is decoded and no series is kept.
+Gallery gallery_of(const labelled::LabelledSet& labelled, const ReportOptions& options) {
+  const std::size_t count = labelled.names().size();
+  Gallery gallery{std::vector<Portrait>(count), std::vector<bool>(count, false), {}};
+  for (const std::size_t i : thinned(count, options.max_shown)) gallery.is_shown[i] = true;
+  const std::size_t stills =
+      std::clamp(kMaxStills / std::max<std::size_t>(1, count), kMinStillsOfOne, kMaxStillsOfOne);
+  std::mutex mutex;
+  in_parallel(
+      count,
+      options.jobs,
+      [&](std::size_t i) {
+        const bool is_shown = gallery.is_shown[i];
+        Portrait portrait =
+            portrait_of(labelled, labelled.names()[i], is_shown ? stills : 0, options.stop);
+        const std::lock_guard lock(mutex);
+        gallery.totals.add(portrait);  // sums of whole numbers, the same in any order
+        if (!is_shown) {
+          portrait.intruders = {};
+          portrait.camera = {};
+          portrait.centres = {};
+        }
+        gallery.portraits[i] = std::move(portrait);
+      },
+      options.progress,
+      options.stop);
+  return gallery;
+}
+
+// The name on the card, or the name of the folder.
+std::string title_of(const Json& card, const fs::path& set) {
+  if (card.contains("name")) return card.at("name").get<std::string>();
+  const fs::path named = fs::absolute(set).lexically_normal();
+  return named.has_filename() ? named.filename().string() : named.parent_path().filename().string();
+}
+
+Json colours() {
+  Json colours = Json::array();
+  for (std::size_t i = 0; i < plot::kColours.size(); ++i)
+    colours.push_back(plot::json_of(plot::style_of(i)).at("colour"));
+  return colours;
+}
+
+// The counts over all sequences, as the page reads them.
+Json json_of(const Totals& totals) {
+  Json plots = Json::object();
+  for (const auto& [name, plot] : overview_plots(totals)) plots[name] = plot::json_of(plot);
+  return {{"frames", totals.frames},
+          {"without_box", totals.without_box},
+          {"frames_with_intruder", totals.frames_with_intruder},
+          {"negative_sequences", totals.negative_sequences},
+          {"classes", totals.boxes_by_class},
+          {"centres",
+           {{"columns", Portrait::kCellColumns},
+            {"rows", Portrait::kCellRows},
+            {"counts", totals.centres}}},
+          {"plots", plots},
+          // Of intruders, in their order.
+          {"colours", colours()}};
+}
+
+// The pictures of all films, under the names by which the page finds them.
+std::vector<html::PageBlob> pictures_of(const std::vector<const Portrait*>& portraits) {
+  std::vector<html::PageBlob> pictures;
+  for (std::size_t i = 0; i < portraits.size(); ++i) {
+    const Film& film = portraits[i]->film;
+    for (std::size_t k = 0; k < film.stills.size(); ++k)
+      pictures.push_back({fmt::format("still-{}-{}", i, k), base64_of(film.stills[k].jpeg)});
+    if (!film.loop_jpeg.empty())
+      pictures.push_back({fmt::format("loop-{}", i), base64_of(film.loop_jpeg)});
+  }
+  return pictures;
+}
+
+}  // namespace
+
+void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
+  check_output_file(out, options.overwrite);
+  const labelled::LabelledSet labelled(set);
+  const Gallery gallery = gallery_of(labelled, options);
+  std::vector<const Portrait*> shown;
+  Json sequences = Json::array();
+  for (std::size_t i = 0; i < gallery.portraits.size(); ++i) {
+    if (!gallery.is_shown[i]) continue;
+    shown.push_back(&gallery.portraits[i]);
+    sequences.push_back(json_of(gallery.portraits[i], out));
+  }
+  Json card = Json::object();
+  for (const auto& [key, text] : card_of(set, gallery.portraits)) card[key] = text;
+  Json data = json_of(gallery.totals);
+  data["title"] = title_of(card, set);
+  data["missing"] = labelled.missing();
+  data["card"] = card;
+  data["count"] = gallery.portraits.size();
+  data["sequences"] = sequences;
+  write_file(out,
+             html::page_of("airtruth data set",
+                           html::page_body(),
+                           data.dump(-1, ' ', false, Json::error_handler_t::replace),
+                           pictures_of(shown),
+                           std::string(html::encounters_js()) + std::string(html::page_js())));
+}
+
+}  // namespace airtruth::set_report

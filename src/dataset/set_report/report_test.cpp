@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/set_report/report.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "dataset/build/build.h"
+#include "foundation/base/files.h"
+#include "support/small_catalogue.h"
+#include "support/temporary_folder.h"
+
+namespace airtruth::set_report {
+namespace {
+
+class Report : public testing::Test {
+ protected:
+  Report() {
+    build::build_set(
+        catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), root_ / "set", {});
+  }
+
+  // The data that the page holds: the JSON object whose keys begin with "frames".
+  nlohmann::json data_of_page(std::size_t max_shown) const {
+    ReportOptions options;
+    options.overwrite = true;
+    options.max_shown = max_shown;
+    write_report(root_ / "set", root_ / "page.html", options);
+    const std::string page = read_file(root_ / "page.html");
+    const auto begin = page.find("{\"frames\":");
+    const auto end = page.find("</script>", begin);
+    return nlohmann::json::parse(page.substr(begin, end - begin));
+  }
+
+  test_support::TemporaryFolder temporary_;
+  fs::path root_ = temporary_.path();
+};
+
+TEST_F(Report, OfALargeSetShowsSomeSequencesAndCountsAll) {
+  const nlohmann::json whole = data_of_page(4);
+  const nlohmann::json part = data_of_page(2);
+  EXPECT_EQ(whole.at("sequences").size(), 4u);
+  ASSERT_EQ(part.at("sequences").size(), 2u);
+  // The first and the last by name.
+  EXPECT_EQ(part.at("sequences")[0], whole.at("sequences")[0]);
+  EXPECT_EQ(part.at("sequences")[1].at("name"), "sky-across-c172");
+  for (const auto& data : {whole, part}) {
+    EXPECT_EQ(data.at("count"), 4);
+    EXPECT_EQ(data.at("frames"), 4 * 8);
+  }
+  for (const char* counted : {"frames_with_intruder", "negative_sequences", "classes", "centres"})
+    EXPECT_EQ(part.at(counted), whole.at(counted)) << counted;
+  for (const char* plot : {"range_m", "size_px", "azimuth_deg", "states"})
+    EXPECT_EQ(part.at("plots").at(plot), whole.at("plots").at(plot)) << plot;
+}
+
+}  // namespace
+}  // namespace airtruth::set_report

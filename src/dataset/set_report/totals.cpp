@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/set_report/totals.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "labels/annotation/object_class.h"
+
+namespace airtruth::set_report {
+namespace {
+
+// Bars over named places.
+plot::Plot bars(const std::vector<std::string>& names, const std::vector<std::int64_t>& counts) {
+  plot::Plot plot{.x = {.names = names}, .y = {.min = 0}};
+  plot::Series series{.mark = plot::Mark::kBars};
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    series.x.push_back(static_cast<double>(i));
+    series.y.push_back(static_cast<double>(counts[i]));
+  }
+  plot.series.push_back(std::move(series));
+  return plot;
+}
+
+// The first and the last bin also count what lies beyond the edges.
+plot::Plot bars(const Histogram& histogram) {
+  const std::vector<double>& edges = histogram.edges;
+  const std::size_t last = histogram.counts.size() - 1;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i <= last; ++i)
+    names.push_back(i == last ? fmt::format("≥ {}", edges[i])
+                    : i == 0  ? fmt::format("< {}", edges[1])
+                              : fmt::format("{}–{}", edges[i], edges[i + 1]));
+  return bars(names, histogram.counts);
+}
+
+// Every name of the enum in its order, and those that occur without a value.
+template <typename Enum>
+plot::Plot bars(const std::map<std::string, std::int64_t>& counts, const std::string& without) {
+  std::vector<std::string> names = all_enum_names<Enum>();
+  if (counts.contains(without)) names.push_back(without);
+  std::vector<std::int64_t> heights;
+  for (const std::string& name : names)
+    heights.push_back(counts.contains(name) ? counts.at(name) : 0);
+  return bars(names, heights);
+}
+
+constexpr const char* kNoMeeting = "hovering";
+constexpr const char* kNeverSeen = "never seen";
+
+template <typename Enum>
+std::string name_or(const std::optional<Enum>& value, const char* without) {
+  return value ? enum_name(*value) : without;
+}
+
+void add_encounter(const pipeline::EncounterRecord& record, Totals& totals) {
+  ++totals.encounters;
+  ++totals.meetings[name_or(record.meeting, kNoMeeting)];
+  ++totals.horizons_when_first_seen[name_or(record.horizon_when_first_seen, kNeverSeen)];
+  if (record.closest) totals.closest_m.add(record.closest->distance_m);
+  if (!record.first_seen) return;
+  totals.first_seen_m.add(record.first_seen->range_m);
+  if (record.closest) totals.first_seen_s.add(record.closest->time_s - record.first_seen->time_s);
+}
+
+}  // namespace
+
+void Histogram::add(double value) {
+  const auto above = std::upper_bound(edges.begin(), edges.end(), value) - edges.begin();
+  ++counts[static_cast<std::size_t>(
+      std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(counts) - 1))];
+}
+
+void Totals::add(const Portrait& portrait) {
+  frames += portrait.facts.frames;
+  for (std::size_t s = 0; s < by_state.size(); ++s) by_state[s] += portrait.frames_by_state[s];
+  without_box += portrait.without_box;
+  frames_with_intruder += portrait.frames_with_intruder;
+  negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
+  for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
+  for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
+  for (const Portrait::Intruder& intruder : portrait.intruders) {
+    if (!annotation::is_aircraft(intruder.object_class)) continue;
+    for (const Portrait::Point& point : intruder.points) {
+      if (!point.width_px) continue;
+      size_px.add(std::max(*point.width_px, *point.height_px));
+      if (point.range_m) range_m.add(*point.range_m);
+      if (point.to_closest_s) to_closest_s.add(*point.to_closest_s);
+      if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
+    }
+  }
+  for (const Encountered& one : portrait.encounters) add_encounter(one.record, *this);
+  for (const double value : portrait.film.contrasts) contrast.add(value);
+}
+
+std::vector<OverviewPlot> overview_plots(const Totals& totals) {
+  std::vector<std::string> classes;
+  std::vector<std::int64_t> boxes;
+  for (const auto& [name, count] : totals.boxes_by_class) {
+    classes.push_back(name);
+    boxes.push_back(count);
+  }
+  const std::int64_t without = totals.frames - totals.frames_with_intruder;
+  std::vector<OverviewPlot> plots = {
+      {"range_m", bars(totals.range_m)},
+      {"size_px", bars(totals.size_px)},
+      {"azimuth_deg", bars(totals.azimuth_deg)},
+      {"contrast", bars(totals.contrast)},
+      {"classes", bars(classes, boxes)},
+      {"negatives", bars({"with an intruder", "without"}, {totals.frames_with_intruder, without})},
+      {"states",
+       bars({"visible", "hidden", "outside", "behind", "ended"},
+            {totals.by_state.begin(), totals.by_state.end()})}};
+  if (totals.encounters == 0) return plots;
+  plots.push_back({"to_closest_s", bars(totals.to_closest_s)});
+  plots.push_back({"meetings", bars<encounter::Meeting>(totals.meetings, kNoMeeting)});
+  plots.push_back({"closest_m", bars(totals.closest_m)});
+  plots.push_back({"first_seen_m", bars(totals.first_seen_m)});
+  plots.push_back({"first_seen_s", bars(totals.first_seen_s)});
+  plots.push_back(
+      {"horizon", bars<encounter::AgainstHorizon>(totals.horizons_when_first_seen, kNeverSeen)});
+  return plots;
+}
+
+}  // namespace airtruth::set_report

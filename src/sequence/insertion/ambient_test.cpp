@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/insertion/ambient.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "foundation/image/colour.h"
+#include "picture/render/renderer.h"
+
+namespace airtruth::insertion {
+namespace {
+
+constexpr int kSkySize = 120;
+constexpr image::Rgb kSkyColour = {0.55F, 0.85F, 1.6F};
+constexpr float kSkyLevel = 0.2F;  // irradiance over pi on a level surface
+
+std::uint8_t to_code(float value) {
+  return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
+}
+
+// A clear sky of a known level under a sun, as a camera of that pitch sees it.
+struct ClearSky {
+  lens::Lens lens{lens::Pinhole{{100, 100}, {kSkySize / 2.0, kSkySize / 2.0}},
+                  {kSkySize, kSkySize}};
+  projection::Sight sight;
+  scene::Light light;
+  image::Picture picture;
+
+  ClearSky(double pitch_deg, double sun_azimuth_deg, double sun_elevation_deg) {
+    const Quaternion world_from_cam =
+        world_from_body({0, pitch_deg, 0}) * cam_from_body().conjugate();
+    sight = {&lens, Rigid{world_from_cam, Vector3::Zero()}.inverse(), Homography::Identity()};
+    light.sun_azimuth_deg = sun_azimuth_deg;
+    light.sun_elevation_deg = sun_elevation_deg;
+    const Skies all = skies(render::to_sun(sun_azimuth_deg, sun_elevation_deg));
+    image::Colour colour;
+    colour.chroma = image::Chroma::k444;
+    picture = image::make_picture(kSkySize, kSkySize, colour);
+    const image::ColourCode code(colour);
+    for (int y = 0; y < kSkySize; ++y)
+      for (int x = 0; x < kSkySize; ++x) {
+        const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
+        const auto seen = static_cast<float>(all.clear_seen(world_from_cam * ray->normalized()));
+        image::Rgb coded;
+        for (std::size_t c = 0; c < 3; ++c)
+          coded[c] = static_cast<float>(image::ToneCurve{}.coded_from_linear(
+              std::min(1.0F, kSkyLevel * seen * kSkyColour[c])));
+        const image::Ycc ycc = code.ycc_from_rgb(coded);
+        picture.planes[0].row(y)[x] = to_code(ycc.y);
+        picture.planes[1].row(y)[x] = to_code(ycc.cb);
+        picture.planes[2].row(y)[x] = to_code(ycc.cr);
+      }
+  }
+
+  Ambient seen() const { return AmbientEstimator(light, {}, nullptr).next(picture, sight, {}); }
+};
+
+// The result does not depend on the part of the sky in view: low or high, towards the sun or away
+// from it.
+TEST(Ambient, AClearSkysLightIsThatOfTheWholeSkyWhereverTheCameraLooks) {
+  for (const double pitch_deg : {25.0, 50.0})
+    for (const double azimuth_deg : {100.0, 180.0}) {
+      const Ambient light = ClearSky(pitch_deg, azimuth_deg, 40).seen();
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(light.blue[c], kSkyLevel * kSkyColour[c], 0.03F * kSkyLevel * kSkyColour[c])
+            << pitch_deg << " " << azimuth_deg << " " << c;
+        EXPECT_NEAR(light.cloud[c], 0, 1e-3F);
+      }
+    }
+}
+
+TEST(Ambient, AGroundThatIsNotSeenGivesBackItsShareOfSunAndSky) {
+  ClearSky sky(40, 180, 30);
+  const Ambient usual = sky.seen();
+  sky.light.ground_albedo = 0.7;
+  const Ambient snow = sky.seen();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float level = 0.5F * usual.sun[c] + usual.sky()[c];  // the sine of 30 degrees
+    EXPECT_NEAR(usual.ground[c], 0.1F * level, 1e-4F);
+    EXPECT_NEAR(snow.ground[c], 0.7F * level, 1e-4F);
+  }
+}
+
+// A sky of two even halves, linear light.
+image::Picture sky_of(const image::Rgb& left, const image::Rgb& right) {
+  image::Colour colour;
+  colour.chroma = image::Chroma::k444;
+  image::Picture picture = image::make_picture(kSkySize, kSkySize, colour);
+  const image::ColourCode code(colour);
+  for (int x = 0; x < kSkySize; ++x) {
+    image::Rgb coded = x < kSkySize / 2 ? left : right;
+    for (float& value : coded)
+      value = static_cast<float>(image::ToneCurve{}.coded_from_linear(value));
+    const image::Ycc ycc = code.ycc_from_rgb(coded);
+    for (int y = 0; y < kSkySize; ++y) {
+      picture.planes[0].row(y)[x] = to_code(ycc.y);
+      picture.planes[1].row(y)[x] = to_code(ycc.cb);
+      picture.planes[2].row(y)[x] = to_code(ycc.cr);
+    }
+  }
+  return picture;
+}
+
+Ambient light_of(const image::Rgb& left, const image::Rgb& right) {
+  const ClearSky clear(35, 180, 40);
+  return AmbientEstimator(clear.light, {}, nullptr).next(sky_of(left, right), clear.sight, {});
+}
+
+// An overcast sky of 7000 K under a white balance for daylight has R/B of 0.7; no sun shines. The
+// same blue beside grey clouds is a clear sky, and one of R/B below 0.4 is clear by itself.
+TEST(Ambient, ABluishOvercastSkyHasNoSunAndTheSameBlueBesideCloudsHas) {
+  const image::Rgb bluish = {0.42F, 0.48F, 0.60F};
+  const image::Rgb grey = {0.6F, 0.6F, 0.6F};
+  const image::Rgb blue = {0.12F, 0.22F, 0.40F};
+  const Ambient overcast = light_of(bluish, bluish);
+  EXPECT_LT(overcast.sun[1], 0.15F * bluish[1]);
+  EXPECT_LT(overcast.blue[1], 0.05F * overcast.cloud[1]);
+  EXPECT_GT(light_of(bluish, grey).sun[1], 2 * bluish[1]);
+  EXPECT_GT(light_of(blue, blue).sun[1], 2 * blue[1]);
+}
+
+// An even grey sky; code value of its luma.
+image::Picture grey_sky(int luma) {
+  image::Picture picture = image::make_picture(96, 72, {});
+  for (std::size_t p = 0; p < 3; ++p)
+    for (int y = 0; y < picture.planes[p].height; ++y)
+      std::fill_n(picture.planes[p].row(y),
+                  picture.planes[p].width,
+                  static_cast<std::uint8_t>(p == 0 ? luma : 128));
+  return picture;
+}
+
+// Before a cut the sky nearly clips, so its jump cannot be followed as one of exposure: the
+// smoothed light stays too bright, and starts anew at a cut.
+TEST(Ambient, ACutBeginsTheLightAnew) {
+  const lens::Lens lens = lens::pinhole_from_vertical_fov(20, {96, 72});
+  projection::Sight sight;
+  sight.lens = &lens;
+  sight.cam_from_world.rotation = cam_from_body();
+  const auto after = [&](bool begins_shot) {
+    AmbientEstimator estimator({}, {}, nullptr);
+    for (int k = 0; k < 10; ++k) estimator.next(grey_sky(234), sight, {});
+    return estimator.next(grey_sky(80), sight, {}, begins_shot).cloud[1];
+  };
+  AmbientEstimator alone({}, {}, nullptr);
+  const float truth = alone.next(grey_sky(80), sight, {}).cloud[1];
+  EXPECT_FLOAT_EQ(after(true), truth);
+  EXPECT_GT(after(false), 2 * truth);
+}
+
+// The second frame shows the same picture turned about: what was low in it is high in the sky.
+// After a cut nothing else of the first frame is left.
+TEST(Ambient, DirectionsFollowTheFramesHomography) {
+  const ClearSky clear(20, 90, 40);
+  projection::Sight turned = clear.sight;
+  turned.frame_from_nominal << -1, 0, kSkySize, 0, -1, kSkySize, 0, 0, 1;
+  const auto alone = [&](const projection::Sight& sight) {
+    return AmbientEstimator(clear.light, {}, nullptr).next(clear.picture, sight, {}).blue[1];
+  };
+  AmbientEstimator estimator(clear.light, {}, nullptr);
+  estimator.next(clear.picture, clear.sight, {});
+  EXPECT_FLOAT_EQ(estimator.next(clear.picture, turned, {}, true).blue[1], alone(turned));
+  EXPECT_GT(std::abs(alone(turned) / alone(clear.sight) - 1), 0.02);
+}
+
+}  // namespace
+}  // namespace airtruth::insertion

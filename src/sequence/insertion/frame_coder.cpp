@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/insertion/frame_coder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace airtruth::insertion {
+namespace {
+
+int quantiser_of(double codec_step) {
+  constexpr double kStepAtQp0 = 0.625;
+  return static_cast<int>(std::clamp(std::lround(6 * std::log2(codec_step / kStepAtQp0)), 1L, 51L));
+}
+
+// How far beyond a window the last frame's samples are kept: what moves faster, in pixels a frame,
+// finds this frame's background there. libx264 searches 16 px around its prediction.
+constexpr int kKeptAroundPx = 32;
+
+PixelBox kept_around(const PixelBox& box, const image::Picture& frame) {
+  const int right = std::min(frame.width, box.right() + kKeptAroundPx);
+  const int bottom = std::min(frame.height, box.bottom() + kKeptAroundPx);
+  const int x = std::max(0, box.x - kKeptAroundPx), y = std::max(0, box.y - kKeptAroundPx);
+  return {x, y, right - x, bottom - y};
+}
+
+}  // namespace
+
+FrameCoder::FrameCoder(double codec_step) : codec_(quantiser_of(codec_step)) {}
+
+image::Picture FrameCoder::reference(const PixelBox& box,
+                                     const image::Picture& now,
+                                     image::Picture Past::*part) const {
+  image::Picture result = now.clone();
+  for (const Past& past : past_)
+    image::paste(result, past.*part, past.box.x - box.x, past.box.y - box.y);
+  return result;
+}
+
+composite::Coded FrameCoder::code(const PixelBox& box,
+                                  const image::Picture& with_layer,
+                                  const image::Picture& background) {
+  windows_.push_back({box, background.clone()});
+  return {codec_.coded(with_layer, reference(box, background, &Past::painted)),
+          codec_.coded(background, reference(box, background, &Past::background))};
+}
+
+void FrameCoder::finish_frame(const image::Picture& painted) {
+  past_.clear();
+  for (const Window& window : windows_) {
+    const PixelBox box = kept_around(window.box, painted);
+    image::Picture background = image::crop(painted, box);
+    for (const Window& other : windows_)
+      image::paste(background, other.background, other.box.x - box.x, other.box.y - box.y);
+    past_.push_back({box, image::crop(painted, box), std::move(background)});
+  }
+  windows_.clear();
+}
+
+}  // namespace airtruth::insertion

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/insertion/frame_truth.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "encounter/passage/passage.h"
+#include "encounter/separation/violation.h"
+#include "labels/projection/bearing.h"
+#include "labels/projection/spot_box.h"
+#include "sequence/setup/lens_marks.h"
+
+namespace airtruth::insertion {
+namespace {
+
+annotation::State state_of(const setup::Moment& moment,
+                           std::size_t i,
+                           const Vector3& p_in_cam,
+                           const image::Layer& layer,
+                           const composite::Visible* visible) {
+  using annotation::State;
+  if (visible != nullptr && visible->box) return State::kVisible;
+  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() &&
+                     layer.area_alone_in_frame_px[i] > 0;
+  if (drawn) return State::kHidden;
+  if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
+  return State::kOutside;
+}
+
+void add_bearings(annotation::Intruder& truth,
+                  const setup::Moment& moment,
+                  const trajectory::State& state,
+                  const Vector3& offset_in_world) {
+  const projection::Bearing nominal = projection::bearing_of(
+      cam_from_body() * (moment.camera.world_from_body.conjugate() * offset_in_world));
+  truth.nominal_azimuth_deg = nominal.azimuth_deg;
+  truth.nominal_elevation_deg = nominal.elevation_deg;
+  const auto seen =
+      projection::seen_bearing(moment.sight, state.position_in_world, state.velocity_in_world_mps);
+  if (!seen) return;
+  truth.azimuth_deg = seen->azimuth_deg;
+  truth.elevation_deg = seen->elevation_deg;
+}
+
+annotation::EncounterTruth encounter_of(const setup::World& world,
+                                        const trajectory::State& own_state,
+                                        const trajectory::State& state) {
+  const encounter::Mover own = encounter::mover_of(own_state);
+  const encounter::Mover intruder = encounter::mover_of(state);
+  annotation::EncounterTruth truth;
+  truth.measures = encounter::measures(own, intruder, {.lookahead_s = world.lookahead_s});
+  for (const auto& [name, volume] : world.volumes) {
+    const bool inside = encounter::is_inside(volume, own, intruder);
+    const auto violated = encounter::violation(volume, own, intruder, world.lookahead_s);
+    annotation::VolumeTruth& one = truth.volumes.emplace_back();
+    one.name = name;
+    one.inside = inside;
+    // At the volume's very edge rounding may decide the two differently.
+    if (inside)
+      one.to_violation_s = 0;
+    else if (violated)
+      one.to_violation_s = violated->begin_s;
+  }
+  return truth;
+}
+
+void add_geometry(annotation::Intruder& truth,
+                  const setup::Moment& moment,
+                  const trajectory::State& state) {
+  const Vector3 offset = state.position_in_world - moment.camera.position_in_world;
+  const Vector3 p_in_cam = moment.sight.cam_from_world * state.position_in_world;
+  const double range_m = offset.norm();
+  truth.position_ned_m = state.position_in_world;
+  truth.velocity_ned_mps = state.velocity_in_world_mps;
+  truth.attitude_yaw_pitch_roll_deg = yaw_pitch_roll(state.world_from_body);
+  truth.position_in_cam_m = p_in_cam;
+  truth.range_m = range_m;
+  if (range_m > 0) {
+    const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
+    truth.range_rate_mps = offset.dot(relative) / range_m;
+    add_bearings(truth, moment, state, offset);
+  }
+}
+
+void add_pixels(annotation::Intruder& truth,
+                std::size_t i,
+                const image::Layer& layer,
+                const composite::Visible& visible) {
+  truth.visible_box_px = visible.box;
+  if (visible.box) truth.covered_box_px = visible.covered;
+  truth.visible_area_px = visible.pixels;
+  truth.alpha_sum_px = visible.alpha_sum_px;
+  truth.centroid_px = visible.centroid;
+  if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
+  const double alone = layer.area_alone_px[i];
+  const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
+  truth.hidden_by_own_aircraft = fraction(layer.area_seen_px[i] - layer.area_free_px[i]);
+  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - layer.area_seen_px[i]);
+  truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
+  constexpr double kRounding = 1e-6;  // sums of float coverages
+  for (double* share :
+       {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
+    if (*share < kRounding) *share = 0;
+}
+
+// What is on the lens has boxes alone.
+annotation::Intruder mark_truth(const setup::World& world,
+                                const setup::Moment& moment,
+                                std::size_t mark,
+                                const image::Layer& layer,
+                                const std::vector<composite::Visible>& visible) {
+  using annotation::State;
+  annotation::Intruder truth;
+  truth.id = world.lens_marks[mark].id;
+  truth.aircraft = truth.object_class = enum_name(world.lens_marks[mark].kind);
+  if (!setup::is_there(world.lens_marks[mark], moment.time_s)) return truth;
+  truth.state = State::kOutside;
+  const auto& spot = moment.spots[mark];
+  if (!spot) return truth;
+  const lens::ImageSize size = world.lens.size();
+  truth.exact_box_px = projection::spot_box(*spot, moment.sight.shutter, size.width, size.height);
+  const std::size_t i = world.actors.size() + mark;
+  const bool drawn = i < layer.area_alone_in_frame_px.size() && layer.area_alone_in_frame_px[i] > 0;
+  if (drawn) truth.state = State::kHidden;
+  if (i >= visible.size()) return truth;
+  if (visible[i].box) truth.state = State::kVisible;
+  add_pixels(truth, i, layer, visible[i]);
+  return truth;
+}
+
+std::vector<annotation::Intruder> intruders_of(const setup::World& world,
+                                               const setup::Moment& moment,
+                                               const image::Layer& layer,
+                                               const std::vector<composite::Visible>& visible) {
+  std::vector<annotation::Intruder> result;
+  for (std::size_t i = 0; i < world.actors.size(); ++i) {
+    annotation::Intruder truth;
+    truth.id = world.actors[i].id;
+    truth.aircraft = world.actors[i].aircraft;
+    truth.object_class = world.actors[i].object_class;
+    if (moment.states[i]) {
+      add_geometry(truth, moment, *moment.states[i]);
+      truth.encounter = encounter_of(world, moment.camera, *moment.states[i]);
+      const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
+      truth.state = state_of(moment, i, *truth.position_in_cam_m, layer, seen);
+      if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;
+      if (seen != nullptr) add_pixels(truth, i, layer, *seen);
+    }
+    result.push_back(std::move(truth));
+  }
+  for (std::size_t mark = 0; mark < world.lens_marks.size(); ++mark)
+    result.push_back(mark_truth(world, moment, mark, layer, visible));
+  return result;
+}
+
+}  // namespace
+
+annotation::Frame frame_truth(const setup::World& world,
+                              const video::Frame& frame,
+                              const FrameMotionTruth& motion,
+                              const setup::Moment& moment,
+                              const Painted& painted) {
+  annotation::Frame truth;
+  truth.frame = frame.index;
+  truth.time_s = frame.time_s;
+  truth.damaged = frame.damaged;
+  truth.motion_state = motion.state;
+  truth.shake = motion.shake;
+  truth.camera_position_ned_m = moment.camera.position_in_world;
+  truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
+  truth.intruders = intruders_of(world, moment, painted.layer, painted.visible);
+  return truth;
+}
+
+}  // namespace airtruth::insertion

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/insertion/paint.h"
+
+#include <cmath>
+
+#include "foundation/base/error.h"
+#include "picture/composite/chroma_key.h"
+#include "picture/composite/codec_blocks.h"
+#include "picture/composite/cover.h"
+#include "picture/composite/spots.h"
+#include "picture/composite/spread.h"
+#include "picture/video/still.h"
+#include "sequence/insertion/frame_coder.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::insertion {
+namespace {
+
+// Distance beyond the light of the intruder within which the layer's samples change.
+int margin_px(const scene::CameraModel& model) {
+  return setup::sensor_of(model).reach_px() +
+         (setup::has_codec(model) ? composite::kCodecBlockPx - 1 : 0);
+}
+
+// Effects of air and lens on the light that has left the intruder.
+image::Layer through_air_and_lens(image::Layer layer,
+                                  const scene::CameraModel& model,
+                                  const Ambient& ambient,
+                                  const lens::ImageSize& size) {
+  if (layer.empty()) return layer;
+  if (model.extinction_per_km) {
+    std::array<double, 3> airlight;
+    for (std::size_t c = 0; c < 3; ++c)
+      airlight[c] = model.airlight ? (*model.airlight)[c] : double(ambient.airlight[c]);
+    composite::add_haze(layer, *model.extinction_per_km, airlight);
+  }
+  return composite::spread(
+      layer, model.point_spread_px.value_or(0), margin_px(model), size.width, size.height);
+}
+
+class Matte : public Painter {
+ public:
+  Matte(const scene::Scene& scene,
+        const setup::World& world,
+        const image::Mask* mask,
+        std::stop_token stop)
+      : Painter(scene, world, mask, std::move(stop)) {}
+
+  bool is_in_order() const override { return setup::has_codec(scene_.camera_model); }
+
+  void compose(image::Picture& picture,
+               const setup::Moment& moment,
+               const Ambient&,
+               Painted& painted) override {
+    if (setup::has_codec(scene_.camera_model) && !coder_)
+      coder_.emplace(*scene_.camera_model.codec_step);
+    if (!painted.layer.empty()) {
+      composite::MatteOptions options{.own_aircraft = mask_};
+      options.sensor = setup::sensor_of(scene_.camera_model);
+      options.seed = scene_.seed;
+      options.frame = moment.frame;
+      options.coder = coder_ ? &*coder_ : nullptr;
+      painted.visible = composite::composite_matte(picture, painted.layer, options);
+    }
+    if (coder_) coder_->finish_frame(picture);
+  }
+
+ private:
+  std::optional<FrameCoder> coder_;
+};
+
+class ChromaKey : public Painter {
+ public:
+  ChromaKey(const scene::Scene& scene,
+            const setup::World& world,
+            const image::Mask* mask,
+            std::unique_ptr<backdrop::Backdrop> opened,
+            std::stop_token stop)
+      : Painter(scene, world, mask, std::move(stop)), backdrop_(std::move(opened)) {
+    check(backdrop_ != nullptr, "the chroma-key method has its OpenGL");
+  }
+
+  void compose(image::Picture& picture,
+               const setup::Moment& moment,
+               const Ambient& ambient,
+               Painted& painted) override {
+    const auto& pinhole = std::get<lens::Pinhole>(world_.lens.model());
+    std::vector<backdrop::Instance> instances;
+    for (std::size_t i = 0; i < world_.actors.size(); ++i) {
+      if (!moment.search[i]) continue;
+      instances.push_back(
+          {&world_.actors[i].type->mesh, moment.states[i]->world_from_body_rigid(), moment.time_s});
+    }
+    if (instances.empty()) return;
+    const backdrop::HemisphereLight light{
+        setup::to_sun_in_world(scene_.light), ambient.sun, ambient.sky(), ambient.ground};
+    const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px,
+                                                        pinhole.principal_point_px,
+                                                        moment.sight.cam_from_world,
+                                                        light,
+                                                        instances);
+    const image::Picture before = picture.clone();
+    composite::composite_chroma_key(
+        picture, virtual_image, moment.sight.frame_from_nominal, {.own_aircraft = mask_});
+    painted.visible = changed(before, picture, painted.layer, moment);
+  }
+
+ private:
+  // The changed pixels, divided among the intruders by their geometry.
+  std::vector<composite::Visible> changed(const image::Picture& before,
+                                          const image::Picture& after,
+                                          const image::Layer& layer,
+                                          const setup::Moment& moment) const;
+
+  std::unique_ptr<backdrop::Backdrop> backdrop_;
+};
+
+bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
+  if (a.planes[0].row(y)[x] != b.planes[0].row(y)[x]) return true;
+  if (a.plane_count == 1) return false;
+  const int cx = x >> image::log2_chroma_width(a.colour.chroma);
+  const int cy = y >> image::log2_chroma_height(a.colour.chroma);
+  return a.planes[1].row(cy)[cx] != b.planes[1].row(cy)[cx] ||
+         a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
+}
+
+void add_pixel(composite::Visible& visible, int x, int y) {
+  const PixelBox pixel{x, y, 1, 1};
+  visible.box = visible.box ? bounds(*visible.box, pixel) : pixel;
+  ++visible.pixels;
+}
+
+std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
+                                                   const image::Picture& after,
+                                                   const image::Layer& layer,
+                                                   const setup::Moment& moment) const {
+  // Reach of the Lanczos kernel: its 8x8 samples spread an edge by four pixels.
+  constexpr double kLanczosReachPx = 5;
+  std::vector<composite::Visible> visible(world_.actors.size());
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    if (!moment.search[i]) continue;
+    const Box& box = *moment.search[i];
+    const int x1 =
+        std::min(after.width, static_cast<int>(std::ceil(box.right() + kLanczosReachPx)));
+    const int y1 =
+        std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
+    for (int y = std::max(0, static_cast<int>(box.y - kLanczosReachPx)); y < y1; ++y) {
+      for (int x = std::max(0, static_cast<int>(box.x - kLanczosReachPx)); x < x1; ++x)
+        if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
+    }
+    if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
+    visible[i].covered = composite::covered_box(layer, i, mask_);
+    for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
+      for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
+        const double coverage = layer.coverage[i][layer.index(x, y)];
+        visible[i].alpha_before_mask_px += coverage;
+        if (mask_ == nullptr || mask_->is_free(x, y)) visible[i].alpha_sum_px += coverage;
+      }
+    }
+  }
+  return visible;
+}
+
+}  // namespace
+
+Painted Painter::draw(const setup::Moment& moment, const Ambient& ambient) const {
+  Painted painted;
+  painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
+  return painted;
+}
+
+Painted Painter::paint(image::Picture& picture,
+                       const setup::Moment& moment,
+                       const Ambient& ambient) {
+  Painted painted = draw(moment, ambient);
+  compose(picture, moment, ambient, painted);
+  return painted;
+}
+
+image::Layer render_layer(const scene::Scene& scene,
+                          const setup::World& world,
+                          const setup::Moment& moment,
+                          const Ambient& ambient,
+                          const image::Mask* own_aircraft,
+                          const std::stop_token& stop) {
+  const render::View view{&world.lens,
+                          moment.sight.cam_from_world.inverse(),
+                          moment.sight.frame_from_nominal.inverse(),
+                          world.lens.size().width,
+                          world.lens.size().height,
+                          moment.sight.shutter,
+                          moment.sight.camera,
+                          moment.sight.frame_from_nominal_per_s};
+  const render::Light light{setup::to_sun_in_world(scene.light),
+                            ambient.sun,
+                            ambient.sky(),
+                            ambient.ground,
+                            scene.composite.method == scene::CompositeMethod::kChromaKey
+                                ? std::nullopt
+                                : std::optional(ambient.surroundings)};
+  std::vector<render::Instance> instances;
+  bool any = false;
+  for (std::size_t i = 0; i < world.actors.size(); ++i) {
+    render::Instance instance{world.actors[i].model.get(), {}, moment.time_s, moment.twists[i]};
+    if (moment.states[i]) instance.world_from_body = moment.states[i]->world_from_body_rigid();
+    any = any || moment.search[i].has_value();
+    instances.push_back(instance);
+  }
+  const lens::ImageSize size = world.lens.size();
+  const composite::Spots on_lens{moment.spots, moment.sight.shutter, size.width, size.height};
+  const std::vector<composite::SpotCover> covers = composite::covers_of(on_lens);
+  const bool has_spots = !composite::are_out_of_view(covers);
+  if (!any && !has_spots) return {};
+  image::Layer layer;
+  if (any) {
+    layer = render::render(
+        view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
+    if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
+    if (has_spots) composite::hide_behind(layer, covers, own_aircraft);
+    layer = through_air_and_lens(std::move(layer), scene.camera_model, ambient, size);
+  }
+  if (!has_spots) return layer;
+  return composite::with_spots(std::move(layer),
+                               world.actors.size(),
+                               on_lens,
+                               covers,
+                               own_aircraft,
+                               margin_px(scene.camera_model));
+}
+
+void check_method(const scene::Scene& scene, const lens::Lens& lens) {
+  if (scene.composite.method != scene::CompositeMethod::kChromaKey) return;
+  if (!scene.lens_marks.empty())
+    throw Error(std::string("composite.method chroma-key has no picture of what is on the lens; "
+                            "expected method = \"matte\", or no ") +
+                    enum_name(scene.lens_marks.front().kind),
+                scene.lens_marks.front().where);
+  if (!std::holds_alternative<lens::Pinhole>(lens.model()))
+    throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole "
+                            "alone; the lens is ") +
+                    lens.name() + "; expected model = \"pinhole\" or method = \"matte\"",
+                scene.lens.where);
+}
+
+void check_codec(const scene::Scene& scene, const image::Colour& colour) {
+  if (setup::has_codec(scene.camera_model) && !video::PatchCodec::can_code(colour))
+    throw Error(
+        "has 4:4:0 samples, which H.264 has no layout for; expected a clip in 4:2:0, 4:2:2 or "
+        "4:4:4, or "
+        "a scene without sensor.codec_step",
+        {scene.background.video.string()});
+}
+
+std::unique_ptr<backdrop::Backdrop> open_backdrop(const scene::Scene& scene,
+                                                  const lens::Lens& lens,
+                                                  const BackdropOptions& options) {
+  if (scene.composite.method != scene::CompositeMethod::kChromaKey) return nullptr;
+  check_method(scene, lens);
+  backdrop::Options gl;
+  gl.gpu = options.gpu;
+  gl.software = options.software_gl;
+  return backdrop::open_backdrop(lens.size().width, lens.size().height, gl);
+}
+
+std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
+                                      const setup::World& world,
+                                      const image::Mask* mask,
+                                      std::unique_ptr<backdrop::Backdrop> opened,
+                                      const std::stop_token& stop) {
+  if (scene.composite.method == scene::CompositeMethod::kChromaKey)
+    return std::make_unique<ChromaKey>(scene, world, mask, std::move(opened), stop);
+  return std::make_unique<Matte>(scene, world, mask, stop);
+}
+
+std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size) {
+  if (!scene.background.mask) return std::nullopt;
+  return video::read_mask(*scene.background.mask, size.width, size.height);
+}
+
+}  // namespace airtruth::insertion

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distractors through the whole way from a scene to a frame's truth: geometry against pixels.
+#include "sequence/insertion/paint.h"
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "aircraft/shapes/shapes.h"
+#include "labels/annotation/lens_facts.h"
+#include "picture/composite/cover.h"
+#include "picture/composite/matte.h"
+#include "scene/scene/scene.h"
+#include "sequence/insertion/frame_truth.h"
+#include "sequence/setup/moment.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::insertion {
+namespace {
+
+constexpr lens::ImageSize kSize{640, 480};
+
+scene::Scene scene_with(const std::string& text) {
+  return scene::parse_scene(
+      "[background]\nvideo = \"none.mp4\"\n[lens]\nvertical_fov_deg = 50\n[light]\n"
+      "sun_azimuth_deg = 20\nsun_elevation_deg = 30\n" +
+          text,
+      "s.toml");
+}
+
+// A grey picture of full-range 4:4:4 samples.
+image::Picture grey_picture() {
+  image::Colour colour;
+  colour.chroma = image::Chroma::k444;
+  colour.range = image::Range::kFull;
+  image::Picture picture = image::make_picture(kSize.width, kSize.height, colour);
+  for (int p = 0; p < picture.plane_count; ++p)
+    for (int y = 0; y < picture.planes[p].height; ++y)
+      std::fill_n(picture.planes[p].row(y), picture.planes[p].width, p == 0 ? 150 : 128);
+  return picture;
+}
+
+struct Drawn {
+  annotation::Frame truth;
+  image::Picture before, after;
+};
+
+Drawn drawn(const scene::Scene& scene, double time_s, const image::Mask* own = nullptr) {
+  setup::World world = setup::load_world(scene, kSize, {});
+  const setup::Moment moment = setup::moment_at(world, 0, time_s, {});
+  Drawn result;
+  result.before = grey_picture();
+  video::Frame frame;
+  frame.picture = result.before.clone();
+  frame.time_s = time_s;
+  const auto painter = make_painter(scene, world, own, {});
+  const Painted painted = painter->paint(frame.picture, moment, Ambient{});
+  result.truth = frame_truth(world, frame, {"none", {}}, moment, painted);
+  result.after = std::move(frame.picture);
+  // What the writer refuses fails here.
+  annotation::jsonl_line(result.truth, annotation::facts_of(world.lens));
+  return result;
+}
+
+Box floating(const PixelBox& b) {
+  return {double(b.x), double(b.y), double(b.width), double(b.height)};
+}
+
+// The covered box never reaches beyond the exact one by a pixel, and loses no more than `lost_px`
+// of each side: tips that cover less than 0.08 of a pixel.
+void expect_boxes_agree(const annotation::Intruder& one, double lost_px) {
+  ASSERT_EQ(one.state, annotation::State::kVisible) << one.id;
+  ASSERT_TRUE(one.exact_box_px && one.covered_box_px) << one.id;
+  const Box exact = *one.exact_box_px;
+  const Box covered = floating(*one.covered_box_px);
+  EXPECT_GE(covered.x, exact.x - 1);
+  EXPECT_GE(covered.y, exact.y - 1);
+  EXPECT_LE(covered.right(), exact.right() + 1);
+  EXPECT_LE(covered.bottom(), exact.bottom() + 1);
+  EXPECT_GE(covered.width, exact.width - 2 * lost_px) << one.id;
+  EXPECT_GE(covered.height, exact.height - 2 * lost_px) << one.id;
+}
+
+TEST(Distractors, BoxesOfBirdsAgreeByGeometryAndByPixels) {
+  for (const char* shutter : {"", "[shutter]\nexposure_s = 0.008\nreadout_s = 0.02\n"})
+    for (const double time_s : {0.2, 0.31, 0.47})
+      for (const double range_m : {15.0, 40.0}) {
+        const Drawn made = drawn(
+            scene_with(fmt::format("[[distractor]]\nkind = \"bird\"\nglide = 0\nwaypoints_ned_m = "
+                                   "[[{0}, -6, -152], [{0}, 6, -149]]\nspeed_mps = 12\n{1}",
+                                   range_m,
+                                   shutter)),
+            time_s);
+        ASSERT_EQ(made.truth.intruders.size(), 1U);
+        EXPECT_EQ(made.truth.intruders[0].object_class, "bird");
+        EXPECT_NEAR(*made.truth.intruders[0].range_m, range_m, 2.5);
+        expect_boxes_agree(made.truth.intruders[0], 1.75);
+      }
+}
+
+TEST(Distractors, BoxesOfMultirotorsAndBalloonsAgree) {
+  for (const char* shutter : {"", "[shutter]\nexposure_s = 0.004\n"}) {
+    const Drawn made =
+        drawn(scene_with(
+                  std::string("[[distractor]]\nkind = \"multirotor\"\nsize_m = 0.8\nposition_ned_m "
+                              "= [8, -2, -151]\nvelocity_ned_mps = [0, 4, 0]\n[[distractor]]\nkind "
+                              "= \"balloon\"\nposition_ned_m = [6, 1.5, -150]\nvelocity_ned_mps = "
+                              "[0, 1, -2]\n") +
+                  shutter),
+              0.1);
+    ASSERT_EQ(made.truth.intruders.size(), 2U);
+    // Turning blades are thin: where they sweep during the exposure, little is covered.
+    expect_boxes_agree(made.truth.intruders[0], *shutter ? 6 : 1);
+    expect_boxes_agree(made.truth.intruders[1], 1);
+    // It hangs upright although it rises.
+    EXPECT_NEAR(made.truth.intruders[1].attitude_yaw_pitch_roll_deg->pitch_deg, 0, 1e-9);
+    EXPECT_NEAR(made.truth.intruders[0].attitude_yaw_pitch_roll_deg->pitch_deg, -6.4, 1e-6);
+  }
+}
+
+// The bird as a rigid mesh in the pose of one moment.
+aircraft::Mesh posed(const aircraft::Mesh& bird, double time_s) {
+  aircraft::Mesh mesh = bird;
+  for (const aircraft::Part& part : bird.parts) {
+    const Eigen::Affine3f pose = aircraft::body_from_part(part, time_s);
+    std::vector<bool> is_moved(mesh.positions.size(), false);
+    for (const aircraft::Triangle& triangle : part.triangles)
+      for (const std::uint32_t v : triangle.vertex) {
+        if (is_moved[v]) continue;
+        is_moved[v] = true;
+        mesh.positions[v] = pose * bird.positions[v];
+        mesh.normals[v] = pose.linear() * bird.normals[v];
+      }
+  }
+  for (aircraft::Part& part : mesh.parts) part.hinges.clear();
+  return mesh;
+}
+
+std::vector<double> coverage_of_rows(const render::Model& model,
+                                     const render::View& view,
+                                     double time_s) {
+  const render::Instance instance{&model, {Quaternion::Identity(), {12, 0, 0}}, time_s, {}};
+  const image::Layer layer =
+      render::render(view, {}, {instance}, {Box{200, 140, 240, 200}}, {.quality = 4});
+  std::vector<double> rows(kSize.height, 0);
+  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
+    for (int x = layer.patch.x; x < layer.patch.right(); ++x)
+      rows[static_cast<std::size_t>(y)] += double(layer.coverage[0][layer.index(x, y)]);
+  return rows;
+}
+
+TEST(Distractors, EachRowSeesItsOwnMomentOfTheStroke) {
+  const aircraft::Mesh bird = aircraft::bird({.span_m = 2, .strokes_per_s = 5, .glide = 0});
+  const lens::Lens lens = lens::pinhole_from_vertical_fov(50, kSize);
+  render::View view;
+  view.lens = &lens;
+  view.world_from_cam = Rigid{cam_from_body().conjugate(), Vector3::Zero()};
+  view.width = kSize.width;
+  view.height = kSize.height;
+  const double time_s = 0.43;
+  render::View rolling = view;
+  rolling.shutter = {.exposure_s = 0, .readout_s = 0.03};
+  const std::vector<double> seen = coverage_of_rows(render::Model(bird), rolling, time_s);
+  for (const int y : {215, 228, 236, 240, 244, 252, 265}) {
+    const double row_s = rolling.shutter.middle_s({320.5, y + 0.5}, kSize.width, kSize.height);
+    const std::vector<double> still =
+        coverage_of_rows(render::Model(posed(bird, time_s + row_s)), view, time_s);
+    const auto row = static_cast<std::size_t>(y);
+    EXPECT_NEAR(seen[row], still[row], 0.15 + 0.02 * still[row]) << "row " << y;
+  }
+}
+
+TEST(Distractors, WhatIsOnTheLensHasBoxesAloneAndTheyAgree) {
+  const Drawn made =
+      drawn(scene_with("[[distractor]]\nkind = \"dirt\"\npixel = [200, 120]\nsize_px = "
+                       "80\nopacity = 0.5\n[[distractor]]\nkind = \"insect\"\npixel = "
+                       "[400, 100]\n[[distractor]]\nkind = \"glint\"\n"),
+            0);
+  ASSERT_EQ(made.truth.intruders.size(), 3U);
+  for (const annotation::Intruder& one : made.truth.intruders) {
+    ASSERT_EQ(one.state, annotation::State::kVisible) << one.id;
+    EXPECT_FALSE(one.range_m);
+    EXPECT_FALSE(one.position_ned_m);
+    EXPECT_FALSE(one.encounter);
+    // The exact box is at half of the opacity, the covered one at an alpha of 0.08, below that.
+    const Box exact = *one.exact_box_px;
+    const Box covered = floating(*one.covered_box_px);
+    EXPECT_LE(covered.x, exact.x + 1) << one.id;
+    EXPECT_GE(covered.right(), exact.right() - 1) << one.id;
+    EXPECT_NEAR(covered.x + covered.width / 2, exact.x + exact.width / 2, 2) << one.id;
+    EXPECT_NEAR(covered.y + covered.height / 2, exact.y + exact.height / 2, 2) << one.id;
+    EXPECT_LE(covered.width, 1.7 * exact.width) << one.id;
+  }
+}
+
+TEST(Distractors, PixelsThatNothingTouchesKeepTheirBits) {
+  const Drawn made = drawn(
+      scene_with(
+          "[[distractor]]\nkind = \"bird\"\ncount = 5\nspread_m = 4\nwaypoints_ned_m = [[30, "
+          "-6, -152], [30, 6, -149]]\nspeed_mps = 12\n[[distractor]]\nkind = \"dirt\"\npixel = "
+          "[200, 120]\n"),
+      0.4);
+  std::vector<PixelBox> touched;
+  for (const annotation::Intruder& one : made.truth.intruders)
+    if (one.visible_box_px) touched.push_back(*one.visible_box_px);
+  EXPECT_EQ(touched.size(), 6U);
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x) {
+      const bool is_inside = std::any_of(
+          touched.begin(), touched.end(), [&](const PixelBox& box) { return box.contains(x, y); });
+      for (int p = 0; p < 3 && !is_inside; ++p)
+        ASSERT_EQ(made.after.planes[p].row(y)[x], made.before.planes[p].row(y)[x]) << x << ' ' << y;
+    }
+}
+
+TEST(Distractors, DirtHidesABirdAndLiesOverTheOwnAircraft) {
+  const std::string bird =
+      "[[distractor]]\nkind = \"bird\"\nglide = 1\nposition_ned_m = [15, 0, -150]\n";
+  const std::string dirt =
+      "[[distractor]]\nkind = \"dirt\"\npixel = [320, 240]\nsize_px = 400\nsoftness = 0\nopacity = "
+      "0.6\n";
+  const Drawn alone = drawn(scene_with(bird), 0);
+  image::Mask own{kSize.width, kSize.height, std::vector<unsigned char>(640 * 480, 255)};
+  for (int y = 300; y < 480; ++y) std::fill_n(&own.free[static_cast<std::size_t>(y * 640)], 640, 0);
+  const Drawn both = drawn(scene_with(bird + dirt), 0, &own);
+  const annotation::Intruder& hidden = both.truth.intruders[0];
+  EXPECT_NEAR(hidden.hidden_by_intruder, 0.6, 1e-3);
+  EXPECT_NEAR(hidden.alpha_sum_px, 0.4 * alone.truth.intruders[0].alpha_sum_px, 0.5);
+  // The dirt darkens the own aircraft, too.
+  const PixelBox changed = *both.truth.intruders[1].visible_box_px;
+  EXPECT_GT(changed.bottom(), 400);
+  EXPECT_LT(both.after.planes[0].row(420)[320], both.before.planes[0].row(420)[320]);
+  EXPECT_EQ(both.truth.intruders[1].hidden_by_own_aircraft, 0);
+}
+
+TEST(Distractors, ANearerBalloonHidesABird) {
+  const Drawn made = drawn(
+      scene_with("[[distractor]]\nkind = \"bird\"\nglide = 1\nposition_ned_m = [15, 0, "
+                 "-150]\n[[distractor]]\nkind = \"balloon\"\nposition_ned_m = [8, 0, -150]\n"),
+      0);
+  EXPECT_GT(made.truth.intruders[0].hidden_by_intruder, 0.1);
+  EXPECT_EQ(made.truth.intruders[1].hidden_by_intruder, 0);
+}
+
+}  // namespace
+}  // namespace airtruth::insertion

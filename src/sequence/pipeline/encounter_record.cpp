@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/pipeline/encounter_record.h"
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "labels/annotation/object_class.h"
+
+namespace airtruth::pipeline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Half of the angle over which the aircraft extends vertically, at a range.
+double half_height_deg(const setup::World& world, const FirstSeen& seen, double range_m) {
+  const double height_m = seen.exact_box_px.height / world.lens.focal_px() * seen.range_m;
+  return degrees(std::atan2(0.5 * height_m, range_m));
+}
+
+std::optional<encounter::AgainstHorizon> horizon_at(const setup::World& world,
+                                                    const setup::Actor& actor,
+                                                    const FirstSeen& seen,
+                                                    double time_s) {
+  const auto own = world.camera.at(time_s);
+  const auto intruder = actor.path.at(time_s);
+  if (!own || !intruder) return std::nullopt;
+  const double range_m = (intruder->position_in_world - own->position_in_world).norm();
+  return encounter::against_horizon(encounter::mover_of(*own),
+                                    encounter::mover_of(*intruder),
+                                    half_height_deg(world, seen, range_m));
+}
+
+EncounterRecord record_of(const setup::World& world,
+                          const setup::Actor& actor,
+                          const std::optional<FirstSeen>& seen,
+                          double last_s) {
+  const double end_s = last_s + world.lookahead_s;
+  EncounterRecord record;
+  record.id = actor.id;
+  record.first_seen = seen;
+  record.closest = encounter::closest_approach(world.camera, actor.path, 0, end_s);
+  if (record.closest) {
+    const auto own = world.camera.at(record.closest->time_s);
+    const auto intruder = actor.path.at(record.closest->time_s);
+    check(own && intruder, "both are in the world at their closest approach");
+    record.meeting =
+        encounter::meeting_of(encounter::mover_of(*own), encounter::mover_of(*intruder));
+    record.vertical_motion = encounter::vertical_motion_of(encounter::mover_of(*intruder));
+    if (seen) record.horizon = horizon_at(world, actor, *seen, record.closest->time_s);
+  }
+  if (seen) record.horizon_when_first_seen = horizon_at(world, actor, *seen, seen->time_s);
+  for (const auto& [name, volume] : world.volumes)
+    for (const encounter::Interval& time :
+         encounter::violations(volume, world.camera, actor.path, 0, end_s))
+      record.violations.push_back({name, time});
+  return record;
+}
+
+template <typename Enum>
+void add_name(Json& object, const char* key, const std::optional<Enum>& value) {
+  if (value) object[key] = enum_name(*value);
+}
+
+Json json_of(const EncounterRecord& record) {
+  Json object;
+  object["id"] = record.id;
+  if (record.closest)
+    object["closest_approach"] = {{"time_s", record.closest->time_s},
+                                  {"distance_m", record.closest->distance_m},
+                                  {"horizontal_m", record.closest->horizontal_m},
+                                  {"ahead_m", record.closest->offset.ahead_m},
+                                  {"right_m", record.closest->offset.right_m},
+                                  {"above_m", record.closest->offset.above_m}};
+  add_name(object, "meeting", record.meeting);
+  add_name(object, "vertical_motion", record.vertical_motion);
+  add_name(object, "horizon", record.horizon);
+  if (record.first_seen) {
+    const FirstSeen& seen = *record.first_seen;
+    Json& first = object["first_seen"];
+    first = {{"frame", seen.frame},
+             {"time_s", seen.time_s},
+             {"range_m", seen.range_m},
+             {"width_px", seen.exact_box_px.width},
+             {"height_px", seen.exact_box_px.height}};
+    if (record.closest) first["to_closest_approach_s"] = record.closest->time_s - seen.time_s;
+    add_name(first, "horizon", record.horizon_when_first_seen);
+  }
+  object["violations"] = Json::array();
+  for (const NamedInterval& violation : record.violations)
+    object["violations"].push_back({{"volume", violation.volume},
+                                    {"begin_s", violation.time.begin_s},
+                                    {"end_s", violation.time.end_s}});
+  return object;
+}
+
+}  // namespace
+
+std::optional<FirstSeen> seen_in(const annotation::Frame& frame,
+                                 const annotation::Intruder& intruder) {
+  if (intruder.state != annotation::State::kVisible || !intruder.exact_box_px || !intruder.range_m)
+    return std::nullopt;
+  return FirstSeen{frame.frame, frame.time_s, *intruder.range_m, *intruder.exact_box_px};
+}
+
+std::vector<EncounterRecord> encounter_records(
+    const setup::World& world,
+    const std::vector<std::optional<FirstSeen>>& first_seen,
+    double last_s) {
+  std::vector<EncounterRecord> records;
+  for (std::size_t i = 0; i < world.actors.size(); ++i)
+    if (annotation::is_aircraft(world.actors[i].object_class))
+      records.push_back(record_of(
+          world, world.actors[i], i < first_seen.size() ? first_seen[i] : std::nullopt, last_s));
+  return records;
+}
+
+nlohmann::ordered_json json_of(const std::vector<EncounterRecord>& records) {
+  Json list = Json::array();
+  for (const EncounterRecord& record : records) list.push_back(json_of(record));
+  return list;
+}
+
+namespace {
+
+template <typename Enum>
+std::optional<Enum> maybe_named(const JsonObject& object, const std::string& key) {
+  const auto name = object.maybe_text(key);
+  if (!name) return std::nullopt;
+  const auto value = enum_named<Enum>(*name);
+  if (!value) object.fail(key, fmt::format("one of {}", fmt::join(all_enum_names<Enum>(), ", ")));
+  return value;
+}
+
+encounter::Approach approach_of(const JsonObject& object) {
+  return {object.number("time_s"),
+          object.number("distance_m"),
+          object.number("horizontal_m"),
+          {object.number("ahead_m"), object.number("right_m"), object.number("above_m")}};
+}
+
+FirstSeen first_seen_of(const JsonObject& object) {
+  return {object.count("frame"),
+          object.number("time_s"),
+          object.number("range_m"),
+          {0, 0, object.number("width_px"), object.number("height_px")}};
+}
+
+EncounterRecord record_of(const JsonObject& object) {
+  EncounterRecord record;
+  record.id = object.text("id");
+  if (object.has("closest_approach"))
+    record.closest = approach_of(object.object("closest_approach"));
+  record.meeting = maybe_named<encounter::Meeting>(object, "meeting");
+  record.vertical_motion = maybe_named<encounter::VerticalMotion>(object, "vertical_motion");
+  record.horizon = maybe_named<encounter::AgainstHorizon>(object, "horizon");
+  if (object.has("first_seen")) {
+    const JsonObject seen = object.object("first_seen");
+    record.first_seen = first_seen_of(seen);
+    record.horizon_when_first_seen = maybe_named<encounter::AgainstHorizon>(seen, "horizon");
+  }
+  for (const JsonObject& violation : object.objects("violations"))
+    record.violations.push_back(
+        {violation.text("volume"), {violation.number("begin_s"), violation.number("end_s")}});
+  return record;
+}
+
+}  // namespace
+
+std::vector<EncounterRecord> read_encounter_records(const JsonObject& sequence) {
+  std::vector<EncounterRecord> records;
+  if (!sequence.has("encounters")) return records;
+  for (const JsonObject& object : sequence.objects("encounters"))
+    records.push_back(record_of(object));
+  return records;
+}
+
+}  // namespace airtruth::pipeline

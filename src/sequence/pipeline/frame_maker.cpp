@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/pipeline/frame_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "sequence/insertion/frame_truth.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::pipeline {
+
+FrameMaker::FrameMaker(ResolvedScene resolved, const std::stop_token& stop)
+    : resolved_(std::move(resolved)),
+      stop_(stop),
+      painter_(insertion::make_painter(resolved_.scene,
+                                       resolved_.world,
+                                       resolved_.mask.get(),
+                                       std::move(resolved_.backdrop),
+                                       stop)),
+      ambient_(resolved_.scene.light,
+               setup::tone_of(resolved_.scene.camera_model),
+               resolved_.mask.get()) {}
+
+WorkPtr FrameMaker::decode() {
+  if (stop_.stop_requested()) return nullptr;
+  auto frame = resolved_.background.next();
+  if (!frame) return nullptr;
+  auto work = std::make_shared<Work>();
+  work->frame = std::move(*frame);
+  return work;
+}
+
+void FrameMaker::locate(Work& work) {
+  work.moved = resolved_.motion.next(work.frame);
+  work.moment =
+      setup::moment_at(resolved_.world, work.frame.index, work.frame.time_s, work.moved.shake);
+  work.ambient = ambient_.next(work.frame.picture,
+                               work.moment.sight,
+                               setup::search_bounds(work.moment),
+                               work.frame.begins_shot);
+}
+
+void FrameMaker::draw(Work& work) const {
+  work.painted = painter_->draw(work.moment, work.ambient);
+}
+
+void FrameMaker::compose(Work& work) {
+  painter_->compose(work.frame.picture, work.moment, work.ambient, work.painted);
+}
+
+void FrameMaker::describe(Work& work) const {
+  const bool has_motion = resolved_.scene.motion.model != scene::MotionModel::kNone;
+  const char* state = has_motion ? motion::name(work.moved.motion.state) : "none";
+  work.truth = insertion::frame_truth(
+      resolved_.world, work.frame, {state, work.moved.shake}, work.moment, work.painted);
+  if (resolved_.scene.output.masks)
+    work.masks = insertion::mask_files(
+        work.truth, work.painted.layer, resolved_.mask.get(), resolved_.world.lens.size());
+  work.painted = {};
+}
+
+}  // namespace airtruth::pipeline

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/pipeline/outputs.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <airtruth/version.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "picture/composite/cover.h"
+#include "picture/video/still.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/shared_inputs.h"
+
+namespace airtruth::pipeline {
+namespace {
+
+video::WriterOptions writer_options(const scene::Output& output, int threads) {
+  video::WriterOptions options;
+  options.format = setup::format_of(output.video);
+  options.quality = output.quality;
+  options.threads = threads;
+  options.encoder = setup::encoder_of(output.encoder);
+  options.encoder_where = output.encoder_where;
+  return options;
+}
+
+annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
+                                       const annotation::Intruder& intruder) {
+  annotation::EvisionFrame frame;
+  frame.number = static_cast<int>(truth.frame) + 1;
+  frame.camera_ned_m = truth.camera_position_ned_m;
+  frame.intruder_ned_m = *intruder.position_ned_m;
+  frame.distance_m = *intruder.range_m;
+  if (intruder.covered_box_px) frame.rect_px = *intruder.covered_box_px;
+  return frame;
+}
+
+std::size_t aircraft_of(const scene::Scene& scene) {
+  return static_cast<std::size_t>(
+      std::count_if(scene.intruders.begin(), scene.intruders.end(), scene::is_aircraft));
+}
+
+nlohmann::ordered_json json_of(const std::vector<Checksum>& files) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Checksum& file : files) list.push_back({{"name", file.name}, {"sha256", file.sha256}});
+  return list;
+}
+
+// Checksums of the files of a folder, and of the images in its sub-folders, by name.
+std::vector<Checksum> checksums_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<Checksum> result;
+  for (const fs::path& file : files)
+    result.push_back({fs::relative(file, folder).string(), sha256_of_file(file)});
+  return result;
+}
+
+}  // namespace
+
+Outputs::Outputs(const fs::path& folder,
+                 const scene::Scene& scene,
+                 const lens::Lens& lens,
+                 const video::StreamInfo& info,
+                 int threads)
+    : folder_(folder),
+      lens_(annotation::facts_of(lens)),
+      video_(folder / (scene.name + video::extension(setup::format_of(scene.output.video)))),
+      writer_(video_, info, writer_options(scene.output, threads)),
+      truth_(folder / "truth.jsonl", std::ios::binary),
+      aircraft_(aircraft_of(scene)),
+      evision_(std::max<std::size_t>(1, aircraft_)),
+      sheet_(scene.name, info.frame_count_estimate) {
+  if (!truth_)
+    throw Error(std::string("cannot create: ") + std::strerror(errno),
+                {(folder / "truth.jsonl").string()});
+}
+
+void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
+                    const annotation::Frame& truth,
+                    const std::vector<insertion::MaskFile>& masks) {
+  writer_.write(frame);
+  for (const insertion::MaskFile& mask : masks) {
+    fs::create_directories((folder_ / mask.name).parent_path());
+    write_file(folder_ / mask.name, mask.png, Flush::kLater);
+  }
+  truth_ << annotation::jsonl_line(truth, lens_) << '\n';
+  if (!truth_)
+    throw Error(std::string("cannot write: ") + std::strerror(errno),
+                {(folder_ / "truth.jsonl").string()});
+  camera_ned_m_.push_back(truth.camera_position_ned_m);
+  // The format is one of aircraft, which come first.
+  if (aircraft_ == 0) evision_[0].push_back(std::nullopt);
+  for (std::size_t i = 0; i < aircraft_; ++i) {
+    const annotation::Intruder& intruder = truth.intruders[i];
+    evision_[i].push_back(intruder.state == annotation::State::kEnded
+                              ? std::nullopt
+                              : std::optional(evision_frame(truth, intruder)));
+  }
+  sheet_.add(frame->picture, truth);
+}
+
+void Outputs::finish(const scene::Scene& scene,
+                     const std::vector<Checksum>& inputs,
+                     const std::vector<EncounterRecord>& encounters,
+                     const Summary& summary) {
+  writer_.finish();
+  truth_.close();
+  if (!truth_)
+    throw Error(std::string("cannot write: ") + std::strerror(errno),
+                {(folder_ / "truth.jsonl").string()});
+  write_annotations(scene);
+  video::write_still(folder_ / "preview.jpg", sheet_.sheet());
+  if (scene.output.masks) flush_files(folder_);
+  write_record(scene, inputs, encounters, summary);
+}
+
+void Outputs::write_annotations(const scene::Scene& scene) const {
+  for (std::size_t i = 0; i < evision_.size(); ++i) {
+    const std::string suffix = evision_.size() == 1 ? "" : "-" + scene.intruders[i].id;
+    write_file(folder_ / (scene.name + suffix + ".xml"),
+               annotation::evision_xml(evision_[i], camera_ned_m_));
+  }
+}
+
+void Outputs::write_record(const scene::Scene& scene,
+                           const std::vector<Checksum>& inputs,
+                           const std::vector<EncounterRecord>& encounters,
+                           const Summary& summary) const {
+  nlohmann::ordered_json record;
+  record["format"] = "airtruth sequence 1";
+  record["version"] = kVersion;
+  record["name"] = scene.name;
+  record["seed"] = scene.seed;
+  if (scene.weight) record["weight"] = *scene.weight;
+  record["encoder"] = writer_.encoder();
+  record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
+  record["scene_toml"] = scene::toml_from_scene(scene);
+  record["inputs"] = json_of(inputs);
+  record["outputs"] = json_of(checksums_below(folder_));
+  record["summary"] = {{"frames", summary.frames},
+                       {"frames_with_an_intruder_visible", summary.frames_visible},
+                       {"frames_with_bridged_motion", summary.frames_bridged},
+                       {"frames_damaged_in_the_background", summary.frames_damaged}};
+  record["encounters"] = json_of(encounters);
+  write_file(folder_ / "sequence.json", record.dump(2) + "\n");
+}
+
+namespace {
+
+std::vector<fs::path> model_files(const setup::World& world) {
+  std::vector<fs::path> models;
+  for (const setup::Actor& actor : world.actors)
+    models.insert(models.end(), actor.type->sources.begin(), actor.type->sources.end());
+  std::sort(models.begin(), models.end());
+  models.erase(std::unique(models.begin(), models.end()), models.end());
+  return models;
+}
+
+}  // namespace
+
+std::vector<Checksum> input_files(const scene::Scene& scene,
+                                  const setup::World& world,
+                                  const std::string& video_sha256,
+                                  setup::SharedInputs* shared) {
+  std::vector<Checksum> result;
+  if (!video_sha256.empty()) result.push_back({scene.background.video.string(), video_sha256});
+  const auto add = [&](const fs::path& file) {
+    result.push_back({file.string(), setup::shared_sha256(file, shared)});
+  };
+  if (scene.background.mask) add(*scene.background.mask);
+  if (scene.realism.file) add(*scene.realism.file);
+  if (scene.lens.file) add(*scene.lens.file);
+  if (scene.camera.path_file) add(*scene.camera.path_file);
+  if (scene.camera.log) add(*scene.camera.log);
+  for (const scene::Intruder& intruder : scene.intruders)
+    if (intruder.path_file) add(*intruder.path_file);
+  for (const fs::path& model : model_files(world)) add(model);
+  return result;
+}
+
+}  // namespace airtruth::pipeline

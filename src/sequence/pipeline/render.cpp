@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// A run: the stages of frame_maker.h in a pipeline, and the files that are written.
+#include "sequence/pipeline/render.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/stopwatch.h"
+#include "sequence/insertion/paint.h"
+#include "sequence/pipeline/frame_maker.h"
+#include "sequence/pipeline/outputs.h"
+#include "sequence/pipeline/staged_folder.h"
+#include "sequence/pipeline/tally.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/motion_source.h"
+
+namespace airtruth::pipeline {
+namespace {
+
+struct Clocks {
+  SharedTime read, move, render, composite, write;
+  // CPU time of the process when the run began, when its frames began, and when they ended.
+  double begin_s = process_cpu_seconds(), frames_s = 0, end_s = 0;
+};
+
+// The sixth stage, after those of FrameMaker. write: picture, truth and masks. Frames come in
+// order.
+void write_frame(const WorkPtr& work, Outputs& outputs, Tally& tally) {
+  const std::shared_ptr<const video::Frame> frame(work, &work->frame);
+  outputs.write(frame, work->truth, work->masks);
+  add_frame(tally, *frame, work->moved.motion.state, work->truth);
+}
+
+// The stages as the pipeline calls them: each is timed, and none works on after a stop.
+class Stages {
+ public:
+  Stages(FrameMaker& maker, Outputs& outputs, const Options& options, Clocks& clocks, Tally& tally)
+      : maker_(maker), outputs_(outputs), options_(options), clocks_(clocks), tally_(tally) {}
+
+  bool is_stopped() const { return options_.stop.stop_requested(); }
+
+  WorkPtr decode(tbb::flow_control& control) const {
+    const Timed timed(clocks_.read);
+    WorkPtr work = maker_.decode();
+    if (!work) control.stop();
+    return work;
+  }
+  WorkPtr locate(WorkPtr work) const {
+    const Timed timed(clocks_.move);
+    maker_.locate(*work);
+    return work;
+  }
+  WorkPtr draw(WorkPtr work) const {
+    if (is_stopped()) return work;
+    const Timed timed(clocks_.render);
+    maker_.draw(*work);
+    return work;
+  }
+  WorkPtr compose(WorkPtr work) const {
+    if (is_stopped()) return work;
+    const Timed timed(clocks_.composite);
+    maker_.compose(*work);
+    maker_.describe(*work);
+    return work;
+  }
+  void write(const WorkPtr& work) const {
+    if (is_stopped()) return;  // a frame that was not painted is not written
+    const Timed timed(clocks_.write);
+    write_frame(work, outputs_, tally_);
+    if (options_.progress)
+      options_.progress({tally_.frames, maker_.resolved().info.frame_count_estimate});
+  }
+
+ private:
+  FrameMaker& maker_;
+  Outputs& outputs_;
+  const Options& options_;
+  Clocks& clocks_;
+  Tally& tally_;
+};
+
+// All frames through the six stages, as many at a time as there are threads; memory is bounded by
+// the frames in flight.
+Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, Clocks& clocks) {
+  Tally tally;
+  const Stages stages(maker, outputs, options, clocks, tally);
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  // One for each thread, one that waits for its turn and one that is being decoded. With more, a
+  // long run comes to hold them all at some time, and takes no less time.
+  const std::size_t in_flight = static_cast<std::size_t>(threads) + 2;
+  // OpenGL's context belongs to one thread: the chroma-key method runs in an arena of one.
+  const bool one_thread = maker.is_of_one_thread();
+  tbb::task_arena arena(one_thread ? 1 : threads);
+  const auto in_order = tbb::filter_mode::serial_in_order;
+  const auto draw_mode = one_thread ? in_order : tbb::filter_mode::parallel;
+  const auto compose_mode = maker.composes_in_order() ? in_order : draw_mode;
+  const auto stage = [](tbb::filter_mode mode, const auto& run) {
+    return tbb::make_filter<WorkPtr, WorkPtr>(mode, run);
+  };
+  arena.execute([&] {
+    tbb::parallel_pipeline(
+        in_flight,
+        tbb::make_filter<void, WorkPtr>(
+            in_order, [&](tbb::flow_control& control) { return stages.decode(control); }) &
+            stage(in_order, [&](WorkPtr work) { return stages.locate(std::move(work)); }) &
+            stage(draw_mode, [&](WorkPtr work) { return stages.draw(std::move(work)); }) &
+            stage(compose_mode, [&](WorkPtr work) { return stages.compose(std::move(work)); }) &
+            tbb::make_filter<WorkPtr, void>(in_order,
+                                            [&](const WorkPtr& work) { stages.write(work); }));
+  });
+  if (stages.is_stopped()) throw Interrupted();
+  return tally;
+}
+
+// ---------------------------------------------------------------- after the last frame
+
+StageTimes times_of(const Clocks& clocks) {
+  const auto time_of = [](const SharedTime& time) { return StageTime{time.wall_s, time.cpu_s}; };
+  StageTimes times{time_of(clocks.read),
+                   time_of(clocks.move),
+                   time_of(clocks.render),
+                   time_of(clocks.composite),
+                   time_of(clocks.write)};
+  const double of_stages_s = times.read.cpu_s + times.move.cpu_s + times.render.cpu_s +
+                             times.composite.cpu_s + times.write.cpu_s;
+  times.other_threads_cpu_s = std::max(0.0, clocks.end_s - clocks.frames_s - of_stages_s);
+  times.start_cpu_s = clocks.frames_s - clocks.begin_s;
+  return times;
+}
+
+Summary summary_of(const Tally& tally, const Clocks& clocks, bool motion_from_cache) {
+  Summary summary;
+  summary.frames = tally.frames;
+  summary.frames_visible = tally.frames_visible;
+  summary.frames_bridged = tally.frames_bridged;
+  summary.frames_damaged = tally.frames_damaged;
+  summary.stages = times_of(clocks);
+  summary.motion_from_cache = motion_from_cache;
+  return summary;
+}
+
+std::optional<tbb::global_control> thread_limit(int threads) {
+  if (threads <= 0) return std::nullopt;
+  return std::optional<tbb::global_control>(std::in_place,
+                                            tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(threads));
+}
+
+}  // namespace
+
+Summary render(const scene::Scene& scene, const fs::path& out, const Options& options) {
+  Clocks clocks;
+  const auto limit = thread_limit(options.threads);
+  const fs::path folder = out / scene.name;
+  StagedFolder staged(folder, options.overwrite);
+
+  // All faults of the inputs are found before any long work, and whether they can be written.
+  OpenedScene opened = open_scene(scene, options);
+  std::optional<Outputs> outputs;
+  outputs.emplace(
+      staged.path(), opened.stated.scene, opened.world.lens, opened.info, options.threads);
+  FrameMaker maker(resolve(std::move(opened), options), options.stop);
+  const ResolvedScene& resolved = maker.resolved();
+
+  const Stopwatch running;
+  clocks.frames_s = process_cpu_seconds();
+  const Tally tally = make_frames(maker, *outputs, options, clocks);
+  clocks.end_s = process_cpu_seconds();
+
+  maker.store_motion();
+  warn_of_run(tally, resolved.scene, resolved.world, resolved.background, options.warn);
+  Summary summary = summary_of(tally, clocks, resolved.motion.is_from_cache());
+  outputs->finish(resolved.scene,
+                  input_files(scene, resolved.world, resolved.video_sha256, options.shared.get()),
+                  encounter_records(resolved.world, tally.first_seen, tally.last_time_s),
+                  summary);
+  outputs.reset();
+  staged.commit();
+  summary.stages.end_cpu_s = process_cpu_seconds() - clocks.end_s;
+  summary.seconds = running.seconds();
+  summary.folder = folder;
+  return summary;
+}
+
+}  // namespace airtruth::pipeline

@@ -1,0 +1,449 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/pipeline/resolved_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "calibration/camera_file/cache.h"
+#include "calibration/camera_file/calibrate.h"
+#include "calibration/camera_file/profile.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "scene/scene/camera_keys.h"
+#include "sequence/insertion/ambient.h"
+#include "sequence/insertion/paint.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/motion_source.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::pipeline {
+namespace {
+
+scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size) {
+  const fs::path& path = *scene.realism.file;
+  const scene::CameraFile file = scene::read_camera_file(path);
+  if (file.width != size.width || file.height != size.height)
+    throw Error(fmt::format("was measured on a clip of {} x {} px; the background is {} x {}",
+                            file.width,
+                            file.height,
+                            size.width,
+                            size.height),
+                {path.string()});
+  const std::string lens = camera_file::lens_words(setup::lens_of(scene.lens, size));
+  if (!file.lens.empty() && file.lens != lens)
+    throw Error("was measured through the lens '" + file.lens + "'; the scene's is '" + lens + "'",
+                {path.string()});
+  if (scene.camera_model.gamma && scene.camera_model.gamma != file.gamma)
+    throw Error(fmt::format("was measured with {}; the scene's is {}",
+                            file.gamma ? fmt::format("gamma {}", *file.gamma) : "sRGB's tone curve",
+                            *scene.camera_model.gamma),
+                {path.string()});
+  return file;
+}
+
+// Measures the whole clip, so that all scenes over one clip have the same camera.
+camera_file::Calibration measured_on(const scene::Scene& scene,
+                                     const lens::ImageSize& size,
+                                     const image::Mask* mask,
+                                     const Options& options) {
+  camera_file::Options how;
+  how.lens = setup::lens_of(scene.lens, size);
+  how.own_aircraft = mask;
+  if (!scene.camera.path_file && !scene.camera.log && scene.camera.position_ned_m.z() < 0)
+    how.altitude_m = -scene.camera.position_ned_m.z();
+  how.tone = setup::tone_of(scene.camera_model);
+  how.stop = options.stop;
+  how.warn = options.warn;
+  how.progress = [&](std::int64_t done, std::int64_t total) {
+    if (options.progress) options.progress({done, total, "measuring the camera"});
+  };
+  camera_file::CacheKey key;
+  key.video_sha256 = setup::sha256_of_video(scene.background.video, options.shared.get());
+  if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
+  key.lens = setup::words_of(*how.lens);
+  key.altitude_m = how.altitude_m;
+  key.tone = how.tone;
+  return camera_file::calibrate_once(
+      scene.background.video, how, cache_of(options, "calibration"), key);
+}
+
+// From north, where the calibration has it from the heading of the camera in the clip's first
+// frame.
+double sun_azimuth_deg(const scene::Scene& scene, const camera_file::Calibration& found) {
+  const auto first = static_cast<std::size_t>(scene.background.first_frame);
+  const double turned_deg =
+      first < found.yaw_from_first_deg.size() ? found.yaw_from_first_deg[first] : 0;
+  const auto camera = setup::camera_path(scene.camera).at(0);
+  const double heading_deg = camera ? yaw_pitch_roll(camera->world_from_body).yaw_deg : 0;
+  const double azimuth_deg =
+      std::remainder(found.quantities.sun_azimuth.value().value + heading_deg - turned_deg, 360);
+  return azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg;
+}
+
+// Many clips show no edges of colour, and a decoder may not report its quantiser. Where [realism]
+// auto asks for these, such a clip is measured in all other quantities.
+bool may_be_missing(std::string_view name, const scene::Realism& realism) {
+  const scene::IfUnmeasured rule = scene::camera_key(name)->if_unmeasured;
+  return rule == scene::IfUnmeasured::kLeftOut ||
+         (rule == scene::IfUnmeasured::kLeftOutWithAuto && realism.automatic);
+}
+
+bool is_named(const scene::Scene& scene, const std::string& key) {
+  const auto& named = scene.camera_model.automatic;
+  return std::find(named.begin(), named.end(), key) != named.end();
+}
+
+bool is_wanted(const scene::Scene& scene, const std::string& key) {
+  return is_named(scene, key) || scene.realism.automatic;
+}
+
+// Fills in unstated values from the camera file. Returns whether a requested value is still
+// missing.
+bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
+  bool is_missing = false;
+  scene::CameraModel& model = scene.camera_model;
+  scene::for_each_camera_key(
+      [&](const char* key, auto& stated, const auto& filed) {
+        if (!stated) stated = filed;
+        is_missing = is_missing || (!stated && is_wanted(scene, key));
+      },
+      model,
+      file.model);
+  if (!model.readout) model.readout = file.model.readout;
+  if (!model.gamma) model.gamma = file.gamma;
+  return is_missing;
+}
+
+// The chroma-key method cannot model a camera and its air; modelling a part of them would be worse
+// than none.
+void refuse_with_chroma_key(const scene::Scene& scene) {
+  if (scene.composite.method != scene::CompositeMethod::kChromaKey) return;
+  if (scene.realism.file || scene.realism.automatic || scene::states_any_key(scene.camera_model))
+    throw Error(
+        "composite.method chroma-key is for the picture as it is, without [shutter], [air], "
+        "[optics], "
+        "[sensor] and [realism]; expected none of them, or method = \"matte\"",
+        scene.realism.where.line > 0 ? scene.realism.where : Where{scene.file.string()});
+}
+
+void take_angle(scene::Scene& scene, const video::StreamInfo& info) {
+  scene::CameraModel& model = scene.camera_model;
+  if (!model.angle_deg) return;
+  const double rate_hz = info.frame_rate.value();
+  if (!(rate_hz > 0))
+    throw Error("has no frame rate, which shutter.angle_deg is a share of; expected exposure_s",
+                {scene.background.video.string()});
+  model.exposure_s = *model.angle_deg / 360 / rate_hz;
+  model.angle_deg.reset();
+}
+
+// A named profile is applied to measured values, so at least one value must be measured.
+void check_profile(const scene::Realism& realism,
+                   const video::StreamInfo& info,
+                   bool is_any_to_measure) {
+  if (!realism.profile) return;
+  camera_file::check_size(camera_file::camera_profile(*realism.profile, realism.where),
+                          info.width,
+                          info.height,
+                          realism.where);
+  if (!is_any_to_measure)
+    throw Error(
+        "profile is for what is measured from the clip, and nothing is; expected auto = "
+        "true, or a key that is \"auto\"",
+        realism.where);
+}
+
+// The measured values, combined with the camera's profile; where no profile is named, by the median
+// of cameras.
+camera_file::Calibration with_camera(camera_file::Calibration measured,
+                                     const scene::Realism& realism) {
+  return camera_file::with_profile(
+      std::move(measured),
+      realism.profile ? camera_file::camera_profile(*realism.profile, realism.where)
+                      : camera_file::usual_camera());
+}
+
+// Takes the requested values from the clip, as far as it can be measured, and from the camera's
+// profile.
+void take_measured(scene::Scene& scene,
+                   const StatedScene& stated,
+                   camera_file::Calibration measured,
+                   const Warn& to_warn) {
+  const camera_file::Quantities of_clip = measured.quantities;
+  const camera_file::Calibration found = with_camera(std::move(measured), stated.realism);
+  const scene::CameraModel from_clip = camera_file::model_of(found);
+  scene::for_each_camera_key(
+      [&](const char* key, auto& value, const auto& seen) {
+        const auto& wanted = stated.to_measure;
+        if (std::find(wanted.begin(), wanted.end(), key) == wanted.end()) return;
+        value = seen;
+        if (value && (stated.realism.profile || of_clip.at(key).missing.empty())) return;
+        std::string what = fmt::format("{} cannot be measured: {}", key, of_clip.at(key).missing);
+        if (key == std::string_view("air.airlight") && !found.no_horizon.empty())
+          what += " (" + found.no_horizon + ")";
+        if (!stated.realism.fallback && !may_be_missing(key, stated.realism))
+          throw Error(
+              what + (value ? "; state it, name the camera's profile in [realism], or set fallback "
+                              "= true to take what cameras have in the median"
+                            : "; state it, or set fallback = true in [realism] to leave it out"),
+              stated.realism.where.line > 0 ? stated.realism.where : Where{scene.file.string()});
+        warn(to_warn,
+             what + (value ? "; it is " + found.quantities.at(key).source : "; it is left out"));
+      },
+      scene.camera_model,
+      from_clip);
+  if (stated.realism.profile)
+    for (const std::string& key : stated.to_measure)
+      if (const std::string& doubt = found.quantities.at(key).doubt; !doubt.empty())
+        warn(to_warn, key + " is doubtful: " + doubt);
+  if (!scene.camera_model.readout) scene.camera_model.readout = from_clip.readout;
+  if (stated.sun_is_known || !found.quantities.sun_azimuth.is_measured()) return;
+  scene.light.sun_azimuth_deg = sun_azimuth_deg(scene, found);
+  scene.light.sun_elevation_deg = found.quantities.sun_elevation.value().value;
+}
+
+// The requested keys that neither the scene nor its camera file states.
+std::vector<std::string> left_to_measure(const scene::Scene& filled) {
+  std::vector<std::string> keys;
+  scene::for_each_camera_key(
+      [&](const char* key, const auto& value) {
+        if (!value && is_wanted(filled, key)) keys.emplace_back(key);
+      },
+      filled.camera_model);
+  return keys;
+}
+
+// The stream with the number of frames that the scene makes of it.
+video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& background) {
+  const std::int64_t left =
+      std::max<std::int64_t>(0, info.frame_count_estimate - background.first_frame);
+  info.frame_count_estimate = left;
+  if (background.frame_count)
+    info.frame_count_estimate =
+        left > 0 ? std::min(left, *background.frame_count) : *background.frame_count;
+  return info;
+}
+
+// A reader of the scene's part of its background.
+video::Reader open_background(const scene::Scene& scene, const Options& options) {
+  video::ReaderOptions reader_options;
+  reader_options.first_frame = scene.background.first_frame;
+  reader_options.frame_count = scene.background.frame_count;
+  reader_options.threads = options.threads;
+  reader_options.with_cuts = true;
+  reader_options.avoids_copies = true;
+  return video::Reader(scene.background.video, reader_options, options.warn);
+}
+
+// The frame of a known motion that a moment of [[intruder.seen]] is about.
+setup::FramePose frame_near(const setup::MotionSource& motion,
+                            const video::StreamInfo& info,
+                            const scene::Seen& seen) {
+  const setup::MotionSource::Measured frame = motion.nearest(seen.time_s);
+  const double rate_hz = info.frame_rate.value();
+  const double interval_s = rate_hz > 0 ? 1 / rate_hz : 1;
+  if (std::abs(frame.motion.time_s - seen.time_s) > interval_s && !info.variable_frame_rate)
+    throw Error(fmt::format("time_s is {:.3f}, where the clip has no frame: the nearest is at "
+                            "{:.3f} s; expected a time within the clip",
+                            seen.time_s,
+                            frame.motion.time_s),
+                seen.where);
+  return {frame.motion.time_s, frame.shake};
+}
+
+bool is_given_by_what_is_seen(const scene::Scene& scene) {
+  return std::any_of(scene.intruders.begin(), scene.intruders.end(), [](const auto& intruder) {
+    return !intruder.seen.empty();
+  });
+}
+
+lens::ImageSize size_of(const video::StreamInfo& info) { return {info.width, info.height}; }
+
+// The scene as a preview draws it (Options::is_preview).
+void simplify_for_preview(scene::Scene& scene) {
+  scene.motion.model = setup::motion_model(scene);
+  scene.composite.method = scene::CompositeMethod::kMatte;
+  scene.camera_model.codec_step.reset();
+}
+
+}  // namespace
+
+StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
+  StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
+  refuse_with_chroma_key(scene);
+  take_angle(result.scene, info);
+  scene::CameraFile file;
+  if (scene.realism.file) file = file_of(scene, {info.width, info.height});
+  fill_from_file(result.scene, file);
+  result.to_measure = left_to_measure(result.scene);
+  check_profile(scene.realism, info, !result.to_measure.empty());
+  if (!result.sun_is_known && file.sun_azimuth_deg && file.sun_elevation_deg) {
+    result.scene.light.sun_azimuth_deg = *file.sun_azimuth_deg;
+    result.scene.light.sun_elevation_deg = *file.sun_elevation_deg;
+    result.sun_is_known = true;
+  }
+  result.scene.camera_model.automatic.clear();
+  result.scene.realism = {};
+  return result;
+}
+
+scene::Scene with_measured_camera(StatedScene stated,
+                                  const lens::ImageSize& size,
+                                  const image::Mask* mask,
+                                  const Options& options) {
+  if (!stated.to_measure.empty()) {
+    camera_file::Calibration measured = measured_on(stated.scene, size, mask, options);
+    take_measured(stated.scene, stated, std::move(measured), options.warn);
+  }
+  return std::move(stated.scene);
+}
+
+OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
+  video::Reader background = open_background(scene, options);
+  StatedScene as_stated = stated(scene, background.info());
+  scene::Scene& opened = as_stated.scene;
+  if (options.is_preview) simplify_for_preview(opened);
+  const lens::ImageSize size = size_of(background.info());
+  std::unique_ptr<const image::Mask> mask;
+  if (auto read = insertion::read_mask(opened, size))
+    mask = std::make_unique<const image::Mask>(std::move(*read));
+  auto inputs = options.shared ? options.shared
+                               : std::make_shared<setup::SharedInputs>(openness_cache(options));
+  setup::World world = setup::load_world(opened, size, options.warn, options.stop, inputs.get());
+  auto backdrop = insertion::open_backdrop(opened, world.lens, {options.gpu, options.software_gl});
+  opened.motion.model = setup::motion_model(opened);
+  // sequence.json records the scale that is drawn, so that the same scene gives the same sizes
+  // whatever the table of published sizes becomes.
+  for (std::size_t i = 0; i < world.actors.size(); ++i)
+    if (const double scale = world.actors[i].type->catalogue_scale; scale != 1)
+      opened.intruders[i].catalogue_scale = scale;
+  const video::StreamInfo info = used_stream(background.info(), scene.background);
+  setup::check_camera_path(world.camera, info);
+  return {std::move(as_stated),
+          std::move(background),
+          info,
+          std::move(mask),
+          std::move(inputs),
+          std::move(world),
+          std::move(backdrop)};
+}
+
+setup::MotionInputs motion_inputs(const OpenedScene& opened,
+                                  const std::string& video_sha256,
+                                  const Options& options) {
+  return {opened.stated.scene,
+          opened.world.lens,
+          !opened.world.shutter.is_instant(),
+          video_sha256,
+          opened.mask.get(),
+          cache_of(options, "motion")};
+}
+
+void place_seen(OpenedScene& opened,
+                const setup::MotionSource& motion,
+                const std::stop_token& stop) {
+  setup::place_seen(
+      opened.stated.scene,
+      opened.world,
+      [&](const scene::Seen& seen) { return frame_near(motion, opened.info, seen); },
+      stop,
+      opened.inputs.get());
+}
+
+ResolvedScene resolve(OpenedScene opened, const Options& options) {
+  scene::Scene& scene = opened.stated.scene;
+  scene = with_measured_camera(
+      std::move(opened.stated), size_of(opened.info), opened.mask.get(), options);
+  insertion::check_codec(scene, opened.background.info().colour);
+  opened.world.shutter = setup::shutter_of(scene.camera_model);
+  opened.world.to_sun_in_world = setup::to_sun_in_world(scene.light);
+  const std::string video_sha256 =
+      setup::sha256_of_video(scene.background.video, opened.inputs.get());
+  const bool has_seen = is_given_by_what_is_seen(scene);
+  setup::MotionSource motion(motion_inputs(opened, video_sha256, options),
+                             {.for_all = has_seen,
+                              .open = [&] { return open_background(scene, options); },
+                              .stop = options.stop,
+                              .seen = {}});
+  if (has_seen) place_seen(opened, motion, options.stop);
+  return {std::move(scene),
+          std::move(opened.background),
+          opened.info,
+          std::move(opened.mask),
+          std::move(opened.inputs),
+          std::move(opened.world),
+          std::move(opened.backdrop),
+          video_sha256,
+          std::move(motion)};
+}
+
+void measure_ahead(const scene::Scene& scene, const Options& options) {
+  if (scene.motion.model == scene::MotionModel::kNone) return;
+  video::Reader reader = open_background(scene, options);
+  const video::StreamInfo info = reader.info();
+  const auto mask = insertion::read_mask(scene, size_of(info));
+  const lens::Lens lens = setup::lens_of(scene.lens, size_of(info));
+  const std::int64_t total = scene.background.frame_count.value_or(info.frame_count_estimate);
+  const setup::MotionInputs inputs{
+      scene,
+      lens,
+      false,
+      setup::sha256_of_video(scene.background.video, options.shared.get()),
+      mask ? &*mask : nullptr,
+      cache_of(options, "motion")};
+  const setup::MotionSource source(inputs,
+                                   {.for_all = true,
+                                    .open = [&] { return std::move(reader); },
+                                    .stop = options.stop,
+                                    .seen =
+                                        [&](std::int64_t done) {
+                                          if (options.progress) options.progress({done, total});
+                                        }});
+  source.store();
+}
+
+disk_cache::Cache cache_of(const Options& options, const char* kind) {
+  if (!options.use_cache) return {};
+  return disk_cache::Cache((options.cache.empty() ? disk_cache::user_folder() : options.cache) /
+                           kind);
+}
+
+fs::path openness_cache(const Options& options) {
+  if (!options.use_cache) return {};
+  return (options.cache.empty() ? disk_cache::user_folder() : options.cache) / "openness";
+}
+
+bool needs_calibration(const scene::Scene& scene) {
+  if (scene.composite.method == scene::CompositeMethod::kChromaKey) return false;
+  scene::Scene filled = scene;
+  scene::CameraFile file;
+  if (scene.realism.file) file = scene::read_camera_file(*scene.realism.file);
+  // A shutter angle is an exposure, once the frame rate is known.
+  if (filled.camera_model.angle_deg) filled.camera_model.exposure_s = 0;
+  return fill_from_file(filled, file);
+}
+
+void calibrate_ahead(const scene::Scene& scene, const Options& options) {
+  if (!needs_calibration(scene)) return;
+  scene::Scene filled = scene;
+  const video::StreamInfo info = video::Reader(scene.background.video, {}, options.warn).info();
+  const lens::ImageSize size{info.width, info.height};
+  if (scene.realism.file) fill_from_file(filled, file_of(scene, size));
+  const auto mask = insertion::read_mask(scene, size);
+  measured_on(filled, size, mask ? &*mask : nullptr, options);
+}
+
+void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
+  const lens::ImageSize size{info.width, info.height};
+  insertion::read_mask(scene, size);
+  const StatedScene with_camera = stated(scene, info);
+  const lens::Lens lens = setup::lens_of(scene.lens, size);
+  setup::motion_model(scene);
+  insertion::check_method(scene, lens);
+  setup::check_paths(with_camera.scene, info);
+}
+
+}  // namespace airtruth::pipeline

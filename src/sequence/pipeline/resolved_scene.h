@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "camera/lens/lens.h"
+#include "foundation/base/log.h"
+#include "foundation/image/layer.h"
+#include "picture/video/reader.h"
+#include "scene/scene/scene.h"
+#include "sequence/insertion/paint.h"
+#include "sequence/pipeline/options.h"
+#include "sequence/setup/motion_source.h"
+#include "sequence/setup/shared_inputs.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::pipeline {
+
+// A scene combined with its camera file; a shutter angle is converted to seconds. Keys with the
+// value "auto" are listed separately, so that all others can be checked before the clip is
+// measured.
+struct StatedScene {
+  scene::Scene scene;      // no [realism] and no "auto" left
+  scene::Realism realism;  // as the scene states it
+  // Camera keys ("shutter.exposure_s") that must be measured on the clip.
+  std::vector<std::string> to_measure;
+  bool sun_is_known = false;  // stated in the scene or in the camera file
+};
+
+// Reads no frame. Throws Error where the camera file cannot be read or is for another size or lens,
+// and where the method does not support a camera model.
+StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info);
+
+// Returns the scene with its camera model complete, as sequence.json records it and as rendering a
+// frame again requires it. Measures the clip where a key is still unknown, which takes long. Throws
+// Error where a key cannot be measured and [realism] fallback does not allow leaving it out.
+scene::Scene with_measured_camera(StatedScene stated,
+                                  const lens::ImageSize& size,
+                                  const image::Mask* mask,
+                                  const Options& options);
+
+// A scene whose files are all opened and checked, before a frame is measured: faults of the user's
+// input are found here.
+struct OpenedScene {
+  StatedScene stated;
+  video::Reader background;                 // the scene's part of it
+  video::StreamInfo info;                   // with the number of frames that this scene makes of it
+  std::unique_ptr<const image::Mask> mask;  // of the own aircraft; null: none
+  std::shared_ptr<setup::SharedInputs> inputs;  // of the process, else of this run
+  setup::World world;
+  std::unique_ptr<backdrop::Backdrop> backdrop;  // of the chroma-key method
+};
+OpenedScene open_scene(const scene::Scene& scene, const Options& options);
+
+// A scene with all that must be known of the whole clip before its first frame: frames are made
+// from it alone. It is complete: what sequence.json records and what a frame is made from again.
+struct ResolvedScene {
+  scene::Scene scene;
+  video::Reader background;
+  video::StreamInfo info;
+  std::unique_ptr<const image::Mask> mask;  // of the own aircraft; null: none
+  std::shared_ptr<setup::SharedInputs> inputs;
+  setup::World world;
+  std::unique_ptr<backdrop::Backdrop> backdrop;
+  std::string video_sha256;
+  setup::MotionSource motion;
+};
+
+// Measures what the scene leaves to the clip: the exposure, noise and other values of [realism],
+// and the motion where it is needed ahead. Decodes the whole clip where these are not in the cache.
+ResolvedScene resolve(OpenedScene opened, const Options& options);
+
+// Places the intruders of [[intruder.seen]] by a motion that is known for every frame. Throws Error
+// where the clip has no frame within a frame's time of a moment.
+void place_seen(OpenedScene& opened,
+                const setup::MotionSource& motion,
+                const std::stop_token& stop);
+
+// What the motion of the opened scene's frames depends on.
+setup::MotionInputs motion_inputs(const OpenedScene& opened,
+                                  const std::string& video_sha256,
+                                  const Options& options);
+
+// Throws Error for every fault of a scene that can be found before a frame of its clip is read: in
+// the mask, the lens, the camera file, the paths of camera and intruders, the aircraft's names, and
+// where the method cannot render through this lens with this camera model. `info` describes the
+// background, or the one that will be made.
+void check_scene(const scene::Scene& scene, const video::StreamInfo& info);
+
+// Measures the motion of the scene's background and stores it in the cache, unless the cache holds
+// it already.
+void measure_ahead(const scene::Scene& scene, const Options& options);
+
+// True where the scene asks for camera values that neither the scene nor its camera file states.
+// They are measured on the whole clip, whatever part of it the scene uses.
+bool needs_calibration(const scene::Scene& scene);
+
+// Calibrates the scene's background and stores the result in the cache, unless the cache holds it
+// already. Does nothing where the scene needs no calibration.
+void calibrate_ahead(const scene::Scene& scene, const Options& options);
+
+// The part of the cache for one kind of result, "motion" or "calibration".
+disk_cache::Cache cache_of(const Options& options, const char* kind);
+
+// The folder that keeps the openness of aircraft; empty: none.
+fs::path openness_cache(const Options& options);
+
+}  // namespace airtruth::pipeline

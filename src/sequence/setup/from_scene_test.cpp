@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/from_scene.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foundation/base/error.h"
+#include "support/temporary_folder.h"
+
+namespace airtruth::setup {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OwnLog : testing::Test {
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  }
+  // Northwards at 1e-4 degrees of latitude a second: 11.1 m/s.
+  fs::path csv(const std::string& attitude_columns, const std::string& attitude) const {
+    std::string text =
+        "time_s,latitude_deg,longitude_deg,altitude_m,height_m" + attitude_columns + "\n";
+    for (int i = 0; i <= 30; ++i)
+      text +=
+          std::to_string(i) + "," + std::to_string(47 + 1e-4 * i) + ",8,500,90" + attitude + "\n";
+    return write("log.csv", text);
+  }
+  static scene::Scene scene_of(const fs::path& log,
+                               const std::string& more,
+                               const std::string& motion = "") {
+    return scene::parse_scene("[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n" +
+                                  motion + "[camera]\nlog = \"" + log.string() + "\"\n" + more +
+                                  "[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = "
+                                  "[[0,0,0],[1,0,0]]\nspeed_mps = 1\n",
+                              "s.toml");
+  }
+  static YawPitchRoll attitude(const trajectory::Path& path, double time_s) {
+    return yaw_pitch_roll(path.at(time_s)->world_from_body);
+  }
+  static std::string error_of(const scene::Scene& scene) {
+    try {
+      camera_path(scene.camera);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  test_support::TemporaryFolder folder;
+};
+
+TEST_F(OwnLog, PositionsAreTheLogsAndTheHeightIsThatAboveTakeOff) {
+  const auto path = camera_path(scene_of(csv("", ""), "log_offset_s = 10\n").camera);
+  EXPECT_NEAR((path.at(0)->position_in_world - Vector3(0, 0, -90)).norm(), 0, 1e-6);
+  EXPECT_NEAR(path.at(10)->position_in_world.x(), 111.2, 0.1);
+  EXPECT_NEAR(attitude(path, 0).yaw_deg, 0, 0.01);
+  const auto stated = camera_path(
+      scene_of(csv("", ""), "log_offset_s = 10\nposition_ned_m = [1, 2, -150]\n").camera);
+  EXPECT_NEAR((stated.at(0)->position_in_world - Vector3(1, 2, -150)).norm(), 0, 1e-6);
+}
+
+TEST_F(OwnLog, TheAttitudeIsHeldUnlessTheMotionIsSmoothed) {
+  const fs::path log = write("turning.csv", [] {
+    std::string text = "time_s,latitude_deg,longitude_deg,altitude_m,yaw_deg,pitch_deg,roll_deg\n";
+    for (int i = 0; i <= 30; ++i)
+      text += std::to_string(i) + "," + std::to_string(47 + 1e-4 * i) + ",8,500," +
+              std::to_string(2 * i) + ",5,1\n";
+    return text;
+  }());
+  const auto held = camera_path(scene_of(log, "log_offset_s = 10\n").camera);
+  EXPECT_NEAR(attitude(held, 0).yaw_deg, 20, 1e-6);
+  EXPECT_NEAR(attitude(held, 10).yaw_deg, 20, 1e-6);
+  EXPECT_NEAR(attitude(held, 10).pitch_deg, 5, 1e-6);
+  const auto followed = camera_path(
+      scene_of(log, "log_offset_s = 10\n", "[motion]\nreference = \"smoothed\"\n").camera);
+  EXPECT_NEAR(attitude(followed, 10).yaw_deg, 40, 1e-6);
+  const auto stated = camera_path(
+      scene_of(log, "log_offset_s = 10\nattitude_yaw_pitch_roll_deg = [7, -3, 0]\n").camera);
+  EXPECT_NEAR(attitude(stated, 10).yaw_deg, 7, 1e-6);
+}
+
+TEST_F(OwnLog, ASceneWithALogIsWrittenAndReadTheSame) {
+  const auto scene = scene_of(csv("", ""), "log_offset_s = 10.25\nposition_ned_m = [1, 2, -150]\n");
+  const auto again = scene::parse_scene(scene::toml_from_scene(scene), "again.toml");
+  EXPECT_EQ(again.camera.log, scene.camera.log);
+  EXPECT_EQ(again.camera.log_offset_s, 10.25);
+  EXPECT_TRUE(again.camera.position_is_stated);
+  EXPECT_FALSE(again.camera.attitude_is_stated);
+}
+
+TEST_F(OwnLog, WhatDoesNotFitIsAnErrorAtTheScenesLine) {
+  const fs::path log = csv("", "");
+  EXPECT_EQ(error_of(scene_of(log, "")),
+            "s.toml:5:1: the log (CSV) has a clock of its own; expected log_offset_s, which "
+            "'airtruth log align' finds");
+  EXPECT_EQ(
+      error_of(scene_of(log, "log_offset_s = 100\n")),
+      "s.toml:5:1: the log's positions go from 0.00 to 30.00 s, and the clip begins at 100.000 "
+      "s of the log; "
+      "expected a log of the same flight, or another log_offset_s");
+  EXPECT_THAT(error_of(scene_of(folder / "missing.csv", "log_offset_s = 1\n")),
+              testing::HasSubstr("missing.csv"));
+  const auto parse_error = [&](const std::string& camera, const std::string& background) {
+    try {
+      scene::parse_scene("[background]\nvideo = \"a.mp4\"\n" + background +
+                             "[lens]\nvertical_fov_deg = 60\n[camera]\n" + camera +
+                             "[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = "
+                             "[[0,0,0],[1,0,0]]\nspeed_mps = 1\n",
+                         "s.toml");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(parse_error("log_offset_s = 1\n", ""),
+              testing::HasSubstr("log_offset_s is stated without a log"));
+  EXPECT_THAT(parse_error("log = \"a.srt\"\n", "first_frame = 120\n"),
+              testing::HasSubstr("first_frame is 120 and the log has no log_offset_s"));
+  EXPECT_THAT(parse_error("log = \"a.srt\"\npath_file = \"a.csv\"\n", ""),
+              testing::HasSubstr("path_file"));
+}
+
+}  // namespace
+}  // namespace airtruth::setup
