@@ -151,7 +151,7 @@ void say_what_is_drawn(const build::Plan& plan, Console& console) {
 void plan(const DatasetArguments& arguments, Context& context) {
   const catalogue::Catalogue catalogue = build::with_videos(
       catalogue::read_catalogue(arguments.catalogue), videos_of(arguments.backgrounds));
-  build::check_sources(catalogue, {});
+  build::check_sources(catalogue);
   constexpr std::int64_t kMaxListed = 50;
   Console& console = context.console();
   const auto list = [&](const catalogue::Item& item) {

@@ -24,20 +24,22 @@ struct Export {
   labelled::ExportOptions options;
 };
 
-labelled::Images images_from_name(const std::string& name) {
-  if (name == "jpg") return labelled::Images::kJpg;
-  if (name == "png") return labelled::Images::kPng;
-  if (name == "none") return labelled::Images::kNone;
-  throw Error("--images is '" + name + "'; expected jpg, png or none");
+// The value that an option names.
+template <typename Enum>
+Enum value_of(const char* option, const std::string& name, const char* expected) {
+  if (const auto value = enum_named<Enum>(name)) return *value;
+  throw Error(fmt::format("{} is '{}'; expected {}", option, name, expected));
 }
 
 void run_export(Export arguments, Context& context) {
   Console& console = context.console();
   labelled::ExportOptions& options = arguments.options;
   options.format = exchange::format_from_name(arguments.format);
-  if (!arguments.images.empty()) options.images = images_from_name(arguments.images);
-  options.split = labelled::split_from_name(arguments.split);
-  options.boxes = sequences::boxes_from_name(arguments.boxes);
+  if (!arguments.images.empty())
+    options.images = value_of<labelled::Images>("--images", arguments.images, "jpg, png or none");
+  options.split =
+      value_of<labelled::Split>("--split", arguments.split, "none, by-background or by-sequence");
+  options.boxes = value_of<dataset::Boxes>("--boxes", arguments.boxes, "covered, exact or visible");
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) sum += options.shares[i] = arguments.shares[i];
   if (!(sum > 0)) throw Error("--shares are all 0; expected a share for one part at least");

@@ -49,10 +49,6 @@ catalogue::BackgroundFiles files_of(const catalogue::Background& background,
                                     const catalogue::Folder& folder,
                                     const BuildOptions& options) {
   catalogue::BackgroundFiles files;
-  if (const auto given = options.videos.find(background.name); given != options.videos.end()) {
-    files.video = given->second;
-    return files;
-  }
   if (const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source))
     return fly(background, *flight, folder, options);
   files.video = std::get<fs::path>(background.source);
@@ -66,16 +62,24 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                    const catalogue::Folder& folder,
                                    const BuildOptions& options) {
   catalogue::BackgroundFiles files = files_of(background, folder, options);
-  add_facts(files);
-  return files;
-}
-
-void add_facts(catalogue::BackgroundFiles& files) {
   const video::StreamInfo info = video::Reader(files.video, {.threads = 1}).info();
   files.width = info.width;
   files.height = info.height;
   files.frame_rate_hz = info.frame_rate.value();
   files.frames = info.frame_count_estimate;
+  return files;
+}
+
+video::StreamInfo stream_of(const catalogue::Background& background) {
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  if (flight == nullptr)
+    return video::Reader(std::get<fs::path>(background.source), {.threads = 1}).info();
+  video::StreamInfo info;
+  info.width = flight->width;
+  info.height = flight->height;
+  info.frame_rate = {static_cast<int>(std::lround(1000 * flight->frame_rate_hz)), 1000};
+  info.frame_count_estimate = flight->frame_count;
+  return info;
 }
 
 }  // namespace airtruth::build

@@ -3,6 +3,7 @@
 
 #include "dataset/build/build.h"
 #include "dataset/catalogue/folder.h"
+#include "picture/video/reader.h"
 
 namespace airtruth::build {
 
@@ -13,8 +14,8 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                    const catalogue::Folder& folder,
                                    const BuildOptions& options);
 
-// Fills in size, rate and number of frames from the video. Throws Error where the video cannot be
-// read.
-void add_facts(catalogue::BackgroundFiles& files);
+// The size, rate and number of frames of a background: as its virtual flight states them, or as its
+// video does. Throws Error where the video cannot be read.
+video::StreamInfo stream_of(const catalogue::Background& background);
 
 }  // namespace airtruth::build

@@ -204,14 +204,14 @@ class Work {
   std::vector<catalogue::BackgroundFiles> files_;
   // Aircraft are the same in every set: their openness is kept where `render` keeps it.
   std::shared_ptr<setup::SharedInputs> shared_ =
-      std::make_shared<setup::SharedInputs>(pipeline::openness_cache({}));
+      std::make_shared<setup::SharedInputs>(pipeline::cache_folder({}, "openness"));
   std::mutex mutex_;
   BuildSummary summary_;
 };
 
 }  // namespace
 
-BuildSummary build_set(const catalogue::Catalogue& catalogue,
+BuildSummary build_set(const catalogue::Catalogue& given,
                        const fs::path& out,
                        const BuildOptions& options) {
   check(options.share >= 0 && options.share < options.shares, "a share is one of the shares");
@@ -219,8 +219,8 @@ BuildSummary build_set(const catalogue::Catalogue& catalogue,
   // Sequence records hold full background paths, because virtual flights lie in the data set.
   require_utf8(fs::absolute(out));
   for (const auto& [name, video] : options.videos) require_utf8(fs::absolute(video));
-  expect_backgrounds(catalogue, options.videos);
-  check_sources(catalogue, options.videos);
+  const catalogue::Catalogue catalogue = with_videos(given, options.videos);
+  check_sources(catalogue);
   const catalogue::Folder folder = catalogue::open_folder(catalogue, out, options.max_in_a_folder);
   const catalogue::FolderLock lock(folder, options.shares > 1);
   BuildSummary summary = Work(catalogue, folder, options).run();

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "aircraft/fleet/fleet.h"
+#include "dataset/build/backgrounds.h"
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
-#include "picture/video/reader.h"
 #include "sequence/pipeline/resolved_scene.h"
 
 namespace airtruth::build {
@@ -23,41 +23,23 @@ void check_aircraft(const catalogue::Aircraft& aircraft) {
   }
 }
 
-void check_video(const fs::path& video, const std::string& background, const Where& where) {
+void check_video(const catalogue::Background& background) {
+  const auto* video = std::get_if<fs::path>(&background.source);
   // The reader checks a pattern of numbered images.
-  if (video.string().find('%') == std::string::npos && !fs::exists(video))
-    throw Error(
-        "the video of background '" + background + "', " + video.string() + ", does not exist",
-        where);
-}
-
-video::StreamInfo stream_of(const synthetic::FlightOptions& flight) {
-  video::StreamInfo info;
-  info.width = flight.width;
-  info.height = flight.height;
-  info.frame_rate = {static_cast<int>(std::lround(1000 * flight.frame_rate_hz)), 1000};
-  return info;
+  if (video != nullptr && video->string().find('%') == std::string::npos && !fs::exists(*video))
+    throw Error("the video of background '" + background.name + "', " + video->string() +
+                    ", does not exist",
+                background.where);
 }
 
 // Checks mask, lens, camera file and path of a background. Each sequence decides how much of the
 // clip it uses, and the camera's path must cover only that part.
-void check_background(const catalogue::Catalogue& catalogue,
-                      std::size_t place,
-                      const std::map<std::string, fs::path>& videos) {
+void check_background(const catalogue::Catalogue& catalogue, std::size_t place) {
   const catalogue::Background& background = catalogue.backgrounds[place];
+  check_video(background);
   scene::Scene scene = catalogue::scene_over(catalogue, place);
-  const auto given = videos.find(background.name);
-  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
-  video::StreamInfo info;
-  if (given == videos.end() && flight != nullptr) {
-    info = stream_of(*flight);
-  } else {
-    const bool own = given == videos.end();
-    const fs::path video = own ? std::get<fs::path>(background.source) : given->second;
-    check_video(video, background.name, own ? background.where : Where{});
-    info = video::Reader(video, {.threads = 1}).info();
-    if (own) scene.background.mask = background.mask;
-  }
+  if (std::holds_alternative<fs::path>(background.source)) scene.background.mask = background.mask;
+  video::StreamInfo info = stream_of(background);
   info.frame_count_estimate = 0;  // unknown
   pipeline::check_scene(scene, info);
 }
@@ -84,34 +66,23 @@ void check_names(const catalogue::Catalogue& catalogue) {
 
 }  // namespace
 
-void check_sources(const catalogue::Catalogue& catalogue,
-                   const std::map<std::string, fs::path>& videos) {
+void check_sources(const catalogue::Catalogue& catalogue) {
   for (const catalogue::Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
-  for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i)
-    check_background(catalogue, i, videos);
+  for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i) check_background(catalogue, i);
   check_names(catalogue);
-}
-
-void expect_backgrounds(const catalogue::Catalogue& catalogue,
-                        const std::map<std::string, fs::path>& videos) {
-  for (const auto& [name, video] : videos) {
-    const bool known =
-        std::any_of(catalogue.backgrounds.begin(),
-                    catalogue.backgrounds.end(),
-                    [&, n = name](const catalogue::Background& b) { return b.name == n; });
-    if (!known)
-      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
-  }
 }
 
 catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
                                  const std::map<std::string, fs::path>& videos) {
-  expect_backgrounds(catalogue, videos);
-  for (catalogue::Background& background : catalogue.backgrounds) {
-    const auto given = videos.find(background.name);
-    if (given == videos.end()) continue;
-    background.source = given->second;
-    background.mask.reset();
+  for (const auto& [name, video] : videos) {
+    const auto replaced = std::find_if(
+        catalogue.backgrounds.begin(),
+        catalogue.backgrounds.end(),
+        [&, n = name](const catalogue::Background& background) { return background.name == n; });
+    if (replaced == catalogue.backgrounds.end())
+      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
+    replaced->source = video;
+    replaced->mask.reset();
   }
   return catalogue;
 }

@@ -11,20 +11,14 @@ namespace airtruth::build {
 
 namespace fs = std::filesystem;
 
-// Checks the inputs of a catalogue on this machine before any work begins. Aircraft must be known.
-// Videos must exist, except those of the backgrounds in `videos`, which are replaced by the videos
-// given there. Each background's mask, lens, camera file and path must be readable and must fit its
-// video and the catalogue's method. No two sequences may have the same name. Throws Error at the
-// line of the catalogue.
-void check_sources(const catalogue::Catalogue& catalogue,
-                   const std::map<std::string, fs::path>& videos);
-
-// Throws Error where `videos` names a background that the catalogue lacks.
-void expect_backgrounds(const catalogue::Catalogue& catalogue,
-                        const std::map<std::string, fs::path>& videos);
+// Checks the inputs of a catalogue on this machine before any work begins. Aircraft must be known
+// and videos must exist. Each background's mask, lens, camera file and path must be readable and
+// must fit its video and the catalogue's method. No two sequences may have the same name. Throws
+// Error at the line of the catalogue.
+void check_sources(const catalogue::Catalogue& catalogue);
 
 // The catalogue with these videos, by the background's name, in place of its own; the masks of
-// these backgrounds are left out. Throws Error as expect_backgrounds() does.
+// these backgrounds are left out. Throws Error for a background that the catalogue lacks.
 catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
                                  const std::map<std::string, fs::path>& videos);
 

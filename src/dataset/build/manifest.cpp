@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::int64_t kLinesInAFile = 10'000;
+constexpr std::int64_t kLinesInAFile = 10'000;  // chosen
 
 Json manifest_line(const catalogue::Folder& folder, const catalogue::Item& item) {
   const JsonDocument record(folder.sequence(item) / "sequence.json");

@@ -27,10 +27,8 @@ constexpr double kUsualPixels = 1280.0 * 960.0;
 
 class Planner {
  public:
-  explicit Planner(const catalogue::Catalogue& catalogue) : catalogue_(catalogue) {
-    facts_.resize(catalogue.backgrounds.size());
-    is_used_.resize(catalogue.backgrounds.size(), false);
-  }
+  explicit Planner(const catalogue::Catalogue& catalogue)
+      : catalogue_(catalogue), facts_(catalogue.backgrounds.size()) {}
 
   void add(const catalogue::Item& item) {
     const Facts& facts = facts_of(item.background);
@@ -46,7 +44,7 @@ class Planner {
       if (encounter.size_px) plan_.sizes_px.add(*encounter.size_px);
       if (encounter.range_m) plan_.ranges_m.add(*encounter.range_m);
     }
-    const double rate_hz = facts.files.frame_rate_hz > 0 ? facts.files.frame_rate_hz : 30;
+    const double rate_hz = facts.frame_rate_hz > 0 ? facts.frame_rate_hz : 30;
     fly(item, frames > 0 ? static_cast<double>(frames - 1) / rate_hz : 1e9);
   }
 
@@ -68,31 +66,25 @@ class Planner {
     plan_.intruders += aircraft;
   }
 
+  // Of a background.
   struct Facts {
-    catalogue::BackgroundFiles files;
+    std::int64_t frames = 0;
+    double frame_rate_hz = 0;
     // Pixels of a frame relative to 1280x960.
     double size = 1;
   };
 
   // Facts of a background in use; the first call also counts the cost of the background itself.
   const Facts& facts_of(std::size_t i) {
-    Facts& facts = facts_[i];
-    if (is_used_[i]) return facts;
-    is_used_[i] = true;
+    if (facts_[i]) return *facts_[i];
     const catalogue::Background& background = catalogue_.backgrounds[i];
-    const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
-    if (flight != nullptr) {
-      facts.files.width = flight->width;
-      facts.files.height = flight->height;
-      facts.files.frames = flight->frame_count;
-      facts.files.frame_rate_hz = flight->frame_rate_hz;
-    } else {
-      facts.files.video = std::get<fs::path>(background.source);
-      add_facts(facts.files);
-    }
-    facts.size = double(facts.files.width) * facts.files.height / kUsualPixels;
-    const double whole = static_cast<double>(facts.files.frames) * facts.size;
-    if (flight != nullptr) plan_.core_s += whole * kCoreSecondsPerFlownFrame;
+    const video::StreamInfo info = stream_of(background);
+    Facts& facts = facts_[i].emplace(Facts{info.frame_count_estimate,
+                                           info.frame_rate.value(),
+                                           double(info.width) * info.height / kUsualPixels});
+    const double whole = static_cast<double>(facts.frames) * facts.size;
+    if (std::holds_alternative<synthetic::FlightOptions>(background.source))
+      plan_.core_s += whole * kCoreSecondsPerFlownFrame;
     if (pipeline::needs_calibration(catalogue::scene_over(catalogue_, i))) {
       plan_.calibration_s += whole * kCoreSecondsPerCalibratedFrame;
       plan_.core_s += whole * kCoreSecondsPerCalibratedFrame;
@@ -103,7 +95,7 @@ class Planner {
   std::int64_t frames_of(const catalogue::Item& item, const Facts& facts) const {
     if (item.frame_count > 0) return item.frame_count;
     const std::int64_t first_frame = catalogue_.backgrounds[item.background].first_frame;
-    return std::max<std::int64_t>(0, facts.files.frames - first_frame);
+    return std::max<std::int64_t>(0, facts.frames - first_frame);
   }
 
   // Why an intruder cannot fly its path, or has none; "" where it can.
@@ -135,8 +127,7 @@ class Planner {
   }
 
   const catalogue::Catalogue& catalogue_;
-  std::vector<Facts> facts_;
-  std::vector<bool> is_used_;
+  std::vector<std::optional<Facts>> facts_;  // by background; empty: not in use so far
   Plan plan_;
 };
 

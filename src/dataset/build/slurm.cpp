@@ -20,7 +20,7 @@
 namespace airtruth::build {
 namespace {
 
-constexpr std::int64_t kMaxTasks = 1000;
+constexpr std::int64_t kMaxTasks = 1000;  // Slurm's MaxArraySize is 1,001 by default
 
 // Quotes text as one word of a shell command.
 std::string quoted(const std::string& text) {
@@ -120,8 +120,7 @@ Submitted submit(const catalogue::Catalogue& catalogue,
   };
   if (std::any_of(options.partition.begin(), options.partition.end(), odd))
     throw Error("'" + options.partition + "' is no name of a Slurm partition");
-  expect_backgrounds(catalogue, options.videos);
-  check_sources(catalogue, options.videos);
+  check_sources(with_videos(catalogue, options.videos));
   const std::int64_t sequences = catalogue::Expansion(catalogue).size();
   const std::int64_t tasks = options.array_size > 0
                                  ? std::min<std::int64_t>(options.array_size, sequences)

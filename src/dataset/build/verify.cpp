@@ -21,7 +21,7 @@
 namespace airtruth::build {
 namespace {
 
-constexpr std::size_t kMaxNamed = 100;
+constexpr std::size_t kMaxNamed = 100;  // of the missing sequences: what a terminal shows
 // Results that wait for their place in the order, so that memory does not grow with the set.
 constexpr std::int64_t kMaxHeldResults = 4096;
 

@@ -101,22 +101,16 @@ void refuse_twice(const Things& things, const char* what, const std::string& fil
                   {file});
 }
 
-Listed listed_from(const TableReader& table, const Catalogue& catalogue) {
-  Listed listed;
-  listed.name = required_name(table);
-  listed.where = table.where("name");
-  listed.background = place_of(catalogue.backgrounds,
-                               required(table, "background"),
-                               "background",
-                               table.where("background"));
-  listed.trajectory = place_of(catalogue.trajectories,
-                               required(table, "trajectory"),
-                               "trajectory",
-                               table.where("trajectory"));
-  listed.aircraft = place_of(
-      catalogue.aircraft, required(table, "aircraft"), "aircraft", table.where("aircraft"));
-  listed.frame_count = table.whole("frame_count", 1, kMost);
-  return listed;
+Product listed_from(const TableReader& table, const Catalogue& catalogue) {
+  const auto only = [&](const char* key, const auto& things) {
+    return std::vector{place_of(things, required(table, key), key, table.where(key))};
+  };
+  return {required_name(table),
+          only("background", catalogue.backgrounds),
+          only("trajectory", catalogue.trajectories),
+          only("aircraft", catalogue.aircraft),
+          table.whole("frame_count", 1, kMost),
+          0};
 }
 
 Product product_from(const TableReader& table, const Catalogue& catalogue) {
@@ -138,14 +132,6 @@ Product product_from(const TableReader& table, const Catalogue& catalogue) {
   varies("{aircraft}", product.aircraft.size());
   product.negatives = table.number("negatives", scene::kShare).value_or(catalogue.negatives);
   return product;
-}
-
-void refuse_same_names(const Catalogue& catalogue) {
-  std::set<std::string> seen;
-  for (const Rule& rule : catalogue.rules)
-    if (const auto* listed = std::get_if<Listed>(&rule);
-        listed != nullptr && !seen.insert(listed->name).second)
-      throw Error("two sequences are named '" + listed->name + "'", listed->where);
 }
 
 // The parts from which sequences are made: backgrounds, aircraft and trajectories.
@@ -177,9 +163,14 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
 
 // The rules by which sequences are made from the parts.
 void add_rules(const TableReader& root, Catalogue& catalogue) {
+  std::set<std::string> names;
   for (const TableReader& table :
-       root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"}))
-    catalogue.rules.emplace_back(listed_from(table, catalogue));
+       root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"})) {
+    Product listed = listed_from(table, catalogue);
+    if (!names.insert(listed.name).second)
+      throw Error("two sequences are named '" + listed.name + "'", table.where("name"));
+    catalogue.rules.emplace_back(std::move(listed));
+  }
   for (const TableReader& table :
        root.tables("product",
                    {"name", "backgrounds", "trajectories", "aircraft", "frame_count", "negatives"}))
@@ -192,7 +183,6 @@ void add_rules(const TableReader& root, Catalogue& catalogue) {
         "makes no sequence; expected [[sequence]], [[product]], [[random]] or "
         "[[encounter_model]]",
         {catalogue.file.string()});
-  refuse_same_names(catalogue);
 }
 
 }  // namespace

@@ -62,17 +62,8 @@ struct Trajectory {
   Where where;
 };
 
-// One sequence: one of each of the above, by index in the catalogue.
-struct Listed {
-  std::string name;
-  Where where;
-  std::size_t background = 0;
-  std::size_t trajectory = 0;
-  std::size_t aircraft = 0;
-  std::optional<std::int64_t> frame_count;
-};
-
-// Every combination of the given backgrounds, trajectories and aircraft.
+// Every combination of the given backgrounds, trajectories and aircraft, by index in the catalogue;
+// a sequence of [[sequence]] is that of one of each.
 struct Product {
   std::string name;  // pattern with {background}, {trajectory}, {aircraft}
   std::vector<std::size_t> backgrounds, trajectories, aircraft;
@@ -81,7 +72,7 @@ struct Product {
   double negatives = 0;
 };
 
-using Rule = std::variant<Listed, Product, Drawn, EncounterRule>;
+using Rule = std::variant<Product, Drawn, EncounterRule>;
 
 struct Catalogue {
   std::string name;

@@ -19,7 +19,7 @@ using scene::DistractorKind;
 using scene::Limits;
 using scene::TableReader;
 
-constexpr std::int64_t kMostOfAKind = 100;
+constexpr std::int64_t kMostOfAKind = 100;  // of one rule in one sequence: chosen
 constexpr Limits kBodySize{
     .expected = "[low, high] in metres from 0.05 to 20", .low = 0.05, .high = 20};
 constexpr Limits kSpreadM{.expected = "[low, high] in metres from 0 to 1e4", .low = 0, .high = 1e4};
@@ -41,10 +41,6 @@ const TableReader::Keys kAirKeys = {"size_m",
                                     "spread_m"};
 const TableReader::Keys kBirdKeys = {"plumage", "glide"};
 const TableReader::Keys kLensKeys = {"spot_px", "opacity", "speed_px_s"};
-
-void read(const TableReader& table, std::string_view key, const Limits& limits, Range& range) {
-  range = maybe_range(table, key, limits).value_or(range);
-}
 
 // The values of a rule that states its kind and nothing else: gull to eagle, a toy to a freight
 // carrier, a party's to a weather station's balloon.
@@ -91,20 +87,15 @@ DistractorRule usual_rule(DistractorKind kind) {
 
 void read_air(const TableReader& table, DistractorRule& rule) {
   refuse_keys(table, kLensKeys, enum_name(rule.kind));
-  table.exclude("size_px", {"range_m"});
-  read(table, "size_m", kBodySize, rule.size_m);
-  read(table, "range_m", scene::kRangeToAircraft, rule.range_m);
-  rule.size_px = maybe_range(table, "size_px", scene::kApparentSize);
-  read(table, "azimuth_deg", scene::kTurn, rule.azimuth_deg);
-  read(table, "elevation_deg", scene::kPitch, rule.elevation_deg);
-  read(table, "heading_deg", scene::kTurn, rule.heading_deg);
-  read(table, "climb_deg", scene::kPitch, rule.climb_deg);
-  read(table, "speed_mps", scene::kSpeed, rule.speed_mps);
+  read_range(table, "size_m", kBodySize, rule.size_m);
+  read_place(table, rule.place);
+  read_range(table, "climb_deg", scene::kPitch, rule.climb_deg);
+  read_range(table, "speed_mps", scene::kSpeed, rule.speed_mps);
   rule.flock = whole_range(table, "flock", scene::kMaxFlock).value_or(rule.flock);
-  read(table, "spread_m", kSpreadM, rule.spread_m);
+  read_range(table, "spread_m", kSpreadM, rule.spread_m);
   if (rule.kind != DistractorKind::kBird)
     return refuse_keys(table, kBirdKeys, enum_name(rule.kind));
-  read(table, "glide", scene::kShare, rule.glide);
+  read_range(table, "glide", scene::kShare, rule.glide);
   const auto words = table.texts("plumage");
   if (!words) return;
   rule.plumages.clear();
@@ -122,11 +113,11 @@ void read_air(const TableReader& table, DistractorRule& rule) {
 void read_lens(const TableReader& table, DistractorRule& rule) {
   refuse_keys(table, kAirKeys, enum_name(rule.kind));
   refuse_keys(table, kBirdKeys, enum_name(rule.kind));
-  read(table, "spot_px", kSpotPx, rule.spot_px);
-  read(table, "opacity", kOpacity, rule.opacity);
+  read_range(table, "spot_px", kSpotPx, rule.spot_px);
+  read_range(table, "opacity", kOpacity, rule.opacity);
   if (rule.kind != DistractorKind::kInsect)
     return refuse_keys(table, {"speed_px_s"}, enum_name(rule.kind));
-  read(table, "speed_px_s", kSpotSpeed, rule.speed_px_s);
+  read_range(table, "speed_px_s", kSpotSpeed, rule.speed_px_s);
 }
 
 }  // namespace
@@ -211,13 +202,7 @@ DrawnFlock drawn_flock(const DistractorRule& rule, Random random) {
   Encounter& encounter = flock.encounter;
   encounter.aircraft = enum_name(rule.kind);
   encounter.meeting_share = random.uniform(0.1, 0.9);
-  if (rule.size_px)
-    encounter.size_px = drawn_evenly_in_logarithm(random, *rule.size_px);
-  else
-    encounter.range_m = drawn_evenly_in_logarithm(random, rule.range_m);
-  encounter.azimuth_deg = drawn(random, rule.azimuth_deg);
-  encounter.elevation_deg = drawn(random, rule.elevation_deg);
-  encounter.heading_deg = drawn(random, rule.heading_deg);
+  draw_place(random, rule.place, encounter);
   encounter.climb_deg = drawn(random, rule.climb_deg);
   encounter.speed_mps = drawn(random, rule.speed_mps);
   flock.leader.speed_mps = encounter.speed_mps;

@@ -33,11 +33,7 @@ struct DistractorRule {
   // clip: the range (evenly in the logarithm) or the longest side of its exact box, and the angles
   // from the boresight. From there it flies straight both ways.
   Range size_m;
-  Range range_m{20, 300};
-  std::optional<Range> size_px;
-  Range azimuth_deg{-30, 30};
-  Range elevation_deg{-5, 20};
-  Range heading_deg{0, 360};
+  MeetingPlace place{.range_m = {20, 300}};
   Range climb_deg;
   Range speed_mps;
   // Members of a flock (scene/flock.h) and its radius.

@@ -76,13 +76,7 @@ Encounter drawn_encounter(Random& random, const Streams& streams, const Drawn& r
   encounter.speed_mps = drawn(random, speed_range(rule, limits));
   encounter.meeting_share = random.uniform(0.2, 0.8);
   if (draw_stated_path(rule, streams.path, encounter)) return encounter;
-  if (rule.size_px)
-    encounter.size_px = drawn_evenly_in_logarithm(random, *rule.size_px);
-  else
-    encounter.range_m = drawn_evenly_in_logarithm(random, rule.range_m);
-  encounter.azimuth_deg = drawn(random, rule.azimuth_deg);
-  encounter.elevation_deg = drawn(random, rule.elevation_deg);
-  encounter.heading_deg = drawn(random, rule.heading_deg);
+  draw_place(random, rule.place, encounter);
   encounter.climb_deg = drawn(random, climb_range(rule, limits, encounter.speed_mps));
   encounter.bank_deg = drawn_bank_deg(streams.bank, rule, limits);
   return encounter;
@@ -103,6 +97,16 @@ SunPosition drawn_sun(Random random, const DaytimeRange& daytime, const std::str
 }
 
 }  // namespace
+
+void draw_place(Random& random, const MeetingPlace& place, Encounter& encounter) {
+  if (place.size_px)
+    encounter.size_px = drawn_evenly_in_logarithm(random, *place.size_px);
+  else
+    encounter.range_m = drawn_evenly_in_logarithm(random, place.range_m);
+  encounter.azimuth_deg = drawn(random, place.azimuth_deg);
+  encounter.elevation_deg = drawn(random, place.elevation_deg);
+  encounter.heading_deg = drawn(random, place.heading_deg);
+}
 
 DrawnSequence draw(const Drawn& rule, std::uint64_t seed_value, std::int64_t index) {
   const Seed seed(seed_value);
@@ -145,8 +149,8 @@ bool is_chosen(const std::string& what, double share, std::uint64_t seed, std::i
 
 namespace {
 
-constexpr double kObliquityDeg = 23.45;
-constexpr double kDegreesPerHour = 15;
+constexpr double kObliquityDeg = 23.45;  // of the Earth's axis, as Cooper has it
+constexpr double kDegreesPerHour = 15;   // 360 degrees in 24 hours
 
 // P. I. Cooper, The absorption of radiation in solar stills, Solar Energy 12 (1969).
 double declination_rad(int day_of_year) {

@@ -34,6 +34,9 @@ struct Encounter {
   double bank_deg = 0;  // positive with the right wing down; 0: straight
 };
 
+// Draws where the intruder is at its meeting moment.
+void draw_place(Random& random, const MeetingPlace& place, Encounter& encounter);
+
 struct DrawnSequence {
   std::size_t background = 0;
   std::vector<Encounter> encounters;  // empty: a sequence without an intruder

@@ -17,7 +17,7 @@ namespace {
 
 using scene::TableReader;
 
-constexpr std::int64_t kMaxIntruders = 100;
+constexpr std::int64_t kMaxIntruders = 100;          // in one sequence: chosen
 constexpr std::int64_t kMaxDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
 constexpr const char* kSuitsType = "type";
 
@@ -91,95 +91,6 @@ void read_start(const TableReader& table, const Catalogue& catalogue, Drawn& dra
                      "\"first\"");
 }
 
-void read_paths(const TableReader& table, Drawn& drawn) {
-  const TableReader::Keys meeting = {"range_m",
-                                     "size_px",
-                                     "azimuth_deg",
-                                     "elevation_deg",
-                                     "speed_mps",
-                                     "heading_deg",
-                                     "climb_deg",
-                                     "bank_deg"};
-  table.exclude("encounter", {"seen"});
-  table.exclude("encounter", meeting);
-  table.exclude("seen", meeting);
-  drawn.approach = drawn_approach_in(table);
-  drawn.seen = drawn_seen_in(table);
-  table.exclude("size_px", {"range_m"});
-  drawn.range_m = maybe_range(table, "range_m", scene::kRangeToAircraft).value_or(drawn.range_m);
-  drawn.size_px = maybe_range(table, "size_px", scene::kApparentSize);
-  drawn.azimuth_deg = maybe_range(table, "azimuth_deg", scene::kTurn).value_or(drawn.azimuth_deg);
-  drawn.elevation_deg =
-      maybe_range(table, "elevation_deg", scene::kPitch).value_or(drawn.elevation_deg);
-  drawn.speed_mps = range_or_type(table, "speed_mps", scene::kSpeed);
-  drawn.heading_deg = maybe_range(table, "heading_deg", scene::kTurn).value_or(drawn.heading_deg);
-  drawn.climb_deg = range_or_type(table, "climb_deg", scene::kPitch);
-  drawn.bank_deg = range_or_type(
-      table,
-      "bank_deg",
-      {.expected = "[low, high] in degrees from -85 to 85, or \"type\"", .low = -85, .high = 85});
-  drawn.bank_suits_type = table.has("bank_deg") && !drawn.bank_deg;
-}
-
-Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
-  Drawn drawn;
-  drawn.where = table.where();
-  drawn.name = index_pattern(table, "r{index}");
-  drawn.count = table.whole("count", 1, kMost).value_or(1);
-  drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
-  drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
-  drawn.types = types_in(table);
-  read_paths(table, drawn);
-  read_intruders(table, catalogue.negatives, drawn);
-  read_start(table, catalogue, drawn);
-  drawn.daytime = daytime_from(table);
-  drawn.sun_azimuth_deg = maybe_range(table, "sun_azimuth_deg", scene::kTurn);
-  drawn.sun_elevation_deg = maybe_range(table, "sun_elevation_deg", scene::kPitch);
-  return drawn;
-}
-
-}  // namespace
-
-std::vector<AircraftType> types_in(const TableReader& table) {
-  const auto patterns = table.texts("aircraft");
-  if (!patterns)
-    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
-                table.where());
-  std::map<std::string, AircraftType> types;
-  for (std::size_t i = 0; i < patterns->size(); ++i) {
-    const std::vector<std::string> names = aircraft::aircraft_fitting((*patterns)[i]);
-    for (const std::string& name : names) {
-      const std::string type = name.substr(0, name.find('/'));
-      types[type].name = type;
-      types[type].liveries.push_back(name);
-    }
-    if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
-  }
-  std::vector<AircraftType> result;
-  for (auto& [name, type] : types) {
-    std::sort(type.liveries.begin(), type.liveries.end());
-    type.liveries.erase(std::unique(type.liveries.begin(), type.liveries.end()),
-                        type.liveries.end());
-    result.push_back(std::move(type));
-  }
-  return result;
-}
-
-std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalogue) {
-  std::vector<Drawn> result;
-  for (const TableReader& table : root.tables(
-           "random",
-           {"name",          "count",        "frame_count", "backgrounds",     "aircraft",
-            "range_m",       "size_px",      "azimuth_deg", "elevation_deg",   "speed_mps",
-            "heading_deg",   "climb_deg",    "bank_deg",    "sun_azimuth_deg", "sun_elevation_deg",
-            "time_of_day_h", "latitude_deg", "day_of_year", "negatives",       "intruders",
-            "start",         "encounter",    "seen"}))
-    result.push_back(drawn_from(table, catalogue));
-  return result;
-}
-
-namespace {
-
 std::optional<DrawnNumber> number_in(const TableReader& table,
                                      std::string_view key,
                                      const scene::Limits& limits) {
@@ -227,52 +138,6 @@ DrawnSeen seen_from(const TableReader& table) {
   if (!seen.range_m && !seen.width_px)
     throw Error("[[random.seen]] has no range_m and no width_px; expected one of them",
                 table.where());
-  return seen;
-}
-
-}  // namespace
-
-double DrawnNumber::least() const {
-  return any_of.empty() ? low : *std::min_element(any_of.begin(), any_of.end());
-}
-
-double DrawnNumber::greatest() const {
-  return any_of.empty() ? high : *std::max_element(any_of.begin(), any_of.end());
-}
-
-double DrawnNumber::draw(Random& random) const {
-  return any_of.empty() ? random.uniform(low, high) : one_of(random, any_of);
-}
-
-double DrawnNumber::draw_in_logarithm(Random& random) const {
-  return any_of.empty() ? low * std::pow(high / low, random.uniform()) : one_of(random, any_of);
-}
-
-scene::Encounter DrawnApproach::draw(Random random, double usual_speed_mps) const {
-  const auto maybe = [&](const std::optional<DrawnNumber>& number) {
-    return number ? std::optional(number->draw(random)) : std::nullopt;
-  };
-  scene::Encounter encounter;
-  encounter.cpa_time_s = maybe(cpa_time_s).value_or(0);
-  encounter.cpa_right_m = maybe(cpa_right_m);
-  encounter.cpa_ahead_m = maybe(cpa_ahead_m);
-  encounter.cpa_above_m = cpa_above_m.draw(random);
-  encounter.course_deg = course_deg.draw(random);
-  encounter.speed_mps = maybe(speed_mps).value_or(usual_speed_mps);
-  encounter.climb_mps = climb_mps.draw(random);
-  encounter.turn_rate_dps = turn_rate_dps.draw(random);
-  encounter.where = where;
-  return encounter;
-}
-
-scene::Seen DrawnSeen::draw(Random& random) const {
-  scene::Seen seen;
-  seen.time_s = time_s.draw(random);
-  seen.pixel.x() = x_px.draw(random);
-  seen.pixel.y() = y_px.draw(random);
-  if (range_m) seen.range_m = range_m->draw_in_logarithm(random);
-  if (width_px) seen.width_px = width_px->draw_in_logarithm(random);
-  seen.where = where;
   return seen;
 }
 
@@ -327,6 +192,140 @@ std::vector<DrawnSeen> drawn_seen_in(const TableReader& rule) {
   if (result.size() == 1)
     throw Error("[[random.seen]] is alone; expected at least two of them", result[0].where);
   return result;
+}
+
+void read_paths(const TableReader& table, Drawn& drawn) {
+  const TableReader::Keys meeting = {"range_m",
+                                     "size_px",
+                                     "azimuth_deg",
+                                     "elevation_deg",
+                                     "speed_mps",
+                                     "heading_deg",
+                                     "climb_deg",
+                                     "bank_deg"};
+  table.exclude("encounter", {"seen"});
+  table.exclude("encounter", meeting);
+  table.exclude("seen", meeting);
+  drawn.approach = drawn_approach_in(table);
+  drawn.seen = drawn_seen_in(table);
+  read_place(table, drawn.place);
+  drawn.speed_mps = range_or_type(table, "speed_mps", scene::kSpeed);
+  drawn.climb_deg = range_or_type(table, "climb_deg", scene::kPitch);
+  drawn.bank_deg = range_or_type(
+      table,
+      "bank_deg",
+      {.expected = "[low, high] in degrees from -85 to 85, or \"type\"", .low = -85, .high = 85});
+  drawn.bank_suits_type = table.has("bank_deg") && !drawn.bank_deg;
+}
+
+Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
+  Drawn drawn;
+  drawn.where = table.where();
+  drawn.name = index_pattern(table, "r{index}");
+  drawn.count = table.whole("count", 1, kMost).value_or(1);
+  drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
+  drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
+  drawn.types = types_in(table);
+  read_paths(table, drawn);
+  read_intruders(table, catalogue.negatives, drawn);
+  read_start(table, catalogue, drawn);
+  drawn.daytime = daytime_from(table);
+  drawn.sun_azimuth_deg = maybe_range(table, "sun_azimuth_deg", scene::kTurn);
+  drawn.sun_elevation_deg = maybe_range(table, "sun_elevation_deg", scene::kPitch);
+  return drawn;
+}
+
+}  // namespace
+
+void read_place(const TableReader& table, MeetingPlace& place) {
+  table.exclude("size_px", {"range_m"});
+  read_range(table, "range_m", scene::kRangeToAircraft, place.range_m);
+  place.size_px = maybe_range(table, "size_px", scene::kApparentSize);
+  read_range(table, "azimuth_deg", scene::kTurn, place.azimuth_deg);
+  read_range(table, "elevation_deg", scene::kPitch, place.elevation_deg);
+  read_range(table, "heading_deg", scene::kTurn, place.heading_deg);
+}
+
+std::vector<AircraftType> types_in(const TableReader& table) {
+  const auto patterns = table.texts("aircraft");
+  if (!patterns)
+    throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
+                table.where());
+  std::map<std::string, AircraftType> types;
+  for (std::size_t i = 0; i < patterns->size(); ++i) {
+    const std::vector<std::string> names = aircraft::aircraft_fitting((*patterns)[i]);
+    for (const std::string& name : names) {
+      const std::string type = name.substr(0, name.find('/'));
+      types[type].name = type;
+      types[type].liveries.push_back(name);
+    }
+    if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
+  }
+  std::vector<AircraftType> result;
+  for (auto& [name, type] : types) {
+    std::sort(type.liveries.begin(), type.liveries.end());
+    type.liveries.erase(std::unique(type.liveries.begin(), type.liveries.end()),
+                        type.liveries.end());
+    result.push_back(std::move(type));
+  }
+  return result;
+}
+
+std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalogue) {
+  std::vector<Drawn> result;
+  for (const TableReader& table : root.tables(
+           "random",
+           {"name",          "count",        "frame_count", "backgrounds",     "aircraft",
+            "range_m",       "size_px",      "azimuth_deg", "elevation_deg",   "speed_mps",
+            "heading_deg",   "climb_deg",    "bank_deg",    "sun_azimuth_deg", "sun_elevation_deg",
+            "time_of_day_h", "latitude_deg", "day_of_year", "negatives",       "intruders",
+            "start",         "encounter",    "seen"}))
+    result.push_back(drawn_from(table, catalogue));
+  return result;
+}
+
+double DrawnNumber::least() const {
+  return any_of.empty() ? low : *std::min_element(any_of.begin(), any_of.end());
+}
+
+double DrawnNumber::greatest() const {
+  return any_of.empty() ? high : *std::max_element(any_of.begin(), any_of.end());
+}
+
+double DrawnNumber::draw(Random& random) const {
+  return any_of.empty() ? random.uniform(low, high) : one_of(random, any_of);
+}
+
+double DrawnNumber::draw_in_logarithm(Random& random) const {
+  return any_of.empty() ? low * std::pow(high / low, random.uniform()) : one_of(random, any_of);
+}
+
+scene::Encounter DrawnApproach::draw(Random random, double usual_speed_mps) const {
+  const auto maybe = [&](const std::optional<DrawnNumber>& number) {
+    return number ? std::optional(number->draw(random)) : std::nullopt;
+  };
+  scene::Encounter encounter;
+  encounter.cpa_time_s = maybe(cpa_time_s).value_or(0);
+  encounter.cpa_right_m = maybe(cpa_right_m);
+  encounter.cpa_ahead_m = maybe(cpa_ahead_m);
+  encounter.cpa_above_m = cpa_above_m.draw(random);
+  encounter.course_deg = course_deg.draw(random);
+  encounter.speed_mps = maybe(speed_mps).value_or(usual_speed_mps);
+  encounter.climb_mps = climb_mps.draw(random);
+  encounter.turn_rate_dps = turn_rate_dps.draw(random);
+  encounter.where = where;
+  return encounter;
+}
+
+scene::Seen DrawnSeen::draw(Random& random) const {
+  scene::Seen seen;
+  seen.time_s = time_s.draw(random);
+  seen.pixel.x() = x_px.draw(random);
+  seen.pixel.y() = y_px.draw(random);
+  if (range_m) seen.range_m = range_m->draw_in_logarithm(random);
+  if (width_px) seen.width_px = width_px->draw_in_logarithm(random);
+  seen.where = where;
+  return seen;
 }
 
 }  // namespace airtruth::catalogue

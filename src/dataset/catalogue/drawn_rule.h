@@ -78,6 +78,20 @@ constexpr auto enum_names(ClipStart) {
       {{ClipStart::kFirst, "first"}, {ClipStart::kRandom, "random"}});
 }
 
+// Where an intruder is at its meeting moment.
+struct MeetingPlace {
+  Range range_m{100, 2000};
+  // Replaces range_m: longest side of the exact box, in px.
+  std::optional<Range> size_px;
+  // Angle from the boresight, positive to the right.
+  Range azimuth_deg{-30, 30};
+  Range elevation_deg{-5, 20};  // positive up
+  Range heading_deg{0, 360};
+};
+
+// Reads the keys of a place that are there.
+void read_place(const scene::TableReader& table, MeetingPlace& place);
+
 // A rule for random intruders that cross the view. At a moment within the clip, the meeting moment,
 // each intruder has the range and direction from the camera that the rule draws. It flies straight
 // or, with a bank, in a coordinated turn.
@@ -89,21 +103,15 @@ struct Drawn {
   std::vector<std::size_t> backgrounds;
   // The type is drawn first, then a livery of that type.
   std::vector<AircraftType> types;
-  Range range_m{100, 2000};
-  // Replaces range_m: longest side of the exact box at the meeting moment, in px.
-  std::optional<Range> size_px;
-  // Angle from the boresight, positive to the right.
-  Range azimuth_deg{-30, 30};
-  Range elevation_deg{-5, 20};  // positive up
+  MeetingPlace place;
   // Empty: a speed that suits the type.
   std::optional<Range> speed_mps;
-  Range heading_deg{0, 360};
   // Empty: within 5 degrees and the limits of the type.
   std::optional<Range> climb_deg;
   // Positive with the right wing down. Empty: straight flight, or a bank that suits the type.
   std::optional<Range> bank_deg;
   bool bank_suits_type = false;
-  // Each in place of all from range_m to bank_deg.
+  // Each in place of all from `place` to bank_deg.
   std::optional<DrawnApproach> approach;
   std::vector<DrawnSeen> seen;
   // Empty: the sun of the background.
@@ -124,11 +132,5 @@ std::vector<Drawn> drawn_rules(const scene::TableReader& root, const Catalogue& 
 
 // The key `aircraft` of a table: the aircraft of the list that fit its patterns, by type.
 std::vector<AircraftType> types_in(const scene::TableReader& table);
-
-// The table `encounter` of a rule; empty where it has none.
-std::optional<DrawnApproach> drawn_approach_in(const scene::TableReader& rule);
-// The tables `seen` of a rule. Throws Error for a single one, and where the times of two neighbours
-// overlap.
-std::vector<DrawnSeen> drawn_seen_in(const scene::TableReader& rule);
 
 }  // namespace airtruth::catalogue

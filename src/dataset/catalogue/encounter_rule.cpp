@@ -186,10 +186,10 @@ std::vector<EncounterRule> encounter_rules(const TableReader& root, const Catalo
 
 namespace {
 
-constexpr double kOwnStep_s = 0.25;
+constexpr double kOwnStep_s = 0.25;  // between the samples of the own path: chosen
 // The spline through a track loses its curvature at its ends, by a factor of 0.27 a sample.
 constexpr double kMargin_s = 8;
-constexpr std::uint64_t kMaxTracks = 100;
+constexpr std::uint64_t kMaxTracks = 100;  // that are drawn for one intruder: chosen
 // Where the indices of a next intruder and of a next attempt begin; sets are smaller.
 constexpr std::uint64_t kNextIntruder = std::uint64_t{1} << 56;
 constexpr std::uint64_t kNextAttempt = std::uint64_t{1} << 48;

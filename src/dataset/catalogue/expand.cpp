@@ -36,59 +36,42 @@ std::string filled(std::string pattern, std::string_view key, const std::string&
   return pattern;
 }
 
-std::int64_t frames_of(const Catalogue& catalogue,
-                       std::size_t background,
-                       const std::optional<std::int64_t>& own,
-                       const std::optional<std::int64_t>& of_trajectory) {
-  if (own) return *own;
-  if (of_trajectory) return *of_trajectory;
-  const auto* flight =
-      std::get_if<synthetic::FlightOptions>(&catalogue.backgrounds[background].source);
+// The frames of a sequence that neither its rule nor its trajectory states.
+std::int64_t frames_of(const Background& background) {
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
   return flight != nullptr ? flight->frame_count : 0;  // 0: to the video's end
 }
 
-Item item_of(const Catalogue& catalogue,
-             const std::string& name,
-             std::size_t background,
-             std::size_t trajectory,
-             std::size_t aircraft,
-             const std::optional<std::int64_t>& frame_count) {
-  Item item;
-  item.name = name;
-  item.background = background;
-  const Trajectory& path = catalogue.trajectories[trajectory];
-  item.frame_count = frames_of(catalogue, background, frame_count, path.frame_count);
-  item.scene = scene_over(catalogue, background);
+scene::Intruder intruder_of(const Aircraft& aircraft, const Trajectory& path) {
   scene::Intruder intruder;
-  intruder.id = catalogue.aircraft[aircraft].name;
-  intruder.aircraft = catalogue.aircraft[aircraft].aircraft;
+  intruder.id = aircraft.name;
+  intruder.aircraft = aircraft.aircraft;
   intruder.waypoints_ned_m = path.waypoints_ned_m;
   intruder.times_s = path.times_s;
   intruder.speed_mps = path.speed_mps;
   intruder.encounter = path.encounter;
   intruder.seen = path.seen;
   intruder.where = path.where;
-  item.scene.intruders = {intruder};
-  return item;
-}
-
-Item item_of(const Catalogue& catalogue, const Listed& rule, std::int64_t) {
-  return item_of(
-      catalogue, rule.name, rule.background, rule.trajectory, rule.aircraft, rule.frame_count);
+  return intruder;
 }
 
 Item item_of(const Catalogue& catalogue, const Product& rule, std::int64_t index) {
   auto i = static_cast<std::size_t>(index);
-  const std::size_t aircraft = rule.aircraft[i % rule.aircraft.size()];
+  const Aircraft& aircraft = catalogue.aircraft[rule.aircraft[i % rule.aircraft.size()]];
   i /= rule.aircraft.size();
-  const std::size_t trajectory = rule.trajectories[i % rule.trajectories.size()];
-  const std::size_t background = rule.backgrounds[i / rule.trajectories.size()];
-  std::string name = filled(rule.name, "{background}", catalogue.backgrounds[background].name);
-  name = filled(name, "{trajectory}", catalogue.trajectories[trajectory].name);
-  name = filled(name, "{aircraft}", catalogue.aircraft[aircraft].name);
-  Item item = item_of(catalogue, name, background, trajectory, aircraft, rule.frame_count);
-  if (is_chosen("negatives of " + rule.name, rule.negatives, catalogue.seed, index))
-    item.scene.intruders.clear();
+  const Trajectory& path = catalogue.trajectories[rule.trajectories[i % rule.trajectories.size()]];
+  Item item;
+  item.background = rule.backgrounds[i / rule.trajectories.size()];
+  const Background& background = catalogue.backgrounds[item.background];
+  item.name = filled(rule.name, "{background}", background.name);
+  item.name = filled(item.name, "{trajectory}", path.name);
+  item.name = filled(item.name, "{aircraft}", aircraft.name);
+  item.frame_count = rule.frame_count   ? *rule.frame_count
+                     : path.frame_count ? *path.frame_count
+                                        : frames_of(background);
+  item.scene = scene_over(catalogue, item.background);
+  if (!is_chosen("negatives of " + rule.name, rule.negatives, catalogue.seed, index))
+    item.scene.intruders = {intruder_of(aircraft, path)};
   return item;
 }
 

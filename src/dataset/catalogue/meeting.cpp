@@ -12,6 +12,7 @@
 #include "foundation/base/error.h"
 #include "labels/projection/exact_box.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
 
@@ -20,7 +21,7 @@ namespace {
 
 // A smaller bank counts as straight flight.
 constexpr double kStraightBankDeg = 0.01;
-constexpr double kPastClip_s = 1;
+constexpr double kPastClip_s = 1;  // that a path goes on after the clip: chosen
 // Waypoints of a turn: the largest distance between neighbours in angle and in time, and the number
 // of waypoints beyond either end of the clip, where the natural spline loses its curvature (by a
 // factor of 0.27 per waypoint).
@@ -103,37 +104,26 @@ void lay_through(scene::Intruder& intruder,
     lay_turn(intruder, encounter, meeting, meets_s, clip.duration_s());
 }
 
-// Finds the range at which an aircraft has a given size.
-class Sizer {
- public:
-  Sizer(const scene::Scene& scene,
-        const lens::ImageSize& size,
-        const trajectory::State& camera,
-        double meets_s)
-      : lens_(setup::lens_of(scene.lens, size)), camera_(camera), meets_s_(meets_s) {
-    sight_.lens = &lens_;
-    sight_.cam_from_world =
-        (camera.world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()})
-            .inverse();
-  }
-  Sizer(const Sizer&) = delete;
-  Sizer& operator=(const Sizer&) = delete;
+// The place of an aircraft in a direction from the camera, from which its exact box has a given
+// size; empty where no range gives the size.
+struct Sized {
+  const projection::Sight& sight;
+  Vector3 camera_ned_m;
+  Vector3 direction;
+  double size_px = 0;
+  double time_s = 0;
 
-  double focal_px() const { return lens_.focal_px(); }
-
-  // The aircraft's position at that range; empty where no range gives the size.
   std::optional<Vector3> position(const projection::SilhouettePoints& silhouette,
                                   const Quaternion& world_from_body,
-                                  const Vector3& direction,
-                                  double size_px,
                                   double first_guess_m) const {
-    constexpr double kWithinShare = 1e-5;
-    constexpr int kMaxRounds = 60;
+    constexpr double kWithinShare = 1e-5;  // of the size: chosen
+    constexpr int kMaxRounds = 60;         // chosen
+    constexpr double kFarthestM = 1e6;     // beyond it nothing is visible: chosen
     double range_m = first_guess_m;
     for (int round = 0; round < kMaxRounds; ++round) {
-      const Vector3 at = raised(camera_.position_in_world + range_m * direction);
+      const Vector3 at = raised(camera_ned_m + range_m * direction);
       const auto exact =
-          projection::exact_box(sight_, silhouette, Rigid{world_from_body, at}, meets_s_);
+          projection::exact_box(sight, silhouette, Rigid{world_from_body, at}, time_s);
       if (!exact.box || exact.partly_unseen) {
         // A part of the aircraft is behind the camera or beyond the lens's field.
         range_m *= 2;
@@ -148,46 +138,18 @@ class Sizer {
     return std::nullopt;
   }
 
- private:
-  static constexpr double kFarthestM = 1e6;
-
   Vector3 raised(Vector3 at) const {
-    if (camera_.position_in_world.z() < -kLowestFlightM) at.z() = std::min(at.z(), -kLowestFlightM);
+    if (camera_ned_m.z() < -kLowestFlightM) at.z() = std::min(at.z(), -kLowestFlightM);
     return at;
   }
-
-  lens::Lens lens_;
-  projection::Sight sight_;
-  trajectory::State camera_;
-  double meets_s_ = 0;
 };
 
-// The silhouette of an intruder's aircraft, with what it points to.
-struct Outline {
-  std::shared_ptr<const void> owner;
-  projection::SilhouettePoints silhouette;
-};
-
-Outline outline_of(const scene::Intruder& intruder,
-                   const trajectory::Path& path,
-                   setup::SharedInputs* shared) {
-  if (shared != nullptr) {
-    const auto type = shared->type_of(intruder, path, {}, {});
-    return {type, type->silhouette};
-  }
-  const auto aircraft = setup::aircraft_of(intruder, path, {});
-  return {aircraft, {&aircraft->mesh, aircraft::silhouette_points(aircraft->mesh)}};
-}
-
-trajectory::State camera_at(const scene::Camera& camera, double time_s) {
-  const auto state = setup::camera_path(camera).at(time_s);
-  if (!state)
-    throw Error(
-        fmt::format("the camera's path does not reach {:.2f} s, where an intruder meets it; "
-                    "expected a path as long as the clip",
-                    time_s),
-        camera.where);
-  return *state;
+trajectory::State state_at(const trajectory::Path& own, double time_s, const Where& where) {
+  if (const auto state = own.at(time_s)) return *state;
+  throw Error(fmt::format("the camera's path does not reach {:.2f} s, where an intruder meets it; "
+                          "expected a path as long as the clip",
+                          time_s),
+              where);
 }
 
 }  // namespace
@@ -239,23 +201,24 @@ void meet(scene::Scene& scene,
   scene::Intruder& intruder = scene.intruders[k];
   if (lay_stated_path(intruder, encounter, clip)) return;
   const double meets_s = meeting_s(encounter, clip);
-  const trajectory::State camera = camera_at(scene.camera, meets_s);
+  const trajectory::Path own = setup::camera_path(scene.camera);
+  const trajectory::State camera = state_at(own, meets_s, scene.camera.where);
   const Vector3 direction = direction_in_world(encounter, camera.world_from_body);
   if (encounter.range_m) {
     lay_through(
         intruder, encounter, camera.position_in_world + *encounter.range_m * direction, clip);
     return;
   }
-  const Sizer sizer(scene, size, camera, meets_s);
-  const double guess_m = sizer.focal_px() * kUsualLengthM / *encounter.size_px;
+  const lens::Lens lens = setup::lens_of(scene.lens, size);
+  const double guess_m = lens.focal_px() * kUsualLengthM / *encounter.size_px;
   lay_through(intruder, encounter, camera.position_in_world + guess_m * direction, clip);
-  const trajectory::Path path = setup::path_of(intruder, setup::camera_path(scene.camera));
-  const Outline outline = outline_of(intruder, path, shared);
-  const auto position = sizer.position(outline.silhouette,
-                                       path.at(meets_s)->world_from_body,
-                                       direction,
-                                       *encounter.size_px,
-                                       guess_m);
+  const trajectory::Path path = setup::path_of(intruder, own);
+  setup::SharedInputs unshared;
+  const auto type = (shared != nullptr ? *shared : unshared).type_of(intruder, path, {}, {});
+  const projection::Sight sight = setup::sight_of(lens, {}, own, camera, meets_s, {});
+  const Sized sized{sight, camera.position_in_world, direction, *encounter.size_px, meets_s};
+  const auto position =
+      sized.position(type->silhouette, path.at(meets_s)->world_from_body, guess_m);
   if (!position)
     throw Error(
         fmt::format("{} has a size of {:.1f} px at no range in the direction azimuth {:.1f}, "

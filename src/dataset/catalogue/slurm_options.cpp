@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <string_view>
 
@@ -44,25 +43,19 @@ std::string shown_text(std::string_view text) {
   return result + (text.size() > 60 ? "...'" : "'");
 }
 
+bool consists_of(std::string_view text, std::string_view characters) {
+  return !text.empty() && text.find_first_not_of(characters) == std::string_view::npos;
+}
+
+bool is_digits(std::string_view text) { return consists_of(text, "0123456789"); }
+
 bool is_option_name(std::string_view name) {
-  return !name.empty() && std::islower(static_cast<unsigned char>(name.front())) &&
-         std::all_of(name.begin(), name.end(), [](char c) {
-           return std::islower(static_cast<unsigned char>(c)) ||
-                  std::isdigit(static_cast<unsigned char>(c)) || c == '-';
-         });
+  return consists_of(name, "abcdefghijklmnopqrstuvwxyz0123456789-") && name.front() >= 'a';
 }
 
 bool is_value(std::string_view value) {
-  return !value.empty() && std::all_of(value.begin(), value.end(), [](char c) {
-    return (static_cast<unsigned char>(c) < 0x80 && std::isalnum(static_cast<unsigned char>(c))) ||
-           kValueMarks.find(c) != std::string_view::npos;
-  });
-}
-
-bool is_digits(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return std::isdigit(static_cast<unsigned char>(c));
-  });
+  const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+  return consists_of(value, letters + std::string(kValueMarks));
 }
 
 // "minutes", "minutes:seconds", "hours:minutes:seconds", "days-hours", "days-hours:minutes" and

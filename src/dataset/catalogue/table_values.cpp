@@ -51,6 +51,13 @@ std::optional<Range> maybe_range(const TableReader& table,
   return range_in(table, key, limits);
 }
 
+void read_range(const TableReader& table,
+                std::string_view key,
+                const scene::Limits& limits,
+                Range& range) {
+  range = maybe_range(table, key, limits).value_or(range);
+}
+
 std::optional<WholeRange> whole_range(const TableReader& table,
                                       std::string_view key,
                                       std::int64_t most) {

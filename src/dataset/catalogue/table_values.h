@@ -95,6 +95,11 @@ Range range_in(const scene::TableReader& table, std::string_view key, const scen
 std::optional<Range> maybe_range(const scene::TableReader& table,
                                  std::string_view key,
                                  const scene::Limits& limits);
+// Takes the range at `key` where the key is there.
+void read_range(const scene::TableReader& table,
+                std::string_view key,
+                const scene::Limits& limits,
+                Range& range);
 // A whole number from 1, or [low, high] of whole numbers; empty where the key is absent.
 std::optional<WholeRange> whole_range(const scene::TableReader& table,
                                       std::string_view key,

@@ -40,21 +40,17 @@ Images images_of(const ExportOptions& options) {
 
 // The options that determine every byte of an export.
 Json options_json(const fs::path& set, const ExportOptions& options) {
-  const char* split = options.split == Split::kNone           ? "none"
-                      : options.split == Split::kByBackground ? "by-background"
-                                                              : "by-sequence";
   const fs::path record = set / "dataset.json";
-  Json json = {
-      {"set", fs::absolute(set).lexically_normal().string()},
-      {"set_sha256", fs::exists(record) ? sha256_of_file(record) : ""},
-      {"format", exchange::name(options.format)},
-      {"images", *options.images == Images::kNone ? "none" : extension_of(*options.images) + 1},
-      {"every", options.every},
-      {"split", split},
-      {"shares", options.shares},
-      {"seed", options.seed},
-      {"boxes", sequences::name(options.boxes)},
-      {"one_class", options.one_class}};
+  Json json = {{"set", fs::absolute(set).lexically_normal().string()},
+               {"set_sha256", fs::exists(record) ? sha256_of_file(record) : ""},
+               {"format", exchange::name(options.format)},
+               {"images", enum_name(*options.images)},
+               {"every", options.every},
+               {"split", enum_name(options.split)},
+               {"shares", options.shares},
+               {"seed", options.seed},
+               {"boxes", enum_name(options.boxes)},
+               {"one_class", options.one_class}};
   if (options.mot_classes) json["mot_classes"] = true;
   return json;
 }

@@ -18,6 +18,11 @@ namespace airtruth::labelled {
 
 enum class Images { kJpg, kPng, kNone };
 
+constexpr auto enum_names(Images) {
+  return std::to_array<EnumName<Images>>(
+      {{Images::kJpg, "jpg"}, {Images::kPng, "png"}, {Images::kNone, "none"}});
+}
+
 struct ExportOptions {
   exchange::Format format = exchange::Format::kCoco;
   // Empty: JPEG, but PNG for AOT, whose reader opens no other kind.

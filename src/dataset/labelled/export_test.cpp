@@ -300,8 +300,8 @@ TEST_F(Made, LabelsAreTheBoxesThatAreAskedFor) {
     export_set(set(), out, options);
     EXPECT_THAT(read_file(out / "LOSS.md"), HasSubstr(key));
   }
-  EXPECT_EQ(sequences::boxes_from_name("exact"), dataset::Boxes::kExact);
-  EXPECT_THROW(sequences::boxes_from_name("tight"), Error);
+  EXPECT_EQ(enum_named<dataset::Boxes>("exact"), dataset::Boxes::kExact);
+  EXPECT_FALSE(enum_named<dataset::Boxes>("tight"));
 }
 
 TEST_F(Made, CocoHoldsThePixelsOfSetsThatHaveMasks) {

@@ -103,10 +103,6 @@ dataset::Boxes LabelledSet::usual_boxes(const Warn& warn) const {
   return dataset::Boxes::kCovered;
 }
 
-bool LabelledSet::has_masks(const std::string& name) const {
-  return fs::is_directory(folder(name) / "masks");
-}
-
 ClipFacts LabelledSet::facts(const std::string& name) const {
   ClipFacts facts;
   facts.name = name;

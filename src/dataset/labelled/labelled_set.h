@@ -53,8 +53,6 @@ class LabelledSet {
   // Returns kCovered, or kVisible (with a warning) where a sequence of the set is older than
   // covered boxes are.
   dataset::Boxes usual_boxes(const Warn& warn) const;
-  // True where the sequence was made with [output] masks = true.
-  bool has_masks(const std::string& name) const;
   fs::path folder(const std::string& name) const;
   // True where the clip was labelled elsewhere; nothing is known about its camera.
   bool is_imported(const std::string& name) const;

@@ -43,14 +43,6 @@ std::vector<Group> groups_of(const std::vector<ClipFacts>& clips, Split split, s
 
 }  // namespace
 
-Split split_from_name(std::string_view name) {
-  if (name == "none") return Split::kNone;
-  if (name == "by-background") return Split::kByBackground;
-  if (name == "by-sequence") return Split::kBySequence;
-  throw Error("--split is '" + std::string(name) +
-              "'; expected none, by-background or by-sequence");
-}
-
 namespace {
 
 // Frames and groups that the parts have so far.

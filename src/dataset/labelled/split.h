@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
+#include "foundation/base/enum_names.h"
 #include "foundation/base/log.h"
 
 namespace airtruth::labelled {
@@ -19,7 +19,12 @@ enum class Split {
   kByBackground,  // all the sequences over one video go to one part
   kBySequence,    // the same video may be in several parts
 };
-Split split_from_name(std::string_view name);  // "none", "by-background", "by-sequence"
+
+constexpr auto enum_names(Split) {
+  return std::to_array<EnumName<Split>>({{Split::kNone, "none"},
+                                         {Split::kByBackground, "by-background"},
+                                         {Split::kBySequence, "by-sequence"}});
+}
 
 // Returns the part of each sequence, by the sequence's name. Sequences stay together as `split`
 // says. The groups are assigned so that the parts' shares of the frames come near to `shares`

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 #include "labels/annotation/object_class.h"
 
 namespace airtruth::sequences {
 namespace {
 
-constexpr double kEarthRadiusM = 6'371'000;
+constexpr double kEarthRadiusM = 6'371'000;  // mean radius (IUGG)
 
 // The visible horizon lies below the horizontal by its dip, sqrt(2 h / R), at the height h.
 bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m) {
@@ -60,19 +59,6 @@ exchange::Label label_of(const annotation::Intruder& intruder,
 }
 
 }  // namespace
-
-const char* name(dataset::Boxes boxes) {
-  return boxes == dataset::Boxes::kCovered ? "covered"
-         : boxes == dataset::Boxes::kExact ? "exact"
-                                           : "visible";
-}
-
-dataset::Boxes boxes_from_name(const std::string& name) {
-  for (const dataset::Boxes boxes :
-       {dataset::Boxes::kCovered, dataset::Boxes::kExact, dataset::Boxes::kVisible})
-    if (name == sequences::name(boxes)) return boxes;
-  throw Error("--boxes is '" + name + "'; expected covered, exact or visible");
-}
 
 std::string category_of(const std::string& aircraft) {
   const std::filesystem::path path(aircraft);

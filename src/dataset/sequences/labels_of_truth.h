@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 
 #include <airtruth/dataset.h>
 #include <airtruth/labels.h>
 
+#include "foundation/base/enum_names.h"
 #include "labels/annotation/truth.h"
+
+namespace airtruth::dataset {
+
+constexpr auto enum_names(Boxes) {
+  return std::to_array<EnumName<Boxes>>(
+      {{Boxes::kCovered, "covered"}, {Boxes::kExact, "exact"}, {Boxes::kVisible, "visible"}});
+}
+
+}  // namespace airtruth::dataset
 
 // The truth of a rendered sequence as labels. Needs neither the scene nor the video.
 namespace airtruth::sequences {
-
-const char* name(dataset::Boxes boxes);  // "covered", "exact", "visible"
-// Throws Error for any other name.
-dataset::Boxes boxes_from_name(const std::string& name);
 
 // The type of an aircraft of the list ("738/738-Ryanair" gives "738"), or the name of a model file
 // without its extension.

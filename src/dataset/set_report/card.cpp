@@ -42,12 +42,6 @@ bool has_effect(const scene::CameraModel& model, std::string_view effect) {
                      });
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::string share_of(std::size_t count, std::size_t all) {
   return count == all ? "" : fmt::format(" (in {} of {} sequences)", count, all);
 }
@@ -85,9 +79,7 @@ std::string rendering_text(const Scenes& scenes) {
                                          enum_name(s.output.video));
     if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
   }
-  std::string text;
-  for (const std::string& kind : kinds) text += (text.empty() ? "" : "; ") + kind;
-  return text;
+  return fmt::format("{}", fmt::join(kinds, "; "));
 }
 
 std::string aircraft_text(const Scenes& scenes) {
@@ -173,8 +165,9 @@ std::string camera_sentence(const std::vector<Scene>& scenes) {
     else
       without.emplace_back(effect);
   }
-  std::string text = with.empty() ? "none of what a camera and the air do" : joined(with);
-  if (!without.empty()) text += ". Not on the intruder: " + joined(without);
+  std::string text = with.empty() ? "none of what a camera and the air do"
+                                  : fmt::format("{}", fmt::join(with, ", "));
+  if (!without.empty()) text += fmt::format(". Not on the intruder: {}", fmt::join(without, ", "));
   return text;
 }
 

@@ -13,8 +13,8 @@
 namespace airtruth::set_report {
 namespace {
 
-constexpr int kLoopSide = 96;
-constexpr std::size_t kLoopFrames = 10;
+constexpr int kLoopSide = 96;            // px: chosen
+constexpr std::size_t kLoopFrames = 10;  // chosen
 // Quality setting of libav's mjpeg encoder; a still takes about 10 kB.
 constexpr int kStillQuality = 7;
 constexpr int kLoopQuality = 5;

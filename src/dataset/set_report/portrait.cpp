@@ -33,7 +33,7 @@ Portrait::Point point_of(const annotation::Frame& frame, const annotation::Intru
     point.width_px = box->width;
     point.height_px = box->height;
   }
-  point.state = annotation::name(intruder.state);
+  point.state = enum_name(intruder.state);
   return point;
 }
 

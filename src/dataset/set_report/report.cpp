@@ -45,34 +45,32 @@ Json rounded(const std::optional<double>& value, double unit) {
 
 // The data is stored in columns because a page of a thousand sequences holds a hundred thousand
 // points.
+template <typename Row, typename Value>
+Json column(const std::vector<Row>& rows, const Value& value) {
+  Json values = Json::array();
+  for (const Row& row : rows) values.push_back(value(row));
+  return values;
+}
+
 Json series_of(const Portrait::Intruder& intruder) {
-  Json frame = Json::array(), range = frame, width = frame, height = frame, north = frame,
-       east = frame, down = frame, state = frame, to_closest = frame;
-  for (const Portrait::Point& p : intruder.points) {
-    frame.push_back(p.frame);
-    range.push_back(rounded(p.range_m, 0.1));
-    width.push_back(json_of(p.width_px));
-    height.push_back(json_of(p.height_px));
-    const auto at = [&](std::size_t i) {
-      return p.position_ned_m ? Json(rounded((*p.position_ned_m)[i], 0.1)) : Json();
-    };
-    north.push_back(at(0));
-    east.push_back(at(1));
-    down.push_back(at(2));
-    state.push_back(p.state);
-    to_closest.push_back(rounded(p.to_closest_s, 0.001));
-  }
+  using Point = Portrait::Point;
+  const auto along = [&](std::size_t axis) {
+    return column(intruder.points, [axis](const Point& p) {
+      return p.position_ned_m ? Json(rounded((*p.position_ned_m)[axis], 0.1)) : Json();
+    });
+  };
+  const auto of = [&](const auto& value) { return column(intruder.points, value); };
   return {{"id", intruder.id},
           {"aircraft", intruder.aircraft},
-          {"frame", frame},
-          {"range_m", range},
-          {"width_px", width},
-          {"height_px", height},
-          {"north_m", north},
-          {"east_m", east},
-          {"down_m", down},
-          {"state", state},
-          {"to_closest_s", to_closest}};
+          {"frame", of([](const Point& p) { return p.frame; })},
+          {"range_m", of([](const Point& p) { return rounded(p.range_m, 0.1); })},
+          {"width_px", of([](const Point& p) { return json_of(p.width_px); })},
+          {"height_px", of([](const Point& p) { return json_of(p.height_px); })},
+          {"north_m", along(0)},
+          {"east_m", along(1)},
+          {"down_m", along(2)},
+          {"state", of([](const Point& p) { return p.state; })},
+          {"to_closest_s", of([](const Point& p) { return rounded(p.to_closest_s, 0.001); })}};
 }
 
 // The records as sequence.json has them, with the places of the closest approach.
@@ -90,24 +88,15 @@ Json encounters_json(const Portrait& portrait) {
 }
 
 Json camera_of(const Portrait& portrait) {
-  Json frame = Json::array(), north = frame, east = frame, down = frame, yaw = frame, shift = frame,
-       roll = frame;
-  for (const Portrait::Camera& c : portrait.camera) {
-    frame.push_back(c.frame);
-    north.push_back(rounded(c.position_ned_m[0], 0.1));
-    east.push_back(rounded(c.position_ned_m[1], 0.1));
-    down.push_back(rounded(c.position_ned_m[2], 0.1));
-    yaw.push_back(rounded(c.yaw_deg, 0.01));
-    shift.push_back(rounded(c.shift_px, 0.01));
-    roll.push_back(rounded(c.roll_deg, 0.001));
-  }
-  return {{"frame", frame},
-          {"north_m", north},
-          {"east_m", east},
-          {"down_m", down},
-          {"yaw_deg", yaw},
-          {"shift_px", shift},
-          {"roll_deg", roll}};
+  using Camera = Portrait::Camera;
+  const auto of = [&](const auto& value) { return column(portrait.camera, value); };
+  return {{"frame", of([](const Camera& c) { return c.frame; })},
+          {"north_m", of([](const Camera& c) { return rounded(c.position_ned_m[0], 0.1); })},
+          {"east_m", of([](const Camera& c) { return rounded(c.position_ned_m[1], 0.1); })},
+          {"down_m", of([](const Camera& c) { return rounded(c.position_ned_m[2], 0.1); })},
+          {"yaw_deg", of([](const Camera& c) { return rounded(c.yaw_deg, 0.01); })},
+          {"shift_px", of([](const Camera& c) { return rounded(c.shift_px, 0.01); })},
+          {"roll_deg", of([](const Camera& c) { return rounded(c.roll_deg, 0.001); })}};
 }
 
 // Of the containers that airtruth writes and imports, browsers play these.
@@ -116,14 +105,12 @@ bool plays_in_browsers(const fs::path& video) {
 }
 
 Json film_json(const Film& film) {
-  Json stills = Json::array();
-  for (const Film::Still& still : film.stills) {
-    Json boxes = Json::array();
-    for (const Film::Marked& one : still.boxes)
-      boxes.push_back({one.intruder, one.box.x, one.box.y, one.box.width, one.box.height});
-    stills.push_back({{"frame", still.frame}, {"boxes", boxes}});
-  }
-  return stills;
+  return column(film.stills, [](const Film::Still& still) {
+    const auto box_of = [](const Film::Marked& one) {
+      return Json{one.intruder, one.box.x, one.box.y, one.box.width, one.box.height};
+    };
+    return Json{{"frame", still.frame}, {"boxes", column(still.boxes, box_of)}};
+  });
 }
 
 // The mean contrast over the frames of the film; null without any.
@@ -134,22 +121,15 @@ Json mean_contrast(const Film& film) {
   return rounded(sum / static_cast<double>(film.contrasts.size()), 0.1);
 }
 
-Json intruders_json(const Portrait& portrait) {
-  Json intruders = Json::array();
-  for (const Portrait::Intruder& intruder : portrait.intruders)
-    intruders.push_back(series_of(intruder));
-  return intruders;
-}
-
 // A path as the page links to it.
 fs::path beside(const fs::path& page, const fs::path& path) {
   return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
 }
 
 Json json_of(const Portrait& portrait, const fs::path& page) {
-  Json files = Json::array();
-  const fs::path folder = beside(page, portrait.folder);
-  for (const std::string& file : portrait.files) files.push_back((folder / file).generic_string());
+  const auto link = [folder = beside(page, portrait.folder)](const std::string& file) {
+    return (folder / file).generic_string();
+  };
   return {{"name", portrait.facts.name},
           {"background", fs::path(portrait.facts.background).filename().string()},
           {"aircraft", portrait.facts.categories},
@@ -172,10 +152,10 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
           {"video",
            plays_in_browsers(portrait.video) ? Json(beside(page, portrait.video).generic_string())
                                              : Json()},
-          {"intruders", intruders_json(portrait)},
+          {"intruders", column(portrait.intruders, series_of)},
           {"camera", camera_of(portrait)},
           {"encounters", encounters_json(portrait)},
-          {"files", files}};
+          {"files", column(portrait.files, link)}};
 }
 
 // The sequences of a set, and the counts over them.

@@ -12,6 +12,7 @@
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/object_class.h"
+#include "labels/annotation/truth_fields.h"
 
 namespace airtruth::annotation {
 namespace {
@@ -31,24 +32,6 @@ std::array<double, n> tuple(const JsonObject& object, const char* key) {
   return result;
 }
 
-Vector3 vector(const JsonObject& object, const char* key) {
-  const auto v = tuple<3>(object, key);
-  return {v[0], v[1], v[2]};
-}
-
-YawPitchRoll attitude(const JsonObject& object, const char* key) {
-  const auto v = tuple<3>(object, key);
-  return {v[0], v[1], v[2]};
-}
-
-std::optional<Vector3> maybe_vector(const JsonObject& object, const char* key) {
-  return object.has(key) ? std::optional(vector(object, key)) : std::nullopt;
-}
-
-std::optional<YawPitchRoll> maybe_attitude(const JsonObject& object, const char* key) {
-  return object.has(key) ? std::optional(attitude(object, key)) : std::nullopt;
-}
-
 Homography homography(const JsonObject& object, const char* key) {
   const std::vector<double> numbers = object.matrix(key, 3, 3);
   Homography h;
@@ -56,79 +39,59 @@ Homography homography(const JsonObject& object, const char* key) {
   return h;
 }
 
-std::optional<PixelBox> pixel_box(const JsonObject& object, const char* key) {
-  if (!object.has(key)) return std::nullopt;
-  const auto v = object.wholes(key, 4, -kLargestTruthPixel, kLargestTruthPixel);
-  return PixelBox{static_cast<int>(v[0]),
-                  static_cast<int>(v[1]),
-                  static_cast<int>(v[2]),
-                  static_cast<int>(v[3])};
-}
+// Takes the values of members from an object: visit of truth_fields.h. An optional member may be
+// missing.
+struct Reading {
+  const JsonObject& object;
 
-State state_from(const JsonObject& object) {
-  const std::string word = object.text("state");
-  for (const State state :
-       {State::kVisible, State::kHidden, State::kOutside, State::kBehind, State::kEnded})
-    if (word == name(state)) return state;
-  object.fail("state", "visible, hidden, outside, behind or ended");
-}
-
-EncounterTruth encounter_from(const JsonObject& object, const std::optional<double>& range_m) {
-  EncounterTruth truth;
-  encounter::Measures& m = truth.measures;
-  m.range_m = range_m.value_or(0);
-  m.horizontal_m = object.number("horizontal_m");
-  m.above_m = object.number("above_m");
-  m.closing_speed_mps = object.maybe_number("closing_speed_mps");
-  m.bearing_deg = object.maybe_number("bearing_deg");
-  m.bearing_rate_dps = object.maybe_number("bearing_rate_dps");
-  m.relative_bearing_deg = object.maybe_number("relative_bearing_deg");
-  m.line_of_sight_rate_dps = object.maybe_number("line_of_sight_rate_dps");
-  m.tcpa_s = object.maybe_number("tcpa_s");
-  m.dcpa_m = object.maybe_number("dcpa_m");
-  m.hmd_m = object.number("hmd_m");
-  m.vmd_m = object.number("vmd_m");
-  m.tau_mod_s = object.maybe_number("tau_mod_s");
-  m.tcoa_s = object.maybe_number("tcoa_s");
-  for (const JsonObject& volume : object.objects("volumes"))
-    truth.volumes.push_back(
-        {volume.text("name"), volume.truth("inside"), volume.maybe_number("to_violation_s")});
-  return truth;
-}
+  void operator()(const char* key, double& value) const { value = object.number(key); }
+  void operator()(const char* key, std::int64_t& value) const { value = object.whole(key); }
+  void operator()(const char* key, Vector3& value) const {
+    const auto v = tuple<3>(object, key);
+    value = {v[0], v[1], v[2]};
+  }
+  void operator()(const char* key, YawPitchRoll& value) const {
+    const auto v = tuple<3>(object, key);
+    value = {v[0], v[1], v[2]};
+  }
+  void operator()(const char* key, Pixel& value) const {
+    const auto v = tuple<2>(object, key);
+    value = {v[0], v[1]};
+  }
+  void operator()(const char* key, Box& value) const {
+    const auto v = tuple<4>(object, key);
+    value = {v[0], v[1], v[2], v[3]};
+  }
+  void operator()(const char* key, PixelBox& value) const {
+    const auto v = object.wholes(key, 4, -kLargestTruthPixel, kLargestTruthPixel);
+    const auto at = [&](std::size_t i) { return static_cast<int>(v[i]); };
+    value = {at(0), at(1), at(2), at(3)};
+  }
+  void operator()(const char* key, State& value) const {
+    const auto state = enum_named<State>(object.text(key));
+    if (!state) object.fail(key, "visible, hidden, outside, behind or ended");
+    value = *state;
+  }
+  void operator()(const char* key, EncounterTruth& value) const {
+    const JsonObject encounter = object.object(key);
+    each_measure(Reading{encounter}, value.measures);
+    for (const JsonObject& volume : encounter.objects("volumes"))
+      value.volumes.push_back(
+          {volume.text("name"), volume.truth("inside"), volume.maybe_number("to_violation_s")});
+  }
+  template <typename T>
+  void operator()(const char* key, std::optional<T>& value) const {
+    if (object.has(key)) (*this)(key, value.emplace());
+  }
+};
 
 Intruder intruder_from(const JsonObject& object) {
   Intruder intruder;
   intruder.id = object.text("id");
   intruder.aircraft = object.text("aircraft");
   intruder.object_class = object.maybe_text("class").value_or(intruder.object_class);
-  intruder.state = state_from(object);
-  intruder.position_ned_m = maybe_vector(object, "position_ned_m");
-  intruder.velocity_ned_mps = maybe_vector(object, "velocity_ned_mps");
-  intruder.attitude_yaw_pitch_roll_deg = maybe_attitude(object, "attitude_yaw_pitch_roll_deg");
-  intruder.position_in_cam_m = maybe_vector(object, "position_in_cam_m");
-  intruder.range_m = object.maybe_number("range_m");
-  intruder.range_rate_mps = object.maybe_number("range_rate_mps");
-  intruder.azimuth_deg = object.maybe_number("azimuth_deg");
-  intruder.elevation_deg = object.maybe_number("elevation_deg");
-  intruder.nominal_azimuth_deg = object.maybe_number("nominal_azimuth_deg");
-  intruder.nominal_elevation_deg = object.maybe_number("nominal_elevation_deg");
-  if (object.has("encounter"))
-    intruder.encounter = encounter_from(object.object("encounter"), intruder.range_m);
-  if (object.has("exact_box_px")) {
-    const auto box = tuple<4>(object, "exact_box_px");
-    intruder.exact_box_px = Box{box[0], box[1], box[2], box[3]};
-  }
-  intruder.covered_box_px = pixel_box(object, "covered_box_px");
-  intruder.visible_box_px = pixel_box(object, "visible_box_px");
-  intruder.visible_area_px = object.whole("visible_area_px");
-  intruder.alpha_sum_px = object.number("alpha_sum_px");
-  if (object.has("centroid_px")) {
-    const auto at = tuple<2>(object, "centroid_px");
-    intruder.centroid_px = Pixel(at[0], at[1]);
-  }
-  intruder.hidden_by_own_aircraft = object.number("hidden_by_own_aircraft");
-  intruder.hidden_by_intruder = object.number("hidden_by_intruder");
-  intruder.cut_by_frame = object.number("cut_by_frame");
+  each_field(Reading{object}, intruder);
+  if (intruder.encounter) intruder.encounter->measures.range_m = intruder.range_m.value_or(0);
   return intruder;
 }
 
@@ -139,7 +102,7 @@ Shake shake_from(const JsonObject& motion) {
     const auto q = tuple<4>(motion, "rotation");
     shake.rotation = Quaternion(q[0], q[1], q[2], q[3]);
   }
-  if (motion.has("rate_radps")) shake.rate_radps = vector(motion, "rate_radps");
+  if (motion.has("rate_radps")) Reading{motion}("rate_radps", shake.rate_radps);
   if (motion.has("frame_from_reference_per_s"))
     shake.frame_from_reference_per_s = homography(motion, "frame_from_reference_per_s");
   return shake;
@@ -162,8 +125,8 @@ Frame frame_from(const JsonObject& object) {
   frame.time_s = object.number("time_s");
   frame.damaged = object.truth("damaged");
   const JsonObject camera = object.object("camera");
-  frame.camera_position_ned_m = vector(camera, "position_ned_m");
-  frame.camera_attitude_yaw_pitch_roll_deg = attitude(camera, "attitude_yaw_pitch_roll_deg");
+  Reading{camera}("position_ned_m", frame.camera_position_ned_m);
+  Reading{camera}("attitude_yaw_pitch_roll_deg", frame.camera_attitude_yaw_pitch_roll_deg);
   const JsonObject motion = object.object("motion");
   frame.motion_state = motion.text("state");
   frame.shake = shake_from(motion);
@@ -223,7 +186,11 @@ Truth read_truth(const std::filesystem::path& file) {
 namespace {
 
 bool finite(double value) { return std::isfinite(value); }
+bool finite(std::int64_t) { return true; }
+bool finite(State) { return true; }
+bool finite(const PixelBox&) { return true; }
 bool finite(const Vector3& v) { return v.allFinite(); }
+bool finite(const Pixel& p) { return p.allFinite(); }
 bool finite(const YawPitchRoll& a) {
   return finite(a.yaw_deg) && finite(a.pitch_deg) && finite(a.roll_deg);
 }
@@ -231,31 +198,24 @@ bool finite(const Box& b) {
   return finite(b.x) && finite(b.y) && finite(b.width) && finite(b.height);
 }
 
+bool finite(const EncounterTruth& truth);
+
 template <typename T>
 bool finite(const std::optional<T>& value) {
   return !value || finite(*value);
 }
 
 bool finite(const EncounterTruth& truth) {
-  const encounter::Measures& m = truth.measures;
-  return finite(m.horizontal_m) && finite(m.above_m) && finite(m.closing_speed_mps) &&
-         finite(m.bearing_deg) && finite(m.bearing_rate_dps) && finite(m.relative_bearing_deg) &&
-         finite(m.line_of_sight_rate_dps) && finite(m.tcpa_s) && finite(m.dcpa_m) &&
-         finite(m.hmd_m) && finite(m.vmd_m) && finite(m.tau_mod_s) && finite(m.tcoa_s) &&
-         std::all_of(truth.volumes.begin(), truth.volumes.end(), [](const VolumeTruth& volume) {
-           return finite(volume.to_violation_s);
-         });
+  bool all = true;
+  each_measure([&](const char*, const auto& value) { all = all && finite(value); }, truth.measures);
+  for (const VolumeTruth& volume : truth.volumes) all = all && finite(volume.to_violation_s);
+  return all;
 }
 
-bool all_finite(const Intruder& i) {
-  return finite(i.position_ned_m) && finite(i.velocity_ned_mps) &&
-         finite(i.attitude_yaw_pitch_roll_deg) && finite(i.position_in_cam_m) &&
-         finite(i.range_m) && finite(i.range_rate_mps) && finite(i.azimuth_deg) &&
-         finite(i.elevation_deg) && finite(i.nominal_azimuth_deg) &&
-         finite(i.nominal_elevation_deg) && (!i.encounter || finite(*i.encounter)) &&
-         finite(i.exact_box_px) && finite(i.alpha_sum_px) &&
-         (!i.centroid_px || i.centroid_px->allFinite()) && finite(i.hidden_by_own_aircraft) &&
-         finite(i.hidden_by_intruder) && finite(i.cut_by_frame);
+bool all_finite(const Intruder& intruder) {
+  bool all = true;
+  each_field([&](const char*, const auto& value) { all = all && finite(value); }, intruder);
+  return all;
 }
 
 bool is_fraction(double value) { return value >= 0 && value <= 1; }
@@ -296,7 +256,7 @@ std::optional<std::string> fault_of_place(const Intruder& i) {
     return std::nullopt;
   }
   if (i.state != State::kEnded && !placed)
-    return fmt::format("is {} and lacks its place", name(i.state));
+    return fmt::format("is {} and lacks its place", enum_name(i.state));
   return std::nullopt;
 }
 
@@ -308,13 +268,13 @@ std::optional<std::string> fault(const Intruder& i) {
         i.object_class.substr(0, 40));
   if (i.visible_box_px.has_value() != (i.state == State::kVisible))
     return fmt::format(
-        "is {} and has {} visible_box_px", name(i.state), i.visible_box_px ? "a" : "no");
+        "is {} and has {} visible_box_px", enum_name(i.state), i.visible_box_px ? "a" : "no");
   if (const auto found = fault_of_place(i)) return found;
   if (i.azimuth_deg.has_value() != i.elevation_deg.has_value() ||
       i.nominal_azimuth_deg.has_value() != i.nominal_elevation_deg.has_value())
     return "has half a bearing";
   if (i.covered_box_px && i.state != State::kVisible)
-    return fmt::format("is {} and has a covered_box_px", name(i.state));
+    return fmt::format("is {} and has a covered_box_px", enum_name(i.state));
   if (i.covered_box_px && (i.covered_box_px->width <= 0 || i.covered_box_px->height <= 0))
     return "has an empty covered_box_px";
   if (i.visible_box_px && (i.visible_box_px->width <= 0 || i.visible_box_px->height <= 0))
@@ -360,7 +320,10 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 OrderedJson json(double value) { return value; }
+OrderedJson json(std::int64_t value) { return value; }
+OrderedJson json(State state) { return enum_name(state); }
 OrderedJson json(const Vector3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
+OrderedJson json(const Pixel& p) { return OrderedJson::array({p.x(), p.y()}); }
 OrderedJson json(const YawPitchRoll& a) {
   return OrderedJson::array({a.yaw_deg, a.pitch_deg, a.roll_deg});
 }
@@ -373,31 +336,30 @@ OrderedJson json(const Homography& h) {
   return rows;
 }
 
-template <typename T>
-void add(OrderedJson& object, const char* key, const std::optional<T>& value) {
-  if (value) object[key] = json(*value);
-}
+OrderedJson json(const EncounterTruth& truth);
+
+// Adds the values of members to an object: visit of truth_fields.h. An optional member that is
+// empty is left out.
+struct Writing {
+  OrderedJson& object;
+
+  template <typename T>
+  void operator()(const char* key, const T& value) const {
+    object[key] = json(value);
+  }
+  template <typename T>
+  void operator()(const char* key, const std::optional<T>& value) const {
+    if (value) object[key] = json(*value);
+  }
+};
 
 OrderedJson json(const EncounterTruth& truth) {
-  const encounter::Measures& m = truth.measures;
   OrderedJson object;
-  object["horizontal_m"] = m.horizontal_m;
-  object["above_m"] = m.above_m;
-  add(object, "closing_speed_mps", m.closing_speed_mps);
-  add(object, "bearing_deg", m.bearing_deg);
-  add(object, "bearing_rate_dps", m.bearing_rate_dps);
-  add(object, "relative_bearing_deg", m.relative_bearing_deg);
-  add(object, "line_of_sight_rate_dps", m.line_of_sight_rate_dps);
-  add(object, "tcpa_s", m.tcpa_s);
-  add(object, "dcpa_m", m.dcpa_m);
-  object["hmd_m"] = m.hmd_m;
-  object["vmd_m"] = m.vmd_m;
-  add(object, "tau_mod_s", m.tau_mod_s);
-  add(object, "tcoa_s", m.tcoa_s);
+  each_measure(Writing{object}, truth.measures);
   OrderedJson volumes = OrderedJson::array();
   for (const VolumeTruth& volume : truth.volumes) {
     OrderedJson one = {{"name", volume.name}, {"inside", volume.inside}};
-    add(one, "to_violation_s", volume.to_violation_s);
+    Writing{one}("to_violation_s", volume.to_violation_s);
     volumes.push_back(std::move(one));
   }
   object["volumes"] = std::move(volumes);
@@ -409,28 +371,7 @@ OrderedJson json(const Intruder& intruder) {
   object["id"] = intruder.id;
   object["aircraft"] = intruder.aircraft;
   if (!is_aircraft(intruder.object_class)) object["class"] = intruder.object_class;
-  object["state"] = name(intruder.state);
-  add(object, "position_ned_m", intruder.position_ned_m);
-  add(object, "velocity_ned_mps", intruder.velocity_ned_mps);
-  add(object, "attitude_yaw_pitch_roll_deg", intruder.attitude_yaw_pitch_roll_deg);
-  add(object, "position_in_cam_m", intruder.position_in_cam_m);
-  add(object, "range_m", intruder.range_m);
-  add(object, "range_rate_mps", intruder.range_rate_mps);
-  add(object, "azimuth_deg", intruder.azimuth_deg);
-  add(object, "elevation_deg", intruder.elevation_deg);
-  add(object, "nominal_azimuth_deg", intruder.nominal_azimuth_deg);
-  add(object, "nominal_elevation_deg", intruder.nominal_elevation_deg);
-  if (intruder.encounter) object["encounter"] = json(*intruder.encounter);
-  add(object, "exact_box_px", intruder.exact_box_px);
-  add(object, "covered_box_px", intruder.covered_box_px);
-  add(object, "visible_box_px", intruder.visible_box_px);
-  object["visible_area_px"] = intruder.visible_area_px;
-  object["alpha_sum_px"] = intruder.alpha_sum_px;
-  if (intruder.centroid_px)
-    object["centroid_px"] = {intruder.centroid_px->x(), intruder.centroid_px->y()};
-  object["hidden_by_own_aircraft"] = intruder.hidden_by_own_aircraft;
-  object["hidden_by_intruder"] = intruder.hidden_by_intruder;
-  object["cut_by_frame"] = intruder.cut_by_frame;
+  each_field(Writing{object}, intruder);
   return object;
 }
 
@@ -444,22 +385,6 @@ OrderedJson json(const LensFacts& lens) {
 }
 
 }  // namespace
-
-const char* name(State state) {
-  switch (state) {
-    case State::kVisible:
-      return "visible";
-    case State::kHidden:
-      return "hidden";
-    case State::kOutside:
-      return "outside";
-    case State::kBehind:
-      return "behind";
-    case State::kEnded:
-      return "ended";
-  }
-  return "";
-}
 
 std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
   if (const auto found = fault(frame))

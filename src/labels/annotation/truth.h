@@ -9,10 +9,25 @@
 #include <string_view>
 #include <vector>
 
+#include <airtruth/truth.h>
+
 #include "encounter/separation/measures.h"
+#include "foundation/base/enum_names.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
+
+namespace airtruth {
+
+constexpr auto enum_names(IntruderState) {
+  return std::to_array<EnumName<IntruderState>>({{IntruderState::kVisible, "visible"},
+                                                 {IntruderState::kHidden, "hidden"},
+                                                 {IntruderState::kOutside, "outside"},
+                                                 {IntruderState::kBehind, "behind"},
+                                                 {IntruderState::kEnded, "ended"}});
+}
+
+}  // namespace airtruth
 
 // The truth of a frame, and its file truth.jsonl (docs/formats/truth.md,
 // docs/formats/truth.schema.json).
@@ -23,29 +38,8 @@
 // elevation_deg = 0.
 namespace airtruth::annotation {
 
-// Where an intruder is in relation to the frame. kVisible: at least one pixel shows it. kHidden: it
-// is in the view, but no pixel shows it, because the own aircraft or another intruder hides it or
-// it is too faint. kOutside: it is in front of the camera, but outside the image or the lens's
-// valid field. kBehind: it is behind the camera. kEnded: its path has not begun or is over, so it
-// is not in the world.
-enum class State {
-  kVisible,
-  kHidden,
-  kOutside,
-  kBehind,
-  kEnded,
-};
-// "visible" and so on.
-const char* name(State state);
-
-// Whether an intruder violates a volume (encounter/separation/violation.h).
-struct VolumeTruth {
-  std::string name;
-  bool inside = false;
-  // Time to the violation if both keep their velocities; 0 inside, empty where there is none within
-  // the lookahead.
-  std::optional<double> to_violation_s;
-};
+using State = IntruderState;
+using airtruth::VolumeTruth;
 
 // How an intruder stands to the own aircraft on its nominal path.
 struct EncounterTruth {

@@ -130,7 +130,7 @@ std::optional<Box> outline_box(const Model& model, const Frame& frame) {
 // The pixels that a colour key selects: those of which at least a third is covered, or else the one
 // that is covered most.
 std::optional<PixelBox> keyed_box(const Model& model, const Frame& frame, const Box& outline) {
-  constexpr float kKeyed = 0.3f;
+  constexpr float kKeyed = 0.3f;  // share of a pixel: "at least a third"
   const render::View view{
       &pinhole(), looking_north().inverse(), frame.frame_from_nominal.inverse(), kWidth, kHeight};
   const Box search{outline.x - 1, outline.y - 1, outline.width + 2, outline.height + 2};
@@ -156,7 +156,7 @@ bool is_box(const PixelBox& box) { return box.width > 0 && box.height > 0; }
 bool is_in_picture(double x, double y) { return x >= 0 && x < kWidth && y >= 0 && y < kHeight; }
 
 bool touches_border(const PixelBox& box) {
-  constexpr int kNear = 3;
+  constexpr int kNear = 3;  // px, as EvisionOptions::spread_px
   return box.x < kNear || box.y < kNear || box.right() > kWidth - kNear ||
          box.bottom() > kHeight - kNear;
 }
@@ -327,7 +327,7 @@ using Parameters = Eigen::Vector4d;  // shift (px), roll (rad), drift
 // Standard error of a box's centre, px.
 constexpr double kCentrePx = 3;
 constexpr double kPrior = 0.1;
-constexpr int kIterations = 15;
+constexpr int kIterations = 15;  // of Gauss-Newton: chosen
 
 Homography homography_of(const Parameters& p, const Pixel& centre, double focal_px) {
   Homography to = Homography::Identity();

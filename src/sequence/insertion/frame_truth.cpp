@@ -158,15 +158,16 @@ std::vector<annotation::Intruder> intruders_of(const setup::World& world,
 
 annotation::Frame frame_truth(const setup::World& world,
                               const video::Frame& frame,
-                              const FrameMotionTruth& motion,
+                              const std::string& motion_state,
+                              const Shake& shake,
                               const setup::Moment& moment,
                               const Painted& painted) {
   annotation::Frame truth;
   truth.frame = frame.index;
   truth.time_s = frame.time_s;
   truth.damaged = frame.damaged;
-  truth.motion_state = motion.state;
-  truth.shake = motion.shake;
+  truth.motion_state = motion_state;
+  truth.shake = shake;
   truth.camera_position_ned_m = moment.camera.position_in_world;
   truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
   truth.intruders = intruders_of(world, moment, painted.layer, painted.visible);

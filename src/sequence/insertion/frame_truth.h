@@ -13,18 +13,14 @@
 // check that makes it again and compares.
 namespace airtruth::insertion {
 
-// What the measured motion contributes to a frame's truth.
-struct FrameMotionTruth {
-  std::string state;  // "measured", "bridged", ... (motion::name), or "none" without a motion model
-  Shake shake;
-};
-
-// frame: the background's frame, for its number, time and damage. moment: where everything is, from
+// frame: the background's frame, for its number, time and damage. motion_state: "measured",
+// "bridged", ... (motion::name), or "none" without a motion model. moment: where everything is, from
 // geometry alone. painted: what compositing changed in the frame's pixels. The intruders stand in
 // the scene's order. An intruder is kVisible exactly when at least one pixel shows it.
 annotation::Frame frame_truth(const setup::World& world,
                               const video::Frame& frame,
-                              const FrameMotionTruth& motion,
+                              const std::string& motion_state,
+                              const Shake& shake,
                               const setup::Moment& moment,
                               const Painted& painted);
 

@@ -88,8 +88,9 @@ class ChromaKey : public Painter {
     std::vector<backdrop::Instance> instances;
     for (std::size_t i = 0; i < world_.actors.size(); ++i) {
       if (!moment.search[i]) continue;
-      instances.push_back(
-          {&world_.actors[i].type->mesh, moment.states[i]->world_from_body_rigid(), moment.time_s});
+      instances.push_back({&world_.actors[i].type->aircraft->mesh,
+                           moment.states[i]->world_from_body_rigid(),
+                           moment.time_s});
     }
     if (instances.empty()) return;
     const backdrop::HemisphereLight light{
@@ -201,7 +202,8 @@ image::Layer render_layer(const scene::Scene& scene,
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
-    render::Instance instance{world.actors[i].model.get(), {}, moment.time_s, moment.twists[i]};
+    render::Instance instance{
+        world.actors[i].type->model.get(), {}, moment.time_s, moment.twists[i]};
     if (moment.states[i]) instance.world_from_body = moment.states[i]->world_from_body_rigid();
     any = any || moment.search[i].has_value();
     instances.push_back(instance);
@@ -253,13 +255,10 @@ void check_codec(const scene::Scene& scene, const image::Colour& colour) {
 
 std::unique_ptr<backdrop::Backdrop> open_backdrop(const scene::Scene& scene,
                                                   const lens::Lens& lens,
-                                                  const BackdropOptions& options) {
+                                                  const backdrop::Options& options) {
   if (scene.composite.method != scene::CompositeMethod::kChromaKey) return nullptr;
   check_method(scene, lens);
-  backdrop::Options gl;
-  gl.gpu = options.gpu;
-  gl.software = options.software_gl;
-  return backdrop::open_backdrop(lens.size().width, lens.size().height, gl);
+  return backdrop::open_backdrop(lens.size().width, lens.size().height, options);
 }
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

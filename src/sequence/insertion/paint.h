@@ -62,17 +62,11 @@ void check_method(const scene::Scene& scene, const lens::Lens& lens);
 // Error where the scene has a codec_step and H.264 does not have the clip's layout (4:4:0).
 void check_codec(const scene::Scene& scene, const image::Colour& colour);
 
-// Which OpenGL the chroma-key method draws with.
-struct BackdropOptions {
-  std::optional<int> gpu;  // empty: the first one
-  bool software_gl = false;
-};
-
 // The OpenGL of the chroma-key method; null for a scene of the matte method. Throws Error where
 // check_method() refuses, and where there is no OpenGL.
 std::unique_ptr<backdrop::Backdrop> open_backdrop(const scene::Scene& scene,
                                                   const lens::Lens& lens,
-                                                  const BackdropOptions& options);
+                                                  const backdrop::Options& options);
 
 // The painter of the scene's method. `opened`: as open_backdrop() returns it for this scene.
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,

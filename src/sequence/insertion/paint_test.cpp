@@ -57,7 +57,7 @@ Drawn drawn(const scene::Scene& scene, double time_s, const image::Mask* own = n
   frame.time_s = time_s;
   const auto painter = make_painter(scene, world, own, {});
   const Painted painted = painter->paint(frame.picture, moment, Ambient{});
-  result.truth = frame_truth(world, frame, {"none", {}}, moment, painted);
+  result.truth = frame_truth(world, frame, "none", {}, moment, painted);
   result.after = std::move(frame.picture);
   // What the writer refuses fails here.
   annotation::jsonl_line(result.truth, annotation::facts_of(world.lens));

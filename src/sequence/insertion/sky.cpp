@@ -79,8 +79,6 @@ double clear_sky_illuminance_klx(double elevation_deg) {
   return 0.8 + 15.5 * std::sqrt(sine(elevation_deg));
 }
 
-double overcast_illuminance_klx(double elevation_deg) { return 0.3 + 21 * sine(elevation_deg); }
-
 double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg) {
   return perez(std::sin(radians(elevation_deg)), std::cos(radians(from_sun_deg))) /
          clear_at_zenith(sun_elevation_deg);

@@ -11,7 +11,6 @@ namespace airtruth::insertion {
 // Illuminance by the sun's elevation; elevations below 1 degree count as 1 degree.
 double sun_illuminance_klx(double elevation_deg);        // square to the sun, clear sky
 double clear_sky_illuminance_klx(double elevation_deg);  // level surface, without the sun
-double overcast_illuminance_klx(double elevation_deg);   // level surface
 
 // Luminance of the clear sky relative to its zenith (Perez et al. 1993; Preetham et al. 1999, table
 // 2, turbidity 2.5), of directions at or above the horizon.

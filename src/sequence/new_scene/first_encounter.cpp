@@ -30,8 +30,8 @@ constexpr std::array<Candidate, 5> kCandidates = {{{1.1, 180, 60, 40},
                                                    {1.2, 90, 50, -30},
                                                    {1.2, 270, 50, 30},
                                                    {1.3, 180, 45, 20}}};
-constexpr double kAboveM = 15;
-constexpr int kSteps = 40;  // moments at which the view is tested
+constexpr double kAboveM = 15;  // how much higher the intruder passes: chosen
+constexpr int kSteps = 40;      // moments at which the view is tested
 
 scene::Encounter encounter_of(const Candidate& candidate, double duration_s) {
   scene::Encounter encounter;

@@ -13,12 +13,6 @@
 // What a video's own files state about its lens.
 namespace airtruth::new_scene {
 
-struct LensHint {
-  lens::Lens lens;
-  // Where the lens is from, for the scene's comment.
-  std::string origin;
-};
-
 // The focal length in the text of DJI's subtitles, [focal_len: 240]: tenths of a millimetre where
 // it is above 100, for a picture of 35 mm film. Empty where the text has none.
 std::optional<double> equivalent_mm_in_subtitles(std::string_view text);

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kGuessedViewDeg = 60;
+constexpr double kGuessedViewDeg = 60;  // vertical view of a lens that nothing states: chosen
 constexpr std::int64_t kMaxEstimateFrames =
     900;  // half a minute at 30 frames/s turns enough or never
 constexpr std::int64_t kMaxMotionFrames = 1800;  // a minute at 30 frames/s
@@ -35,7 +35,7 @@ constexpr std::int64_t kMaxMotionFrames = 1800;  // a minute at 30 frames/s
 constexpr double kEncounterS = 13.2;
 // A camera that turns by less than this share of its view keeps what is in the middle in view.
 constexpr double kSteadyShare = 0.2;
-constexpr std::size_t kMaxSubtitleBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxSubtitleBytes = std::size_t{64} << 20;  // chosen
 
 // What is known of the lens: the words for the scene, and the lens itself.
 struct LensWords {

@@ -35,9 +35,13 @@ WorkPtr FrameMaker::decode() {
 }
 
 void FrameMaker::locate(Work& work) {
-  work.moved = resolved_.motion.next(work.frame);
-  work.moment =
-      setup::moment_at(resolved_.world, work.frame.index, work.frame.time_s, work.moved.shake);
+  work.moved = resolved_.motion->next(work.frame);
+  locate(work, work.moved.shake);
+}
+
+void FrameMaker::locate(Work& work, const Shake& shake) {
+  work.moved.shake = shake;
+  work.moment = setup::moment_at(resolved_.world, work.frame.index, work.frame.time_s, shake);
   work.ambient = ambient_.next(work.frame.picture,
                                work.moment.sight,
                                setup::search_bounds(work.moment),
@@ -56,7 +60,7 @@ void FrameMaker::describe(Work& work) const {
   const bool has_motion = resolved_.scene.motion.model != scene::MotionModel::kNone;
   const char* state = has_motion ? motion::name(work.moved.motion.state) : "none";
   work.truth = insertion::frame_truth(
-      resolved_.world, work.frame, {state, work.moved.shake}, work.moment, work.painted);
+      resolved_.world, work.frame, state, work.moved.shake, work.moment, work.painted);
   if (resolved_.scene.output.masks)
     work.masks = insertion::mask_files(
         work.truth, work.painted.layer, resolved_.mask.get(), resolved_.world.lens.size());

@@ -48,6 +48,8 @@ class FrameMaker {
   // 2. locate: how the camera moved, where everything is, and the light that falls there. Frames
   // come in order.
   void locate(Work& work);
+  // The same with a motion that is known: that of a finished sequence's truth.
+  void locate(Work& work, const Shake& shake);
   // 3. draw: the intruders' light, coverage and depth on the frame's grid. Frames come in any
   // order.
   void draw(Work& work) const;
@@ -58,7 +60,7 @@ class FrameMaker {
   void describe(Work& work) const;
 
   // Keeps the measured motion for the next run, after the last frame.
-  void store_motion() const { resolved_.motion.store(); }
+  void store_motion() const { resolved_.motion->store(); }
 
   // True where draw() and compose() belong to the thread that opened the scene: OpenGL's context
   // belongs to one thread.

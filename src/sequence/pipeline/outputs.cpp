@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include <airtruth/version.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
@@ -62,6 +63,15 @@ std::vector<Checksum> checksums_below(const fs::path& folder) {
   return result;
 }
 
+std::vector<fs::path> model_files(const setup::World& world) {
+  std::vector<fs::path> models;
+  for (const setup::Actor& actor : world.actors)
+    for (const fs::path& source : actor.type->aircraft->sources) models.push_back(source);
+  std::sort(models.begin(), models.end());
+  models.erase(std::unique(models.begin(), models.end()), models.end());
+  return models;
+}
+
 }  // namespace
 
 Outputs::Outputs(const fs::path& folder,
@@ -77,9 +87,13 @@ Outputs::Outputs(const fs::path& folder,
       aircraft_(aircraft_of(scene)),
       evision_(std::max<std::size_t>(1, aircraft_)),
       sheet_(scene.name, info.frame_count_estimate) {
+  check_truth("create");
+}
+
+void Outputs::check_truth(const char* what) const {
   if (!truth_)
-    throw Error(std::string("cannot create: ") + std::strerror(errno),
-                {(folder / "truth.jsonl").string()});
+    throw Error(fmt::format("cannot {}: {}", what, std::strerror(errno)),
+                {(folder_ / "truth.jsonl").string()});
 }
 
 void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
@@ -91,9 +105,7 @@ void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
     write_file(folder_ / mask.name, mask.png, Flush::kLater);
   }
   truth_ << annotation::jsonl_line(truth, lens_) << '\n';
-  if (!truth_)
-    throw Error(std::string("cannot write: ") + std::strerror(errno),
-                {(folder_ / "truth.jsonl").string()});
+  check_truth("write");
   camera_ned_m_.push_back(truth.camera_position_ned_m);
   // The format is one of aircraft, which come first.
   if (aircraft_ == 0) evision_[0].push_back(std::nullopt);
@@ -112,9 +124,7 @@ void Outputs::finish(const scene::Scene& scene,
                      const Summary& summary) {
   writer_.finish();
   truth_.close();
-  if (!truth_)
-    throw Error(std::string("cannot write: ") + std::strerror(errno),
-                {(folder_ / "truth.jsonl").string()});
+  check_truth("write");
   write_annotations(scene);
   video::write_still(folder_ / "preview.jpg", sheet_.sheet());
   if (scene.output.masks) flush_files(folder_);
@@ -152,27 +162,14 @@ void Outputs::write_record(const scene::Scene& scene,
   write_file(folder_ / "sequence.json", record.dump(2) + "\n");
 }
 
-namespace {
-
-std::vector<fs::path> model_files(const setup::World& world) {
-  std::vector<fs::path> models;
-  for (const setup::Actor& actor : world.actors)
-    models.insert(models.end(), actor.type->sources.begin(), actor.type->sources.end());
-  std::sort(models.begin(), models.end());
-  models.erase(std::unique(models.begin(), models.end()), models.end());
-  return models;
-}
-
-}  // namespace
-
 std::vector<Checksum> input_files(const scene::Scene& scene,
                                   const setup::World& world,
                                   const std::string& video_sha256,
-                                  setup::SharedInputs* shared) {
+                                  setup::SharedInputs& inputs) {
   std::vector<Checksum> result;
   if (!video_sha256.empty()) result.push_back({scene.background.video.string(), video_sha256});
   const auto add = [&](const fs::path& file) {
-    result.push_back({file.string(), setup::shared_sha256(file, shared)});
+    result.push_back({file.string(), inputs.sha256_of_file(file)});
   };
   if (scene.background.mask) add(*scene.background.mask);
   if (scene.realism.file) add(*scene.realism.file);

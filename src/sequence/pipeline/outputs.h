@@ -51,6 +51,8 @@ class Outputs {
               const Summary& summary);
 
  private:
+  // Throws Error where the truth could not be written so far.
+  void check_truth(const char* what) const;
   void write_annotations(const scene::Scene& scene) const;
   void write_record(const scene::Scene& scene,
                     const std::vector<Checksum>& inputs,
@@ -72,11 +74,10 @@ class Outputs {
 
 // Every file that a run reads, with its SHA-256, for sequence.json: video, mask, camera file, lens
 // file, path files, and the files of the aircraft's models by name. `scene` is the one the user
-// gave. `video_sha256` is empty for a pattern of numbered images, which is then left out. `shared`
-// knows the SHA-256 of other runs' files; nullptr: none.
+// gave. `video_sha256` is empty for a pattern of numbered images, which is then left out.
 std::vector<Checksum> input_files(const scene::Scene& scene,
                                   const setup::World& world,
                                   const std::string& video_sha256,
-                                  setup::SharedInputs* shared);
+                                  setup::SharedInputs& inputs);
 
 }  // namespace airtruth::pipeline

@@ -30,67 +30,11 @@ struct Clocks {
   double begin_s = process_cpu_seconds(), frames_s = 0, end_s = 0;
 };
 
-// The sixth stage, after those of FrameMaker. write: picture, truth and masks. Frames come in
-// order.
-void write_frame(const WorkPtr& work, Outputs& outputs, Tally& tally) {
-  const std::shared_ptr<const video::Frame> frame(work, &work->frame);
-  outputs.write(frame, work->truth, work->masks);
-  add_frame(tally, *frame, work->moved.motion.state, work->truth);
-}
-
-// The stages as the pipeline calls them: each is timed, and none works on after a stop.
-class Stages {
- public:
-  Stages(FrameMaker& maker, Outputs& outputs, const Options& options, Clocks& clocks, Tally& tally)
-      : maker_(maker), outputs_(outputs), options_(options), clocks_(clocks), tally_(tally) {}
-
-  bool is_stopped() const { return options_.stop.stop_requested(); }
-
-  WorkPtr decode(tbb::flow_control& control) const {
-    const Timed timed(clocks_.read);
-    WorkPtr work = maker_.decode();
-    if (!work) control.stop();
-    return work;
-  }
-  WorkPtr locate(WorkPtr work) const {
-    const Timed timed(clocks_.move);
-    maker_.locate(*work);
-    return work;
-  }
-  WorkPtr draw(WorkPtr work) const {
-    if (is_stopped()) return work;
-    const Timed timed(clocks_.render);
-    maker_.draw(*work);
-    return work;
-  }
-  WorkPtr compose(WorkPtr work) const {
-    if (is_stopped()) return work;
-    const Timed timed(clocks_.composite);
-    maker_.compose(*work);
-    maker_.describe(*work);
-    return work;
-  }
-  void write(const WorkPtr& work) const {
-    if (is_stopped()) return;  // a frame that was not painted is not written
-    const Timed timed(clocks_.write);
-    write_frame(work, outputs_, tally_);
-    if (options_.progress)
-      options_.progress({tally_.frames, maker_.resolved().info.frame_count_estimate});
-  }
-
- private:
-  FrameMaker& maker_;
-  Outputs& outputs_;
-  const Options& options_;
-  Clocks& clocks_;
-  Tally& tally_;
-};
-
-// All frames through the six stages, as many at a time as there are threads; memory is bounded by
-// the frames in flight.
+// All frames through the stages of FrameMaker, each timed, and then into the files, as many at a
+// time as there are threads; memory is bounded by the frames in flight. After a stop no stage works
+// on, so that a frame that is not whole is not written.
 Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, Clocks& clocks) {
   Tally tally;
-  const Stages stages(maker, outputs, options, clocks, tally);
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   // One for each thread, one that waits for its turn and one that is being decoded. With more, a
   // long run comes to hold them all at some time, and takes no less time.
@@ -101,25 +45,40 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
   const auto in_order = tbb::filter_mode::serial_in_order;
   const auto draw_mode = one_thread ? in_order : tbb::filter_mode::parallel;
   const auto compose_mode = maker.composes_in_order() ? in_order : draw_mode;
-  const auto stage = [](tbb::filter_mode mode, const auto& run) {
-    return tbb::make_filter<WorkPtr, WorkPtr>(mode, run);
-  };
-  arena.execute([&] {
-    tbb::parallel_pipeline(
-        in_flight,
-        tbb::make_filter<void, WorkPtr>(
-            in_order, [&](tbb::flow_control& control) { return stages.decode(control); }) &
-            stage(in_order, [&](WorkPtr work) { return stages.locate(std::move(work)); }) &
-            stage(draw_mode, [&](WorkPtr work) { return stages.draw(std::move(work)); }) &
-            stage(compose_mode, [&](WorkPtr work) { return stages.compose(std::move(work)); }) &
-            tbb::make_filter<WorkPtr, void>(in_order,
-                                            [&](const WorkPtr& work) { stages.write(work); }));
+  const auto decode = tbb::make_filter<void, WorkPtr>(in_order, [&](tbb::flow_control& control) {
+    const Timed timed(clocks.read);
+    WorkPtr work = maker.decode();
+    if (!work) control.stop();
+    return work;
   });
-  if (stages.is_stopped()) throw Interrupted();
+  const auto stage = [&](tbb::filter_mode mode, SharedTime& time, const auto& run) {
+    return tbb::make_filter<WorkPtr, WorkPtr>(mode, [&options, &time, run](WorkPtr work) {
+      if (options.stop.stop_requested()) return work;
+      const Timed timed(time);
+      run(*work);
+      return work;
+    });
+  };
+  const auto locate = stage(in_order, clocks.move, [&](Work& work) { maker.locate(work); });
+  const auto draw = stage(draw_mode, clocks.render, [&](Work& work) { maker.draw(work); });
+  const auto compose = stage(compose_mode, clocks.composite, [&](Work& work) {
+    maker.compose(work);
+    maker.describe(work);
+  });
+  const auto write = tbb::make_filter<WorkPtr, void>(in_order, [&](const WorkPtr& work) {
+    if (options.stop.stop_requested()) return;
+    const Timed timed(clocks.write);
+    const std::shared_ptr<const video::Frame> frame(work, &work->frame);
+    outputs.write(frame, work->truth, work->masks);
+    add_frame(tally, *frame, work->moved.motion.state, work->truth);
+    if (options.progress)
+      options.progress({tally.frames, maker.resolved().info.frame_count_estimate});
+  });
+  arena.execute(
+      [&] { tbb::parallel_pipeline(in_flight, decode & locate & draw & compose & write); });
+  if (options.stop.stop_requested()) throw Interrupted();
   return tally;
 }
-
-// ---------------------------------------------------------------- after the last frame
 
 StageTimes times_of(const Clocks& clocks) {
   const auto time_of = [](const SharedTime& time) { return StageTime{time.wall_s, time.cpu_s}; };
@@ -176,9 +135,9 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
 
   maker.store_motion();
   warn_of_run(tally, resolved.scene, resolved.world, resolved.background, options.warn);
-  Summary summary = summary_of(tally, clocks, resolved.motion.is_from_cache());
+  Summary summary = summary_of(tally, clocks, resolved.motion->is_from_cache());
   outputs->finish(resolved.scene,
-                  input_files(scene, resolved.world, resolved.video_sha256, options.shared.get()),
+                  input_files(scene, resolved.world, resolved.video_sha256, *resolved.inputs),
                   encounter_records(resolved.world, tally.first_seen, tally.last_time_s),
                   summary);
   outputs.reset();

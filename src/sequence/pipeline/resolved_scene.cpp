@@ -44,6 +44,17 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
   return file;
 }
 
+disk_cache::Cache cache_of(const Options& options, const char* kind) {
+  const fs::path folder = cache_folder(options, kind);
+  return folder.empty() ? disk_cache::Cache() : disk_cache::Cache(folder);
+}
+
+// The inputs of the process, else those of one run.
+std::shared_ptr<setup::SharedInputs> inputs_of(const Options& options) {
+  return options.shared ? options.shared
+                        : std::make_shared<setup::SharedInputs>(cache_folder(options, "openness"));
+}
+
 // Measures the whole clip, so that all scenes over one clip have the same camera.
 camera_file::Calibration measured_on(const scene::Scene& scene,
                                      const lens::ImageSize& size,
@@ -61,7 +72,7 @@ camera_file::Calibration measured_on(const scene::Scene& scene,
     if (options.progress) options.progress({done, total, "measuring the camera"});
   };
   camera_file::CacheKey key;
-  key.video_sha256 = setup::sha256_of_video(scene.background.video, options.shared.get());
+  key.video_sha256 = setup::sha256_of_video(scene.background.video, *inputs_of(options));
   if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
   key.lens = setup::words_of(*how.lens);
   key.altitude_m = how.altitude_m;
@@ -310,25 +321,25 @@ OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
   std::unique_ptr<const image::Mask> mask;
   if (auto read = insertion::read_mask(opened, size))
     mask = std::make_unique<const image::Mask>(std::move(*read));
-  auto inputs = options.shared ? options.shared
-                               : std::make_shared<setup::SharedInputs>(openness_cache(options));
+  auto inputs = inputs_of(options);
   setup::World world = setup::load_world(opened, size, options.warn, options.stop, inputs.get());
-  auto backdrop = insertion::open_backdrop(opened, world.lens, {options.gpu, options.software_gl});
+  auto backdrop = insertion::open_backdrop(
+      opened, world.lens, {.gpu = options.gpu, .software = options.software_gl});
   opened.motion.model = setup::motion_model(opened);
   // sequence.json records the scale that is drawn, so that the same scene gives the same sizes
   // whatever the table of published sizes becomes.
   for (std::size_t i = 0; i < world.actors.size(); ++i)
-    if (const double scale = world.actors[i].type->catalogue_scale; scale != 1)
+    if (const double scale = world.actors[i].type->aircraft->catalogue_scale; scale != 1)
       opened.intruders[i].catalogue_scale = scale;
   const video::StreamInfo info = used_stream(background.info(), scene.background);
   setup::check_camera_path(world.camera, info);
-  return {std::move(as_stated),
-          std::move(background),
-          info,
-          std::move(mask),
-          std::move(inputs),
-          std::move(world),
-          std::move(backdrop)};
+  return {{std::move(background),
+           info,
+           std::move(mask),
+           std::move(inputs),
+           std::move(world),
+           std::move(backdrop)},
+          std::move(as_stated)};
 }
 
 setup::MotionInputs motion_inputs(const OpenedScene& opened,
@@ -360,8 +371,7 @@ ResolvedScene resolve(OpenedScene opened, const Options& options) {
   insertion::check_codec(scene, opened.background.info().colour);
   opened.world.shutter = setup::shutter_of(scene.camera_model);
   opened.world.to_sun_in_world = setup::to_sun_in_world(scene.light);
-  const std::string video_sha256 =
-      setup::sha256_of_video(scene.background.video, opened.inputs.get());
+  const std::string video_sha256 = setup::sha256_of_video(scene.background.video, *opened.inputs);
   const bool has_seen = is_given_by_what_is_seen(scene);
   setup::MotionSource motion(motion_inputs(opened, video_sha256, options),
                              {.for_all = has_seen,
@@ -369,15 +379,14 @@ ResolvedScene resolve(OpenedScene opened, const Options& options) {
                               .stop = options.stop,
                               .seen = {}});
   if (has_seen) place_seen(opened, motion, options.stop);
-  return {std::move(scene),
-          std::move(opened.background),
-          opened.info,
-          std::move(opened.mask),
-          std::move(opened.inputs),
-          std::move(opened.world),
-          std::move(opened.backdrop),
-          video_sha256,
-          std::move(motion)};
+  ResolvedScene resolved = resolved_by_truth(std::move(opened));
+  resolved.video_sha256 = video_sha256;
+  resolved.motion.emplace(std::move(motion));
+  return resolved;
+}
+
+ResolvedScene resolved_by_truth(OpenedScene opened) {
+  return {std::move(static_cast<SceneInputs&>(opened)), std::move(opened.stated.scene), "", {}};
 }
 
 void measure_ahead(const scene::Scene& scene, const Options& options) {
@@ -391,7 +400,7 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
       scene,
       lens,
       false,
-      setup::sha256_of_video(scene.background.video, options.shared.get()),
+      setup::sha256_of_video(scene.background.video, *inputs_of(options)),
       mask ? &*mask : nullptr,
       cache_of(options, "motion")};
   const setup::MotionSource source(inputs,
@@ -405,15 +414,9 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
   source.store();
 }
 
-disk_cache::Cache cache_of(const Options& options, const char* kind) {
+fs::path cache_folder(const Options& options, const char* kind) {
   if (!options.use_cache) return {};
-  return disk_cache::Cache((options.cache.empty() ? disk_cache::user_folder() : options.cache) /
-                           kind);
-}
-
-fs::path openness_cache(const Options& options) {
-  if (!options.use_cache) return {};
-  return (options.cache.empty() ? disk_cache::user_folder() : options.cache) / "openness";
+  return (options.cache.empty() ? disk_cache::user_folder() : options.cache) / kind;
 }
 
 bool needs_calibration(const scene::Scene& scene) {

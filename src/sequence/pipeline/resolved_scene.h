@@ -44,10 +44,8 @@ scene::Scene with_measured_camera(StatedScene stated,
                                   const image::Mask* mask,
                                   const Options& options);
 
-// A scene whose files are all opened and checked, before a frame is measured: faults of the user's
-// input are found here.
-struct OpenedScene {
-  StatedScene stated;
+// What a scene names, opened and checked.
+struct SceneInputs {
   video::Reader background;                 // the scene's part of it
   video::StreamInfo info;                   // with the number of frames that this scene makes of it
   std::unique_ptr<const image::Mask> mask;  // of the own aircraft; null: none
@@ -55,21 +53,25 @@ struct OpenedScene {
   setup::World world;
   std::unique_ptr<backdrop::Backdrop> backdrop;  // of the chroma-key method
 };
+
+// A scene whose files are all opened and checked, before a frame is measured: faults of the user's
+// input are found here.
+struct OpenedScene : SceneInputs {
+  StatedScene stated;
+};
 OpenedScene open_scene(const scene::Scene& scene, const Options& options);
 
 // A scene with all that must be known of the whole clip before its first frame: frames are made
 // from it alone. It is complete: what sequence.json records and what a frame is made from again.
-struct ResolvedScene {
+struct ResolvedScene : SceneInputs {
   scene::Scene scene;
-  video::Reader background;
-  video::StreamInfo info;
-  std::unique_ptr<const image::Mask> mask;  // of the own aircraft; null: none
-  std::shared_ptr<setup::SharedInputs> inputs;
-  setup::World world;
-  std::unique_ptr<backdrop::Backdrop> backdrop;
   std::string video_sha256;
-  setup::MotionSource motion;
+  // Empty for a finished sequence, whose truth holds the motion.
+  std::optional<setup::MotionSource> motion;
 };
+
+// The scene of a finished sequence, which leaves nothing to measure.
+ResolvedScene resolved_by_truth(OpenedScene opened);
 
 // Measures what the scene leaves to the clip: the exposure, noise and other values of [realism],
 // and the motion where it is needed ahead. Decodes the whole clip where these are not in the cache.
@@ -104,10 +106,8 @@ bool needs_calibration(const scene::Scene& scene);
 // already. Does nothing where the scene needs no calibration.
 void calibrate_ahead(const scene::Scene& scene, const Options& options);
 
-// The part of the cache for one kind of result, "motion" or "calibration".
-disk_cache::Cache cache_of(const Options& options, const char* kind);
-
-// The folder that keeps the openness of aircraft; empty: none.
-fs::path openness_cache(const Options& options);
+// The folder of the cache for one kind of result: "motion", "calibration" or "openness"; empty:
+// none.
+fs::path cache_folder(const Options& options, const char* kind);
 
 }  // namespace airtruth::pipeline

@@ -13,15 +13,6 @@
 namespace airtruth::pipeline {
 namespace {
 
-void warn_not_flyable(const scene::Intruder& intruder,
-                      const setup::Actor& actor,
-                      double last_time_s,
-                      const Warn& to_warn) {
-  const std::string words = setup::words_beyond_limits(actor.aircraft, actor.path, 0, last_time_s);
-  if (words.empty()) return;
-  warn(to_warn, to_string(intruder.where) + ": intruder '" + actor.id + "': " + words);
-}
-
 // A turn may bring an intruder nearer within the clip than at the closest approach that its scene
 // states.
 void warn_nearer(const scene::Intruder& intruder,
@@ -29,7 +20,7 @@ void warn_nearer(const scene::Intruder& intruder,
                  const trajectory::Path& own,
                  double last_time_s,
                  const Warn& to_warn) {
-  constexpr double kNearerM = 0.1;
+  constexpr double kNearerM = 0.1;  // a smaller difference is not worth a warning: chosen
   if (!intruder.encounter) return;
   const double cpa_time_s = intruder.encounter->cpa_time_s;
   const auto stated = encounter::closest_approach(own, actor.path, cpa_time_s, cpa_time_s);
@@ -141,7 +132,7 @@ void warn_of_run(const Tally& tally,
   warn_of_video(tally, scene.background, reader, to_warn);
   warn_of_motion(tally, scene.background, to_warn);
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
-    warn_not_flyable(scene.intruders[i], world.actors[i], tally.last_time_s, to_warn);
+    setup::warn_not_flyable(scene.intruders[i], world.actors[i].path, tally.last_time_s, to_warn);
     warn_nearer(scene.intruders[i], world.actors[i], world.camera, tally.last_time_s, to_warn);
     if (i >= tally.first_seen.size() || !tally.first_seen[i])
       warn_never_seen(scene.intruders[i], world, i, tally.last_time_s, to_warn);

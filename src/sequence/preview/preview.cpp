@@ -28,7 +28,7 @@ constexpr int kWidthPx = 1930;  // that of a contact sheet of three tiles
 constexpr int kMainWidthPx = 1270;
 constexpr int kSideWidthPx = kWidthPx - kMainWidthPx - 10;
 constexpr std::size_t kTiles = 3;
-constexpr double kPathStepS = 0.05;
+constexpr double kPathStepS = 0.05;  // between the points of a drawn path: chosen
 // A motion that is kept is found by the hash of the video, some 2 s for each GB; of a larger video
 // none is looked for.
 constexpr std::uintmax_t kMaxHashedBytes = std::uintmax_t{512} << 20;
@@ -51,7 +51,10 @@ class Previewer {
   }
 
   Preview make() {
-    warn_not_flyable();
+    // What an aircraft cannot fly is said before it is rendered.
+    for (std::size_t i = 0; i < world().actors.size(); ++i)
+      setup::warn_not_flyable(
+          scene().intruders[i], world().actors[i].path, duration_s_, options_.warn);
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
     result.has_motion = motion_.has_value();
@@ -75,8 +78,8 @@ class Previewer {
     std::error_code unknown;
     const auto bytes = std::filesystem::file_size(video, unknown);
     if (unknown || bytes > kMaxHashedBytes) return std::nullopt;
-    return setup::MotionSource::from_cache(pipeline::motion_inputs(
-        opened_, setup::sha256_of_video(video, opened_.inputs.get()), options_));
+    return setup::MotionSource::from_cache(
+        pipeline::motion_inputs(opened_, setup::sha256_of_video(video, *opened_.inputs), options_));
   }
   // The clip's length is its container's; render() refuses what no frame is at.
   void check_seen() const {
@@ -90,18 +93,6 @@ class Previewer {
                                   seen.time_s,
                                   duration_s_),
                       seen.where);
-  }
-  // What an aircraft cannot fly is said before it is rendered.
-  void warn_not_flyable() const {
-    for (std::size_t i = 0; i < world().actors.size(); ++i) {
-      const setup::Actor& actor = world().actors[i];
-      const std::string words =
-          setup::words_beyond_limits(actor.aircraft, actor.path, 0, duration_s_);
-      if (!words.empty())
-        warn(options_.warn,
-             fmt::format(
-                 "{}: intruder '{}': {}", to_string(scene().intruders[i].where), actor.id, words));
-    }
   }
   void stop_if_asked() const {
     if (options_.stop.stop_requested()) throw Interrupted();
@@ -265,7 +256,7 @@ class Previewer {
       const insertion::Painted painted =
           painter_->paint(frame.picture, here, ambient_in(frame.picture, here));
       frame.index = here.frame;
-      annotation::Frame truth = insertion::frame_truth(world(), frame, {"none", {}}, here, painted);
+      annotation::Frame truth = insertion::frame_truth(world(), frame, "none", {}, here, painted);
       sheet.add(frame.picture, truth);
     }
     image::Rgb8 picture = sheet.sheet();

@@ -9,13 +9,9 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
-#include "sequence/insertion/frame_truth.h"
 #include "sequence/insertion/masks.h"
-#include "sequence/insertion/paint.h"
+#include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/resolved_scene.h"
-#include "sequence/setup/from_scene.h"
-#include "sequence/setup/moment.h"
-#include "sequence/setup/world.h"
 
 namespace airtruth::replay {
 namespace {
@@ -74,66 +70,40 @@ void as_older_truth(annotation::Frame& truth) {
 }
 
 // Masks whose bytes are not those of the frame drawn again, and masks that should not be there.
-std::vector<std::string> mask_faults(const Finished& sequence,
-                                     const annotation::Frame& truth,
-                                     const image::Layer& layer,
-                                     const image::Mask* own_aircraft) {
-  const lens::ImageSize size{sequence.truth.lens.width, sequence.truth.lens.height};
-  const std::vector<insertion::MaskFile> made =
-      insertion::mask_files(truth, layer, own_aircraft, size);
+std::vector<std::string> mask_faults(const Finished& sequence, const pipeline::Work& again) {
   std::vector<std::string> faults;
-  for (const annotation::Intruder& intruder : truth.intruders) {
-    const std::string name = insertion::mask_name(intruder.id, truth.frame);
-    const auto again =
-        std::find_if(made.begin(), made.end(), [&](const auto& m) { return m.name == name; });
+  for (const annotation::Intruder& intruder : again.truth.intruders) {
+    const std::string name = insertion::mask_name(intruder.id, again.truth.frame);
+    const auto made = std::find_if(again.masks.begin(), again.masks.end(), [&](const auto& mask) {
+      return mask.name == name;
+    });
     const bool is_there = fs::exists(sequence.folder / name);
-    if (is_there != (again != made.end()) ||
-        (is_there && read_file(sequence.folder / name) != again->png))
+    if (is_there != (made != again.masks.end()) ||
+        (is_there && read_file(sequence.folder / name) != made->png))
       faults.push_back("has another " + name + " when it is drawn again");
   }
   return faults;
 }
 
-// Differences between a frame's stored truth and masks and those that are computed again.
-std::vector<std::string> truth_faults(const Finished& sequence,
+// What differs between a stored frame and the one that is made again: masks, truth, picture.
+std::vector<std::string> frame_faults(const Finished& sequence,
                                       const annotation::Frame& truth,
-                                      const annotation::Frame& again,
-                                      const image::Layer& layer,
-                                      const image::Mask* own_aircraft) {
+                                      const image::Picture& stored,
+                                      pipeline::Work& again) {
+  // The measured motion is the input of both; all else is computed again.
+  again.truth.motion_state = truth.motion_state;
+  if (!sequence.has_covered_boxes) as_older_truth(again.truth);
+  if (!sequence.has_encounters)
+    for (annotation::Intruder& intruder : again.truth.intruders) intruder.encounter.reset();
   std::vector<std::string> faults;
-  if (sequence.scene->output.masks) faults = mask_faults(sequence, again, layer, own_aircraft);
-  if (annotation::jsonl_line(again, sequence.truth.lens) !=
+  if (sequence.scene->output.masks) faults = mask_faults(sequence, again);
+  if (annotation::jsonl_line(again.truth, sequence.truth.lens) !=
       annotation::jsonl_line(truth, sequence.truth.lens))
     faults.push_back("has another truth when it is computed again");
-  return faults;
-}
-
-// What is computed again for one frame.
-struct PaintedAgain {
-  const video::Frame& background;
-  const setup::Moment& moment;
-  const insertion::Painted& painted;
-};
-
-// What differs between a stored frame and the one that is computed again: truth, masks, picture.
-std::vector<std::string> frame_faults(const Finished& sequence,
-                                      const setup::World& world,
-                                      const annotation::Frame& truth,
-                                      const PaintedAgain& frame,
-                                      const image::Picture& stored,
-                                      const image::Mask* own_aircraft) {
-  // The measured motion is the input of both; all else is computed again.
-  annotation::Frame again = insertion::frame_truth(
-      world, frame.background, {truth.motion_state, truth.shake}, frame.moment, frame.painted);
-  if (!sequence.has_covered_boxes) as_older_truth(again);
-  if (!sequence.has_encounters)
-    for (annotation::Intruder& intruder : again.intruders) intruder.encounter.reset();
-  std::vector<std::string> faults =
-      truth_faults(sequence, truth, again, frame.painted.layer, own_aircraft);
   const scene::OutputVideo format = sequence.scene->output.video;
   if (format == scene::OutputVideo::kPng) return faults;  // sRGB, rounded on the way
   const std::string found =
-      picture_fault(frame.background.picture, stored, truth, format == scene::OutputVideo::kMkv);
+      picture_fault(again.frame.picture, stored, truth, format == scene::OutputVideo::kMkv);
   if (!found.empty()) faults.push_back(found);
   return faults;
 }
@@ -146,36 +116,31 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
   pipeline::Options options;
   options.use_cache = false;
   options.stop = stop;
-  pipeline::OpenedScene opened = pipeline::open_scene(*sequence.scene, options);
-  const scene::Scene& scene = opened.stated.scene;
-  const image::Mask* mask = opened.mask.get();
+  pipeline::FrameMaker maker(
+      pipeline::resolved_by_truth(pipeline::open_scene(*sequence.scene, options)), stop);
   video::Reader stored(sequence.video);
-  const auto painter =
-      insertion::make_painter(scene, opened.world, mask, std::move(opened.backdrop));
-  insertion::AmbientEstimator ambient(scene.light, setup::tone_of(scene.camera_model), mask);
   Recomposition result;
   const auto fault = [&](const annotation::Frame& truth, const std::string& what) {
     result.faults.push_back("frame " + std::to_string(truth.frame) + " " + what);
   };
   for (const annotation::Frame& truth : sequence.truth.frames) {
+    const pipeline::WorkPtr again = maker.decode();
     if (stop.stop_requested()) throw Interrupted();
-    auto before = opened.background.next();
     const auto after = stored.next();
-    if (!before || !after) {
-      fault(truth, before ? "is not in the video" : "is not in the background");
+    if (!again || !after) {
+      fault(truth, again ? "is not in the video" : "is not in the background");
       break;
     }
-    const setup::Moment moment =
-        setup::moment_at(opened.world, truth.frame, before->time_s, truth.shake);
-    const insertion::Ambient light = ambient.next(
-        before->picture, moment.sight, setup::search_bounds(moment), before->begins_shot);
+    maker.locate(*again, truth.shake);
     const bool is_compared = truth.frame % every == 0;
-    if (!is_compared && !painter->is_in_order()) continue;
-    const insertion::Painted painted = painter->paint(before->picture, moment, light);
+    if (!is_compared && !maker.composes_in_order()) continue;
+    maker.draw(*again);
+    maker.compose(*again);
     if (!is_compared) continue;
+    maker.describe(*again);
+    if (stop.stop_requested()) throw Interrupted();
     ++result.compared;
-    for (const std::string& what : frame_faults(
-             sequence, opened.world, truth, {*before, moment, painted}, after->picture, mask))
+    for (const std::string& what : frame_faults(sequence, truth, after->picture, *again))
       fault(truth, what);
   }
   return result;

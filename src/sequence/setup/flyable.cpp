@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,9 +15,9 @@
 namespace airtruth::setup {
 namespace {
 
-constexpr double kSampleStep_s = 0.05;
-constexpr int kMaxSamples = 4000;
-constexpr double kTurnStep_s = 0.01;  // over which the turn rate is taken
+constexpr double kSampleStep_s = 0.05;  // between looks at the path: chosen
+constexpr int kMaxSamples = 4000;       // of a long path, whose looks are further apart
+constexpr double kTurnStep_s = 0.01;    // over which the turn rate is taken
 // At lower ground speeds a heading has no meaning.
 constexpr double kHeadingMps = 1;
 // Tolerance as a share of a limit, so that a path drawn at the limit is within it.
@@ -40,65 +39,40 @@ std::optional<double> turn_bank_deg(const trajectory::Path& path, double time_s)
       std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / aircraft::kStandardGravityMps2));
 }
 
-// The five quantities, each with the largest share by which it leaves its limit.
-class Worst {
- public:
-  explicit Worst(const aircraft::FlightLimits& limits) : limits_(limits) {}
-
-  void look(const trajectory::Path& path, double time_s) {
-    using Quantity = BeyondLimit::Quantity;
-    const auto state = path.at(time_s);
-    if (!state) return;
-    const Vector3& velocity = state->velocity_in_world_mps;
-    const double speed_mps = velocity.norm();
-    above(Quantity::kFast, time_s, speed_mps, limits_.fastest_mps);
-    if (speed_mps < limits_.slowest_mps * (1 - kToleratedShare))
-      take({Quantity::kSlow, time_s, speed_mps, limits_.slowest_mps},
-           limits_.slowest_mps - speed_mps);
-    above(Quantity::kClimb, time_s, -velocity.z(), limits_.most_climb_mps);
-    above(Quantity::kDescent, time_s, velocity.z(), limits_.most_descent_mps);
-    if (const auto bank_deg = turn_bank_deg(path, time_s))
-      above(Quantity::kBank, time_s, std::abs(*bank_deg), limits_.most_bank_deg);
-  }
-
-  std::vector<BeyondLimit> found() const {
-    std::vector<BeyondLimit> result;
-    for (const auto& [what, by] : worst_)
-      if (by > 0) result.push_back(what);
-    return result;
-  }
-
- private:
-  void above(BeyondLimit::Quantity quantity, double time_s, double value, double limit) {
-    if (value > limit * (1 + kToleratedShare))
-      take({quantity, time_s, value, limit}, value - limit);
-  }
-  void take(const BeyondLimit& what, double by) {
-    auto& worst = worst_[static_cast<std::size_t>(what.quantity)];
-    if (by > worst.second) worst = {what, by};
-  }
-
-  const aircraft::FlightLimits& limits_;
-  std::array<std::pair<BeyondLimit, double>, 5> worst_{};
+// What a class limits, in the order of BeyondLimit::Quantity, and how an excess of it reads.
+struct Limited {
+  double aircraft::FlightLimits::*limit;
+  double sign;  // -1: the limit is the least, not the most
+  const char* words;
 };
+constexpr std::array<Limited, 5> kLimited = {{
+    {&aircraft::FlightLimits::fastest_mps,
+     1,
+     "at {:.2f} s it flies {:.1f} m/s, the fastest of its class {:.0f} m/s"},
+    {&aircraft::FlightLimits::slowest_mps,
+     -1,
+     "at {:.2f} s it flies {:.1f} m/s, the slowest of its class {:.0f} m/s"},
+    {&aircraft::FlightLimits::most_bank_deg,
+     1,
+     "at {:.2f} s it banks {:.1f} degrees, its class at most {:.0f}"},
+    {&aircraft::FlightLimits::most_climb_mps,
+     1,
+     "at {:.2f} s it climbs {:.1f} m/s, its class at most {:.0f} m/s"},
+    {&aircraft::FlightLimits::most_descent_mps,
+     1,
+     "at {:.2f} s it descends {:.1f} m/s, its class at most {:.0f} m/s"},
+}};
 
-std::string limit_words(const BeyondLimit& beyond) {
-  const auto text = [&](const char* format) {
-    return fmt::format(fmt::runtime(format), beyond.time_s, beyond.value, beyond.limit);
-  };
-  switch (beyond.quantity) {
-    case BeyondLimit::Quantity::kFast:
-      return text("at {:.2f} s it flies {:.1f} m/s, the fastest of its class {:.0f} m/s");
-    case BeyondLimit::Quantity::kSlow:
-      return text("at {:.2f} s it flies {:.1f} m/s, the slowest of its class {:.0f} m/s");
-    case BeyondLimit::Quantity::kBank:
-      return text("at {:.2f} s it banks {:.1f} degrees, its class at most {:.0f}");
-    case BeyondLimit::Quantity::kClimb:
-      return text("at {:.2f} s it climbs {:.1f} m/s, its class at most {:.0f} m/s");
-    case BeyondLimit::Quantity::kDescent:
-      return text("at {:.2f} s it descends {:.1f} m/s, its class at most {:.0f} m/s");
-  }
-  return {};
+// The quantities at a time, in the same order; empty where the path is not there.
+std::optional<std::array<double, 5>> flown(const trajectory::Path& path, double time_s) {
+  const auto state = path.at(time_s);
+  if (!state) return std::nullopt;
+  const Vector3& velocity = state->velocity_in_world_mps;
+  return std::array{velocity.norm(),
+                    velocity.norm(),
+                    std::abs(turn_bank_deg(path, time_s).value_or(0)),
+                    -velocity.z(),
+                    velocity.z()};
 }
 
 }  // namespace
@@ -114,10 +88,24 @@ std::vector<BeyondLimit> beyond_limits(const std::string& aircraft,
   const int samples =
       1 + std::clamp(
               static_cast<int>(std::min((end_s - begin_s) / kSampleStep_s, 1e6)), 1, kMaxSamples);
-  Worst worst(*limits);
-  for (int i = 0; i < samples; ++i)
-    worst.look(path, begin_s + (end_s - begin_s) * i / (samples - 1));
-  return worst.found();
+  std::array<BeyondLimit, 5> worst;
+  std::array<double, 5> excess{};
+  for (int i = 0; i < samples; ++i) {
+    const double time_s = begin_s + (end_s - begin_s) * i / (samples - 1);
+    const auto values = flown(path, time_s);
+    for (std::size_t k = 0; values && k < kLimited.size(); ++k) {
+      const double limit = limits->*kLimited[k].limit;
+      const double sign = kLimited[k].sign;
+      const double by = sign * ((*values)[k] - limit);
+      if (!(sign * (*values)[k] > limit * (sign + kToleratedShare)) || by <= excess[k]) continue;
+      excess[k] = by;
+      worst[k] = {static_cast<BeyondLimit::Quantity>(k), time_s, (*values)[k], limit};
+    }
+  }
+  std::vector<BeyondLimit> result;
+  for (std::size_t k = 0; k < kLimited.size(); ++k)
+    if (excess[k] > 0) result.push_back(worst[k]);
+  return result;
 }
 
 std::string words_beyond_limits(const std::string& aircraft,
@@ -126,10 +114,24 @@ std::string words_beyond_limits(const std::string& aircraft,
                                 double end_s) {
   std::string words;
   for (const BeyondLimit& beyond : beyond_limits(aircraft, path, begin_s, end_s))
-    words += (words.empty() ? "" : "; ") + limit_words(beyond);
+    words += (words.empty() ? "" : "; ") +
+             fmt::format(fmt::runtime(kLimited[static_cast<std::size_t>(beyond.quantity)].words),
+                         beyond.time_s,
+                         beyond.value,
+                         beyond.limit);
   if (words.empty()) return words;
   const std::string_view name = aircraft::flight_limits(aircraft)->name;
   return fmt::format("{} ({}) cannot fly its path: {}", aircraft, name, words);
+}
+
+void warn_not_flyable(const scene::Intruder& intruder,
+                      const trajectory::Path& path,
+                      double end_s,
+                      const Warn& to_warn) {
+  const std::string words = words_beyond_limits(intruder.aircraft, path, 0, end_s);
+  if (!words.empty())
+    warn(to_warn,
+         fmt::format("{}: intruder '{}': {}", to_string(intruder.where), intruder.id, words));
 }
 
 }  // namespace airtruth::setup

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "foundation/base/log.h"
+#include "scene/scene/scene.h"
 #include "scene/trajectory/path.h"
 
 namespace airtruth::setup {
@@ -32,5 +34,11 @@ std::string words_beyond_limits(const std::string& aircraft,
                                 const trajectory::Path& path,
                                 double begin_s,
                                 double end_s);
+
+// Warns, at the place of the intruder, where its aircraft cannot fly its path from 0 to end_s.
+void warn_not_flyable(const scene::Intruder& intruder,
+                      const trajectory::Path& path,
+                      double end_s,
+                      const Warn& to_warn);
 
 }  // namespace airtruth::setup

@@ -28,12 +28,6 @@ std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
 }
 
 lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
-  if (lens.vertical_fov_deg && lens.distortion.empty() && !lens.principal_point_px) {
-    if (lens.model == lens::ModelKind::kPinhole)
-      return lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
-    if (lens.model == lens::ModelKind::kFisheye)
-      return lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size);
-  }
   Pixel focal{0, 0};
   if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
   if (lens.vertical_fov_deg) {
@@ -176,35 +170,11 @@ Shutter shutter_of(const scene::CameraModel& model) {
 image::ToneCurve tone_of(const scene::CameraModel& model) { return {model.gamma.value_or(0)}; }
 
 video::Format format_of(scene::OutputVideo video) {
-  switch (video) {
-    case scene::OutputVideo::kMp4:
-      return video::Format::kMp4;
-    case scene::OutputVideo::kMkv:
-      return video::Format::kMkv;
-    case scene::OutputVideo::kAvi:
-      return video::Format::kAvi;
-    case scene::OutputVideo::kPng:
-      return video::Format::kPng;
-  }
-  check(false, "an output format is one of four");
-  return video::Format::kMp4;
+  return enum_named<video::Format>(enum_name(video)).value();
 }
 
 video::Encoder encoder_of(scene::OutputEncoder encoder) {
-  switch (encoder) {
-    case scene::OutputEncoder::kX264:
-      return video::Encoder::kX264;
-    case scene::OutputEncoder::kAuto:
-      return video::Encoder::kAuto;
-    case scene::OutputEncoder::kNvenc:
-      return video::Encoder::kNvenc;
-    case scene::OutputEncoder::kVaapi:
-      return video::Encoder::kVaapi;
-    case scene::OutputEncoder::kQsv:
-      return video::Encoder::kQsv;
-  }
-  check(false, "an encoder is one of five");
-  return video::Encoder::kX264;
+  return enum_named<video::Encoder>(enum_name(encoder)).value();
 }
 
 composite::Sensor sensor_of(const scene::CameraModel& model) {

@@ -25,7 +25,7 @@ Rigid world_from_shaken_cam(const trajectory::State& camera, const Shake& shake,
 // ends. rotation(state, dt_s) gives the rotation.
 template <typename Rotation>
 Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rotation) {
-  constexpr double kStep_s = 1e-3;
+  constexpr double kStep_s = 1e-3;  // of the difference: chosen
   const double before_s = path.at(time_s - kStep_s) ? -kStep_s : 0;
   const double after_s = path.at(time_s + kStep_s) ? kStep_s : 0;
   if (!(after_s > before_s)) return Vector3::Zero();
@@ -111,10 +111,12 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
     moment.states.push_back(state);
     const Twist twist = state ? twist_of(actor.path, *state, time_s, world.shutter) : Twist{};
     moment.twists.push_back(twist);
-    moment.boxes.push_back(
-        state ? projection::exact_box(
-                    moment.sight, actor.silhouette, state->world_from_body_rigid(), time_s, twist)
-              : projection::ExactBox{});
+    moment.boxes.push_back(state ? projection::exact_box(moment.sight,
+                                                         actor.type->silhouette,
+                                                         state->world_from_body_rigid(),
+                                                         time_s,
+                                                         twist)
+                                 : projection::ExactBox{});
     moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
   }
   for (const scene::LensMark& mark : world.lens_marks)

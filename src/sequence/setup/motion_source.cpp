@@ -35,8 +35,8 @@ std::string words_of(const lens::Lens& lens) {
                      fmt::join(facts.distortion, ","));
 }
 
-std::string sha256_of_video(const fs::path& video, SharedInputs* shared) {
-  if (fs::is_regular_file(video)) return shared_sha256(video, shared);
+std::string sha256_of_video(const fs::path& video, SharedInputs& inputs) {
+  if (fs::is_regular_file(video)) return inputs.sha256_of_file(video);
   if (!fs::is_directory(video)) return "";
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(video))
@@ -44,7 +44,7 @@ std::string sha256_of_video(const fs::path& video, SharedInputs* shared) {
   std::sort(files.begin(), files.end());
   std::string all;
   for (const fs::path& file : files)
-    all += file.filename().string() + ' ' + shared_sha256(file, shared) + '\n';
+    all += file.filename().string() + ' ' + inputs.sha256_of_file(file) + '\n';
   return sha256_of(all);
 }
 

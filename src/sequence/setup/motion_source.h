@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 // SHA-256 of a video file's bytes, or over the files of a folder of images; "" for a pattern of
 // numbered images.
-std::string sha256_of_video(const fs::path& video, SharedInputs* shared = nullptr);
+std::string sha256_of_video(const fs::path& video, SharedInputs& inputs);
 
 // Text with every number of a lens, so that two lenses never share an entry of the cache.
 std::string words_of(const lens::Lens& lens);

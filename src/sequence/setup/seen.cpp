@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::setup {
 namespace {
@@ -37,38 +38,39 @@ struct Ray {
               seen.where);
 }
 
-Ray ray_of(const scene::Seen& seen, const SeenThrough& through) {
-  const FramePose frame = through.frame_near(seen);
-  const auto camera = through.camera->at(frame.time_s);
+Ray ray_of(const scene::Seen& seen, const World& world, const FrameNear& frame_near) {
+  const FramePose frame = frame_near(seen);
+  const auto camera = world.camera.at(frame.time_s);
   if (!camera)
     throw Error(
         fmt::format("time_s is {:.3f}, which the camera's path does not reach", seen.time_s),
         seen.where);
   Ray ray{.seen = &seen, .frame_s = frame.time_s};
-  ray.sight =
-      sight_of(*through.lens, through.shutter, *through.camera, *camera, frame.time_s, frame.shake);
-  const lens::ImageSize size = through.lens->size();
+  ray.sight = sight_of(world.lens, world.shutter, world.camera, *camera, frame.time_s, frame.shake);
+  const lens::ImageSize size = world.lens.size();
   const Pixel inside(std::clamp(seen.pixel.x(), 0.0, double(size.width)),
                      std::clamp(seen.pixel.y(), 0.0, double(size.height)));
-  const double dt_s = through.shutter.middle_s(inside, size.width, size.height);
+  const double dt_s = world.shutter.middle_s(inside, size.width, size.height);
   const projection::Sight then = dt_s == 0 ? ray.sight : ray.sight.at(dt_s);
   const Pixel nominal = apply(then.frame_from_nominal.inverse(), seen.pixel);
   if (!nominal.allFinite()) refuse_pixel(seen, "is on the horizon of the frame's homography");
-  const auto in_cam = through.lens->ray_from_pixel(nominal);
+  const auto in_cam = world.lens.ray_from_pixel(nominal);
   if (!in_cam) refuse_pixel(seen, "is beyond the lens's field");
   const Rigid world_from_cam = then.cam_from_world.inverse();
   ray.time_s = frame.time_s + dt_s;
   ray.from_ned_m = world_from_cam.translation;
   ray.direction_in_world = world_from_cam.rotation * *in_cam;
   ray.range_m =
-      seen.range_m ? *seen.range_m : through.lens->focal_px() * kUsualLengthM / *seen.width_px;
+      seen.range_m ? *seen.range_m : world.lens.focal_px() * kUsualLengthM / *seen.width_px;
   return ray;
 }
 
-std::vector<Ray> rays_of(const scene::Intruder& intruder, const SeenThrough& through) {
+std::vector<Ray> rays_of(const scene::Intruder& intruder,
+                         const World& world,
+                         const FrameNear& frame_near) {
   std::vector<Ray> rays;
   for (const scene::Seen& seen : intruder.seen) {
-    rays.push_back(ray_of(seen, through));
+    rays.push_back(ray_of(seen, world, frame_near));
     if (rays.size() > 1 && !(rays.back().frame_s > rays[rays.size() - 2].frame_s))
       throw Error(fmt::format("time_s is {:.3f}, whose frame, at {:.3f} s, is that of the moment "
                               "before; expected another frame",
@@ -120,7 +122,7 @@ scene::Intruder through_places(const scene::Intruder& intruder, const std::vecto
 // The width of the exact box over the stated one; empty where a part of the aircraft has no pixel.
 std::optional<double> width_share(const Ray& ray,
                                   const trajectory::Path& path,
-                                  const SeenThrough& through,
+                                  const World& world,
                                   const projection::SilhouettePoints& aircraft) {
   const auto state = path.at(ray.frame_s);
   check(state.has_value(), "the path reaches its own moments");
@@ -128,7 +130,7 @@ std::optional<double> width_share(const Ray& ray,
                                            aircraft,
                                            state->world_from_body_rigid(),
                                            ray.frame_s,
-                                           twist_of(path, *state, ray.frame_s, through.shutter));
+                                           twist_of(path, *state, ray.frame_s, world.shutter));
   if (!exact.box || exact.partly_unseen) return std::nullopt;
   return exact.box->width / *ray.seen->width_px;
 }
@@ -136,7 +138,7 @@ std::optional<double> width_share(const Ray& ray,
 // Moves each place whose width is stated to the range that gives it. The attitudes follow from all
 // places, so that they are moved together until all widths are as stated.
 void settle_widths(const scene::Intruder& intruder,
-                   const SeenThrough& through,
+                   const World& world,
                    const projection::SilhouettePoints& aircraft,
                    std::vector<Ray>& rays) {
   constexpr int kMaxRounds = 200;
@@ -144,11 +146,11 @@ void settle_widths(const scene::Intruder& intruder,
   constexpr int kDampedRound = 20;
   const Ray* off = nullptr;
   for (int round = 0; round < kMaxRounds; ++round) {
-    const trajectory::Path path = path_of(through_places(intruder, rays), *through.camera);
+    const trajectory::Path path = path_of(through_places(intruder, rays), world.camera);
     off = nullptr;
     for (Ray& ray : rays) {
       if (!ray.seen->width_px) continue;
-      const double share = width_share(ray, path, through, aircraft).value_or(2);
+      const double share = width_share(ray, path, world, aircraft).value_or(2);
       if (std::abs(share - 1) > kWidthShare) off = &ray;
       ray.range_m *= round < kDampedRound ? share : std::sqrt(share);
       ray.range_m = std::min(ray.range_m, kFarthestM);
@@ -168,11 +170,12 @@ void settle_widths(const scene::Intruder& intruder,
 FramePose steady_frame(const scene::Seen& seen) { return {seen.time_s, {}}; }
 
 scene::Intruder placed_as_seen(const scene::Intruder& intruder,
-                               const SeenThrough& through,
+                               const World& world,
+                               const FrameNear& frame_near,
                                const projection::SilhouettePoints* aircraft) {
   check(intruder.seen.size() >= 2, "an intruder is seen at two moments or more");
-  std::vector<Ray> rays = rays_of(intruder, through);
-  if (aircraft != nullptr) settle_widths(intruder, through, *aircraft, rays);
+  std::vector<Ray> rays = rays_of(intruder, world, frame_near);
+  if (aircraft != nullptr) settle_widths(intruder, world, *aircraft, rays);
   return through_places(intruder, rays);
 }
 

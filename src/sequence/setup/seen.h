@@ -3,12 +3,13 @@
 
 #include <functional>
 
-#include "camera/lens/lens.h"
 #include "labels/projection/exact_box.h"
 #include "scene/scene/scene.h"
 #include "sequence/setup/moment.h"
 
 namespace airtruth::setup {
+
+struct World;
 
 // A frame as far as the places in its picture are concerned: its time and how the camera shook.
 struct FramePose {
@@ -19,14 +20,6 @@ struct FramePose {
 using FrameNear = std::function<FramePose(const scene::Seen&)>;
 // Before the motion is measured: a frame at that very time, without shake.
 FramePose steady_frame(const scene::Seen& seen);
-
-// How an intruder that is given by [[intruder.seen]] is placed.
-struct SeenThrough {
-  const lens::Lens* lens = nullptr;
-  const trajectory::Path* camera = nullptr;
-  Shutter shutter;
-  FrameNear frame_near;
-};
 
 // Returns the intruder with waypoints_ned_m and times_s in place of `seen`. The path passes each
 // stated pixel at the time of its frame (with a rolling shutter: of its row): the pixel's ray
@@ -42,7 +35,8 @@ struct SeenThrough {
 // the moment before, no range gives the width, the camera's path does not reach it, or the path
 // there is faster than kFastestMps.
 scene::Intruder placed_as_seen(const scene::Intruder& intruder,
-                               const SeenThrough& through,
+                               const World& world,
+                               const FrameNear& frame_near,
                                const projection::SilhouettePoints* aircraft);
 
 constexpr double kWidthShare = 1e-4;

@@ -96,8 +96,7 @@ const std::vector<scene::Seen> kThree = {at_range(0.5, {210, 160}, 800),
                                          at_range(4, {700, 20}, 350)};
 
 void expect_seen_where_stated(const World& world, Shake (*shake_of)(double)) {
-  const SeenThrough through{&world.lens, &world.camera, world.shutter, frames(shake_of)};
-  const scene::Intruder placed = placed_as_seen(cessna(kThree), through, nullptr);
+  const scene::Intruder placed = placed_as_seen(cessna(kThree), world, frames(shake_of), nullptr);
   EXPECT_TRUE(placed.seen.empty());
   const trajectory::Path path = path_of(placed, world.camera);
   for (const scene::Seen& seen : kThree) {
@@ -133,8 +132,7 @@ TEST(Seen, WithARollingShutterThePixelIsThatOfItsRow) {
 // The legs beyond the first and the last moment leave the curve between them as it is.
 TEST(Seen, ThePathGoesOnStraightBeyondItsEnds) {
   const World world = empty_world(lens::pinhole_from_vertical_fov(50, {1280, 720}));
-  const SeenThrough through{&world.lens, &world.camera, {}, steady_frame};
-  const scene::Intruder placed = placed_as_seen(cessna(kThree), through, nullptr);
+  const scene::Intruder placed = placed_as_seen(cessna(kThree), world, steady_frame, nullptr);
   const trajectory::Path path = path_of(placed, world.camera);
   std::vector<Vector3> places(placed.waypoints_ned_m.begin() + 1, placed.waypoints_ned_m.end() - 1);
   std::vector<double> times_s(placed.times_s.begin() + 1, placed.times_s.end() - 1);
@@ -167,12 +165,12 @@ TEST(Seen, PlacingByTheMeasuredMotionMovesPathAndScene) {
   scene.intruders = {cessna(kThree)};
   SharedInputs shared;
   World world = load_world(scene, {1280, 720}, {}, {}, &shared);
-  const auto model = world.actors[0].model;
+  const auto model = world.actors[0].type->model;
   const Vector3 steady = world.actors[0].path.at(1)->position_in_world;
   place_seen(scene, world, frames(rotation_of), {}, &shared);
   EXPECT_TRUE(scene.intruders[0].seen.empty());
   EXPECT_GT((world.actors[0].path.at(1)->position_in_world - steady).norm(), 1);
-  EXPECT_EQ(world.actors[0].model, model);  // the same shape keeps its BVH
+  EXPECT_EQ(world.actors[0].type->model, model);  // the same shape keeps its BVH
   const trajectory::Path recorded = path_of(scene.intruders[0], world.camera);
   EXPECT_EQ(recorded.at(1)->position_in_world, world.actors[0].path.at(1)->position_in_world);
 }
@@ -182,7 +180,7 @@ TEST(Seen, PlacingByTheMeasuredMotionMovesPathAndScene) {
 std::string message_of(const std::vector<scene::Seen>& seen) {
   const World world = empty_world(lens::pinhole_from_vertical_fov(50, {1280, 720}));
   try {
-    placed_as_seen(cessna(seen), {&world.lens, &world.camera, {}, frames(rotation_of)}, nullptr);
+    placed_as_seen(cessna(seen), world, frames(rotation_of), nullptr);
   } catch (const Error& error) {
     return error.what();
   }
@@ -202,7 +200,8 @@ TEST(Seen, APixelBeyondTheLensIsAnError) {
   const World world = empty_world(lens::fisheye_from_vertical_fov(100, {1280, 720}));
   try {
     placed_as_seen(cessna({at_range(0, {1e4, 0}, 900), at_range(1, {9, 9}, 900)}),
-                   {&world.lens, &world.camera, {}, steady_frame},
+                   world,
+                   steady_frame,
                    nullptr);
     FAIL() << "expected an error";
   } catch (const Error& error) {

@@ -9,7 +9,6 @@
 
 #include "aircraft/fleet/configuration.h"
 #include "foundation/base/files.h"
-#include "sequence/setup/world.h"
 
 namespace airtruth::setup {
 namespace {
@@ -171,10 +170,6 @@ void SharedInputs::drop_unused() {
     for (const auto& [key, slot] : slots_)
       if (slot->type == dropped) slot->type.reset();
   }
-}
-
-std::string shared_sha256(const std::filesystem::path& file, SharedInputs* shared) {
-  return shared != nullptr ? shared->sha256_of_file(file) : airtruth::sha256_of_file(file);
 }
 
 }  // namespace airtruth::setup

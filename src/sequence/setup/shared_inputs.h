@@ -11,27 +11,16 @@
 #include <string>
 #include <vector>
 
-#include "aircraft/fleet/fleet.h"
 #include "foundation/base/file_stamp.h"
 #include "foundation/base/log.h"
-#include "labels/projection/exact_box.h"
-#include "picture/render/renderer.h"
 #include "scene/scene/scene.h"
 #include "scene/trajectory/path.h"
+#include "sequence/setup/world.h"
 
 // Inputs that sequences of one process have in common, each read and prepared once: aircraft with
 // their textures, BVHs and silhouettes, and the SHA-256 of files. A sequence has the same bytes
 // with and without them, in any order.
 namespace airtruth::setup {
-
-// An aircraft that is ready to be drawn.
-struct Type {
-  std::shared_ptr<const aircraft::Aircraft> aircraft;
-  std::shared_ptr<const render::Model> model;
-  projection::SilhouettePoints silhouette;
-  std::vector<std::string> warnings;  // of its reader
-  std::size_t bytes = 0;              // of memory, about
-};
 
 class SharedInputs {
  public:
@@ -88,8 +77,5 @@ class SharedInputs {
   std::uint64_t uses_ = 0;
   std::map<std::string, Hashed> hashes_;
 };
-
-// SHA-256 of a file, from `shared` where it is given.
-std::string shared_sha256(const std::filesystem::path& file, SharedInputs* shared);
 
 }  // namespace airtruth::setup

@@ -35,14 +35,7 @@ Actor actor_of(const scene::Intruder& intruder,
       at_place(intruder.where, [&] { return types.type_of(intruder, path, warn, stop); });
   const char* object_class =
       intruder.distractor ? enum_name(intruder.distractor->kind) : annotation::kAircraft.data();
-  return {intruder.id,
-          intruder.aircraft,
-          object_class,
-          path,
-          type->aircraft,
-          type->model,
-          type->silhouette,
-          type};
+  return {intruder.id, intruder.aircraft, object_class, path, type};
 }
 
 // An aircraft that is to be seen at a width is placed by its usual length, loaded for the airspeed
@@ -54,10 +47,10 @@ Loaded load_actor(const scene::Intruder& intruder,
                   const Warn& warn,
                   const std::stop_token& stop) {
   if (intruder.seen.empty()) return {intruder, actor_of(intruder, world, types, warn, stop)};
-  const SeenThrough through{&world.lens, &world.camera, world.shutter, frame_near};
   const Actor first =
-      actor_of(placed_as_seen(intruder, through, nullptr), world, types, warn, stop);
-  const scene::Intruder placed = placed_as_seen(intruder, through, &first.silhouette);
+      actor_of(placed_as_seen(intruder, world, frame_near, nullptr), world, types, warn, stop);
+  const scene::Intruder placed =
+      placed_as_seen(intruder, world, frame_near, &first.type->silhouette);
   return {placed, actor_of(placed, world, types, {}, stop)};
 }
 
@@ -75,6 +68,18 @@ aircraft::Mesh mesh_of(const scene::Distractor& one) {
   }
   check(false, "a distractor in the air has a mesh");
   return {};
+}
+
+World without_actors(const scene::Scene& scene, lens::ImageSize size) {
+  return {lens_of(scene.lens, size),
+          at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
+          {},
+          shutter_of(scene.camera_model),
+          volumes_of(scene.truth),
+          scene.truth.lookahead_s,
+          scene.lens_marks,
+          to_sun_in_world(scene.light),
+          scene.seed};
 }
 
 }  // namespace
@@ -120,15 +125,7 @@ World load_world(const scene::Scene& scene,
                  const Warn& warn,
                  const std::stop_token& stop,
                  SharedInputs* shared) {
-  World world{lens_of(scene.lens, size),
-              at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
-              {},
-              shutter_of(scene.camera_model),
-              volumes_of(scene.truth),
-              scene.truth.lookahead_s,
-              scene.lens_marks,
-              to_sun_in_world(scene.light),
-              scene.seed};
+  World world = without_actors(scene, size);
   SharedInputs own;
   SharedInputs& types = shared != nullptr ? *shared : own;
   for (const scene::Intruder& intruder : scene.intruders)
@@ -170,16 +167,14 @@ void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& 
 }
 
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
-  const trajectory::Path camera =
-      at_place(scene.camera.where, [&] { return camera_path(scene.camera); });
-  check_camera_path(camera, info);
-  volumes_of(scene.truth);
-  const lens::Lens lens = lens_of(scene.lens, {info.width, info.height});
-  const SeenThrough through{&lens, &camera, shutter_of(scene.camera_model), steady_frame};
+  const World world = without_actors(scene, {info.width, info.height});
+  check_camera_path(world.camera, info);
   for (const scene::Intruder& intruder : scene.intruders) {
     if (is_aircraft(intruder))
       at_place(intruder.where, [&] { return aircraft::aircraft_file(intruder.aircraft); });
-    path_of(intruder.seen.empty() ? intruder : placed_as_seen(intruder, through, nullptr), camera);
+    path_of(
+        intruder.seen.empty() ? intruder : placed_as_seen(intruder, world, steady_frame, nullptr),
+        world.camera);
   }
 }
 

@@ -23,8 +23,16 @@
 // A scene after everything that it names has been loaded: lens, paths, aircraft.
 namespace airtruth::setup {
 
-struct Type;
 class SharedInputs;
+
+// An aircraft that is ready to be drawn.
+struct Type {
+  std::shared_ptr<const aircraft::Aircraft> aircraft;
+  std::shared_ptr<const render::Model> model;
+  projection::SilhouettePoints silhouette;
+  std::vector<std::string> warnings;  // of its reader
+  std::size_t bytes = 0;              // of memory, about
+};
 
 struct Actor {
   std::string id;
@@ -32,10 +40,7 @@ struct Actor {
   // "aircraft", or the kind of a distractor (labels/annotation/object_class.h).
   std::string object_class;
   trajectory::Path path;
-  std::shared_ptr<const aircraft::Aircraft> type;
-  std::shared_ptr<const render::Model> model;
-  projection::SilhouettePoints silhouette;
-  std::shared_ptr<const Type> in_use;  // the three above, as SharedInputs holds them
+  std::shared_ptr<const Type> type;
 };
 
 struct World {

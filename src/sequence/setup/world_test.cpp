@@ -29,7 +29,7 @@ TEST(LoadWorld, OneLookAtTwoSpeedsIsOneMeshAndOneBvh) {
       {});
   ASSERT_EQ(world.actors.size(), 2u);
   EXPECT_EQ(world.actors[0].type, world.actors[1].type);
-  EXPECT_EQ(world.actors[0].model, world.actors[1].model);
+  EXPECT_EQ(world.actors[0].type->model, world.actors[1].type->model);
 }
 
 TEST(LoadWorld, TwoLiveriesAreTwoTypes) {
@@ -37,7 +37,7 @@ TEST(LoadWorld, TwoLiveriesAreTwoTypes) {
       load_world(scene_of({flying("a", "738/738-Ryanair", 110), flying("b", "738/738-KLM", 110)}),
                  {320, 240},
                  {});
-  EXPECT_NE(world.actors[0].model, world.actors[1].model);
+  EXPECT_NE(world.actors[0].type->model, world.actors[1].type->model);
 }
 
 // Below 500 ft the gear is down (aircraft/wrapper/condition.h), which is another mesh.
@@ -46,7 +46,7 @@ TEST(LoadWorld, GearThatIsDownIsAnotherType) {
   low.waypoints_ned_m = {{100, 0, -60}, {400, 0, -60}};
   const World world =
       load_world(scene_of({flying("high", "738/738-Ryanair", 110), low}), {320, 240}, {});
-  EXPECT_NE(world.actors[0].model, world.actors[1].model);
+  EXPECT_NE(world.actors[0].type->model, world.actors[1].type->model);
 }
 
 }  // namespace
