@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "runners/network/model_description.h"
 #include "runners/network/network_output.h"
-#include "runners/network/tensor.h"
+#include "runners/network/network_child.h"
 
 namespace {
 

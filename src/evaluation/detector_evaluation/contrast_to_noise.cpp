@@ -10,8 +10,8 @@
 namespace airtruth::detector_evaluation {
 namespace {
 
-constexpr double kBeyond = 3;
-const double kRounding = 1 / std::sqrt(12.0);
+constexpr double kBeyond = 3;  // standard deviations: of normal noise, 0.3 % lie beyond
+const double kRounding = 1 / std::sqrt(12.0);  // grey levels: the deviation of a uniform error
 
 PixelBox grown(const PixelBox& box, int by) {
   return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};

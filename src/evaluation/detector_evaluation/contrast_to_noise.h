@@ -20,6 +20,7 @@ namespace airtruth::detector_evaluation {
 std::optional<double> contrast_to_noise(const image::Picture& picture, const PixelBox& box);
 
 constexpr int kLeastRing_px = 4;
-constexpr std::size_t kLeastRingPixels = 20;
+constexpr std::size_t kLeastRingPixels =
+    20;  // a deviation of fewer is uncertain by a sixth or more
 
 }  // namespace airtruth::detector_evaluation

@@ -13,18 +13,19 @@
 namespace airtruth::measures {
 namespace {
 
-constexpr double kMatch = 0.2;
-constexpr double kNoMatch = 0.02;
-constexpr double kLeastArea_px = 100;
-constexpr double kAreaRounding_px = 1e-6;
+// All are of the challenge's code; the header says what they decide.
+constexpr double kMatch = 0.2;             // overlap
+constexpr double kNoMatch = 0.02;          // overlap
+constexpr double kLeastArea_px = 100;      // px^2
+constexpr double kAreaRounding_px = 1e-6;  // px^2
 constexpr double kEncounterRange_m = 700;
 constexpr double kEncounterLeastRange_m = 330;
 constexpr std::int64_t kEncounterFrames = 30;
-constexpr std::int64_t kEncounterGap = 3;
-constexpr std::size_t kWindow = 30;
+constexpr std::int64_t kEncounterGap = 3;  // frames
+constexpr std::size_t kWindow = 30;        // frames
 constexpr double kWindowShare = 0.5;
 constexpr double kDetectedRange_m = 300;
-constexpr std::int64_t kDetectedFast = 30;
+constexpr std::int64_t kDetectedFast = 30;  // frames
 
 Box enlarged(const Box& box) {
   const double width = std::sqrt(kLeastArea_px * box.width / box.height);

@@ -182,7 +182,7 @@ std::optional<PrecisionCurve> curve_of(const Ranking& ranking) {
   return curve_of(ranking, std::vector<double>(ranking.truths.size(), 1.0));
 }
 
-constexpr int kOverlapSteps = 10;
+constexpr int kOverlapSteps = 10;  // cocoeval.py: 0.50, 0.55 .. 0.95
 
 // As numpy.linspace(0.5, 0.95, 10), which cocoeval.py uses.
 double overlap_step(int i) {

@@ -49,7 +49,7 @@ struct BearingError {
   // camera's own motion is in both bearings and drops out.
   std::optional<Spread> azimuth_rate, elevation_rate;
 };
-constexpr double kRateBase_s = 1;
+constexpr double kRateBase_s = 1;  // long beside the jitter of a box from frame to frame
 
 // Samples of one object of one sequence are in order of time. Empty for no sample.
 std::optional<BearingError> bearing_error(std::span<const BearingSample> samples);

@@ -11,8 +11,9 @@
 namespace airtruth::evaluation {
 namespace {
 
-constexpr std::size_t kBurnIn = 10;
-constexpr double kSensitivity = 30;
+constexpr std::size_t kBurnIn = 10;  // frames after a start without accuracy (VOT2013)
+constexpr double kSensitivity =
+    30;  // frames of the reliability exp(-S failures / frames) (VOT2014)
 
 double rounded(double value) { return std::nearbyint(value); }
 

@@ -30,7 +30,7 @@
 // for a manoeuvre of 20 s it is declared in time, since 9 <= 33 - 20.
 namespace airtruth::scores {
 
-constexpr double kKeep_s = 3;
+constexpr double kKeep_s = 3;  // 30 frames at 10 Hz, AOT's rule
 constexpr double kKeepShare = 0.5;
 
 struct Declaration {

@@ -51,9 +51,9 @@ struct Miss {
   double size_px = 0;
 };
 
-constexpr std::size_t kGallerySize = 100;
-constexpr std::size_t kGalleryGap = 5;
-constexpr double kGalleryReach_px = 20;
+constexpr std::size_t kGallerySize = 100;  // more than people look through
+constexpr std::size_t kGalleryGap = 5;     // frames
+constexpr double kGalleryReach_px = 20;    // what drifts by less from frame to frame goes on
 
 // Of one sequence, detections with `score` or more; the strongest first.
 std::vector<FalseAlarm> false_alarms_of(std::size_t sequence,

@@ -13,7 +13,7 @@ namespace airtruth::scores {
 namespace {
 
 constexpr std::string_view kHead = "sequence,first_frame,last_frame,x,y,width,height";
-constexpr std::size_t kCells = 7;
+constexpr std::size_t kCells = 7;    // of kHead
 constexpr double kMostFrames = 1e9;  // a year at 30 frames/s
 // Far outside any picture.
 constexpr double kMostPixels = 1e6;

@@ -13,9 +13,9 @@
 namespace airtruth::evaluation {
 namespace {
 
-constexpr int kDraws = 10'000;
-constexpr int kSignDraws = 20'000;
-constexpr std::size_t kMaxExact = 16;
+constexpr int kDraws = 10'000;         // an end of an interval is certain to 1 % of its width
+constexpr int kSignDraws = 20'000;     // a p of 0.05 is certain to 0.0015
+constexpr std::size_t kMaxExact = 16;  // differences, whose 65,536 sign changes are all tried
 
 // The share of sign changes of the differences whose sum is at least as far from 0 as the observed
 // one.

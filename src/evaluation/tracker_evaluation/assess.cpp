@@ -21,9 +21,10 @@ using evaluation::Score;
 
 // Stills of all sequences together: about 20 KB each on the page.
 constexpr std::size_t kMaxStills = 1500;
-constexpr std::size_t kMaxStillsOfOne = 150;
+constexpr std::size_t kMaxStillsOfOne = 150;  // some 3 MB
 constexpr std::size_t kMinStillsOfOne = 4;
 
+// Edges of bins: the longer side of a box, and the contrast in levels of 255.
 const std::vector<double> kSizeEdges_px = {0, 5, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400};
 const std::vector<double> kContrastEdges = {0, 4, 8, 12, 16, 24, 32, 48, 64, 96};
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kNodeStep = 16;
 // Turns of less do not change the nearest sample by much.
 constexpr double kStandsStillPx = 0.25;
-constexpr float kNowhere = -1e6F;
+constexpr float kNowhere = -1e6F;  // cells; cv::remap takes it for outside
 
 }  // namespace
 

@@ -14,7 +14,7 @@ namespace {
 
 // Standard deviation of a target's response in units of the typical one: that of the noise.
 constexpr double kSpread = 1.25;
-constexpr int kStrengths = 64;
+constexpr int kStrengths = 64;  // of a target, over which the mean is taken: 14 an octave
 // Levels whose responses are measurements: for objects of up to 32 px across, and three times as
 // long. Of larger ones, parts respond.
 constexpr std::size_t kLevelsOfMeasurement = 4;

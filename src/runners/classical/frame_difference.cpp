@@ -12,7 +12,7 @@
 namespace airtruth::classical {
 namespace {
 
-constexpr int kCellPx = 2;
+constexpr int kCellPx = 2;  // side of the cells that are compared
 // Cells between the values of the noise map.
 constexpr int kNoiseStep = 16;
 // A difference of this many times the local noise is a change. Interpolation between pixels takes

@@ -28,7 +28,7 @@ constexpr int kAround = 2;
 constexpr double kApartPx = 6;
 // Levels with a weaker response there do not bound it.
 constexpr double kLeastResponse = 2.5;
-constexpr std::size_t kMostPeaks = 150;
+constexpr std::size_t kMostPeaks = 150;  // of a bank and frame: bounds the time in rich clutter
 
 // From a target's cell its odds spread to the cells around, which a target may have entered, and
 // lose at least ln(4 / kStays) for each cell where a measurement is neutral.

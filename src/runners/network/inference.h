@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/network/tensor.h"
+#include "runners/network/network_child.h"
 
 namespace airtruth::network {
 

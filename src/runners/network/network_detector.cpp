@@ -17,7 +17,7 @@
 namespace airtruth::network {
 namespace {
 
-constexpr std::size_t kMostModelBytes = std::size_t{512} << 20;
+constexpr std::size_t kMostModelBytes = std::size_t{512} << 20;  // 130 million parameters
 constexpr int kTrialPx = 256;  // side of the first input where the network takes frames of any size
 
 NetworkJob job_of(const ModelDescription& description, std::string onnx) {

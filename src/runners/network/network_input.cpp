@@ -13,7 +13,7 @@
 namespace airtruth::network {
 namespace {
 
-constexpr std::uint8_t kLetterboxGrey = 114;
+constexpr std::uint8_t kLetterboxGrey = 114;  // YOLOv5's
 
 std::array<std::uint8_t, 256> full_from_coded(image::Range range) {
   std::array<std::uint8_t, 256> table{};

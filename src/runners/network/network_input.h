@@ -6,7 +6,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 #include "runners/network/model_description.h"
-#include "runners/network/tensor.h"
+#include "runners/network/network_child.h"
 
 // A frame as the pieces that a network sees, each with its place in the frame.
 namespace airtruth::network {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runners/network/model_description.h"
-#include "runners/network/tensor.h"
+#include "runners/network/network_child.h"
 #include "runners/results/detections.h"
 
 // A network's outputs as detections.

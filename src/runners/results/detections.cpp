@@ -25,6 +25,10 @@ std::string text_of(const Box& box) {
 
 }  // namespace
 
+bool is_sound(const Box& box) {
+  return is_finite(box) && box.width > 0 && box.height > 0 && std::isfinite(box.area());
+}
+
 std::optional<std::string> fault_of(const Detection& detection, int width, int height) {
   const Box& box = detection.box_px;
   if (!std::isfinite(detection.score))

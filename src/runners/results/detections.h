@@ -40,6 +40,9 @@ struct SequenceDetections {
   std::vector<double> seconds;
 };
 
+// True for a box of finite numbers that has an area.
+bool is_sound(const Box& box);
+
 // What makes a detection impossible in a picture of this size (0: unknown), as the first half of a
 // message; empty where it is possible. A box must have an area and touch the picture; its numbers
 // and the score must be finite.

@@ -32,12 +32,6 @@ double rounded_px(double coordinate_px) { return std::round(coordinate_px * 1000
 
 constexpr std::int64_t kMaxTrack = 1'000'000'000'000;  // an id; a double holds it exactly
 
-std::optional<std::int64_t> whole(double value, std::int64_t least, std::int64_t most) {
-  const bool fits = value >= static_cast<double>(least) && value <= static_cast<double>(most) &&
-                    value == std::floor(value);
-  return fits ? std::optional(static_cast<std::int64_t>(value)) : std::nullopt;
-}
-
 void read_mot_text(const fs::path& file, FrameList& frames) {
   for (const exchange::Line& line : exchange::lines_of(file)) {
     const Where where{file.string(), line.number};
@@ -46,9 +40,9 @@ void read_mot_text(const fs::path& file, FrameList& frames) {
       throw Error(
           fmt::format("has {} columns; expected frame,id,left,top,width,height,score", n.size()),
           where);
-    const auto frame = whole(n[0], 1, std::int64_t{1} << 40);
+    const auto frame = exchange::whole_in(n[0], 1, std::int64_t{1} << 40);
     if (!frame) throw Error("the frame is no whole number from 1 on", where);
-    const auto track = whole(n[1], -1, kMaxTrack);
+    const auto track = exchange::whole_in(n[1], -1, kMaxTrack);
     if (!track) throw Error("the id is no whole number from -1 on", where);
     Detection detection;
     detection.box_px = {rounded_px(n[2] - 1), rounded_px(n[3] - 1), n[4], n[5]};

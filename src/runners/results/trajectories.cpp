@@ -14,6 +14,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/suggest.h"
 #include "labels/exchange/text.h"
+#include "runners/results/detections.h"
 #include "runners/results/vot_regions.h"
 
 namespace airtruth::results {
@@ -29,14 +30,12 @@ constexpr std::array<std::pair<const char*, Protocol>, 3> kProtocols = {
      {"multistart", Protocol::kMultiStart}}};
 constexpr const char* kVotFolder = "baseline";
 constexpr const char* kBinary = ".bin";
-constexpr std::size_t kAnchorDigits = 8;
-constexpr std::size_t kMotColumns = 6;  // at least: frame, id, x, y, w, h
+constexpr std::size_t kAnchorDigits = 8;  // of a file's name, as VOT's toolkit writes it
+constexpr std::size_t kMotColumns = 6;    // at least: frame, id, x, y, w, h
 
 std::optional<Box> box_from(const std::vector<double>& n, std::size_t first, int origin_px) {
   const Box box{n[first] - origin_px, n[first + 1] - origin_px, n[first + 2], n[first + 3]};
-  const bool sound =
-      std::isfinite(box.x + box.y + box.width + box.height) && box.width > 0 && box.height > 0;
-  return sound ? std::optional(box) : std::nullopt;
+  return is_sound(box) ? std::optional(box) : std::nullopt;
 }
 
 Trajectory read_trajectory(const fs::path& file, int origin_px) {

@@ -15,6 +15,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
+#include "runners/results/detections.h"
 
 namespace airtruth::results {
 namespace {
@@ -34,9 +35,7 @@ VotFrame marked(double code) {
 
 // A box without area is an answer without a box.
 VotFrame answer(const std::optional<Box>& box) {
-  const bool is_sound = box && std::isfinite(box->x + box->y + box->width + box->height) &&
-                        box->width > 0 && box->height > 0;
-  return {Mark::kAnswer, is_sound ? box : std::nullopt};
+  return {Mark::kAnswer, box && is_sound(*box) ? box : std::nullopt};
 }
 
 // Little-endian numbers of a file's bytes, one after another.

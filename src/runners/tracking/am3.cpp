@@ -18,8 +18,8 @@ namespace {
 constexpr int kMinSidePx = 6;
 // A smaller object is tracked with some of its surroundings.
 constexpr int kMinWindowPx = 8;
-constexpr int kMinTemplatePx = 5;
-constexpr std::size_t kMinSurvivors = 12;
+constexpr int kMinTemplatePx = 5;          // Haar features of two boxes fit
+constexpr std::size_t kMinSurvivors = 12;  // candidates of a level, however few it has
 // Share of a level's candidates that the next level evaluates.
 constexpr double kSurvivors = 0.02;
 // Windows with high scores that share more than this with the object count as the object.
@@ -62,10 +62,7 @@ class Am3 : public Tracker {
 
   void init(const Box& box) override {
     check(luma_ != nullptr, "a frame is loaded");
-    const bool sound = box.width > 0 && box.height > 0 && std::isfinite(box.area()) &&
-                       std::isfinite(box.x) && std::isfinite(box.y);
-    if (!sound || !intersection(pixels_of(box), {0, 0, luma_->width, luma_->height}))
-      throw Error("the first box has no area within the picture");
+    refuse_unsound(box, luma_->width, luma_->height);
     random_ = Seed(options_.seed).stream("negatives");
     begin(box);
   }

@@ -19,7 +19,6 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "camera/opencv_plugin/opencv_plugin.h"
-#include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 
 namespace airtruth::tracking {
@@ -34,13 +33,6 @@ cv::Mat bgr_of(const image::Picture& picture) {
   cv::Mat bgr;
   cv::cvtColor(shared, bgr, cv::COLOR_RGB2BGR);
   return bgr;
-}
-
-void refuse_unsound(const Box& box, const cv::Mat& frame) {
-  const bool sound = box.width > 0 && box.height > 0 && std::isfinite(box.area()) &&
-                     std::isfinite(box.x) && std::isfinite(box.y);
-  if (!sound || !intersection(pixels_of(box), {0, 0, frame.cols, frame.rows}))
-    throw Error("the first box has no area within the picture");
 }
 
 Box whole(const Box& box) {
@@ -129,7 +121,7 @@ class OpenCvTracker : public Tracker {
 
   void load(const image::Picture& picture) override { frame_ = bgr_of(picture); }
   void init(const Box& box) override {
-    refuse_unsound(box, frame_);
+    refuse_unsound(box, frame_.cols, frame_.rows);
     cv::theRNG().state = seed_;
     last_ = box;
     tracker_ = make_();

@@ -16,15 +16,16 @@ namespace {
 
 constexpr double kSidePx = 48;  // geometric mean of the object's sides in its patch
 constexpr int kColumns = 14;    // of points
-constexpr int kRows = 8;
-constexpr int kWindowPx = 9;
+constexpr int kRows = 8;        // in the object's usual aspect
+constexpr int kWindowPx = 9;    // of the optical flow: the side of a point's surroundings
 // Share of the strongest texture in the object.
 constexpr double kMinTexture = 0.05;
-constexpr std::size_t kMinPoints = 20;
+constexpr std::size_t kMinPoints = 20;  // for a median that holds
 constexpr std::size_t kMinPairs = 50;
-constexpr double kMinApartPx = 5;
-constexpr float kMaxReturnPx = 1;
-constexpr double kMaxChange = 0.1;
+constexpr double kMinApartPx = 5;  // of a pair, whose ratio is else mostly the flow's error
+constexpr float kMaxReturnPx = 1;  // from where a point began, forward and backward
+constexpr double kMaxChange =
+    0.1;  // of the size from a frame to the next: at 10 Hz, 1 s from a pass
 
 using Points = std::vector<cv::Point2f>;
 

@@ -5,12 +5,18 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/suggest.h"
+#include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 #include "runners/tracking/am3.h"
 #include "runners/tracking/opencv_trackers.h"
-#include "runners/tracking/trax_tracker.h"
+#include "runners/tracking/trax_session.h"
 
 namespace airtruth::tracking {
+
+void refuse_unsound(const Box& box, int width, int height) {
+  if (!results::is_sound(box) || !intersection(pixels_of(box), {0, 0, width, height}))
+    throw Error("the first box has no area within the picture");
+}
 
 std::vector<std::string> tracker_names() {
   return {"am3",

@@ -49,6 +49,10 @@ class Tracker {
   virtual std::string log() const { return {}; }
 };
 
+// Throws Error for a box that has no area within a picture of this size: no tracker can begin
+// there.
+void refuse_unsound(const Box& box, int width, int height);
+
 struct TrackerOptions {
   // Seed of the built-in trackers; the same seed gives the same result.
   std::uint64_t seed = 1;

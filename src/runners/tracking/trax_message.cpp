@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "runners/process/child.h"
+#include "runners/results/detections.h"
 #include "runners/results/vot_regions.h"
 
 namespace airtruth::tracking {
@@ -100,11 +101,9 @@ std::vector<double> numbers_of(std::string_view text) {
 
 // Empty for what is no box in any picture.
 std::optional<Box> sound(const std::optional<Box>& box) {
-  const bool is_sound =
-      box && std::isfinite(box->x + box->y + box->width + box->height) && box->width > 0 &&
-      box->height > 0 &&
-      std::max({std::abs(box->x), std::abs(box->y), box->width, box->height}) < kMaxPx;
-  return is_sound ? box : std::nullopt;
+  const bool is_far =
+      box && std::max({std::abs(box->x), std::abs(box->y), box->width, box->height}) >= kMaxPx;
+  return box && results::is_sound(*box) && !is_far ? box : std::nullopt;
 }
 
 }  // namespace

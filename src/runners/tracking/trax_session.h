@@ -7,12 +7,14 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "foundation/base/unfinished.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 #include "runners/process/child.h"
+#include "runners/tracking/tracker.h"
 #include "runners/tracking/trax_message.h"
 
 namespace airtruth::tracking {
@@ -99,5 +101,13 @@ class Session {
   std::string image_;
   bool has_object_ = false;
 };
+
+// Makes a tracker that runs in its own process, from "trax:COMMAND" or "trax-socket:COMMAND";
+// returns nullptr for any other name.
+std::unique_ptr<Tracker> make_trax_tracker(std::string_view name, const TrackerOptions& options);
+
+// Returns the name that the tracker reports, made valid as a file name; "trax" where it reports
+// none.
+std::string trax_name(std::string_view name, const TrackerOptions& options);
 
 }  // namespace airtruth::tracking
