@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "benchmark/comparison/comparison.h"
-#include "benchmark/judge/judge.h"
 #include "cli/commands.h"
+#include "comparison/comparison/comparison.h"
+#include "comparison/judge/judge.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"

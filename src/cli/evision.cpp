@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "comparison/evision/evision_table.h"
 #include "foundation/base/files.h"
 #include "foundation/base/output_check.h"
-#include "sequence/evision/evision_table.h"
 
 namespace airtruth::cli {
 namespace {

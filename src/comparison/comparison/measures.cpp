@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "comparison/comparison/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/median.h"
+
+namespace airtruth::comparison {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+double spread(std::vector<double> values) {
+  if (values.size() < 3) return 0;
+  std::sort(values.begin(), values.end());
+  return (values[values.size() * 84 / 100] - values[values.size() * 16 / 100]) / 2;
+}
+
+Pair pair_from(const std::string& name,
+               const std::vector<double>& real,
+               const std::vector<double>& made) {
+  if (real.empty() || made.empty()) return {name, kUnknown, 0, kUnknown, 0};
+  return {name, median(real), spread(real), median(made), spread(made)};
+}
+
+template <typename Get>
+Pair pair_of(const std::string& name, const std::vector<Compared>& all, const Get& get) {
+  std::vector<double> real, made;
+  for (const Compared& c : all) real.push_back(get(c.real)), made.push_back(get(c.made));
+  return pair_from(name, real, made);
+}
+
+// An edge that is nowhere clear has no width and no halo.
+template <typename Get>
+Pair pair_of_edges(const std::string& name, const std::vector<Compared>& all, const Get& get) {
+  std::vector<double> real, made;
+  for (const Compared& c : all) {
+    if (c.real.edge_width_px > 0) real.push_back(get(c.real));
+    if (c.made.edge_width_px > 0) made.push_back(get(c.made));
+  }
+  return pair_from(name, real, made);
+}
+
+bool in_a_row(const std::vector<Compared>& all, std::size_t i) {
+  return all[i].frame == all[i - 1].frame + 1;
+}
+
+// How much the contrast changes from one compared frame to the next.
+Pair flicker_of(const std::vector<Compared>& all) {
+  std::vector<double> real, made;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    if (!in_a_row(all, i)) continue;
+    real.push_back(std::abs(all[i].real.contrast - all[i - 1].real.contrast));
+    made.push_back(std::abs(all[i].made.contrast - all[i - 1].made.contrast));
+  }
+  return pair_from("flicker of contrast, frame to frame", real, made);
+}
+
+Pair motion_of(const std::vector<Compared>& all) {
+  std::vector<double> real, made;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    const auto& shift = all[i].background_shift_px;
+    if (!in_a_row(all, i) || !shift) continue;
+    real.push_back((all[i].real.centre_px - all[i - 1].real.centre_px - *shift).norm());
+    made.push_back((all[i].made.centre_px - all[i - 1].made.centre_px - *shift).norm());
+  }
+  return pair_from("motion against the background, px/frame", real, made);
+}
+
+// How far a centre lies from the middle of those before and after it.
+Pair unsteadiness_of(const std::vector<Compared>& all) {
+  std::vector<double> real, made;
+  const auto off = [](const Pixel& a, const Pixel& b, const Pixel& c) {
+    return (b - (a + c) / 2).norm();
+  };
+  for (std::size_t i = 2; i < all.size(); ++i) {
+    if (!in_a_row(all, i) || !in_a_row(all, i - 1)) continue;
+    const Compared &a = all[i - 2], &b = all[i - 1], &c = all[i];
+    real.push_back(off(a.real.centre_px, b.real.centre_px, c.real.centre_px));
+    made.push_back(off(a.made.centre_px, b.made.centre_px, c.made.centre_px));
+  }
+  return pair_from("unsteadiness of the centre, px", real, made);
+}
+
+std::string shown(double value, double spread) {
+  return std::isnan(value) ? "-" : fmt::format("{:.3g} +- {:.2g}", value, spread);
+}
+
+nlohmann::json number(double value) {
+  return std::isnan(value) ? nlohmann::json(nullptr) : nlohmann::json(value);
+}
+
+}  // namespace
+
+std::vector<Pair> pairs_of(const std::vector<Compared>& all) {
+  const auto of = [&](const char* name, double appearance::Looks::*value) {
+    return pair_of(name, all, [value](const appearance::Looks& l) { return l.*value; });
+  };
+  const auto edge_of = [&](const char* name, double appearance::Looks::*value) {
+    return pair_of_edges(name, all, [value](const appearance::Looks& l) { return l.*value; });
+  };
+  return {of("peak contrast above, code values", &appearance::Looks::peak_above),
+          of("peak contrast below, code values", &appearance::Looks::peak_below),
+          of("mean contrast above, code values", &appearance::Looks::mean_above),
+          of("mean contrast below, code values", &appearance::Looks::mean_below),
+          of("contrast to the surroundings, code values", &appearance::Looks::contrast),
+          edge_of("edge, 10 to 90 %, px", &appearance::Looks::edge_width_px),
+          edge_of("halo, share of the step", &appearance::Looks::halo),
+          of("noise inside, code values", &appearance::Looks::noise),
+          of("noise around, code values", &appearance::Looks::background_noise),
+          of("saturation", &appearance::Looks::saturation),
+          of("spectrum, share from 1/8 to 1/4 cycle/px", &appearance::Looks::middle_share),
+          of("spectrum, share above 1/4 cycle/px", &appearance::Looks::fine_share),
+          of("steps on the 8 px grid over others", &appearance::Looks::blockiness),
+          motion_of(all),
+          unsteadiness_of(all),
+          flicker_of(all)};
+}
+
+std::string patches_csv(const std::vector<Compared>& all) {
+  std::string text = "real,frame,features...\n";
+  for (const Compared& c : all)
+    for (const auto* features : {&c.real_features, &c.made_features}) {
+      text += fmt::format("{},{}", features == &c.real_features ? 1 : 0, c.frame);
+      for (const float f : *features) text += fmt::format(",{}", f);
+      text += '\n';
+    }
+  return text;
+}
+
+std::string table_of(const Comparison& c) {
+  std::string text =
+      fmt::format("{} frames compared; median, +- half the middle 68 %\n\n", c.frames);
+  if (c.pose)
+    text += fmt::format(
+        "{}, yaw {:.0f}, pitch {:.0f}, roll {:.0f} degrees: silhouettes overlap by {:.2f}, aspect "
+        "over aspect {:.2f}\n\n",
+        c.pose->aircraft,
+        c.pose->attitude.yaw_deg,
+        c.pose->attitude.pitch_deg,
+        c.pose->attitude.roll_deg,
+        c.pose->overlap,
+        c.pose->aspect_ratio);
+  if (c.pose && c.pose->sun)
+    text += fmt::format(
+        "the sun from {:.0f} degrees, {:.0f} above the horizon (the camera looks to 0): light and "
+        "dark correlate by {:.2f}, {:.0f} code values apart\n\n",
+        c.pose->sun->azimuth_deg,
+        c.pose->sun->elevation_deg,
+        c.pose->sun->correlation,
+        c.pose->sun->difference_codes);
+  text += "| | real | inserted |\n|---|---:|---:|\n";
+  for (const Pair& p : c.pairs)
+    text += fmt::format(
+        "| {} | {} | {} |\n", p.name, shown(p.real, p.real_spread), shown(p.made, p.made_spread));
+  text +=
+      fmt::format("| colour histogram distance | {:.3f} (to itself) | {:.3f} (to the real one) |\n",
+                  c.colour_distance_within,
+                  c.colour_distance);
+  return text;
+}
+
+std::string json_of(const Comparison& c, const fs::path& real) {
+  nlohmann::ordered_json json;
+  json["video"] = real.string();
+  json["frames"] = c.frames;
+  if (c.pose)
+    json["pose"] = {{"aircraft", c.pose->aircraft},
+                    {"yaw_deg", c.pose->attitude.yaw_deg},
+                    {"pitch_deg", c.pose->attitude.pitch_deg},
+                    {"roll_deg", c.pose->attitude.roll_deg},
+                    {"overlap", c.pose->overlap},
+                    {"aspect_ratio", c.pose->aspect_ratio}};
+  if (c.pose && c.pose->sun)
+    json["pose"]["sun"] = {{"azimuth_deg", c.pose->sun->azimuth_deg},
+                           {"elevation_deg", c.pose->sun->elevation_deg},
+                           {"correlation", c.pose->sun->correlation},
+                           {"difference_codes", c.pose->sun->difference_codes}};
+  for (const Pair& p : c.pairs)
+    json["measures"].push_back({{"name", p.name},
+                                {"real", number(p.real)},
+                                {"real_spread", p.real_spread},
+                                {"inserted", number(p.made)},
+                                {"inserted_spread", p.made_spread}});
+  json["colour_distance"] = c.colour_distance;
+  json["colour_distance_within_real"] = c.colour_distance_within;
+  return json.dump(1) + "\n";
+}
+
+}  // namespace airtruth::comparison

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "comparison/evision/evision_table.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include <Eigen/Cholesky>
+
+#include "aircraft/fleet/fleet.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "labels/annotation/evision.h"
+#include "labels/projection/exact_box.h"
+#include "picture/render/renderer.h"
+#include "scene/trajectory/path.h"
+
+namespace airtruth::evision {
+namespace {
+
+constexpr int kWidth = 1280;
+constexpr int kHeight = 960;
+constexpr double kFocalPx = 480;
+constexpr double kRateHz = 30;
+// Positions further away are invalid.
+constexpr double kFarthestM = 1e5;
+
+struct Position {
+  int number = 0;  // of the frame, from 1
+  Vector3 camera_ned_m;
+  Vector3 intruder_ned_m;
+};
+
+bool is_defined(const Position& p) {
+  return p.intruder_ned_m.allFinite() && p.intruder_ned_m.norm() < kFarthestM &&
+         !p.intruder_ned_m.isZero();
+}
+
+// frame,camera_n_m,camera_e_m,camera_d_m,intruder_n_m,intruder_e_m,intruder_d_m; undefined
+// positions left out.
+std::vector<Position> read_positions(const fs::path& file) {
+  std::istringstream text(read_file(file));
+  std::vector<Position> result;
+  std::string line;
+  std::getline(text, line);
+  for (int row = 2; std::getline(text, line); ++row) {
+    std::array<double, 7> cell{};
+    const char* at = line.data();
+    const char* end = at + line.size();
+    for (std::size_t i = 0; i < cell.size(); ++i) {
+      const auto [next, fault] = std::from_chars(at, end, cell[i]);
+      const bool closed = i + 1 == cell.size() || (next != end && *next == ',');
+      if (fault != std::errc() || !closed)
+        throw Error("'" + line + "'; expected frame and six coordinates", {file.string(), row});
+      at = next + 1;
+    }
+    const Position p{
+        static_cast<int>(cell[0]), {cell[1], cell[2], cell[3]}, {cell[4], cell[5], cell[6]}};
+    if (is_defined(p)) result.push_back(p);
+  }
+  return result;
+}
+
+trajectory::Path path_through(const std::vector<Position>& positions, bool bank) {
+  std::vector<Vector3> points;
+  std::vector<double> times;
+  for (const Position& p : positions) {
+    points.push_back(p.intruder_ned_m);
+    times.push_back((p.number - 1) / kRateHz);
+  }
+  trajectory::AttitudeOverride attitude;
+  if (!bank) attitude.roll_deg = 0;
+  return trajectory::spline_at_times(points, times, attitude);
+}
+
+// An aircraft, ready to be projected and to be rendered.
+struct Model {
+  aircraft::Aircraft aircraft;
+  projection::SilhouettePoints silhouette;
+  render::Model rays;
+
+  Model(const std::string& name, double scale, const Warn& warn)
+      : Model(scaled(name, scale, warn)) {}
+  Model(const Model&) = delete;
+
+ private:
+  explicit Model(aircraft::Aircraft loaded)
+      : aircraft(std::move(loaded)),
+        silhouette{&aircraft.mesh, aircraft::silhouette_points(aircraft.mesh)},
+        rays(aircraft.mesh) {}
+  static aircraft::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
+    aircraft::Aircraft loaded = aircraft::load_aircraft(name, {.catalogue_scale = 1}, warn);
+    for (Eigen::Vector3f& p : loaded.mesh.positions) p *= static_cast<float>(scale);
+    return loaded;
+  }
+};
+
+// One frame of one sequence: where things are, and what was published.
+struct Frame {
+  int number = 0;
+  double time_s = 0;
+  Rigid from_camera;  // the intruder, in a world about the camera
+  PixelBox published;
+  Homography frame_from_nominal = Homography::Identity();
+};
+
+struct Sequence {
+  std::string name;
+  const Model* model = nullptr;
+  std::vector<Frame> frames;
+};
+
+const lens::Lens& pinhole() {
+  static const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kWidth / 2.0, kHeight / 2.0}},
+                               {kWidth, kHeight});
+  return lens;
+}
+
+Rigid looking_north() { return {cam_from_body(), Vector3::Zero()}; }
+
+// Of the projected outline, not clipped; empty where it has none.
+std::optional<Box> outline_box(const Model& model, const Frame& frame) {
+  const projection::Sight sight{&pinhole(), looking_north(), frame.frame_from_nominal};
+  return projection::exact_box(sight, model.silhouette, frame.from_camera, frame.time_s).box;
+}
+
+// The pixels that a colour key selects: those of which at least a third is covered, or else the one
+// that is covered most.
+std::optional<PixelBox> keyed_box(const Model& model, const Frame& frame, const Box& outline) {
+  constexpr float kKeyed = 0.3f;  // share of a pixel: "at least a third"
+  const render::View view{
+      &pinhole(), looking_north().inverse(), frame.frame_from_nominal.inverse(), kWidth, kHeight};
+  const Box search{outline.x - 1, outline.y - 1, outline.width + 2, outline.height + 2};
+  const image::Layer layer = render::render(
+      view, {}, {{&model.rays, frame.from_camera, frame.time_s}}, {search}, {.quality = 2});
+  if (layer.empty()) return std::nullopt;
+  float most = 0;
+  for (const image::LayerPixel& pixel : layer.pixels) most = std::max(most, pixel.alpha);
+  if (most == 0) return std::nullopt;
+  std::optional<PixelBox> box;
+  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
+    for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
+      if (layer.pixels[layer.index(x, y)].alpha < std::min(kKeyed, most)) continue;
+      const PixelBox pixel{x, y, 1, 1};
+      box = box ? bounds(*box, pixel) : pixel;
+    }
+  }
+  return box;
+}
+
+bool is_box(const PixelBox& box) { return box.width > 0 && box.height > 0; }
+
+bool is_in_picture(double x, double y) { return x >= 0 && x < kWidth && y >= 0 && y < kHeight; }
+
+bool touches_border(const PixelBox& box) {
+  constexpr int kNear = 3;  // px, as EvisionOptions::spread_px
+  return box.x < kNear || box.y < kNear || box.right() > kWidth - kNear ||
+         box.bottom() > kHeight - kNear;
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto k = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
+  return values[k];
+}
+
+// What is gathered over a sequence's frames.
+class Comparison {
+ public:
+  explicit Comparison(int spread_px) : spread_px_(spread_px) {}
+
+  // The box as published files would have it; empty where the intruder is not in the picture.
+  std::optional<PixelBox> add(const Model& model, const Frame& frame) {
+    ++row_.frames;
+    row_.published_boxes += is_box(frame.published) ? 1 : 0;
+    const std::optional<Box> outline = outline_box(model, frame);
+    auto ours = outline ? keyed_box(model, frame, *outline) : std::nullopt;
+    const bool centre_in_view =
+        outline && is_in_picture(outline->x + outline->width / 2, outline->y + outline->height / 2);
+    if (!ours && centre_in_view) ++row_.without_box_ours;
+    const bool whole = ours && !touches_border(*ours);
+    if (whole && !is_box(frame.published)) ++row_.without_box_published;
+    if (ours) ours = spread(*ours, frame.number == 1 ? 0 : spread_px_);
+    if (whole && is_box(frame.published) && !touches_border(frame.published))
+      compare(*ours, frame.published);
+    return ours;
+  }
+
+  EvisionRow row(const std::string& name) const {
+    EvisionRow row = row_;
+    row.sequence = name;
+    row.compared = static_cast<int>(width_.size());
+    row.published_width_px = quantile(width_, 0.5);
+    row.published_height_px = quantile(height_, 0.5);
+    row.width_off_px = quantile(width_off_px_, 0.5);
+    row.height_off_px = quantile(height_off_px_, 0.5);
+    row.width_off = quantile(width_off_, 0.5);
+    row.height_off = quantile(height_off_, 0.5);
+    row.centre_off_px = quantile(centre_off_, 0.5);
+    row.centre_off_p95_px = quantile(centre_off_, 0.95);
+    return row;
+  }
+
+ private:
+  static PixelBox spread(const PixelBox& box, int px) {
+    return {box.x - px, box.y - px, box.width + 2 * px, box.height + 2 * px};
+  }
+
+  void compare(const PixelBox& ours, const PixelBox& published) {
+    width_.push_back(published.width);
+    height_.push_back(published.height);
+    width_off_px_.push_back(std::abs(ours.width - published.width));
+    height_off_px_.push_back(std::abs(ours.height - published.height));
+    width_off_.push_back(width_off_px_.back() / published.width);
+    height_off_.push_back(height_off_px_.back() / published.height);
+    centre_off_.push_back(
+        std::hypot(ours.x + ours.width / 2.0 - published.x - published.width / 2.0,
+                   ours.y + ours.height / 2.0 - published.y - published.height / 2.0));
+  }
+
+  int spread_px_;
+  EvisionRow row_;
+  std::vector<double> width_, height_, width_off_px_, height_off_px_, width_off_, height_off_,
+      centre_off_;
+};
+
+Sequence read_sequence(const fs::path& groundtruth,
+                       const fs::path& positions_file,
+                       const Model& model,
+                       bool bank) {
+  const annotation::Evision published = annotation::read_evision(groundtruth);
+  const std::vector<Position> positions = read_positions(positions_file);
+  if (positions.size() < 2)
+    throw Error("fewer than two defined positions", {positions_file.string()});
+  std::map<int, PixelBox> boxes;
+  for (const auto& frame : published.frames)
+    if (frame) boxes[frame->number] = frame->rect_px;
+  const trajectory::Path path = path_through(positions, bank);
+  Sequence sequence{groundtruth.stem().string(), &model, {}};
+  for (const Position& position : positions) {
+    const auto box = boxes.find(position.number);
+    if (box == boxes.end()) continue;
+    const double time_s = (position.number - 1) / kRateHz;
+    const Quaternion world_from_body = path.at(std::min(time_s, path.end_s()))->world_from_body;
+    sequence.frames.push_back({position.number,
+                               time_s,
+                               {world_from_body, position.intruder_ned_m - position.camera_ned_m},
+                               box->second,
+                               Homography::Identity()});
+  }
+  return sequence;
+}
+
+// Gives every frame the homography that its background had at that time, from the centres of the
+// published boxes.
+void recover_motion(std::vector<Sequence>& sequences) {
+  std::map<std::pair<char, int>, std::vector<Sighting>>
+      sightings;  // of a background (a name's first letter) and frame
+  for (const Sequence& sequence : sequences) {
+    for (const Frame& frame : sequence.frames) {
+      const PixelBox& p = frame.published;
+      const auto still = outline_box(*sequence.model, frame);
+      if (!still || !is_box(p) || touches_border(p)) continue;
+      sightings[{sequence.name[0], frame.number}].push_back(
+          {{still->x + still->width / 2, still->y + still->height / 2},
+           {p.x + p.width / 2.0, p.y + p.height / 2.0}});
+    }
+  }
+  for (Sequence& sequence : sequences)
+    for (Frame& frame : sequence.frames)
+      frame.frame_from_nominal = motion_from_sightings(
+          sightings[{sequence.name[0], frame.number}], {kWidth / 2.0, kHeight / 2.0}, kFocalPx);
+}
+
+EvisionRow compare(const Sequence& sequence, const EvisionOptions& options) {
+  Comparison comparison(options.spread_px);
+  for (const Frame& frame : sequence.frames) {
+    if (options.stop.stop_requested()) throw Interrupted();
+    const auto ours = comparison.add(*sequence.model, frame);
+    if (options.each) options.each({sequence.name, frame.number, ours, frame.published});
+  }
+  return comparison.row(sequence.name);
+}
+
+std::vector<fs::path> groundtruth_files(const fs::path& folder) {
+  if (!fs::is_directory(folder / "groundtruth"))
+    throw Error("is no folder; expected the E-Vision annotations with groundtruth/ and positions/",
+                {(folder / "groundtruth").string()});
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder / "groundtruth"))
+    if (entry.path().extension() == ".xml") files.push_back(entry.path());
+  if (files.empty()) throw Error("holds no .xml", {(folder / "groundtruth").string()});
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::vector<EvisionRow> evision_table(const fs::path& folder,
+                                      const EvisionOptions& options,
+                                      const Warn& warn) {
+  const std::vector<fs::path> files = groundtruth_files(folder);
+  const Model airliner(options.airliner, options.scale, warn);
+  const Model light(options.light_aircraft, options.scale, warn);
+  std::vector<Sequence> sequences;
+  for (const fs::path& file : files) {
+    const bool is_light = file.stem().string().ends_with("C172");
+    sequences.push_back(read_sequence(file,
+                                      folder / "positions" / (file.stem().string() + ".csv"),
+                                      is_light ? light : airliner,
+                                      options.bank));
+  }
+  if (options.recover_motion) recover_motion(sequences);
+  std::vector<EvisionRow> rows;
+  for (const Sequence& sequence : sequences) rows.push_back(compare(sequence, options));
+  return rows;
+}
+
+namespace {
+
+using Parameters = Eigen::Vector4d;  // shift (px), roll (rad), drift
+
+// Standard error of a box's centre, px.
+constexpr double kCentrePx = 3;
+constexpr double kPrior = 0.1;
+constexpr int kIterations = 15;  // of Gauss-Newton: chosen
+
+Homography homography_of(const Parameters& p, const Pixel& centre, double focal_px) {
+  Homography to = Homography::Identity();
+  to.topRightCorner<2, 1>() = centre;
+  Homography from = Homography::Identity();
+  from.topRightCorner<2, 1>() = -centre;
+  Homography drift = Homography::Identity();
+  drift(2, 1) = -p[3] / focal_px;
+  Homography turn = Homography::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(p[2]).toRotationMatrix();
+  turn.topRightCorner<2, 1>() = p.head<2>();
+  return to * turn * drift * from;
+}
+
+}  // namespace
+
+Homography motion_from_sightings(const std::vector<Sighting>& sightings,
+                                 const Pixel& principal_point_px,
+                                 double focal_px) {
+  Parameters p = Parameters::Zero();
+  if (sightings.empty()) return Homography::Identity();
+  const auto rows = static_cast<Eigen::Index>(2 * sightings.size());
+  const auto residual = [&](const Parameters& at) {
+    const Homography h = homography_of(at, principal_point_px, focal_px);
+    Eigen::VectorXd r(rows + 2);
+    for (Eigen::Index i = 0; i < rows / 2; ++i) {
+      const Sighting& s = sightings[static_cast<std::size_t>(i)];
+      r.segment<2>(2 * i) = (apply(h, s.still_px) - s.found_px) / kCentrePx;
+    }
+    r.tail<2>() = at.tail<2>() / kPrior;
+    return r;
+  };
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Eigen::VectorXd r = residual(p);
+    Eigen::MatrixXd jacobian(rows + 2, 4);
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      constexpr double kStep = 1e-5;
+      Parameters moved = p;
+      moved[k] += kStep;
+      jacobian.col(k) = (residual(moved) - r) / kStep;
+    }
+    const Parameters step =
+        (jacobian.transpose() * jacobian).ldlt().solve(-jacobian.transpose() * r);
+    if (!step.allFinite()) break;
+    p += step;
+    if (step.norm() < 1e-9) break;
+  }
+  return homography_of(p, principal_point_px, focal_px);
+}
+
+}  // namespace airtruth::evision
