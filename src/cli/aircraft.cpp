@@ -9,7 +9,7 @@
 #include "aircraft/fleet/scale.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/pattern.h"
+#include "foundation/base/names.h"
 #include "picture/video/still.h"
 #include "sequence/demo/aircraft_sheet.h"
 #include "show/drawing/tiles.h"

@@ -8,8 +8,8 @@
 #include "comparison/comparison/comparison.h"
 #include "comparison/judge/judge.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
-#include "foundation/base/output_check.h"
 #include "picture/video/still.h"
 
 namespace airtruth::cli {

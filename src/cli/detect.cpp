@@ -9,7 +9,7 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/output_check.h"
+#include "foundation/base/file_state.h"
 #include "runners/runs/detector_run.h"
 
 namespace airtruth::cli {

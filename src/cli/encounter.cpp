@@ -9,7 +9,7 @@
 #include "cli/commands.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
-#include "foundation/base/output_check.h"
+#include "foundation/base/file_state.h"
 
 namespace airtruth::cli {
 namespace {

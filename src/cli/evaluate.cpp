@@ -13,7 +13,7 @@
 #include "evaluation/tracker_evaluation/page.h"
 #include "evaluation/tracker_evaluation/tables.h"
 #include "foundation/base/error.h"
-#include "foundation/base/output_check.h"
+#include "foundation/base/file_state.h"
 
 namespace airtruth::cli {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "cli/commands.h"
 #include "comparison/evision/evision_table.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
-#include "foundation/base/output_check.h"
 
 namespace airtruth::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include "cli/commands.h"
 #include "cli/picture_size.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
-#include "foundation/base/output_check.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 

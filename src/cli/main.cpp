@@ -13,7 +13,7 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
-#include "foundation/base/output_check.h"
 #include "sequence/new_scene/new_scene.h"
 
 namespace airtruth::cli {

@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/output_check.h"
+#include "foundation/base/file_state.h"
 #include "runners/runs/tracker_run.h"
 #include "runners/tracking/tracker.h"
 

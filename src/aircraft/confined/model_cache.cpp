@@ -5,7 +5,7 @@
 #include "aircraft/confined/child.h"
 #include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_stamp.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 
 namespace airtruth::aircraft {

@@ -19,8 +19,7 @@
 #include "aircraft/wrapper/wrapper.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/pattern.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::aircraft {
 namespace {

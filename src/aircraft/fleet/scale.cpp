@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
-#include "foundation/base/pattern.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::aircraft {
 namespace {

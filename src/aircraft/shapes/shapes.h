@@ -4,7 +4,7 @@
 #include <array>
 
 #include "aircraft/model/mesh.h"
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 
 // Meshes of what a detector may take for an aircraft, made in code from a few numbers. Body
 // coordinates: x forward, y right, z down; metres; the origin is the middle of the body.

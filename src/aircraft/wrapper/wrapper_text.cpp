@@ -8,7 +8,7 @@
 #include <pugixml.hpp>
 
 #include "foundation/base/error.h"
-#include "foundation/base/line_of.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::aircraft {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera_file/flight_clip.h"
 #include "calibration/optics/step_response.h"
 #include "foundation/image/colour.h"
 #include "picture/composite/sensor.h"
+#include "support/flight_clip.h"
 
 // Camera effects that are applied to a virtual flight are measured from its clip.
 namespace airtruth::camera_file {

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "calibration/camera_file/profile_table.h"
-#include "foundation/base/csv.h"
 #include "foundation/base/median.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::camera_file {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera_file/flight_clip.h"
 #include "calibration/camera_file/join.h"
 #include "calibration/camera_file/profile.h"
 #include "picture/video/reader.h"
+#include "support/flight_clip.h"
 
 // Virtual flights whose clips do not determine a value, or determine it several times.
 namespace airtruth::camera_file {

@@ -7,13 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/camera_file/flight_clip.h"
 #include "calibration/own_aircraft/own_aircraft.h"
 #include "camera/horizon/horizon.h"
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
 #include "picture/video/still.h"
 #include "scene/synthetic/sky.h"
+#include "support/flight_clip.h"
 
 // The surroundings of a camera are found from its clip: sun, air, horizon and the own aircraft.
 namespace airtruth::camera_file {

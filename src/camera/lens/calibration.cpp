@@ -13,7 +13,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "foundation/base/error.h"
-#include "foundation/base/line_of.h"
+#include "foundation/base/text.h"
 #include "foundation/json/json_object.h"
 
 // OpenCV's FileStorage, as its calibration samples, kalibr-like tools and ROS write it: XML through

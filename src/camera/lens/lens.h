@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "foundation/geometry/transform.h"
 
 // A lens maps points in the camera frame (x right, y down, z forward; metres) to pixels, and pixels

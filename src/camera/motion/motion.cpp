@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::motion {
 

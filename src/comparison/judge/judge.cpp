@@ -14,11 +14,11 @@
 #include <opencv2/ml.hpp>
 
 #include "camera/opencv_plugin/opencv_plugin.h"
-#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
 #include "foundation/base/seed.h"
+#include "foundation/base/text.h"
 #include "foundation/json/json_object.h"
 
 namespace airtruth::judge {

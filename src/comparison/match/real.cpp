@@ -11,10 +11,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "comparison/appearance/segment.h"
-#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
+#include "foundation/base/text.h"
 #include "picture/video/reader.h"
 
 namespace airtruth::match {

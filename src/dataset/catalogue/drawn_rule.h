@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "dataset/catalogue/table_values.h"
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "foundation/base/seed.h"
 #include "scene/scene/scene.h"
 #include "scene/scene/table_reader.h"

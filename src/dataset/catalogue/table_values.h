@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "foundation/base/error.h"
-#include "foundation/base/pattern.h"
+#include "foundation/base/names.h"
 #include "foundation/base/seed.h"
-#include "foundation/base/suggest.h"
 #include "scene/scene/table_reader.h"
 
 // What the tables of a catalogue have in common: names of other tables, and ranges to draw from.

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
-#include "foundation/base/output_check.h"
-#include "foundation/base/pattern.h"
+#include "foundation/base/names.h"
 #include "labels/annotation/object_class.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"

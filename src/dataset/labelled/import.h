@@ -20,7 +20,7 @@ struct ImportOptions {
   // Maps a clip's name to its video, for videos that do not lie beside the labels. The name ""
   // stands for the only clip.
   std::map<std::string, fs::path> videos;
-  // The class of the objects of clips whose name fits a pattern (foundation/base/pattern.h); the
+  // The class of the objects of clips whose name fits a pattern (foundation/base/names.h); the
   // last that fits counts. Clips without one hold aircraft. Objects without a category take the
   // class as theirs.
   struct ObjectClass {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
-#include "foundation/base/enum_names.h"
 #include "foundation/base/log.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::labelled {
 

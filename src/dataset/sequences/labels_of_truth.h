@@ -7,7 +7,7 @@
 #include <airtruth/dataset.h>
 #include <airtruth/labels.h>
 
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "labels/annotation/truth.h"
 
 namespace airtruth::dataset {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/suggest.h"
-#include "foundation/base/trimmed.h"
+#include "foundation/base/names.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "encounter/separation/violation.h"
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "scene/trajectory/path.h"
 
 // The encounter of two whole paths, between frames too. Times are on the clock of the paths.

@@ -12,7 +12,7 @@
 
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "encounter/track/track.h"
-#include "foundation/base/trimmed.h"
+#include "foundation/base/text.h"
 #include "foundation/geometry/transform.h"
 
 namespace airtruth::encounter {

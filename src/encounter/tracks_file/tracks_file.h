@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "encounter/track/track.h"
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 
 // Encounters in files, in the formats of docs/formats/encounters.md.
 namespace airtruth::encounter {

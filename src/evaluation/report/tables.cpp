@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::report {
 namespace {

@@ -14,7 +14,7 @@
 #include "evaluation/scores/detection_match.h"
 #include "evaluation/scores/truth.h"
 #include "evaluation/statistics/proportion.h"
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "runners/results/detections.h"
 
 // When a detector's tracks declare an aircraft, and whether that leaves time for a manoeuvre.

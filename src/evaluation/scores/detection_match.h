@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "evaluation/scores/truth.h"
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "runners/results/detections.h"
 
 // The match of each detection with the truth of its frame: a detection is a true positive on the

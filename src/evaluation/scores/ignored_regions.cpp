@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "labels/exchange/text.h"
 
 namespace airtruth::scores {

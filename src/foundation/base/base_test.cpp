@@ -11,11 +11,10 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/huge_pages.h"
-#include "foundation/base/line_of.h"
 #include "foundation/base/median.h"
-#include "foundation/base/pattern.h"
+#include "foundation/base/names.h"
 #include "foundation/base/seed.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/text.h"
 
 namespace airtruth {
 namespace {

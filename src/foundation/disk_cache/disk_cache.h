@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "foundation/base/error.h"
-#include "foundation/base/file_lock.h"
+#include "foundation/base/file_state.h"
 
 // Results that take long to compute and are kept on the disk from one run to the next: measured
 // motion, calibrations, converted models, ambient visibility. A result is named by a hash of all

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "foundation/geometry/transform.h"
 
 // The time within one frame: when each pixel is exposed, and how poses change meanwhile. A time

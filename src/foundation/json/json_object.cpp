@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/files.h"
-#include "foundation/base/line_of.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
+#include "foundation/base/text.h"
 
 namespace airtruth {
 namespace {

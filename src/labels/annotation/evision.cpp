@@ -10,8 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/line_of.h"
-#include "foundation/base/trimmed.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::annotation {
 namespace {

@@ -12,7 +12,7 @@
 #include <airtruth/truth.h>
 
 #include "encounter/separation/measures.h"
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"

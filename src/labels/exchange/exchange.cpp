@@ -8,7 +8,7 @@
 #include <airtruth/labels.h>
 
 #include "foundation/base/error.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
 

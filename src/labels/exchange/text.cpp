@@ -10,7 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/trimmed.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::exchange {
 namespace {

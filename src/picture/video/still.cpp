@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
-#include "foundation/base/output_check.h"
 #include "foundation/image/colour.h"
 #include "foundation/image/packed.h"
 #include "picture/video/libav.h"

@@ -8,11 +8,10 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "foundation/base/unfinished.h"
 #include "foundation/image/colour.h"
 #include "picture/video/encoder.h"
-#include "picture/video/encoder_frame.h"
 #include "picture/video/libav.h"
 #include "picture/video/still.h"
 #include "picture/video/stored_colour.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "foundation/base/enum_names.h"
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
 #include "picture/video/frame.h"
 #include "picture/video/reader.h"
 

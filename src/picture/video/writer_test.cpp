@@ -6,25 +6,20 @@
 #include <string>
 #include <utility>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
+#include "foundation/image/colour.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "support/video_folder.h"
 
 namespace airtruth::video {
 namespace {
-
-class WriterFile : public testing::Test {
- protected:
-  WriterFile()
-      : folder_(fs::temp_directory_path() / ("airtruth_writer_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~WriterFile() override { fs::remove_all(folder_); }
-  fs::path folder_;
-};
 
 constexpr int kWidth = 70, kHeight = 38;  // neither a multiple of 16 nor of 32
 
@@ -50,7 +45,7 @@ StreamInfo stream_of(const image::Colour& colour) {
   return info;
 }
 
-TEST_F(WriterFile, LentFramesGiveTheBytesOfCopiedOnes) {
+TEST_F(Video, LentFramesGiveTheBytesOfCopiedOnes) {
   for (const Format format : {Format::kMp4, Format::kMkv, Format::kAvi}) {
     for (const image::Chroma chroma :
          {image::Chroma::k420, image::Chroma::k422, image::Chroma::k444}) {
@@ -73,7 +68,7 @@ TEST_F(WriterFile, LentFramesGiveTheBytesOfCopiedOnes) {
   }
 }
 
-TEST_F(WriterFile, KeepsNoLentFrameAfterItsEnd) {
+TEST_F(Video, KeepsNoLentFrameAfterItsEnd) {
   std::weak_ptr<const Frame> last;
   {
     const auto frame = std::make_shared<const Frame>(noise(0, {}));
@@ -93,7 +88,7 @@ fs::path written(const fs::path& file, const WriterOptions& options, std::string
   return file;
 }
 
-TEST_F(WriterFile, AutoIsX264WithItsBytesWhereNoHardwareEncodes) {
+TEST_F(Video, AutoIsX264WithItsBytesWhereNoHardwareEncodes) {
   std::string encoder;
   const fs::path x264 = written(folder_ / "x264.mp4", {}, &encoder);
   EXPECT_EQ(encoder, "libx264");
@@ -103,7 +98,7 @@ TEST_F(WriterFile, AutoIsX264WithItsBytesWhereNoHardwareEncodes) {
   EXPECT_EQ(sha256_of_file(any), sha256_of_file(x264));
 }
 
-TEST_F(WriterFile, AMissingEncoderIsAnErrorAtItsPlace) {
+TEST_F(Video, AMissingEncoderIsAnErrorAtItsPlace) {
   image::Colour colour;
   colour.chroma = image::Chroma::k444;  // none of them takes it, whatever the machine has
   for (const auto& [encoder, name] : {std::pair(Encoder::kNvenc, "h264_nvenc"),
@@ -121,6 +116,83 @@ TEST_F(WriterFile, AMissingEncoderIsAnErrorAtItsPlace) {
     }
     EXPECT_TRUE(fs::is_empty(folder_));
   }
+}
+
+TEST_F(Video, LosslessOutputGivesEverySampleBack) {
+  for (const char* format : {"yuv420p", "yuv422p", "yuv444p", "yuv440p", "gray", "yuvj420p"}) {
+    ffmpeg(std::string("-f lavfi -i testsrc=s=67x51:r=25:d=0.2 -vf format=rgb24,format=") + format +
+           " -c:v " + (std::string(format) == "yuvj420p" ? "mjpeg" : "ffv1") +
+           " -strict -1 in.mkv");
+    Reader reader(folder_ / "in.mkv");
+    {
+      Writer writer(folder_ / "out.mkv", reader.info(), {.format = Format::kMkv});
+      while (const auto frame = reader.next()) writer.write(*frame);
+      writer.finish();
+    }
+    Reader a(folder_ / "in.mkv");
+    Reader b(folder_ / "out.mkv");
+    EXPECT_TRUE(all_planes(a) == all_planes(b)) << format;
+    EXPECT_EQ(a.info().colour.range, b.info().colour.range) << format;
+    EXPECT_EQ(a.info().colour.chroma, b.info().colour.chroma) << format;
+  }
+}
+
+TEST_F(Video, NumberedImagesNeverReplaceAFolder) {
+  fs::create_directories(folder_ / "frames");
+  write_file(folder_ / "frames/user.txt", "mine");
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 in.mp4");
+  Reader reader(folder_ / "in.mp4");
+  EXPECT_THROW(Writer(folder_ / "frames", reader.info(), {.format = Format::kPng}), Error);
+  EXPECT_EQ(read_file(folder_ / "frames/user.txt"), "mine");
+}
+
+TEST_F(Video, WriterLeavesNothingUnlessFinished) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 in.mp4");
+  Reader reader(folder_ / "in.mp4");
+  {
+    Writer writer(folder_ / "out.mp4", reader.info(), {});
+    writer.write(*reader.next());
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out.mp4"));
+  EXPECT_FALSE(fs::exists(part_path(folder_ / "out.mp4")));
+}
+
+TEST_F(Video, SameFramesGiveTheSameFileOnAnyNumberOfThreads) {
+  ffmpeg("-f lavfi -i testsrc2=s=640x480:r=25:d=2 -c:v libx264 in.mp4");
+  for (Format format : {Format::kMp4, Format::kMkv, Format::kAvi}) {
+    std::vector<std::string> sums;
+    for (int round = 0; round < 2; ++round) {
+      Reader reader(folder_ / "in.mp4");
+      const fs::path out = folder_ / (std::string("out") + extension(format));
+      Writer writer(out, reader.info(), {.format = format, .threads = 1 + 2 * round});
+      while (const auto frame = reader.next()) writer.write(*frame);
+      writer.finish();
+      sums.push_back(sha256_of_file(out));
+    }
+    EXPECT_EQ(sums[0], sums[1]) << extension(format);
+  }
+}
+
+TEST_F(Video, FullDiskIsAnErrorThatSaysSo) {
+  if (::geteuid() != 0) GTEST_SKIP() << "mounting a small file system needs root";
+  const fs::path small = folder_ / "small";
+  fs::create_directories(small);
+  if (std::system(
+          ("mount -t tmpfs -o size=64k tmpfs '" + small.string() + "' 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "no small file system can be mounted here";
+  ffmpeg("-f lavfi -i testsrc2=s=320x240:r=25:d=1 -c:v libx264 in.mp4");
+  std::string message;
+  try {
+    Reader reader(folder_ / "in.mp4");
+    Writer writer(small / "out.mkv", reader.info(), {.format = Format::kMkv});
+    while (const auto frame = reader.next()) writer.write(*frame);
+    writer.finish();
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  EXPECT_THAT(message, testing::HasSubstr("No space left on device"));
+  EXPECT_TRUE(fs::is_empty(small));
+  EXPECT_EQ(std::system(("umount '" + small.string() + "'").c_str()), 0);
 }
 
 }  // namespace

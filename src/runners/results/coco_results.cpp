@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/files.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "foundation/json/json_object.h"
 #include "runners/results/json_list.h"
 

@@ -11,7 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "foundation/json/json_object.h"
 #include "labels/exchange/text.h"
 #include "runners/results/coco_results.h"

@@ -12,7 +12,7 @@
 #include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "labels/exchange/text.h"
 #include "runners/results/detections.h"
 #include "runners/results/vot_regions.h"

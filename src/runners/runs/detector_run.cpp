@@ -19,7 +19,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
-#include "foundation/base/pattern.h"
+#include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
 #include "foundation/json/settings_record.h"
 #include "runners/results/coco_results.h"

@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "foundation/base/error.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "runners/classical/classical.h"
 #include "runners/detector/external.h"
 #include "runners/network/model_description.h"

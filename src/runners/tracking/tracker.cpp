@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "foundation/base/error.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 #include "runners/tracking/am3.h"

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "scene/flight_log/builder.h"
 #include "scene/flight_log/formats.h"
 

@@ -9,8 +9,7 @@
 #include <pugixml.hpp>
 
 #include "foundation/base/error.h"
-#include "foundation/base/line_of.h"
-#include "foundation/base/trimmed.h"
+#include "foundation/base/text.h"
 #include "scene/flight_log/builder.h"
 #include "scene/flight_log/formats.h"
 

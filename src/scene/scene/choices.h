@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "foundation/base/enum_names.h"
+#include "foundation/base/names.h"
 
 // The choices that a scene file states as a word: each is an enum with the words of the file. The
 // words stand in no other place. lens::ModelKind and Readout are choices of [lens] and [shutter].

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "aircraft/shapes/shapes.h"
-#include "foundation/base/enum_names.h"
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
 #include "foundation/geometry/transform.h"
 
 // [[distractor]]: what a detector may take for an aircraft. Birds, multirotors and balloons fly in

@@ -8,7 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::scene {
 namespace {

@@ -13,8 +13,8 @@
 
 #include <toml++/toml.h>
 
-#include "foundation/base/enum_names.h"
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
 #include "foundation/geometry/transform.h"
 #include "scene/scene/limits.h"
 
@@ -61,7 +61,7 @@ class TableReader {
   std::optional<std::string> file_name(std::string_view key) const;
   std::optional<std::string> choice(std::string_view key,
                                     const std::vector<std::string>& choices) const;
-  // A word that names a value of the enum (foundation/base/enum_names.h).
+  // A word that names a value of the enum (foundation/base/names.h).
   template <typename Enum>
   std::optional<Enum> choice(std::string_view key) const {
     const auto word = choice(key, all_enum_names<Enum>());

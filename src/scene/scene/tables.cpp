@@ -8,7 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/line_of.h"
+#include "foundation/base/text.h"
 #include "scene/scene/camera_keys.h"
 #include "scene/scene/table_reader.h"
 

@@ -6,10 +6,10 @@
 #include <sstream>
 #include <string>
 
-#include "foundation/base/csv.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "scene/trajectory/path.h"
 
 namespace airtruth::trajectory {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
-#include "foundation/base/output_check.h"
 #include "foundation/image/colour.h"
 #include "foundation/json/json_object.h"
 #include "picture/video/reader.h"

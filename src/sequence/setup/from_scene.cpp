@@ -13,9 +13,9 @@
 #include "camera/lens/calibration_file.h"
 #include "encounter/placement/by_approach.h"
 #include "foundation/base/error.h"
-#include "foundation/base/suggest.h"
+#include "foundation/base/names.h"
 #include "picture/render/renderer.h"
-#include "picture/video/telemetry.h"
+#include "picture/video/metadata.h"
 #include "scene/flight_log/gpmf.h"
 #include "scene/flight_log/local_path.h"
 

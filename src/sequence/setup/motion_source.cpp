@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/annotation/lens_facts.h"
-#include "picture/video/telemetry.h"
+#include "picture/video/metadata.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::setup {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "foundation/base/file_stamp.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/log.h"
 #include "scene/scene/scene.h"
 #include "scene/trajectory/path.h"

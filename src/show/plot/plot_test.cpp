@@ -10,6 +10,7 @@
 #include "picture/video/still.h"
 #include "show/plot/gnuplot.h"
 #include "show/plot/plot_json.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth::plot {
 namespace {
@@ -193,9 +194,8 @@ TEST(Gnuplot, APlotWithoutDataHasAxes) {
 
 TEST(Gnuplot, NamesOfAUserRunNothing) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const fs::path folder = fs::temp_directory_path() / "airtruth-plot-test";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const test_support::TemporaryFolder temporary;
+  const fs::path& folder = temporary.path();
   Plot plot = two_levels();
   const std::string command = "' ; system('touch " + (folder / "ran").string() + "') ; '\n`touch " +
                               (folder / "ran").string() + "`";
@@ -207,7 +207,6 @@ TEST(Gnuplot, NamesOfAUserRunNothing) {
   EXPECT_TRUE(fs::exists(folder / "p.svg"));
   EXPECT_TRUE(fs::exists(folder / "p.gnuplot"));
   EXPECT_FALSE(fs::exists(folder / "ran"));
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/base/csv.h"
+#include "foundation/base/text.h"
 
 #include <charconv>
 #include <cmath>
+
+#include <openssl/evp.h>
 
 namespace airtruth {
 
@@ -26,6 +28,16 @@ double finite_number(const std::string& cell, const Where& where) {
   if (failed != std::errc() || rest != end || !std::isfinite(value))
     throw Error("'" + cell.substr(0, 40) + "' is not a finite number", where);
   return value;
+}
+
+std::string base64_of(std::string_view bytes) {
+  // EVP_EncodeBlock writes a terminating zero after the text.
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                     reinterpret_cast<const unsigned char*>(bytes.data()),
+                                     static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
 }
 
 }  // namespace airtruth

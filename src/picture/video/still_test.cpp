@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Single pictures and masks.
+#include "picture/video/still.h"
+
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
-#include "picture/video/still.h"
-#include "picture/video/video_test_folder.h"
+#include "support/video_folder.h"
 
 namespace airtruth::video {
 namespace {

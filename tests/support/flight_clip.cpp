@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/camera_file/flight_clip.h"
+#include "support/flight_clip.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture/video/telemetry.h"
+#include "picture/video/metadata.h"
+
+#include <algorithm>
+#include <cctype>
 
 #include "foundation/base/error.h"
 #include "picture/video/libav.h"
 
+extern "C" {
+#include <libavutil/dict.h>
+}
+
 namespace airtruth::video {
 namespace {
+
+// Empty where the path is no regular file.
+InputPtr opened_file(const std::filesystem::path& path) {
+  keep_libav_quiet();
+  if (!std::filesystem::is_regular_file(path)) return nullptr;
+  AVFormatContext* input = nullptr;
+  if (const int result = avformat_open_input(&input, path.c_str(), nullptr, nullptr); result < 0)
+    throw Error("cannot be opened as a video: " + reason(result), {path.string()});
+  return InputPtr(input);
+}
+
+void add_tags(const AVDictionary* tags, std::map<std::string, std::string>& result) {
+  const AVDictionaryEntry* entry = nullptr;
+  while ((entry = av_dict_get(tags, "", entry, AV_DICT_IGNORE_SUFFIX)) != nullptr) {
+    std::string key(entry->key);
+    std::transform(
+        key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });
+    result[key] = entry->value;
+  }
+}
 
 // The index of the last stream of telemetry; -1: none.
 int telemetry_stream(const AVFormatContext& input) {
@@ -18,13 +45,20 @@ int telemetry_stream(const AVFormatContext& input) {
 
 }  // namespace
 
+std::map<std::string, std::string> read_tags(const std::filesystem::path& path) {
+  const InputPtr input = opened_file(path);
+  if (!input) return {};
+  std::map<std::string, std::string> result;
+  add_tags(input->metadata, result);
+  for (unsigned i = 0; i < input->nb_streams; ++i)
+    if (input->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO)
+      add_tags(input->streams[i]->metadata, result);
+  return result;
+}
+
 std::vector<TelemetryPacket> read_telemetry(const std::filesystem::path& path) {
-  keep_libav_quiet();
-  AVFormatContext* opened = nullptr;
-  if (!std::filesystem::is_regular_file(path)) return {};
-  if (const int result = avformat_open_input(&opened, path.c_str(), nullptr, nullptr); result < 0)
-    throw Error("cannot be opened as a video: " + reason(result), {path.string()});
-  const InputPtr input(opened);
+  const InputPtr input = opened_file(path);
+  if (!input) return {};
   // A file whose header lists all streams need not be decoded to know that it has no telemetry.
   const bool all_are_listed = (input->ctx_flags & AVFMTCTX_NOHEADER) == 0;
   if (all_are_listed && telemetry_stream(*input) < 0) return {};

@@ -5,11 +5,11 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
+#include "support/temporary_folder.h"
 
 // What the tests of video files have in common.
 namespace airtruth::video {
@@ -17,11 +17,6 @@ namespace airtruth::video {
 // A folder in which the ffmpeg program makes and reads files.
 class Video : public testing::Test {
  protected:
-  Video() : folder_(fs::temp_directory_path() / ("airtruth_video_" + std::to_string(::getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~Video() override { fs::remove_all(folder_); }
-
   void ffmpeg(const std::string& arguments) const {
     const std::string command =
         "cd '" + folder_.string() + "' && ffmpeg -nostdin -v error -y " + arguments;
@@ -39,7 +34,12 @@ class Video : public testing::Test {
     EXPECT_EQ(std::system(command.c_str()), 0);
     return read_file(folder_ / "probe.txt");
   }
-  fs::path folder_;
+
+ private:
+  test_support::TemporaryFolder temporary_;
+
+ protected:
+  const fs::path folder_ = temporary_.path();
 };
 
 inline std::string planes_of(const image::Picture& picture) {

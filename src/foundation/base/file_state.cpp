@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/base/file_state.h"
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth {
+
+WaitingLock::WaitingLock(const std::filesystem::path& file, const std::stop_token& stop) {
+  constexpr std::chrono::milliseconds kBetweenTries(100);
+  std::error_code ignored;
+  std::filesystem::create_directories(file.parent_path(), ignored);
+  file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file_ < 0)
+    throw Error(std::string("cannot create: ") + std::strerror(errno), {file.string()});
+  while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) {
+      const std::string why = std::strerror(errno);
+      ::close(file_);
+      throw Error("cannot lock: " + why, {file.string()});
+    }
+    if (stop.stop_requested()) {
+      ::close(file_);
+      throw Interrupted();
+    }
+    std::this_thread::sleep_for(kBetweenTries);
+  }
+}
+
+WaitingLock::~WaitingLock() { ::close(file_); }
+
+namespace {
+
+std::int64_t nanoseconds(const timespec& time) {
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+}  // namespace
+
+FileStamp file_stamp(const std::filesystem::path& file) {
+  struct stat facts {};
+  if (::stat(file.c_str(), &facts) != 0) return {};
+  return {static_cast<std::uint64_t>(facts.st_dev),
+          static_cast<std::uint64_t>(facts.st_ino),
+          static_cast<std::int64_t>(facts.st_size),
+          nanoseconds(facts.st_ctim),
+          nanoseconds(facts.st_mtim)};
+}
+
+void check_output_file(const fs::path& path, bool overwrite) {
+  if (path.empty()) return;
+  refuse_existing(path, overwrite);
+  if (fs::is_directory(path)) throw Error("is a folder; expected a file to write", {path.string()});
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(parent))
+    throw Error("cannot be written: there is no folder " + parent.string(), {path.string()});
+  if (::access(parent.c_str(), W_OK | X_OK) != 0)
+    throw Error(std::string("cannot be written: ") + std::strerror(errno), {path.string()});
+}
+
+void check_output_folder(const fs::path& path) {
+  fs::path nearest = fs::absolute(path).lexically_normal();
+  while (!fs::exists(fs::symlink_status(nearest)) && nearest.has_relative_path())
+    nearest = nearest.parent_path();
+  if (!fs::is_directory(nearest))
+    throw Error("cannot be made: " + nearest.string() + " is no folder", {path.string()});
+  if (::access(nearest.c_str(), W_OK | X_OK) != 0)
+    throw Error(std::string("cannot be written: ") + std::strerror(errno), {path.string()});
+}
+
+}  // namespace airtruth

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "foundation/base/error.h"
+
+// Small work on the text of files: blanks, lines, cells, and base64.
+namespace airtruth {
+
+// The text without the blanks, tabs and line ends around it.
+//
+//   trimmed(" a b\r\n") == "a b", trimmed(" ") == ""
+inline std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+// The line, counted from 1, of the byte at `offset` in the text, for messages about text that a
+// parser knows by its offset. An offset outside of the text means its nearest end.
+//
+//   line_of("a\nb", 0) == 1, line_of("a\nb", 2) == 2, line_of("a\nb", 99) == 2
+inline int line_of(std::string_view text, std::ptrdiff_t offset) {
+  const auto end = text.begin() + std::clamp<std::ptrdiff_t>(offset, 0, std::ssize(text));
+  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
+}
+
+// The cells of a line, split at its commas. Blanks and carriage returns around a cell are removed.
+// Quotes have no meaning.
+std::vector<std::string> cells_of(std::string_view line);
+
+// The cell as a number. Throws Error where it is not a number or not finite.
+double finite_number(const std::string& cell, const Where& where);
+
+// The base64 text of bytes, with padding (RFC 4648).
+std::string base64_of(std::string_view bytes);
+
+}  // namespace airtruth
