@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/synthetic/light_row.h"
 #include "scene/synthetic/noise.h"
+#include "scene/synthetic/rays.h"
 
 namespace airtruth::synthetic {
 

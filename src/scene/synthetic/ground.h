@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/synthetic/batch.h"
-#include "scene/synthetic/clouds.h"
 #include "scene/synthetic/land.h"
 #include "scene/synthetic/mip_map.h"
 #include "scene/synthetic/noise.h"
+#include "scene/synthetic/rays.h"
 #include "scene/synthetic/relief.h"
 #include "scene/synthetic/sky.h"
 

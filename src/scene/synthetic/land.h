@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/synthetic/batch.h"
 #include "scene/synthetic/noise.h"
+#include "scene/synthetic/rays.h"
 
 namespace airtruth::synthetic {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -27,6 +28,21 @@ struct MipMap {
   // Makes room for all levels of a tile, down to a size of two texels.
   static MipMap with_size(int size);
 };
+
+inline MipMap MipMap::with_size(int size) {
+  MipMap map;
+  map.size = size;
+  std::int32_t total = 0;
+  for (int side = size; side >= 2; side /= 2) {
+    const auto level = static_cast<std::size_t>(map.levels++);
+    map.first[level] = total;
+    map.wrap[level] = side - 1;
+    map.scale[level] = static_cast<float>(side) / static_cast<float>(size);
+    total += std::max(side * side, 16);
+  }
+  map.texels.resize(static_cast<std::size_t>(total));
+  return map;
+}
 
 // Index of a texel of a level is the sum of these two and of the index of the level's first texel.
 inline std::int32_t index_of_row(std::int32_t y, std::int32_t wrap) {

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "scene/synthetic/batch.h"
-#include "scene/synthetic/clouds.h"
 #include "scene/synthetic/noise.h"
+#include "scene/synthetic/rays.h"
 #include "scene/synthetic/sky.h"
 
 namespace airtruth::synthetic {

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "scene/synthetic/batch.h"
 #include "scene/synthetic/mip_map.h"
+#include "scene/synthetic/rays.h"
 
 namespace airtruth::synthetic {
 

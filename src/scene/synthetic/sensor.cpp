@@ -6,8 +6,8 @@
 
 #include "foundation/base/seed.h"
 #include "foundation/image/colour.h"
-#include "scene/synthetic/batch.h"
 #include "scene/synthetic/noise.h"
+#include "scene/synthetic/rays.h"
 
 namespace airtruth::synthetic {
 namespace {

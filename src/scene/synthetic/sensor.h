@@ -8,7 +8,7 @@
 
 #include "foundation/image/picture.h"
 #include "scene/synthetic/flight.h"
-#include "scene/synthetic/light_row.h"
+#include "scene/synthetic/rays.h"
 
 namespace airtruth::synthetic {
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 namespace airtruth::synthetic {
 
 Vector3 sun_in_world(double azimuth_deg, double elevation_deg) {
@@ -44,6 +47,279 @@ LinearRgb Sky::haze(const Vector3& direction) const {
   Vector3 level(direction.x(), direction.y(), 0);
   level.normalize();
   return 0.97F * at(level);
+}
+
+namespace {
+
+// Cells along north and along east.
+constexpr int kCells = 512;
+// Levels upwards.
+constexpr int kLevels = 26;
+constexpr float kCell_m = 40;
+constexpr float kBase_m = 1050;
+constexpr float kDepth_m = 1500;
+constexpr float kLevel_m = kDepth_m / kLevels;
+// Texels of the fine noise along each axis.
+constexpr int kDetail = 64;
+constexpr float kDetailTexel_m = 15;
+constexpr float kExtinction_per_m = 0.022F;
+constexpr float kFarthestCloud_m = 60000;
+constexpr float kHaze_m = 30000;
+constexpr float kCirrus_m = 8500;
+
+std::size_t voxel_index(int x, int y, int level) {
+  return (static_cast<std::size_t>(y & (kCells - 1)) * kCells +
+          static_cast<std::size_t>(x & (kCells - 1))) *
+             kLevels +
+         static_cast<std::size_t>(level);
+}
+
+// Phase function of Henyey and Greenstein (1941): a forward lobe plus an isotropic part.
+float cloud_phase(float cosine) {
+  const float g = 0.6F;
+  const float lobe = (1 - g * g) / std::pow(1 + g * g - 2 * g * cosine, 1.5F);
+  return 0.80F + 0.20F * lobe;
+}
+
+}  // namespace
+
+double Clouds::period_m() { return double{kCells} * kCell_m; }
+
+Clouds::Clouds(const Sky& sky, double cover, std::uint32_t seed)
+    : sky_(sky),
+      seed_(seed),
+      cover_(cover),
+      voxels_(std::size_t{kCells} * kCells * kLevels),
+      column_used_(std::size_t{kCells} * kCells, 0),
+      detail_(std::size_t{kDetail} * kDetail * kDetail) {
+  if (cover <= 0) return;
+  tbb::parallel_for(0, kDetail, [&](int z) {
+    for (int y = 0; y < kDetail; ++y)
+      for (int x = 0; x < kDetail; ++x) {
+        const float scale = 8.0F / kDetail;
+        const auto f = [&](int i) { return static_cast<float>(i) * scale; };
+        detail_[static_cast<std::size_t>((z * kDetail + y) * kDetail + x)] =
+            fractal(f(x), f(y), f(z), 3, 8, seed_ + 5);
+      }
+  });
+  fill(cover);
+  light_up();
+}
+
+void Clouds::fill(double cover) {
+  const float threshold = lerp(0.72F, 0.36F, static_cast<float>(std::min(cover, 1.0)));
+  tbb::parallel_for(0, kCells, [&](int y) {
+    for (int x = 0; x < kCells; ++x) {
+      const float u = static_cast<float>(x) / 64;
+      const float v = static_cast<float>(y) / 64;
+      // Clouds come in groups (5 km) of single ones (1.3 km).
+      const float groups = fractal(u * 0.5F, v * 0.5F, 2, kCells / 128, seed_ + 1);
+      const float single = fractal(u * 2, v * 2, 4, kCells / 32, seed_ + 2);
+      const float strength = (0.42F * groups + 0.58F * single - threshold) / 0.22F;
+      if (strength <= -0.3F) continue;
+      bool used = false;
+      for (int level = 0; level < kLevels; ++level) {
+        const float height = (static_cast<float>(level) + 0.5F) / kLevels;
+        const float room = strength - 1.25F * height * (0.55F + 0.45F * height);
+        if (room < -0.45F) break;
+        const float noise = fractal(static_cast<float>(x) / 16,
+                                    static_cast<float>(y) / 16,
+                                    static_cast<float>(level) * kLevel_m / kCell_m / 16,
+                                    4,
+                                    kCells / 16,
+                                    seed_ + 3);
+        const float base = smoothstep(0.0F, 0.06F, height);
+        const float density = clamp01((room + 1.7F * (noise - 0.5F)) * 1.9F) * base;
+        if (density <= 0) continue;
+        used = true;
+        voxels_[voxel_index(x, y, level)].density = static_cast<std::uint8_t>(density * 255 + 0.5F);
+      }
+      column_used_[static_cast<std::size_t>(y * kCells + x)] = used ? 1 : 0;
+    }
+  });
+}
+
+// Works from the top down: the optical depth of each level towards the sun follows from the level
+// above, one step along the sunbeam.
+void Clouds::light_up() {
+  const Vector3 sun = sky_.sun_in_world();
+  const float up = static_cast<float>(std::max(-sun.z(), 0.15));
+  const float shift_x = static_cast<float>(sun.x()) / up * kLevel_m / kCell_m;
+  const float shift_y = static_cast<float>(sun.y()) / up * kLevel_m / kCell_m;
+  std::vector<float> above(std::size_t{kCells} * kCells, 0.0F);
+  std::vector<float> here(above.size());
+  const float per_level = kExtinction_per_m * kLevel_m / up / 255;
+  const int whole_x = floor_int(shift_x);
+  const int whole_y = floor_int(shift_y);
+  const float fx = shift_x - static_cast<float>(whole_x);
+  const float fy = shift_y - static_cast<float>(whole_y);
+  for (int level = kLevels - 1; level >= 0; --level) {
+    tbb::parallel_for(0, kCells, [&](int y) {
+      const auto at = [&](int i, int j) {
+        return above[static_cast<std::size_t>((j & (kCells - 1)) * kCells + (i & (kCells - 1)))];
+      };
+      for (int x = 0; x < kCells; ++x) {
+        const int i = x + whole_x;
+        const int j = y + whole_y;
+        const float depth =
+            lerp(lerp(at(i, j), at(i + 1, j), fx), lerp(at(i, j + 1), at(i + 1, j + 1), fx), fy);
+        Voxel& voxel = voxels_[voxel_index(x, y, level)];
+        const float own = per_level * voxel.density;
+        voxel.sunlit = static_cast<std::uint8_t>(255 * std::exp(-0.25F * (depth + 0.5F * own)));
+        here[static_cast<std::size_t>(y * kCells + x)] = depth + own;
+      }
+    });
+    std::swap(above, here);
+  }
+}
+
+Clouds::Sample Clouds::sample(float north_m, float east_m, float height) const {
+  const float u = north_m / kCell_m;
+  const float v = east_m / kCell_m;
+  const int x = floor_int(u);
+  const int y = floor_int(v);
+  const auto used = [&](int i, int j) {
+    return column_used_[static_cast<std::size_t>(((y + j) & (kCells - 1)) * kCells +
+                                                 ((x + i) & (kCells - 1)))];
+  };
+  if ((used(0, 0) | used(1, 0) | used(0, 1) | used(1, 1)) == 0) return {};
+  const float w = std::clamp(height * kLevels - 0.5F, 0.0F, kLevels - 1.001F);
+  const int level = static_cast<int>(w);
+  const float fx = u - static_cast<float>(x);
+  const float fy = v - static_cast<float>(y);
+  const float fz = w - static_cast<float>(level);
+  Sample sum;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const Voxel* voxel = &voxels_[voxel_index(x + i, y + j, level)];
+      const float weight = (i ? fx : 1 - fx) * (j ? fy : 1 - fy);
+      sum.density += weight * lerp(voxel[0].density, voxel[1].density, fz);
+      sum.sunlit += weight * lerp(voxel[0].sunlit, voxel[1].sunlit, fz);
+    }
+  sum.density /= 255;
+  sum.sunlit /= 255;
+  return sum;
+}
+
+float Clouds::erosion(float north_m, float east_m, float height_m) const {
+  const float u = north_m / kDetailTexel_m;
+  const float v = east_m / kDetailTexel_m;
+  const float w = height_m / kDetailTexel_m;
+  const int x = floor_int(u);
+  const int y = floor_int(v);
+  const int z = floor_int(w);
+  const float fx = u - static_cast<float>(x);
+  const float fy = v - static_cast<float>(y);
+  const float fz = w - static_cast<float>(z);
+  constexpr int kWrap = kDetail - 1;
+  const auto row = [&](int j, int k) {
+    const float* at = &detail_[static_cast<std::size_t>(
+        (((z + k) & kWrap) * kDetail + ((y + j) & kWrap)) * kDetail)];
+    return lerp(at[x & kWrap], at[(x + 1) & kWrap], fx);
+  };
+  return lerp(lerp(row(0, 0), row(1, 0), fy), lerp(row(0, 1), row(1, 1), fy), fz);
+}
+
+// Sunlight that is scattered once, an approximation of multiple scattering (Wrenninge et al. 2013),
+// and the light of sky and ground.
+LinearRgb Clouds::scattered(const Sample& sample, float height, float phase) const {
+  // exp(-depth / 4).
+  const float quarter = sample.sunlit;
+  const float direct = quarter * quarter * quarter * quarter;
+  const float echo = std::sqrt(quarter);
+  const float sun = phase * (0.42F * direct + 0.30F * quarter) + 0.22F * echo;
+  const LinearRgb ambient = lerp(0.55F, 1.0F, height) * linear_rgb(0.235F, 0.28F, 0.345F);
+  return sky_.sunlight() * sun + ambient;
+}
+
+// Walks along a ray in steps that grow with the distance.
+Clouds::Crossed Clouds::crossed(const Vector3& direction, float up) const {
+  const float north = static_cast<float>(direction.x());
+  const float east = static_cast<float>(direction.y());
+  const float phase = cloud_phase(static_cast<float>(direction.dot(sky_.sun_in_world())));
+  const float end = std::min((kBase_m + kDepth_m) / up, kFarthestCloud_m);
+  float t = kBase_m / up;
+  const float jitter =
+      unit(hash(static_cast<int>(north * 65536), static_cast<int>(east * 65536), seed_));
+  t += jitter * std::max(28.0F, 0.010F * t);
+  Crossed all;
+  while (t < end && all.through > 0.01F) {
+    const float step = std::max(28.0F, 0.010F * t);
+    const float height_m = t * up - kBase_m;
+    const Sample here = eroded_sample(t, t * north, t * east, height_m);
+    if (here.density <= 0.004F) {
+      t += 1.5F * step;
+      continue;
+    }
+    const float pass = std::exp(-kExtinction_per_m * here.density * step);
+    const float gain = all.through * (1 - pass);
+    all.light += gain * scattered(here, height_m / kDepth_m, phase);
+    all.reach_m += gain * t;
+    all.through *= pass;
+    t += step;
+  }
+  return all;
+}
+
+// The sample with its edges eroded by fine noise. At a large distance that noise is finer than the
+// steps, so it fades to its mean.
+Clouds::Sample Clouds::eroded_sample(float distance_m,
+                                     float north_m,
+                                     float east_m,
+                                     float height_m) const {
+  Sample here = sample(north_m, east_m, height_m / kDepth_m);
+  if (here.density > 0) {
+    const float fine = lerp(erosion(north_m, east_m, height_m), 0.5F, clamp01(distance_m / 15000));
+    here.density = clamp01((here.density - 1.05F * (1 - here.density) * (fine - 0.22F)) * 1.4F);
+  }
+  return here;
+}
+
+LinearRgb Clouds::seen_through(const Vector3& direction, const LinearRgb& behind) const {
+  const float up = static_cast<float>(-direction.z());
+  LinearRgb colour = behind;
+  if (cover_ <= 0 || up < 0.012F) return colour;
+  add_cirrus(direction, colour);
+  const Crossed clouds = crossed(direction, up);
+  if (clouds.through > 0.995F) return colour;
+  const float opaque = 1 - clouds.through;
+  const float clear = std::exp(-clouds.reach_m / opaque / kHaze_m);
+  const float kept = clear * smoothstep(0.012F, 0.05F, up);
+  return colour * (1 - opaque * kept) + clouds.light * kept;
+}
+
+// Streaks of ice, stretched along one wind direction.
+void Clouds::add_cirrus(const Vector3& direction, LinearRgb& colour) const {
+  const float up = static_cast<float>(-direction.z());
+  const float x = static_cast<float>(direction.x()) * kCirrus_m / up;
+  const float y = static_cast<float>(direction.y()) * kCirrus_m / up;
+  const float bend = 1800 * (fractal(x / 9000, y / 9000, 2, 256, seed_ + 21) - 0.5F);
+  const float along = 0.85F * x + 0.53F * y;
+  const float across = -0.53F * x + 0.85F * y + bend;
+  const float patches = fractal(x / 14000, y / 14000, 3, 256, seed_ + 22);
+  const float streaks = fractal(along / 6000, across / 1300, 5, 256, seed_ + 23);
+  const float amount = smoothstep(0.42F, 0.72F, patches) * smoothstep(0.30F, 0.95F, streaks);
+  const float kept = 0.34F * amount * smoothstep(0.03F, 0.2F, up);
+  colour += kept * (sky_.sunlight() * 0.82F + linear_rgb(0.05F, 0.06F, 0.08F) - colour).max(0.0F);
+}
+
+std::vector<float> Clouds::ground_shadow(int cells) const {
+  std::vector<float> shadow(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells),
+                            1.0F);
+  if (cover_ <= 0) return shadow;
+  const Vector3 sun = sky_.sun_in_world();
+  const float up = static_cast<float>(std::max(-sun.z(), 0.15));
+  const float shift_x = static_cast<float>(sun.x()) / up * kBase_m;
+  const float shift_y = static_cast<float>(sun.y()) / up * kBase_m;
+  const float cell_m = static_cast<float>(period_m()) / static_cast<float>(cells);
+  for (int y = 0; y < cells; ++y)
+    for (int x = 0; x < cells; ++x) {
+      const int i = floor_int((static_cast<float>(x) * cell_m + shift_x) / kCell_m);
+      const int j = floor_int((static_cast<float>(y) * cell_m + shift_y) / kCell_m);
+      const float quarter = voxels_[voxel_index(i, j, 0)].sunlit / 255.0F;
+      shadow[static_cast<std::size_t>(y * cells + x)] = 0.42F + 0.58F * quarter * quarter;
+    }
+  return shadow;
 }
 
 }  // namespace airtruth::synthetic

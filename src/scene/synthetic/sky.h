@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "foundation/geometry/transform.h"
 #include "scene/synthetic/noise.h"
 
@@ -25,5 +28,56 @@ class Sky {
 
 // The unit vector towards the sun, north-east-down.
 Vector3 sun_in_world(double azimuth_deg, double elevation_deg);
+
+// Fair-weather cumulus as a volume that repeats every 20 km and shadows itself from the sun, and
+// thin cirrus far above. The volume is sampled once, while the sky's panorama is drawn; the frames
+// use only its shadow on the ground.
+class Clouds {
+ public:
+  Clouds(const Sky& sky, double cover, std::uint32_t seed);
+
+  // The light of the sky in that direction with the clouds in front of it, from a point near the
+  // ground.
+  LinearRgb seen_through(const Vector3& direction_in_world, const LinearRgb& behind) const;
+
+  // Share of the sunlight that reaches the ground at each of cells x cells places; 1 is clear.
+  std::vector<float> ground_shadow(int cells) const;
+  static double period_m();
+
+ private:
+  struct Voxel {
+    std::uint8_t density = 0;
+    // exp(-optical depth towards the sun / 4).
+    std::uint8_t sunlit = 0;
+  };
+  struct Sample {
+    float density = 0;
+    float sunlit = 0;
+  };
+  // What a ray meets on its way through the clouds.
+  struct Crossed {
+    // Share of the light behind the clouds that passes.
+    float through = 1;
+    // Light that the clouds scatter into the ray.
+    LinearRgb light = LinearRgb::Zero();
+    // Distance of the clouds times their opacity, metres.
+    float reach_m = 0;
+  };
+  Crossed crossed(const Vector3& direction, float up) const;
+  void fill(double cover);
+  void light_up();
+  Sample sample(float north_m, float east_m, float height) const;
+  Sample eroded_sample(float distance_m, float north_m, float east_m, float height_m) const;
+  float erosion(float north_m, float east_m, float height_m) const;
+  LinearRgb scattered(const Sample& sample, float height, float phase) const;
+  void add_cirrus(const Vector3& direction, LinearRgb& colour) const;
+
+  const Sky& sky_;
+  std::uint32_t seed_;
+  double cover_;
+  std::vector<Voxel> voxels_;
+  std::vector<std::uint8_t> column_used_;
+  std::vector<float> detail_;
+};
 
 }  // namespace airtruth::synthetic
