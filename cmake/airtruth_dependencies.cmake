@@ -22,11 +22,8 @@ pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl gl)
 pkg_check_modules(yamlcpp REQUIRED IMPORTED_TARGET yaml-cpp)
 pkg_check_modules(geographiclib REQUIRED IMPORTED_TARGET geographiclib)
 pkg_check_modules(libcrypto REQUIRED IMPORTED_TARGET libcrypto)
-# Networks run on OpenCV's dnn, or on onnxruntime, which Debian has since 13 (libonnxruntime-dev).
-option(AIRTRUTH_ONNXRUNTIME "Run networks on onnxruntime" OFF)
-if(AIRTRUTH_ONNXRUNTIME)
-  pkg_check_modules(onnxruntime REQUIRED IMPORTED_TARGET libonnxruntime)
-endif()
+# Networks run on onnxruntime where the system has it (libonnxruntime-dev, from Debian 13 on), else on OpenCV's dnn.
+pkg_check_modules(onnxruntime IMPORTED_TARGET libonnxruntime)
 if(AIRTRUTH_TESTS)
   find_package(GTest REQUIRED)
 endif()

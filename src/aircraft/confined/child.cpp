@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "aircraft/ac3d/ac_file.h"
 #include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"
@@ -74,8 +76,9 @@ RawModel read_in_child(DiskFiles& files, const fs::path& file, const LoadOptions
   try {
     sandbox::Process reader(kReader, options.stop);
     reader.set_deadline(kReaderSeconds,
-                        "is not read within " + std::to_string(static_cast<int>(kReaderSeconds)) +
-                            " s; a model that is whole takes a fraction of that");
+                        fmt::format("is not read within {} s; a model that is whole takes a fraction "
+                                    "of that",
+                                    kReaderSeconds));
     const ReaderJob job{
         file.string(), files.shown_folder().string(), files.in_data_root().string(), options};
     reader.send(Message::kJob, bytes_of(job));

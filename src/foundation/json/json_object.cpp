@@ -40,7 +40,7 @@ std::string element(const std::string& key, std::size_t index) {
 // The value of a key that must be there, with what is expected in the message where it is not.
 const Json& required(const Json& object,
                      const std::string& key,
-                     const std::string& expected,
+                     std::string_view expected,
                      const std::string& place,
                      const Where& where) {
   const auto found = object.find(key);
