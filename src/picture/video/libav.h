@@ -12,6 +12,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,29 @@ std::string reason(int error);
 
 // Turns off libav's output to standard error: the library never prints.
 void keep_libav_quiet();
+
+// FFmpeg 5.1 (Debian 12) and 7.1 (Debian 13) name these two differently.
+
+inline bool is_key_frame(const AVFrame& frame) {
+#if LIBAVUTIL_VERSION_MAJOR >= 59
+  return (frame.flags & AV_FRAME_FLAG_KEY) != 0;
+#else
+  return frame.key_frame == 1;
+#endif
+}
+
+// Nine numbers, or nullptr where the stream has no display matrix.
+inline const std::int32_t* display_matrix_of(const AVStream& stream) {
+#if LIBAVFORMAT_VERSION_MAJOR >= 61
+  const AVCodecParameters& codec = *stream.codecpar;
+  const AVPacketSideData* data = av_packet_side_data_get(
+      codec.coded_side_data, codec.nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX);
+  const std::uint8_t* bytes = data == nullptr ? nullptr : data->data;
+#else
+  const std::uint8_t* bytes = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+#endif
+  return reinterpret_cast<const std::int32_t*>(bytes);
+}
 
 // How a pixel format of libav becomes a Picture.
 struct Layout {

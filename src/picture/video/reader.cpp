@@ -24,9 +24,8 @@ namespace {
 Rational rational(AVRational r) { return {r.num, r.den == 0 ? 1 : r.den}; }
 
 Orientation orientation_of_stream(const AVStream& stream) {
-  const std::uint8_t* matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
-  return matrix == nullptr ? Orientation{}
-                           : orientation_of(reinterpret_cast<const std::int32_t*>(matrix));
+  const std::int32_t* matrix = display_matrix_of(stream);
+  return matrix == nullptr ? Orientation{} : orientation_of(matrix);
 }
 
 image::Siting siting_of(AVChromaLocation location) {
@@ -313,7 +312,7 @@ Frame Reader::State::to_frame() {
   const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
   if (bad) {
     broken = true;
-  } else if (frame->key_frame == 1) {
+  } else if (is_key_frame(*frame)) {
     broken = false;
   }
   // Frames that depend on a damaged frame are damaged as well, up to the next key frame.
