@@ -139,7 +139,7 @@ TEST_F(EncounterTruth, TimesToAViolationCountDownToTheRecord) {
     const double end_s = violations[v].at("end_s");
     for (const annotation::Frame& frame : finished_->truth.frames) {
       const annotation::VolumeTruth& volume = frame.intruders[0].encounter->volumes.at(v);
-      EXPECT_EQ(volume.name, violations[v].at("volume"));
+      EXPECT_EQ(volume.name, violations[v].at("volume").get<std::string>());
       EXPECT_EQ(volume.inside, frame.time_s >= begin_s && frame.time_s <= end_s);
       ASSERT_EQ(volume.to_violation_s.has_value(), frame.time_s <= end_s);
       if (volume.to_violation_s) {
