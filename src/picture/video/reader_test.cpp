@@ -155,10 +155,26 @@ TEST_F(Video, PicturesAreReadInTheOrderOfTheirNamesWithGapsAndLongNumbers) {
   }
 }
 
+// The bytes of an mp4 with one track, which is shown turned clockwise: the track header's matrix
+// (ISO/IEC 14496-12, 8.3.2) has 16.16 fixed point numbers, highest byte first.
+std::string turned_clockwise(std::string mp4, int rotation_deg) {
+  constexpr std::size_t kMatrixAfterName = 44;
+  const std::size_t matrix = mp4.find("tkhd") + kMatrixAfterName;
+  const auto put = [&](std::size_t place, int value) {
+    for (std::size_t i = 0; i < 2; ++i)
+      mp4[matrix + 4 * place + i] = static_cast<char>(value < 0 ? 0xff : i * value);
+  };
+  const int cosine = rotation_deg == 180 ? -1 : 0;
+  const int sine = rotation_deg == 180 ? 0 : rotation_deg == 90 ? 1 : -1;
+  put(0, cosine), put(1, sine), put(3, -sine), put(4, cosine);
+  return mp4;
+}
+
 TEST_F(Video, RotationIsAppliedWithEverySampleKept) {
   ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p plain.mp4");
+  const std::string plain = read_file(folder_ / "plain.mp4");
   for (int rotation : {90, 180, 270}) {
-    ffmpeg("-i plain.mp4 -c copy -metadata:s:v rotate=" + std::to_string(rotation) + " turned.mp4");
+    write_file(folder_ / "turned.mp4", turned_clockwise(plain, rotation));
     Reader reader(folder_ / "turned.mp4");
     EXPECT_NE(reader.info().rotation_deg, 0);
     EXPECT_EQ(reader.info().width, rotation == 180 ? 64 : 48);
@@ -221,9 +237,9 @@ TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
 
 TEST_F(Video, TagsComeThrough) {
   ffmpeg(
-      "-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 -pix_fmt yuv420p -colorspace bt709 "
-      "-color_primaries bt709 "
-      "-color_trc bt709 -color_range pc tagged.mp4");
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -vf format=yuv420p,setparams="
+      "range=pc:colorspace=bt709:color_primaries=bt709:color_trc=bt709 -c:v libx264 -colorspace "
+      "bt709 -color_primaries bt709 -color_trc bt709 -color_range pc tagged.mp4");
   Reader reader(folder_ / "tagged.mp4");
   EXPECT_FALSE(reader.info().matrix_guessed);
   EXPECT_EQ(reader.info().colour.matrix, image::Matrix::kBt709);
