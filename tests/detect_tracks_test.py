@@ -41,17 +41,18 @@ def node(kind, inputs, output):
 
 
 def value(name, shape):
-    return message(1, name) + message(2, message(1, number(1, 1) + message(2, b"".join(message(1, number(1, n)) for n in shape))))
+    """A length of None is one that the network leaves open."""
+    lengths = [message(2, f"{name}{i}") if n is None else number(1, n) for i, n in enumerate(shape)]
+    return message(1, name) + message(2, message(1, number(1, 1) + message(2, b"".join(message(1, one) for one in lengths))))
 
 
 def brightness_model():
     """onnx.proto by hand: heat is the brightest sample of a cell; the offset is half a cell, and the size SIDE."""
-    rows, columns = HEIGHT // CELL, WIDTH // CELL
     nodes = [node("MaxPool", ["grey"], "heat"), node("Conv", ["grey", "zero", "half"], "offset"), node("Conv", ["grey", "zero", "side"], "size")]
     tensors = [floats("zero", (2, 1, CELL, CELL), [0] * (2 * CELL * CELL)), floats("half", (2,), [0.5, 0.5]), floats("side", (2,), [SIDE, SIDE])]
-    outputs = [value(name, (1, n, rows, columns)) for name, n in (("heat", 1), ("offset", 2), ("size", 2))]
+    outputs = [value(name, (1, n, None, None)) for name, n in (("heat", 1), ("offset", 2), ("size", 2))]
     graph = (b"".join(message(1, one) for one in nodes) + message(2, "graph") + b"".join(message(5, one) for one in tensors)
-             + message(11, value("grey", (1, 1, HEIGHT, WIDTH))) + b"".join(message(12, one) for one in outputs))
+             + message(11, value("grey", (1, 1, None, None))) + b"".join(message(12, one) for one in outputs))
     return number(1, 6) + message(7, graph) + message(8, message(1, "") + number(2, 11))
 
 

@@ -57,9 +57,14 @@ inline std::string node(const std::string& type,
   return bytes;
 }
 
+// A dimension that the network leaves open.
+inline constexpr std::int64_t kAnyLength = -1;
+
 inline std::string value(const std::string& name, const std::vector<std::int64_t>& shape) {
   std::string dimensions;
-  for (const std::int64_t length : shape) dimensions += message(1, number(1, length));
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    dimensions += message(
+        1, shape[i] == kAnyLength ? message(2, name + std::to_string(i)) : number(1, shape[i]));
   return message(1, name) + message(2, message(1, number(1, 1) + message(2, dimensions)));
 }
 
@@ -78,8 +83,8 @@ inline std::string model(const Graph& graph) {
 }
 
 // Cells of 4 px. Heat is the brightest sample of the cell, the offset is (0.25, 0.5), and the size
-// is exp(`log_size`) px on both sides. The input is 1 x 1 x height x width.
-inline std::string brightness_model(int height, int width, float log_size) {
+// is exp(`log_size`) px on both sides. The input is 1 x 1 x any height x any width.
+inline std::string brightness_model(float log_size) {
   const std::vector<std::string> stride = {ints("kernel_shape", {4, 4}), ints("strides", {4, 4})};
   Graph graph;
   graph.nodes = {node("MaxPool", {"grey"}, "heat", stride),
@@ -88,10 +93,10 @@ inline std::string brightness_model(int height, int width, float log_size) {
   graph.tensors = {floats("zero", {2, 1, 4, 4}, std::vector<float>(32, 0.0f)),
                    floats("offsets", {2}, {0.25f, 0.5f}),
                    floats("sizes", {2}, {log_size, log_size})};
-  graph.inputs = {value("grey", {1, 1, height, width})};
-  graph.outputs = {value("heat", {1, 1, height / 4, width / 4}),
-                   value("offset", {1, 2, height / 4, width / 4}),
-                   value("size", {1, 2, height / 4, width / 4})};
+  graph.inputs = {value("grey", {1, 1, kAnyLength, kAnyLength})};
+  graph.outputs = {value("heat", {1, 1, kAnyLength, kAnyLength}),
+                   value("offset", {1, 2, kAnyLength, kAnyLength}),
+                   value("size", {1, 2, kAnyLength, kAnyLength})};
   return model(graph);
 }
 

@@ -14,7 +14,7 @@
 #include "dataset/set_report/card.h"
 #include "dataset/set_report/portrait.h"
 #include "dataset/set_report/totals.h"
-#include "foundation/base/base64.h"
+#include "foundation/base/text.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"

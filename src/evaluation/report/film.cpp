@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/base64.h"
+#include "foundation/base/text.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"

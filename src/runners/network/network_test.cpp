@@ -80,8 +80,7 @@ class Networks : public testing::Test {
 // A bright pixel at (43, 22) lies in the cell of column 10 and row 5 of 4 px. Its centre is
 // (10.25 * 4, 5.5 * 4) = (41, 22) and its side exp(2) = 7.389 px.
 TEST_F(Networks, AHeatMapIsReadFromTheWholeFrame) {
-  const auto detector =
-      make(onnx::brightness_model(64, 96, 2), description(kWholeFrame, kHeatOutput));
+  const auto detector = make(onnx::brightness_model(2), description(kWholeFrame, kHeatOutput));
   image::Picture picture = black(93, 61);  // both sides are rounded up to a multiple of 8
   picture.planes[0].row(22)[43] = 204;
   const auto found = detect(*detector, picture);
@@ -107,7 +106,7 @@ TEST_F(Networks, TheNumberOfThreadsChangesNothing) {
   }
   const auto found = [&](int threads) {
     const auto detector =
-        make(onnx::brightness_model(64, 96, 2), description(kWholeFrame, kHeatOutput), threads);
+        make(onnx::brightness_model(2), description(kWholeFrame, kHeatOutput), threads);
     return detect(*detector, picture);
   };
   EXPECT_FALSE(found(1).empty());
@@ -115,7 +114,7 @@ TEST_F(Networks, TheNumberOfThreadsChangesNothing) {
 }
 
 TEST_F(Networks, TilesFindEachPointOnce) {
-  const auto detector = make(onnx::brightness_model(64, 64, 2),
+  const auto detector = make(onnx::brightness_model(2),
                              description(R"({"layout": "grey", "scale": 0.00392156862745098,
                                             "fit": "tiles", "width": 64, "height": 64,
                                             "overlap_px": 16})",
@@ -190,7 +189,7 @@ TEST_F(Networks, ALetterboxIsResizedAsItsDescriptionSays) {
 TEST_F(Networks, AFileThatIsNoNetworkIsOneLine) {
   const std::string json = description(kWholeFrame, kHeatOutput);
   EXPECT_THAT(fault("", json), HasSubstr("a.onnx: is empty"));
-  const std::string whole = onnx::brightness_model(64, 64, 2);
+  const std::string whole = onnx::brightness_model(2);
   for (const std::string& bytes : {std::string("PK\x03\x04 a picture, not a network"),
                                    std::string(5000, '\xff'),
                                    whole.substr(0, whole.size() / 2)}) {
@@ -203,7 +202,7 @@ TEST_F(Networks, AFileThatIsNoNetworkIsOneLine) {
 // Whatever a stranger's file does to the reader, the program only says so.
 TEST_F(Networks, CutAndChangedFilesNeverDoMoreThanFail) {
   const std::string json = description(kWholeFrame, kHeatOutput);
-  const std::string whole = onnx::brightness_model(64, 64, 2);
+  const std::string whole = onnx::brightness_model(2);
   std::uint32_t state = 1;
   const auto next = [&] { return (state = state * 1664525u + 1013904223u) >> 8; };
   for (int trial = 0; trial < 16; ++trial) {
@@ -217,7 +216,7 @@ TEST_F(Networks, CutAndChangedFilesNeverDoMoreThanFail) {
 }
 
 TEST_F(Networks, OutputsUnlikeTheDescriptionAreOneLine) {
-  const std::string whole = onnx::brightness_model(64, 64, 2);
+  const std::string whole = onnx::brightness_model(2);
   EXPECT_THAT(
       fault(whole,
             description(kWholeFrame,

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/base64.h"
+#include "foundation/base/text.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/image/colour.h"
