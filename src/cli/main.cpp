@@ -3,6 +3,7 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -12,6 +13,7 @@
 #include <malloc.h>
 
 #include "cli/commands.h"
+#include "cli/help_format.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 
@@ -131,6 +133,7 @@ int main(int argc, char** argv) {
   keep_memory();
   const cli::StopOnSignal signals;
   CLI::App app(kAbout, "airtruth");
+  app.formatter(std::make_shared<cli::HelpFormat>());
   app.set_version_flag("--version", std::string("airtruth ") + kVersion);
   app.require_subcommand(1);
   app.fallthrough();
