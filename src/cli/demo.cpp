@@ -17,18 +17,16 @@ namespace {
 
 struct DemoArguments {
   std::string out = "demo";
-  bool overwrite = false;
   demo::DemoOptions demo;
 };
 
 void demo(DemoArguments arguments, Context& context) {
   Console& console = context.console();
-  arguments.demo.overwrite = arguments.overwrite;
-  arguments.demo.stop = context.stop;
-  arguments.demo.warn = console.warn();
-  arguments.demo.progress = [&console](
-                                const std::string& stage, std::int64_t done, std::int64_t total) {
-    console.progress(stage, done, total);
+  pipeline::Options& run = arguments.demo.run;
+  run.stop = context.stop;
+  run.warn = console.warn();
+  run.progress = [&console](const pipeline::Progress& p) {
+    console.progress(p.stage, p.frames_done, p.frames_total);
   };
   const pipeline::Summary summary = demo::make_demo(arguments.out, arguments.demo);
   console.result(fmt::format("{}: {} frames, an intruder visible in {}",
@@ -49,7 +47,7 @@ void add_demo(CLI::App& app, Context& context) {
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();
   command->add_flag(
-      "--overwrite", arguments->overwrite, "Replace the folder's files where they exist");
+      "--overwrite", arguments->demo.run.overwrite, "Replace the folder's files where they exist");
   command->callback([arguments, &context] { demo(*arguments, context); });
 }
 

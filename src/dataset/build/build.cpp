@@ -96,6 +96,15 @@ class Work {
     }
   }
 
+  pipeline::Options run_options() const {
+    pipeline::Options options;
+    options.cache = folder_.cache();
+    options.shared = shared_;
+    options.stop = options_.stop;
+    options.warn = options_.warn;
+    return options;
+  }
+
   // Measures the motion and the camera of a background once for all the sequences over it.
   void measure(std::size_t i) {
     scene::Scene scene = catalogue::scene_over(catalogue_, i);
@@ -103,11 +112,7 @@ class Work {
     scene.background.mask = files_[i].mask;
     scene.background.first_frame = catalogue_.backgrounds[i].first_frame;
     if (needed_[i].value_or(0) > 0) scene.background.frame_count = *needed_[i];
-    pipeline::Options how;
-    how.cache = folder_.cache();
-    how.shared = shared_;
-    how.stop = options_.stop;
-    how.warn = options_.warn;
+    pipeline::Options how = run_options();
     const std::string& name = catalogue_.backgrounds[i].name;
     std::string stage = "measuring the motion of " + name;
     how.progress = [&](const pipeline::Progress& p) {
@@ -156,11 +161,8 @@ class Work {
   }
 
   void make(catalogue::Item& item) {
-    pipeline::Options how;
+    pipeline::Options how = run_options();
     how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
-    how.cache = folder_.cache();
-    how.shared = shared_;
-    how.stop = options_.stop;
     how.warn = [&](const std::string& message) {
       const std::lock_guard lock(mutex_);
       warn(options_.warn, item.name + ": " + message);

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -119,21 +121,25 @@ class Check {
     for (const std::string& what : recomposed.faults) fault(what);
   }
 
+  static std::string words_of(const annotation::Frame& frame,
+                              const annotation::Intruder& intruder) {
+    return fmt::format("frame {}, {}: ", frame.frame, intruder.id);
+  }
+
   void view(const annotation::Frame& frame,
             const annotation::Intruder& intruder,
             const lens::Lens& lens) {
     result_.in_view += annotation::is_in_view(frame, intruder, lens) ? 1 : 0;
     if (!annotation::lacks_box(frame, intruder, lens)) return;
     ++result_.in_view_without_box;
-    fault("frame " + std::to_string(frame.frame) + ", " + intruder.id +
-          ": in view by its position, and without a box");
+    fault(words_of(frame, intruder) + "in view by its position, and without a box");
   }
 
   void box(const annotation::Frame& frame,
            const annotation::Intruder& intruder,
            int width,
            int height) {
-    const std::string where = "frame " + std::to_string(frame.frame) + ", " + intruder.id + ": ";
+    const std::string where = words_of(frame, intruder);
     const bool visible = intruder.state == annotation::State::kVisible;
     if (visible != intruder.visible_box_px.has_value())
       return fault(where + (visible ? "visible without a box" : "a box, and not visible"));
@@ -152,7 +158,7 @@ class Check {
   void mask(const replay::Finished& finished,
             const annotation::Frame& frame,
             const annotation::Intruder& intruder) {
-    const std::string where = "frame " + std::to_string(frame.frame) + ", " + intruder.id + ": ";
+    const std::string where = words_of(frame, intruder);
     const auto mask =
         insertion::read_alpha_mask(finished.folder, finished.truth.lens, intruder.id, frame.frame);
     if (mask && intruder.state != annotation::State::kVisible)

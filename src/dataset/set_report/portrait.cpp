@@ -120,9 +120,6 @@ Portrait portrait_of(const labelled::LabelledSet& set,
     const scene::Scene& scene = *finished.scene;
     portrait.horizontal_fov_deg =
         setup::lens_of(scene.lens, {info.width, info.height}).horizontal_fov_deg();
-    portrait.sun_azimuth_deg = scene.light.sun_azimuth_deg;
-    portrait.sun_elevation_deg = scene.light.sun_elevation_deg;
-    portrait.motion_model = enum_name(scene.motion.model);
     portrait.scene = scene;
   }
   portrait.encounters = encounters_of(finished);

@@ -58,8 +58,6 @@ struct Portrait {
   int width = 0, height = 0;
   double duration_s = 0;
   std::optional<double> horizontal_fov_deg;
-  std::optional<double> sun_azimuth_deg, sun_elevation_deg;
-  std::string motion_model;
   std::optional<scene::Scene> scene;  // the effective scene; empty for an imported clip
   std::vector<Intruder> intruders;
   std::vector<Camera> camera;

@@ -130,32 +130,34 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
   const auto link = [folder = beside(page, portrait.folder)](const std::string& file) {
     return (folder / file).generic_string();
   };
-  return {{"name", portrait.facts.name},
-          {"background", fs::path(portrait.facts.background).filename().string()},
-          {"aircraft", portrait.facts.categories},
-          {"frames", portrait.facts.frames},
-          {"seconds", rounded(portrait.duration_s, 0.01)},
-          {"width", portrait.width},
-          {"height", portrait.height},
-          {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
-          {"sun_azimuth_deg", rounded(portrait.sun_azimuth_deg, 0.1)},
-          {"sun_elevation_deg", rounded(portrait.sun_elevation_deg, 0.1)},
-          {"motion_model", portrait.motion_model},
-          {"visible", portrait.frames_by_state[0]},
-          {"hidden", portrait.frames_by_state[1]},
-          {"contrast", mean_contrast(portrait.film)},
-          {"loop_frames", portrait.film.loop_frames},
-          {"loop_side", portrait.film.loop_side},
-          {"stills", film_json(portrait.film)},
-          {"poster", portrait.film.poster},
-          {"ids", portrait.ids},
-          {"video",
-           plays_in_browsers(portrait.video) ? Json(beside(page, portrait.video).generic_string())
-                                             : Json()},
-          {"intruders", column(portrait.intruders, series_of)},
-          {"camera", camera_of(portrait)},
-          {"encounters", encounters_json(portrait)},
-          {"files", column(portrait.files, link)}};
+  const auto& scene = portrait.scene;
+  return {
+      {"name", portrait.facts.name},
+      {"background", fs::path(portrait.facts.background).filename().string()},
+      {"aircraft", portrait.facts.categories},
+      {"frames", portrait.facts.frames},
+      {"seconds", rounded(portrait.duration_s, 0.01)},
+      {"width", portrait.width},
+      {"height", portrait.height},
+      {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
+      {"sun_azimuth_deg", scene ? Json(rounded(scene->light.sun_azimuth_deg, 0.1)) : Json()},
+      {"sun_elevation_deg", scene ? Json(rounded(scene->light.sun_elevation_deg, 0.1)) : Json()},
+      {"motion_model", scene ? enum_name(scene->motion.model) : ""},
+      {"visible", portrait.frames_by_state[0]},
+      {"hidden", portrait.frames_by_state[1]},
+      {"contrast", mean_contrast(portrait.film)},
+      {"loop_frames", portrait.film.loop_frames},
+      {"loop_side", portrait.film.loop_side},
+      {"stills", film_json(portrait.film)},
+      {"poster", portrait.film.poster},
+      {"ids", portrait.ids},
+      {"video",
+       plays_in_browsers(portrait.video) ? Json(beside(page, portrait.video).generic_string())
+                                         : Json()},
+      {"intruders", column(portrait.intruders, series_of)},
+      {"camera", camera_of(portrait)},
+      {"encounters", encounters_json(portrait)},
+      {"files", column(portrait.files, link)}};
 }
 
 // The sequences of a set, and the counts over them.

@@ -81,43 +81,36 @@ std::string scene_text(const synthetic::FlightOptions& flight, std::uint64_t see
   return {text, static_cast<std::size_t>(length)};
 }
 
-std::function<void(std::int64_t, std::int64_t)> staged(const DemoOptions& options,
-                                                       const std::string& stage) {
-  if (!options.progress) return {};
-  return [&options, stage](std::int64_t done, std::int64_t total) {
-    options.progress(stage, done, total);
+std::function<void(std::int64_t, std::int64_t)> staged(const pipeline::Options& run,
+                                                       const char* stage) {
+  if (!run.progress) return {};
+  return [&run, stage](std::int64_t done, std::int64_t total) {
+    run.progress({done, total, stage});
   };
 }
 
 }  // namespace
 
 pipeline::Summary make_demo(const std::filesystem::path& out, const DemoOptions& options) {
-  refuse_existing(out / "demo", options.overwrite);
+  const pipeline::Options& run = options.run;
+  refuse_existing(out / "demo", run.overwrite);
   std::error_code failed;
   fs::create_directories(out, failed);
   if (failed) throw Error("cannot create: " + failed.message(), {out.string()});
   const synthetic::Flight flight(flight_options(options));
   VirtualFlightOptions how;
-  how.stop = options.stop;
-  how.progress = staged(options, "flying");
+  how.stop = run.stop;
+  how.progress = staged(run, "flying");
   write_flight(flight, out / "flight.mp4", how);
   write_file(out / "flight.csv", synthetic::csv_from_flight(flight));
   video::write_still(out / "own_aircraft.png", insertion::picture_of(flight.own_aircraft()));
   write_file(out / "demo.toml", scene_text(flight.options(), options.seed));
-  pipeline::Options render_options;
-  render_options.overwrite = options.overwrite;
-  render_options.warn = options.warn;
-  render_options.stop = options.stop;
-  const auto rendering = staged(options, "rendering");
-  render_options.progress = [rendering](const pipeline::Progress& p) {
-    if (rendering) rendering(p.frames_done, p.frames_total);
-  };
   const pipeline::Summary summary =
-      pipeline::render(scene::read_scene(out / "demo.toml"), out, render_options);
+      pipeline::render(scene::read_scene(out / "demo.toml"), out, run);
   replay::OverlayOptions overlay;
   overlay.overwrite = true;
-  overlay.stop = options.stop;
-  overlay.progress = staged(options, "overlay");
+  overlay.stop = run.stop;
+  overlay.progress = staged(run, "overlay");
   replay::write_overlay(replay::open_finished(summary.folder), out / "overlay.mp4", overlay);
   return summary;
 }

@@ -3,9 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <stop_token>
-#include <string>
 
 #include "sequence/pipeline/render.h"
 
@@ -14,10 +11,8 @@ namespace airtruth::demo {
 struct DemoOptions {
   std::uint64_t seed = 1;
   int frame_count = 322;
-  bool overwrite = false;
-  std::stop_token stop;
-  Warn warn;
-  std::function<void(const std::string& stage, std::int64_t done, std::int64_t total)> progress;
+  // Of the run; its progress also tells of the flight and the overlay.
+  pipeline::Options run;
 };
 
 // Makes <out>/ from this program and the installed aircraft alone: flight.mp4 (a virtual flight),

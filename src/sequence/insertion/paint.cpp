@@ -40,11 +40,7 @@ image::Layer through_air_and_lens(image::Layer layer,
 
 class Matte : public Painter {
  public:
-  Matte(const scene::Scene& scene,
-        const setup::World& world,
-        const image::Mask* mask,
-        std::stop_token stop)
-      : Painter(scene, world, mask, std::move(stop)) {}
+  using Painter::Painter;
 
   bool is_in_order() const override { return setup::has_codec(scene_.camera_model); }
 
@@ -68,6 +64,55 @@ class Matte : public Painter {
  private:
   std::optional<FrameCoder> coder_;
 };
+
+bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
+  if (a.planes[0].row(y)[x] != b.planes[0].row(y)[x]) return true;
+  if (a.plane_count == 1) return false;
+  const int cx = x >> image::log2_chroma_width(a.colour.chroma);
+  const int cy = y >> image::log2_chroma_height(a.colour.chroma);
+  return a.planes[1].row(cy)[cx] != b.planes[1].row(cy)[cx] ||
+         a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
+}
+
+void add_pixel(composite::Visible& visible, int x, int y) {
+  const PixelBox pixel{x, y, 1, 1};
+  visible.box = visible.box ? bounds(*visible.box, pixel) : pixel;
+  ++visible.pixels;
+}
+
+// The changed pixels, divided among the intruders by their geometry.
+std::vector<composite::Visible> changed(const image::Picture& before,
+                                        const image::Picture& after,
+                                        const image::Layer& layer,
+                                        const setup::Moment& moment,
+                                        const image::Mask* own_aircraft) {
+  // Reach of the Lanczos kernel: its 8x8 samples spread an edge by four pixels.
+  constexpr double kLanczosReachPx = 5;
+  std::vector<composite::Visible> visible(moment.search.size());
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    if (!moment.search[i]) continue;
+    const Box& box = *moment.search[i];
+    const int x1 =
+        std::min(after.width, static_cast<int>(std::ceil(box.right() + kLanczosReachPx)));
+    const int y1 =
+        std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
+    for (int y = std::max(0, static_cast<int>(box.y - kLanczosReachPx)); y < y1; ++y) {
+      for (int x = std::max(0, static_cast<int>(box.x - kLanczosReachPx)); x < x1; ++x)
+        if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
+    }
+    if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
+    visible[i].covered = composite::covered_box(layer, i, own_aircraft);
+    for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
+      for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
+        const double coverage = layer.coverage[i][layer.index(x, y)];
+        visible[i].alpha_before_mask_px += coverage;
+        if (own_aircraft == nullptr || own_aircraft->is_free(x, y))
+          visible[i].alpha_sum_px += coverage;
+      }
+    }
+  }
+  return visible;
+}
 
 class ChromaKey : public Painter {
  public:
@@ -103,64 +148,12 @@ class ChromaKey : public Painter {
     const image::Picture before = picture.clone();
     composite::composite_chroma_key(
         picture, virtual_image, moment.sight.frame_from_nominal, {.own_aircraft = mask_});
-    painted.visible = changed(before, picture, painted.layer, moment);
+    painted.visible = changed(before, picture, painted.layer, moment, mask_);
   }
 
  private:
-  // The changed pixels, divided among the intruders by their geometry.
-  std::vector<composite::Visible> changed(const image::Picture& before,
-                                          const image::Picture& after,
-                                          const image::Layer& layer,
-                                          const setup::Moment& moment) const;
-
   std::unique_ptr<backdrop::Backdrop> backdrop_;
 };
-
-bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
-  if (a.planes[0].row(y)[x] != b.planes[0].row(y)[x]) return true;
-  if (a.plane_count == 1) return false;
-  const int cx = x >> image::log2_chroma_width(a.colour.chroma);
-  const int cy = y >> image::log2_chroma_height(a.colour.chroma);
-  return a.planes[1].row(cy)[cx] != b.planes[1].row(cy)[cx] ||
-         a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
-}
-
-void add_pixel(composite::Visible& visible, int x, int y) {
-  const PixelBox pixel{x, y, 1, 1};
-  visible.box = visible.box ? bounds(*visible.box, pixel) : pixel;
-  ++visible.pixels;
-}
-
-std::vector<composite::Visible> ChromaKey::changed(const image::Picture& before,
-                                                   const image::Picture& after,
-                                                   const image::Layer& layer,
-                                                   const setup::Moment& moment) const {
-  // Reach of the Lanczos kernel: its 8x8 samples spread an edge by four pixels.
-  constexpr double kLanczosReachPx = 5;
-  std::vector<composite::Visible> visible(world_.actors.size());
-  for (std::size_t i = 0; i < visible.size(); ++i) {
-    if (!moment.search[i]) continue;
-    const Box& box = *moment.search[i];
-    const int x1 =
-        std::min(after.width, static_cast<int>(std::ceil(box.right() + kLanczosReachPx)));
-    const int y1 =
-        std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
-    for (int y = std::max(0, static_cast<int>(box.y - kLanczosReachPx)); y < y1; ++y) {
-      for (int x = std::max(0, static_cast<int>(box.x - kLanczosReachPx)); x < x1; ++x)
-        if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
-    }
-    if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
-    visible[i].covered = composite::covered_box(layer, i, mask_);
-    for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
-      for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
-        const double coverage = layer.coverage[i][layer.index(x, y)];
-        visible[i].alpha_before_mask_px += coverage;
-        if (mask_ == nullptr || mask_->is_free(x, y)) visible[i].alpha_sum_px += coverage;
-      }
-    }
-  }
-  return visible;
-}
 
 }  // namespace
 

@@ -28,6 +28,11 @@ struct Painted {
 
 class Painter {
  public:
+  Painter(const scene::Scene& scene,
+          const setup::World& world,
+          const image::Mask* mask,
+          std::stop_token stop)
+      : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
   virtual ~Painter() = default;
   // Renders the layer of a moment. matte: in any thread and order; chroma-key: in one thread.
   Painted draw(const setup::Moment& moment, const Ambient& ambient) const;
@@ -45,12 +50,6 @@ class Painter {
   Painted paint(image::Picture& picture, const setup::Moment& moment, const Ambient& ambient);
 
  protected:
-  Painter(const scene::Scene& scene,
-          const setup::World& world,
-          const image::Mask* mask,
-          std::stop_token stop)
-      : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
-
   const scene::Scene& scene_;
   const setup::World& world_;
   const image::Mask* mask_;

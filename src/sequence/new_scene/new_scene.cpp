@@ -15,6 +15,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/metadata.h"
+#include "picture/video/numbered_frames.h"
 #include "picture/video/reader.h"
 #include "sequence/new_scene/first_encounter.h"
 #include "sequence/new_scene/lens_hint.h"
@@ -209,15 +210,6 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
       });
 }
 
-image::Picture picture_at(const fs::path& video, std::int64_t frame) {
-  video::ReaderOptions options;
-  options.first_frame = frame;
-  options.frame_count = 1;
-  auto found = video::Reader(video, options).next();
-  if (!found) throw Error("holds no frame", {video.string()});
-  return std::move(found->picture);
-}
-
 // Of a video with a log of its own, whose clock begins with the video, the whole.
 Part part_of(const fs::path& video,
              const video::StreamInfo& info,
@@ -239,7 +231,10 @@ Part part_of(const fs::path& video,
     for (motion::FrameMotion& frame : part.motion)
       if (frame.rotation) frame.rotation = *frame.rotation * reference.conjugate();
   }
-  part.attitude = attitude_in(picture_at(video, part.first_frame), lens);
+  video::NumberedFrames frames(video, {});
+  const image::Picture* first = frames.at(part.first_frame);
+  if (first == nullptr) throw Error("holds no frame", {video.string()});
+  part.attitude = attitude_in(*first, lens);
   return part;
 }
 
