@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Includes go strictly downward: src/LAYERS gives each module its rank, and this test reads every
-// include.
+// The house plan of src/: includes go strictly downward (src/LAYERS gives each module its rank),
+// and modules are small, named as their folders, with a header for each source.
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -146,6 +146,92 @@ TEST(Layers, IncludesGoStrictlyDownward) {
     }
   }
   EXPECT_GT(checked, 1000);
+}
+
+// Every .h and .cpp of src/, tests included, relative to it.
+std::vector<fs::path> all_sources() {
+  std::vector<fs::path> result;
+  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file() && (name.ends_with(".h") || name.ends_with(".cpp")))
+      result.push_back(fs::relative(entry.path(), kSource));
+  }
+  return result;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(kSource / path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(Modules, HaveAtMost25Files) {
+  // Modules that are still larger may not grow.
+  const std::map<std::string, int> larger = {
+      {"cli", 32}, {"labels/exchange", 26}, {"picture/render", 76}};
+  std::map<std::string, int> files;
+  for (const fs::path& path : all_sources()) ++files[module_of(path)];
+  for (const auto& [module, count] : files) {
+    const auto known = larger.find(module);
+    EXPECT_LE(count, known == larger.end() ? 25 : known->second) << module;
+  }
+}
+
+// What everything speaks in, and what implements the public library, is in `airtruth` itself. The
+// modules of `aircraft` and `encounter` still have the namespace of their wing.
+std::string expected_namespace(const std::string& module) {
+  const std::set<std::string> in_airtruth = {"foundation/base",
+                                             "foundation/geometry",
+                                             "foundation/json",
+                                             "library/pictures",
+                                             "library/records"};
+  const std::size_t slash = module.find('/');
+  const std::string wing = module.substr(0, slash);
+  if (in_airtruth.contains(module)) return "";
+  if (module != "aircraft/model_reader" && (wing == "aircraft" || wing == "encounter")) return wing;
+  return module.substr(slash + 1);
+}
+
+// A file may add to a namespace of a public header, or to that of a template that it specialises.
+TEST(Modules, HaveTheNamespaceOfTheirFolder) {
+  const std::regex opened(R"re(\nnamespace airtruth(::([a-z_0-9:]+))? \{)re");
+  for (const fs::path& path : all_sources()) {
+    const std::string expected = expected_namespace(module_of(path));
+    const std::string text = text_of(path);
+    std::set<std::string> names;
+    for (std::sregex_iterator match(text.begin(), text.end(), opened), end; match != end; ++match)
+      names.insert((*match)[2].str());
+    const bool implements_public_header = names.contains("evaluation");
+    EXPECT_TRUE(names.empty() || names.contains(expected) || implements_public_header)
+        << path << " has namespace " << *names.begin() << "; expected " << expected;
+  }
+}
+
+// Sources of these modules are the implementations of one interface, which one header declares: a
+// command, a format, a method.
+TEST(Modules, HaveAHeaderForEachSource) {
+  const std::map<std::string, std::string> interfaces = {{"cli", "commands.h"},
+                                                         {"labels/exchange", "parts.h"},
+                                                         {"scene/flight_log", "formats.h"},
+                                                         {"scene/scene", "scene.h"},
+                                                         {"scene/trajectory", "path"},
+                                                         {"show/drawing", "pictures.h"},
+                                                         {"runners/network", "inference.h"}};
+  const std::regex entry_point(R"re(\n(int main\(|extern "C"))re");
+  for (const fs::path& path : all_sources()) {
+    if (path.extension() != ".cpp" || !is_source(path)) continue;
+    if (module_of(path) == "picture/render") continue;  // its classes are still spread over sources
+    fs::path header = path;
+    header.replace_extension(".h");
+    if (fs::exists(kSource / header)) continue;
+    if (fs::exists(kSource / "../include/airtruth" / header.filename())) continue;
+    if (std::regex_search(text_of(path), entry_point)) continue;
+    const auto interface = interfaces.find(module_of(path));
+    EXPECT_TRUE(interface != interfaces.end() &&
+                text_of(path).find(interface->first + "/" + interface->second) != std::string::npos)
+        << path << " has no header of its name";
+  }
 }
 
 // What a user of the library includes brings nothing else along.

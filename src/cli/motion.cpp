@@ -133,10 +133,11 @@ void measure(const MotionArguments& arguments, Context& context) {
             : motion::within_reach(std::move(all), info.width, info.height);
   write_file(arguments.out, motion::csv_from_motion(all));
   if (!arguments.plot.empty())
-    video::write_still(arguments.plot,
-                       plot::picture_of({.plots = motion::plots_of(all, info.width, info.height),
-                                         .height = 12,
-                                         .legend = plot::Legend::kAbove}));
+    video::write_still(
+        arguments.plot,
+        plot::picture_of({.plots = motion_plot::plots_of(all, info.width, info.height),
+                          .height = 12,
+                          .legend = plot::Legend::kAbove}));
   if (!arguments.stabilised.empty()) stabilise(arguments, all, lens, context);
   report_frames(all, arguments.out, console);
 }

@@ -8,9 +8,11 @@
 
 #include "foundation/geometry/within_frame.h"
 
-namespace airtruth::motion {
+namespace airtruth::motion_plot {
 namespace {
 
+using motion::FrameMotion;
+using motion::State;
 using plot::Plot;
 using plot::Series;
 
@@ -152,4 +154,4 @@ std::vector<Plot> plots_of(const std::vector<FrameMotion>& motion, int width, in
   return plots;
 }
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::motion_plot

@@ -6,7 +6,7 @@
 #include "camera/motion/motion.h"
 #include "show/plot/plot.h"
 
-namespace airtruth::motion {
+namespace airtruth::motion_plot {
 
 // The motion of a clip over its frames, as four plots: how far the centre of the picture moved
 // (px), how far the picture turned (degrees), the rms of the inliers (px), and their number. If the
@@ -16,6 +16,8 @@ namespace airtruth::motion {
 // The axis of a plot holds 0 and the middle 98 % of the values, so that a single value far off does
 // not press the others flat. Values beyond the axis are drawn at its end as triangles, and the
 // title says how many they are.
-std::vector<plot::Plot> plots_of(const std::vector<FrameMotion>& motion, int width, int height);
+std::vector<plot::Plot> plots_of(const std::vector<motion::FrameMotion>& frames,
+                                 int width,
+                                 int height);
 
-}  // namespace airtruth::motion
+}  // namespace airtruth::motion_plot

@@ -5,8 +5,11 @@
 
 #include <gmock/gmock.h>
 
-namespace airtruth::motion {
+namespace airtruth::motion_plot {
 namespace {
+
+using motion::FrameMotion;
+using motion::State;
 
 constexpr int kWidth = 1280, kHeight = 960;
 
@@ -56,4 +59,4 @@ TEST(MotionPlot, LineFollowsTheCentre) {
 }
 
 }  // namespace
-}  // namespace airtruth::motion
+}  // namespace airtruth::motion_plot
