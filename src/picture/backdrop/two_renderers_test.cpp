@@ -12,7 +12,7 @@
 #include "picture/backdrop/backdrop.h"
 #include "picture/render/renderer.h"
 
-namespace airtruth::backdrop {
+namespace airtruth {
 namespace {
 
 constexpr int kWidth = 160;
@@ -263,4 +263,4 @@ INSTANTIATE_TEST_SUITE_P(Liveries,
                          testing::Values("738/738-Ryanair", "c172/csna"));
 
 }  // namespace
-}  // namespace airtruth::backdrop
+}  // namespace airtruth
