@@ -9,8 +9,8 @@
 
 #include "foundation/base/error.h"
 #include "runners/network/model_description.h"
-#include "runners/network/network_output.h"
 #include "runners/network/network_child.h"
+#include "runners/network/network_output.h"
 
 namespace {
 

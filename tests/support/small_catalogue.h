@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The catalogue of the tests of data sets: four sequences of eight small frames, coded without loss.
+// The catalogue of the tests of data sets: four sequences of eight small frames, coded without
+// loss.
 namespace airtruth::test_support {
 
 constexpr const char* kCatalogue = R"(

@@ -75,10 +75,11 @@ fs::path model_reader_program() { return sandbox::path_of(kReader); }
 RawModel read_in_child(DiskFiles& files, const fs::path& file, const LoadOptions& options) {
   try {
     sandbox::Process reader(kReader, options.stop);
-    reader.set_deadline(kReaderSeconds,
-                        fmt::format("is not read within {} s; a model that is whole takes a fraction "
-                                    "of that",
-                                    kReaderSeconds));
+    reader.set_deadline(
+        kReaderSeconds,
+        fmt::format("is not read within {} s; a model that is whole takes a fraction "
+                    "of that",
+                    kReaderSeconds));
     const ReaderJob job{
         file.string(), files.shown_folder().string(), files.in_data_root().string(), options};
     reader.send(Message::kJob, bytes_of(job));

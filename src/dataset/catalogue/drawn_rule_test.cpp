@@ -115,7 +115,8 @@ TEST(DrawnPath, ATrajectoryMayBeAnEncounter) {
 // A camera that hovers is never passed sideways by what crosses before it: the draw is counted.
 TEST(DrawnPath, ThePlanCountsDrawsThatNoPathFulfils) {
   const build::Plan plan = build::plan_of(
-      catalogue_with_random("[random.encounter]\ncpa_right_m = 50\ncourse_deg = { any_of = [90, 180] }\n"),
+      catalogue_with_random(
+          "[random.encounter]\ncpa_right_m = 50\ncourse_deg = { any_of = [90, 180] }\n"),
       {},
       {});
   EXPECT_NEAR(double(plan.not_flyable), 200, 40);

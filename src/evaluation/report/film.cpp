@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/text.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
 #include "show/drawing/thumbnails.h"

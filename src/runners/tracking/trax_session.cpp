@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/text.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
 #include "runners/results/results_folder.h"

@@ -9,10 +9,10 @@
 #include "foundation/base/error.h"
 #include "labels/annotation/truth.h"
 #include "sequence/demo/virtual_flight.h"
-#include "sequence/preview/rows.h"
-#include "sequence/setup/moment.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
+#include "sequence/preview/rows.h"
+#include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
 #include "support/temporary_folder.h"
 
