@@ -38,6 +38,12 @@ bool matches(std::string_view pattern, std::string_view name, LetterCase letter_
   return p == pattern.size();
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
 bool contains_ignoring_case(std::string_view text, std::string_view part) {
   return std::search(text.begin(), text.end(), part.begin(), part.end(), [](char a, char b) {
            return same_letter(a, b, LetterCase::kIgnored);
