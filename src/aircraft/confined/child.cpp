@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <string>
 
-#include "aircraft/ac3d/ac_file.h"
 #include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"
 #include "foundation/sandbox/sandbox.h"
