@@ -47,7 +47,7 @@ constexpr double kPlainZero = 0;
 using Places = std::vector<std::size_t>;
 
 Places columns_of(const std::vector<std::string_view>& headings, const Where& where) {
-  const Places places = places_of(kNames, {headings.begin(), headings.end()}, where);
+  const Places places = airtruth::places_of(kNames, {headings.begin(), headings.end()}, where);
   const auto is_there = [&](Column column) { return places[column] != kNoColumn; };
   const bool has_velocity = is_there(kNorthSpeed) || is_there(kEastSpeed) || is_there(kDownSpeed);
   for (std::size_t column = 0; column < kColumns; ++column) {
