@@ -85,8 +85,7 @@ void draw_sheet(const std::string& filter,
   if (names.empty()) throw Error(nothing_like(filter));
   for (const std::string& name : names) {
     if (context.stop.stop_requested()) throw Interrupted();
-    tiles.push_back(
-        {type_of(name), demo::aircraft_tile(aircraft::load_aircraft(name, load, {}))});
+    tiles.push_back({type_of(name), demo::aircraft_tile(aircraft::load_aircraft(name, load, {}))});
   }
   video::write_still(
       out, drawing::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
