@@ -71,6 +71,24 @@ bool is_source(const fs::path& path) {
   return (name.ends_with(".h") || name.ends_with(".cpp")) && !name.ends_with("_test.cpp");
 }
 
+// Every .h and .cpp of src/, tests included, relative to it.
+std::vector<fs::path> all_sources() {
+  std::vector<fs::path> result;
+  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.is_regular_file() && (name.ends_with(".h") || name.ends_with(".cpp")))
+      result.push_back(fs::relative(entry.path(), kSource));
+  }
+  return result;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(kSource / path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
 // "wing/module" of every row of the table in docs/architecture.md, whose first column is empty
 // where the wing is that of the row above.
 std::vector<std::string> described_modules() {
@@ -114,10 +132,9 @@ TEST(Layers, ArchitectureDescribesTheSameModules) {
 
 TEST(Layers, EveryModuleHasARank) {
   const auto rank_of = ranks();
-  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
-    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
-    const std::string module = module_of(fs::relative(entry.path(), kSource));
-    EXPECT_TRUE(rank_of.contains(module)) << entry.path();
+  for (const fs::path& path : all_sources()) {
+    if (!is_source(path)) continue;
+    EXPECT_TRUE(rank_of.contains(module_of(path))) << path;
   }
 }
 
@@ -126,11 +143,11 @@ TEST(Layers, IncludesGoStrictlyDownward) {
   ASSERT_FALSE(rank_of.empty());
   const std::regex include(R"re(^\s*#\s*include\s+"([a-z_0-9/]+\.h)")re");
   int checked = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
-    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
-    const std::string module = module_of(fs::relative(entry.path(), kSource));
-    ASSERT_TRUE(rank_of.contains(module)) << entry.path();
-    std::ifstream file(entry.path());
+  for (const fs::path& path : all_sources()) {
+    if (!is_source(path)) continue;
+    const std::string module = module_of(path);
+    ASSERT_TRUE(rank_of.contains(module)) << path;
+    std::ifstream file(kSource / path);
     int number = 0;
     for (std::string line; std::getline(file, line);) {
       ++number;
@@ -138,32 +155,13 @@ TEST(Layers, IncludesGoStrictlyDownward) {
       if (!std::regex_search(line, match, include)) continue;
       const std::string other = module_of(match[1].str());
       ++checked;
-      ASSERT_TRUE(rank_of.contains(other))
-          << entry.path() << ":" << number << ": unknown module " << other;
+      ASSERT_TRUE(rank_of.contains(other)) << path << ":" << number << ": unknown module " << other;
       if (other == module) continue;
       EXPECT_GT(rank_of.at(module), rank_of.at(other))
-          << entry.path() << ":" << number << " includes " << match[1];
+          << path << ":" << number << " includes " << match[1];
     }
   }
   EXPECT_GT(checked, 1000);
-}
-
-// Every .h and .cpp of src/, tests included, relative to it.
-std::vector<fs::path> all_sources() {
-  std::vector<fs::path> result;
-  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
-    const std::string name = entry.path().filename().string();
-    if (entry.is_regular_file() && (name.ends_with(".h") || name.ends_with(".cpp")))
-      result.push_back(fs::relative(entry.path(), kSource));
-  }
-  return result;
-}
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(kSource / path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 TEST(Modules, HaveAtMost25Files) {
@@ -257,12 +255,9 @@ TEST(Layers, PublicHeadersIncludeOnlyEachOtherAndTheStandardLibrary) {
 // nothing.
 TEST(Layers, NoSourceReadsFilesThroughOpenSceneGraph) {
   int checked = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
-    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
-    std::ifstream file(entry.path());
-    std::ostringstream text;
-    text << file.rdbuf();
-    EXPECT_EQ(text.str().find("<osgDB"), std::string::npos) << entry.path();
+  for (const fs::path& path : all_sources()) {
+    if (!is_source(path)) continue;
+    EXPECT_EQ(text_of(path).find("<osgDB"), std::string::npos) << path;
     ++checked;
   }
   EXPECT_GT(checked, 100);

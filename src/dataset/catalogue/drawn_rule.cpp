@@ -29,7 +29,7 @@ std::optional<Range> range_or_type(const TableReader& table,
   return maybe_range(table, key, limits);
 }
 
-// The aircraft that match the patterns, grouped by the folder of their name, which is their type.
+// Says that a pattern fits no aircraft, and what would.
 std::string no_aircraft_fits(const std::string& pattern) {
   const std::string text = "no aircraft fits '" + pattern + "'";
   const std::string wider = "*" + pattern + "*";
@@ -246,6 +246,7 @@ void read_place(const TableReader& table, MeetingPlace& place) {
   read_range(table, "heading_deg", scene::kTurn, place.heading_deg);
 }
 
+// The type of an aircraft is the folder of its name.
 std::vector<AircraftType> types_in(const TableReader& table) {
   const auto patterns = table.texts("aircraft");
   if (!patterns)

@@ -466,10 +466,9 @@ std::string curves_csv(const Detectors& detectors) {
   std::string text = report::csv_of("detector,curve,score,x,y,*_95", {}, kNumber);
   for (const Json& detector : detectors) {
     const auto add = [&](const char* curve, const Json& points, const char* xy) {
-      for (Json row : points) {
-        row.update({{"detector", detector["name"]}, {"curve", curve}});
-        text += report::csv_rows(std::string("detector,curve,score,") + xy, {row}, kNumber);
-      }
+      std::vector<Json> rows(points.begin(), points.end());
+      for (Json& row : rows) row.update({{"detector", detector["name"]}, {"curve", curve}});
+      text += report::csv_rows(std::string("detector,curve,score,") + xy, rows, kNumber);
     };
     const Json& precision = detector["average_precision"];
     for (const auto& [name, key] : {std::pair{"precision_by_recall_overlap_50", "curve_50"},

@@ -13,10 +13,23 @@ constexpr double kLeastBoxSidePx = 1;
 // Each halves the interval, which begins at an object's blurred side: to less than a hundredth.
 constexpr int kHalvings = 8;
 
+// Memory that one region after the other uses.
+struct Scratch {
+  std::vector<char> seen;
+  std::vector<cv::Point> open;
+};
+
 class Grower {
  public:
-  Grower(const Level& level, const cv::Point& seed, int reach, const Excess& excess, double least)
-      : level_(level),
+  Grower(const Level& level,
+         const cv::Point& seed,
+         int reach,
+         const Excess& excess,
+         double least,
+         Scratch& scratch)
+      : seen_(scratch.seen),
+        open_(scratch.open),
+        level_(level),
         seed_(seed),
         reach_(reach),
         side_(2 * reach + 1),
@@ -25,21 +38,20 @@ class Grower {
         hides_(!level.hidden.empty()) {}
 
   std::optional<Region> grown() {
-    static thread_local std::vector<cv::Point> open;
     seen_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
-    open.assign(1, seed_);
+    open_.assign(1, seed_);
     mark(seed_);
     region_ = {{}, double(seed_.x), double(seed_.y), double(seed_.x), double(seed_.y)};
     cv::Point low = seed_, high = seed_;
-    while (!open.empty()) {
-      const cv::Point at = open.back();
-      open.pop_back();
+    while (!open_.empty()) {
+      const cv::Point at = open_.back();
+      open_.pop_back();
       low = {std::min(low.x, at.x), std::min(low.y, at.y)};
       high = {std::max(high.x, at.x), std::max(high.y, at.y)};
       bound(at);
       if (is_all_within(at))
-        take_all_around(at, open);
-      else if (!take_around(at, open))
+        take_all_around(at);
+      else if (!take_around(at))
         return std::nullopt;
     }
     region_.samples = cv::Rect(low, high + cv::Point(1, 1));
@@ -49,7 +61,7 @@ class Grower {
 
  private:
   // Takes what belongs to the region of the samples around one. False where that is out of reach.
-  bool take_around(const cv::Point& at, std::vector<cv::Point>& open) const {
+  bool take_around(const cv::Point& at) {
     for (int dy = -kGap; dy <= kGap; ++dy)
       for (int dx = -kGap; dx <= kGap; ++dx) {
         const cv::Point next{at.x + dx, at.y + dy};
@@ -58,19 +70,19 @@ class Grower {
         if (is_within_reach(next) && !mark(next)) continue;
         if (excess_(next) < least_) continue;
         if (!is_within_reach(next)) return false;
-        open.push_back(next);
+        open_.push_back(next);
       }
     return true;
   }
   // The same where all samples around are in reach and in the picture, which is most of the work.
-  void take_all_around(const cv::Point& at, std::vector<cv::Point>& open) const {
+  void take_all_around(const cv::Point& at) {
     for (int dy = -kGap; dy <= kGap; ++dy) {
       char* seen = &cell({at.x - kGap, at.y + dy});
       for (int dx = -kGap; dx <= kGap; ++dx, ++seen) {
         if (*seen != 0) continue;
         *seen = 1;
         const cv::Point next{at.x + dx, at.y + dy};
-        if (excess_(next) >= least_ && !(hides_ && level_.hides(next))) open.push_back(next);
+        if (excess_(next) >= least_ && !(hides_ && level_.hides(next))) open_.push_back(next);
       }
     }
   }
@@ -87,13 +99,13 @@ class Grower {
     return std::max(std::abs(p.x - seed_.x), std::abs(p.y - seed_.y)) <= reach_;
   }
   // False where it was marked.
-  bool mark(const cv::Point& p) const {
+  bool mark(const cv::Point& p) {
     char& seen = cell(p);
     const bool is_new = seen == 0;
     seen = 1;
     return is_new;
   }
-  char& cell(const cv::Point& p) const {
+  char& cell(const cv::Point& p) {
     return seen_[static_cast<std::size_t>(p.y - seed_.y + reach_) *
                      static_cast<std::size_t>(side_) +
                  static_cast<std::size_t>(p.x - seed_.x + reach_)];
@@ -115,7 +127,8 @@ class Grower {
     if (p.y + 1 > region_.bottom) region_.bottom = std::max(region_.bottom, p.y + reached(0, 1));
   }
 
-  static thread_local std::vector<char> seen_;
+  std::vector<char>& seen_;
+  std::vector<cv::Point>& open_;
   const Level& level_;
   cv::Point seed_;
   int reach_;
@@ -127,8 +140,6 @@ class Grower {
   Region region_;
 };
 
-thread_local std::vector<char> Grower::seen_;
-
 double normal_below(double deviations) { return 0.5 * std::erfc(-deviations / std::sqrt(2.0)); }
 
 // The variance of [1 2 1] / 4 is half a squared sample; octave by octave it adds up to
@@ -139,7 +150,8 @@ double blur_sigma_px(int step) { return std::sqrt((4.0 * step * step - 1) / 6); 
 
 std::optional<Region> region_around(
     const Level& level, const cv::Point& seed, int reach, const Excess& excess, double least) {
-  return Grower(level, seed, reach, excess, least).grown();
+  thread_local Scratch scratch;
+  return Grower(level, seed, reach, excess, least, scratch).grown();
 }
 
 double side_before_blur(double half_px, double share, double sigma_px) {

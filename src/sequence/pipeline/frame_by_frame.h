@@ -10,7 +10,7 @@
 #include "picture/video/frame.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"
-#include "sequence/pipeline/render.h"
+#include "sequence/pipeline/options.h"
 
 namespace airtruth::pipeline {
 

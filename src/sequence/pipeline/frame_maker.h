@@ -12,7 +12,6 @@
 #include "sequence/insertion/ambient.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/insertion/paint.h"
-#include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/motion_source.h"

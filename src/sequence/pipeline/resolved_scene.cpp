@@ -59,6 +59,7 @@ std::shared_ptr<setup::SharedInputs> inputs_of(const Options& options) {
 camera_file::Calibration measured_on(const scene::Scene& scene,
                                      const lens::ImageSize& size,
                                      const image::Mask* mask,
+                                     setup::SharedInputs& inputs,
                                      const Options& options) {
   camera_file::Options how;
   how.lens = setup::lens_of(scene.lens, size);
@@ -72,7 +73,7 @@ camera_file::Calibration measured_on(const scene::Scene& scene,
     if (options.progress) options.progress({done, total, "measuring the camera"});
   };
   camera_file::CacheKey key;
-  key.video_sha256 = setup::sha256_of_video(scene.background.video, *inputs_of(options));
+  key.video_sha256 = setup::sha256_of_video(scene.background.video, inputs);
   if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
   key.lens = setup::words_of(*how.lens);
   key.altitude_m = how.altitude_m;
@@ -304,9 +305,10 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
 scene::Scene with_measured_camera(StatedScene stated,
                                   const lens::ImageSize& size,
                                   const image::Mask* mask,
+                                  setup::SharedInputs& inputs,
                                   const Options& options) {
   if (!stated.to_measure.empty()) {
-    camera_file::Calibration measured = measured_on(stated.scene, size, mask, options);
+    camera_file::Calibration measured = measured_on(stated.scene, size, mask, inputs, options);
     take_measured(stated.scene, stated, std::move(measured), options.warn);
   }
   return std::move(stated.scene);
@@ -367,7 +369,7 @@ void place_seen(OpenedScene& opened,
 ResolvedScene resolve(OpenedScene opened, const Options& options) {
   scene::Scene& scene = opened.stated.scene;
   scene = with_measured_camera(
-      std::move(opened.stated), size_of(opened.info), opened.mask.get(), options);
+      std::move(opened.stated), size_of(opened.info), opened.mask.get(), *opened.inputs, options);
   insertion::check_codec(scene, opened.background.info().colour);
   opened.world.shutter = setup::shutter_of(scene.camera_model);
   opened.world.to_sun_in_world = setup::to_sun_in_world(scene.light);
@@ -436,7 +438,7 @@ void calibrate_ahead(const scene::Scene& scene, const Options& options) {
   const lens::ImageSize size{info.width, info.height};
   if (scene.realism.file) fill_from_file(filled, file_of(scene, size));
   const auto mask = insertion::read_mask(scene, size);
-  measured_on(filled, size, mask ? &*mask : nullptr, options);
+  measured_on(filled, size, mask ? &*mask : nullptr, *inputs_of(options), options);
 }
 
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {

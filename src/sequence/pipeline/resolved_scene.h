@@ -42,6 +42,7 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info);
 scene::Scene with_measured_camera(StatedScene stated,
                                   const lens::ImageSize& size,
                                   const image::Mask* mask,
+                                  setup::SharedInputs& inputs,
                                   const Options& options);
 
 // What a scene names, opened and checked.

@@ -44,8 +44,9 @@ class Resolve : public testing::Test {
   }
 
   scene::Scene resolve() const {
+    setup::SharedInputs inputs;
     return with_measured_camera(
-        stated(scene_, info_), {info_.width, info_.height}, nullptr, options_);
+        stated(scene_, info_), {info_.width, info_.height}, nullptr, inputs, options_);
   }
   bool needs_calibration() const { return !stated(scene_, info_).to_measure.empty(); }
 
