@@ -50,7 +50,7 @@ struct Scene {
 
 struct Subject {
   std::shared_ptr<const aircraft::Mesh> mesh;
-  render::Model model;
+  shade::Model model;
   projection::SilhouettePoints silhouette;
   double size_m;
 

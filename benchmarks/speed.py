@@ -95,7 +95,7 @@ class Bench:
                              environment=environment)
 
     def render_without_motion(self, scene):
-        """A render of a new clip with an aircraft that was used before: no motion is known, the openness is."""
+        """A render of a new clip with an aircraft that was used before: no motion is known, the ambient occlusion is."""
         cache = self.path("cache-without-motion")
         shutil.rmtree(os.path.join(cache, "airtruth", "motion"), ignore_errors=True)
         return self.render(scene, environment=dict(os.environ, XDG_CACHE_HOME=cache))

@@ -111,7 +111,7 @@ void add_render(CLI::App& app, Context& context) {
       "--timings", arguments->timings, "Also print the CPU and wall time of each stage");
   command->add_flag("--no-cache",
                     arguments->no_cache,
-                    "Measure the camera's motion and the aircraft's openness anew");
+                    "Measure the camera's motion and the aircraft's occlusion anew");
   command->callback([arguments, &context] { render(*arguments, context); });
 }
 

@@ -80,7 +80,7 @@ trajectory::Path path_through(const std::vector<Position>& positions, bool bank)
 struct Model {
   aircraft::Aircraft aircraft;
   projection::SilhouettePoints silhouette;
-  render::Model rays;
+  shade::Model rays;
 
   Model(const std::string& name, double scale, const Warn& warn)
       : Model(scaled(name, scale, warn)) {}

@@ -83,7 +83,7 @@ class Views {
   }
 
  private:
-  render::Model model_;
+  shade::Model model_;
   projection::SilhouettePoints silhouette_;
   aircraft::Extents extents_;
 };

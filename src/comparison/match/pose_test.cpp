@@ -29,8 +29,8 @@ cv::Mat mask_in_the_sky(const aircraft::Mesh& mesh, const YawPitchRoll& attitude
   const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
   const projection::SilhouettePoints points{&mesh, aircraft::silhouette_points(mesh)};
   const auto box = projection::exact_box(sight, points, world_from_aircraft, 0).box;
-  const render::Model model(mesh);
-  render::Light light;
+  const shade::Model model(mesh);
+  shade::Light light;
   light.sun = light.sky = light.ground = {0.1f, 0.1f, 0.1f};
   const render::View view{&lens, world_from_cam, Homography::Identity(), kWidth, kHeight};
   const image::Layer layer =

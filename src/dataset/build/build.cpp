@@ -204,9 +204,9 @@ class Work {
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<catalogue::BackgroundFiles> files_;
-  // Aircraft are the same in every set: their openness is kept where `render` keeps it.
+  // Aircraft are the same in every set: their ambient occlusion is kept where `render` keeps it.
   std::shared_ptr<setup::SharedInputs> shared_ =
-      std::make_shared<setup::SharedInputs>(pipeline::cache_folder({}, "openness"));
+      std::make_shared<setup::SharedInputs>(pipeline::cache_folder({}, "ambient_occlusion"));
   std::mutex mutex_;
   BuildSummary summary_;
 };

@@ -22,7 +22,7 @@ struct Instance {
   double time_s = 0;
 };
 
-// As render::Light.
+// As shade::Light.
 struct HemisphereLight {
   Vector3 to_sun_in_world{0, 0, -1};
   std::array<float, 3> sun = {1, 1, 1};

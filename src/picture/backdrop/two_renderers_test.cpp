@@ -23,7 +23,7 @@ const Pixel kFocal{kFocalPx, kFocalPx};
 const Pixel kMiddle{80.3, 63.6};
 
 struct HemisphereLight {
-  Vector3 to_sun_in_world = render::to_sun(130, 40);
+  Vector3 to_sun_in_world = shade::to_sun(130, 40);
   std::array<float, 3> sun = {0.9f, 0.85f, 0.8f};
   std::array<float, 3> sky = {0.25f, 0.3f, 0.4f};
   std::array<float, 3> ground = {0.1f, 0.09f, 0.06f};
@@ -67,7 +67,7 @@ image::Layer traced(const aircraft::Mesh& mesh,
   view.world_from_cam = cam_from_world().inverse();
   view.width = kWidth;
   view.height = kHeight;
-  const render::Model model(mesh);
+  const shade::Model model(mesh);
   return render::render(view,
                         {light.to_sun_in_world, light.sun, light.sky, light.ground},
                         {{&model, world_from_body, kTime}},

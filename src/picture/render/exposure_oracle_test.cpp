@@ -211,7 +211,7 @@ struct Scene {
 
 Scene scene_of(const Setting& setting,
                const aircraft::Mesh& mesh,
-               const Model& model,
+               const shade::Model& model,
                double size_px) {
   Scene scene;
   scene.view = {&setting.lens,
@@ -290,7 +290,7 @@ void compare_covered(const image::Layer& layer,
 // largest alpha error.
 double compare_all(const Setting& setting,
                    const aircraft::Mesh& mesh,
-                   const Model& model,
+                   const shade::Model& model,
                    double size_px) {
   const std::string where = fmt::format("{} at {} px", setting.name, size_px);
   const Scene scene = scene_of(setting, mesh, model, size_px);
@@ -340,7 +340,7 @@ double compare_all(const Setting& setting,
 
 TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
   const aircraft::Mesh mesh = toy();
-  const Model model(mesh);
+  const shade::Model model(mesh);
   const std::vector<Setting> all = settings();
   for (const Setting& setting : all) {
     for (const double size_px : {5.0, 20.0, 60.0})
@@ -355,7 +355,7 @@ TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
 // An airliner from FlightGear with engines and fins.
 TEST(Exposure, ARealAircraftAgreesWithBruteForce) {
   const aircraft::Aircraft airliner = aircraft::load_aircraft("738/738-Ryanair");
-  const Model model(airliner.mesh);
+  const shade::Model model(airliner.mesh);
   const std::vector<Setting> all = settings();
   EXPECT_LT(compare_all(all[2], airliner.mesh, model, 20), 1.0 / 64);
   // The tolerance is 64 of the 4,096 places of brute force, the largest permitted error.

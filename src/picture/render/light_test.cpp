@@ -24,12 +24,14 @@ struct Stage {
             kStageSide,
             kStageSide};
 
-  image::LayerPixel middle(const aircraft::Mesh& mesh, const Light& light, Rigid body = {}) const {
+  image::LayerPixel middle(const aircraft::Mesh& mesh,
+                           const shade::Light& light,
+                           Rigid body = {}) const {
     const image::Layer layer = whole(mesh, light, body);
     return layer.pixels[layer.index(kStageSide / 2, kStageSide / 2)];
   }
-  image::Layer whole(const aircraft::Mesh& mesh, const Light& light, Rigid body = {}) const {
-    const Model model(mesh);
+  image::Layer whole(const aircraft::Mesh& mesh, const shade::Light& light, Rigid body = {}) const {
+    const shade::Model model(mesh);
     return render(view, light, {{&model, body, 0}}, {kWhole});
   }
 };
@@ -85,15 +87,17 @@ Rigid at_distance(double north_m, double pitch_deg = 0) {
   return {world_from_body({0, pitch_deg, 0}), Vector3(north_m, 0, 0)};
 }
 
-Light only(const Environment& surroundings) {
-  Light light;
+shade::Light only(const shade::Environment& surroundings) {
+  shade::Light light;
   light.sun = {0, 0, 0};
   light.surroundings = surroundings;
   return light;
 }
 
-Environment even(float radiance) {
-  return Environment::of([=](const Vector3&) { return Rgb{radiance, radiance, radiance}; });
+shade::Environment even(float radiance) {
+  return shade::Environment::of([=](const Vector3&) {
+    return image::Rgb{radiance, radiance, radiance};
+  });
 }
 
 // A white sphere in a uniform white environment: each reflected ray finds the radiance that is also
@@ -127,8 +131,8 @@ TEST(LightAround, ABlackSphereHasABrightRim) {
 // it, a vertical one half, one that faces up nothing; one tilted by t from the vertical receives (1
 // + sin t) / 2.
 TEST(LightAround, APlateOverBrightGroundGetsWhatItFaces) {
-  const Environment below = Environment::of([](const Vector3& d) {
-    return d.z() > 0 ? Rgb{1, 1, 1} : Rgb{0, 0, 0};
+  const shade::Environment below = shade::Environment::of([](const Vector3& d) {
+    return d.z() > 0 ? image::Rgb{1, 1, 1} : image::Rgb{0, 0, 0};
   });
   const Stage stage;
   for (const double pitch_deg : {0.0, 30.0, 60.0, -30.0}) {
@@ -142,7 +146,7 @@ TEST(LightAround, APlateOverBrightGroundGetsWhatItFaces) {
 // The sun stands 60 degrees aside, so that its glint misses the camera.
 TEST(LightAround, APlateInTheSunGivesItsLightBack) {
   const Stage stage;
-  Light light = only(even(0));
+  shade::Light light = only(even(0));
   light.to_sun_in_world = {-0.5, 0, -std::sqrt(0.75)};
   light.sun = {0.8f, 0.7f, 0.6f};
   const image::LayerPixel pixel = stage.middle(plate(10), light, at_distance(100));
@@ -157,7 +161,7 @@ TEST(LightAround, ABlackSphereMirrorsTheSun) {
   aircraft::Mesh black = sphere(4);
   black.materials[0].diffuse = {0, 0, 0};
   const Stage stage;
-  Light light = only(even(0));
+  shade::Light light = only(even(0));
   light.sun = {1, 1, 1};
   for (const double between_deg : {30.0, 90.0, 120.0}) {
     const double a = radians(between_deg);
@@ -205,7 +209,7 @@ TEST(LightAround, ASunlitWallLightsAPlateInShadow) {
                   Eigen::Vector3f(-50, 50, 0.5f),
                   Eigen::Vector3f(0, 50, 0.5f)}});
   const Stage stage;
-  Light light = only(even(0));
+  shade::Light light = only(even(0));
   light.to_sun_in_world = Vector3(1e-3, 0, -1).normalized();
   light.sun = {1, 1, 1};
   EXPECT_EQ(stage.middle(plate(0.5f), light, at_distance(40)).red, 0);
@@ -228,7 +232,7 @@ TEST(LightAround, AMetalSphereMirrorsTheSunInItsColour) {
   copper.materials[0].finish = aircraft::Finish::kMetal;
   copper.materials[0].diffuse = {0.9f, 0.6f, 0.4f};
   const Stage stage;
-  Light light = only(even(0));
+  shade::Light light = only(even(0));
   light.sun = {1, 1, 1};
   light.to_sun_in_world = {-std::sqrt(0.75), 0, -0.5};
   const image::Layer layer = stage.whole(copper, light, at_distance(100));
@@ -272,8 +276,9 @@ TEST(Environment, IrradianceOfOneDirectionIsNearlyTheCosine) {
   constexpr double kHalfDeg = 8;
   const double solid_sr = 2 * kPi * (1 - std::cos(radians(kHalfDeg)));
   const auto radiance = static_cast<float>(kPi / solid_sr);
-  const Environment light = Environment::of([&](const Vector3& d) {
-    return d.dot(from) > std::cos(radians(kHalfDeg)) ? Rgb{radiance, 0, 0} : Rgb{0, 0, 0};
+  const shade::Environment light = shade::Environment::of([&](const Vector3& d) {
+    return d.dot(from) > std::cos(radians(kHalfDeg)) ? image::Rgb{radiance, 0, 0}
+                                                     : image::Rgb{0, 0, 0};
   });
   for (const Vector3& n :
        {from, Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, -1), Vector3(0, 0, 1)}) {

@@ -11,10 +11,10 @@
 namespace airtruth::render {
 namespace {
 
-constexpr int kSide = 60;
-constexpr double kFocalPx = 300;
+constexpr int kMixedSide = 60;
+constexpr double kMixedFocalPx = 300;
 constexpr float kOpacity = 0.4f;
-const Box kAll{0, 0, kSide, kSide};
+const Box kWholeMixed{0, 0, kMixedSide, kMixedSide};
 
 // A rectangle across the line of sight, in pixels of the picture.
 struct Rectangle {
@@ -34,9 +34,9 @@ void add(aircraft::Mesh& mesh,
   const auto m = static_cast<std::uint32_t>(mesh.materials.size() - 1);
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   const auto corner = [&](double x, double y) {
-    const double metres = north_m / kFocalPx;
+    const double metres = north_m / kMixedFocalPx;
     mesh.positions.push_back(
-        Eigen::Vector3d(north_m, (x - kSide / 2.0) * metres, (y - kSide / 2.0) * metres)
+        Eigen::Vector3d(north_m, (x - kMixedSide / 2.0) * metres, (y - kMixedSide / 2.0) * metres)
             .cast<float>());
     mesh.normals.emplace_back(-1, 0, 0);
     mesh.uvs.emplace_back(0, 0);
@@ -51,7 +51,7 @@ void add(aircraft::Mesh& mesh,
 }
 
 // The same light from everywhere and no sun, so that a surface has its own colour.
-const Light kLight{{-1, 0, 0}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
+const shade::Light kLight{{-1, 0, 0}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
 constexpr std::array<float, 3> kPlateColour = {0.6f, 0.1f, 0.2f};
 constexpr std::array<float, 3> kPaneColour = {0.1f, 0.5f, 0.3f};
 constexpr double kPlateM = 100;
@@ -62,23 +62,24 @@ constexpr Rectangle kPane{28.15, 24.4, 17.2, 9.35};
 constexpr double kBothArea = (kPlate.x + kPlate.width - kPane.x) * kPane.height;
 
 const lens::Lens& pinhole() {
-  static const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kSide / 2.0, kSide / 2.0}},
-                               {kSide, kSide});
+  static const lens::Lens lens(
+      lens::Pinhole{{kMixedFocalPx, kMixedFocalPx}, {kMixedSide / 2.0, kMixedSide / 2.0}},
+      {kMixedSide, kMixedSide});
   return lens;
 }
 
 // exposes: a long exposure of a scene at rest, which is the scene at an instant, but takes the
 // other code.
 image::Layer layer_of(const aircraft::Mesh& mesh, bool exposes) {
-  const Model model(mesh);
+  const shade::Model model(mesh);
   View view{&pinhole(),
             Rigid{cam_from_body().conjugate(), Vector3::Zero()},
             Homography::Identity(),
-            kSide,
-            kSide};
+            kMixedSide,
+            kMixedSide};
   if (exposes) view.shutter = {0.01, 0.01, Readout::kDown};
   const Instance instance{&model, {Quaternion::Identity(), Vector3::Zero()}};
-  return render(view, kLight, {instance}, {kAll});
+  return render(view, kLight, {instance}, {kWholeMixed});
 }
 
 double total_alpha(const image::Layer& layer) {

@@ -1,87 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/render/pixel_rays.h"
 
+#include <algorithm>
+#include <limits>
+
+#include <tbb/parallel_for.h>
+
 namespace airtruth::render {
-namespace {
 
-// The coefficients of 1, u and u^2 of the parabola of between() in ray_grid.h.
-Thrice<Vector3> coefficients(const Vector3& first, const Vector3& middle, const Vector3& last) {
-  return {middle, 0.5 * (last - first), 0.5 * (last - 2 * middle + first)};
+View View::at(double dt_s) const {
+  View moved = *this;
+  moved.world_from_cam = carried(world_from_cam, camera, dt_s);
+  if (!frame_from_nominal_per_s.isZero(0)) {
+    const Homography frame_from_nominal = nominal_from_frame.inverse();
+    moved.nominal_from_frame = (frame_from_nominal + dt_s * frame_from_nominal_per_s).inverse();
+  }
+  return moved;
 }
 
-Vector3 bilinear(const std::array<Vector3, 4>& corner, double x, double y) {
-  return (1 - y) * ((1 - x) * corner[0] + x * corner[1]) +
-         y * ((1 - x) * corner[2] + x * corner[3]);
+Span span_of(const View& view, const PixelBox& patch) {
+  const Shutter& shutter = view.shutter;
+  const double half = 0.5 * std::max(0.0, shutter.exposure_s);
+  const double first =
+      shutter.middle_s({double(patch.x), double(patch.y)}, view.width, view.height);
+  const double last = shutter.middle_s(
+      {double(patch.right() - 1), double(patch.bottom() - 1)}, view.width, view.height);
+  return {std::min(first, last) - half, std::max(first, last) + half};
 }
 
-}  // namespace
-
-Beam beam_of(const TracedIntruder& actor, const RayGrid& grid, int x, int y) {
-  Beam beam;
-  Thrice<std::array<Vector3, 4>> in_world;
-  for (int k = actor.moves ? 0 : 1; k < (actor.moves ? 3 : 2); ++k) {
-    in_world[static_cast<std::size_t>(k)] = grid.corners(x, y, k);
-    beam.known = beam.known && finite(in_world[static_cast<std::size_t>(k)]);
-  }
-  if (!beam.known) return beam;
-  if (!actor.moves) {
-    for (std::size_t c = 0; c < 4; ++c)
-      beam.direction_in_body[1][c] = actor.body_from_world * in_world[1][c];
-    beam.eye_in_body[1] = actor.eye_in_body;
-    return beam;
-  }
-  const double exposure_s = grid.exposure_s();
-  beam.exposes = exposure_s > 0;
-  const double middle_s = grid.middle_s(x, y);
-  for (std::size_t k = beam.exposes ? 0 : 1; k < (beam.exposes ? 3U : 2U); ++k) {
-    const double dt_s = middle_s + 0.5 * (static_cast<double>(k) - 1) * exposure_s;
-    const double u = grid.span().u(dt_s);
-    const Matrix3 body_from_world = between(actor.body_from_world_at, u);
-    beam.eye_in_body[k] = between(actor.eye_in_body_at, u);
-    for (std::size_t c = 0; c < 4; ++c) {
-      const Thrice<Vector3> corner = {in_world[0][c], in_world[1][c], in_world[2][c]};
-      beam.direction_in_body[k][c] = body_from_world * between(corner, u);
-    }
-  }
-  return beam;
+Vector3 ray_in_cam(const View& view, const Pixel& pixel) {
+  const Vector3 no_direction = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Vector3 nominal = view.nominal_from_frame * Vector3(pixel.x(), pixel.y(), 1);
+  if (!(nominal.z() > 0)) return no_direction;
+  const auto ray =
+      view.lens->ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()});
+  return ray ? *ray : no_direction;
 }
 
-PixelRays::PixelRays(const TracedIntruder& actor, const RayGrid& grid, int x, int y)
-    : samples_(x, y), start_m_(actor.start_m) {
-  const Beam beam = beam_of(actor, grid, x, y);
-  known_ = beam.known;
-  exposes_ = beam.exposes;
-  if (!known_) return;
-  pixel_rad_ = (beam.direction_in_body[1][1] - beam.direction_in_body[1][0]).norm();
-  if (actor.moves) middle_s_ = grid.middle_s(x, y);
-  if (!exposes_) {
-    direction_[0] = beam.direction_in_body[1];
-    eye_[0] = beam.eye_in_body[1];
-    return;
-  }
-  exposure_s_ = grid.exposure_s();
-  eye_ = coefficients(beam.eye_in_body[0], beam.eye_in_body[1], beam.eye_in_body[2]);
-  for (std::size_t c = 0; c < 4; ++c) {
-    const Thrice<Vector3> of_corner = coefficients(
-        beam.direction_in_body[0][c], beam.direction_in_body[1][c], beam.direction_in_body[2][c]);
-    for (std::size_t k = 0; k < 3; ++k) direction_[k][c] = of_corner[k];
+PixelRays::PixelRays(const View& view, const PixelBox& patch)
+    : view_(view), patch_(patch), span_(span_of(view, patch)) {
+  const bool moves = !span_.is_instant() && !view.frame_from_nominal_per_s.isZero(0);
+  for (int k = moves ? 0 : 1; k < (moves ? 3 : 2); ++k) {
+    const View then = view.at(span_.at(k));
+    std::vector<Vector3>& directions = directions_[static_cast<std::size_t>(k)];
+    const auto width = static_cast<std::size_t>(patch.width + 1);
+    directions.resize(width * static_cast<std::size_t>(patch.height + 1));
+    tbb::parallel_for(0, patch.height + 1, [&](int row) {
+      for (int column = 0; column <= patch.width; ++column)
+        directions[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] =
+            ray_in_cam(then, {patch.x + column, patch.y + row});
+    });
   }
 }
 
-BodyRay PixelRays::ray(int sample, double& dt_s) const {
-  const auto [x, y] = samples_.at(sample);
-  Vector3 direction = bilinear(direction_[0], x, y);
-  Vector3 eye = eye_[0];
-  dt_s = middle_s_;
-  if (exposes_) {
-    const double time = samples_.time(sample);
-    const double u = 2 * time - 1;
-    dt_s += exposure_s_ * (time - 0.5);
-    direction += u * (bilinear(direction_[1], x, y) + u * bilinear(direction_[2], x, y));
-    eye += u * (eye_[1] + u * eye_[2]);
+PixelRays::Corners PixelRays::corners(std::size_t moment, int x, int y) const {
+  const auto width = static_cast<std::size_t>(patch_.width + 1);
+  const Vector3* first = directions_[moment].data() +
+                         static_cast<std::size_t>(y - patch_.y) * width +
+                         static_cast<std::size_t>(x - patch_.x);
+  return {first[0], first[1], first[width], first[width + 1]};
+}
+
+PixelRay PixelRays::at(int x, int y) const {
+  PixelRay ray;
+  const Corners c = corners(1, x, y);
+  const Vector3 middle = (c[0] + c[1] + c[2] + c[3]) / 4;
+  ray.middle = middle.cast<float>();
+  ray.per_x = ((c[1] - c[0] + c[3] - c[2]) / 2).cast<float>();
+  ray.per_y = ((c[2] - c[0] + c[3] - c[1]) / 2).cast<float>();
+  ray.per_t = ray.per_tt = Eigen::Vector3f::Zero();
+  ray.known = middle.allFinite();
+  ray.moves = !directions_[0].empty();
+  if (!ray.moves) return ray;
+  Thrice<Vector3> of;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Corners then = corners(k, x, y);
+    of[k] = (then[0] + then[1] + then[2] + then[3]) / 4;
+    ray.known = ray.known && of[k].allFinite();
   }
-  direction.normalize();
-  return {(eye + start_m_ * direction).cast<float>(), direction.cast<float>()};
+  const Thrice<Vector3> by_u = parabola(of);
+  const double u = span_.u(middle_s(x, y));
+  const double half = 0.5 * exposure_s() / span_.half_s();
+  ray.middle = (by_u[0] + u * (by_u[1] + u * by_u[2])).cast<float>();
+  ray.per_t = (half * (by_u[1] + 2 * u * by_u[2])).cast<float>();
+  ray.per_tt = (half * half * by_u[2]).cast<float>();
+  return ray;
 }
 
 }  // namespace airtruth::render

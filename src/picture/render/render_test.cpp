@@ -66,19 +66,21 @@ double alpha_sum(const image::Layer& layer) {
   return sum;
 }
 
-Light white() { return {{-1, 0, 0}, {0.5f, 0.5f, 0.5f}, {0.3f, 0.3f, 0.3f}, {0.1f, 0.1f, 0.1f}}; }
+shade::Light white() {
+  return {{-1, 0, 0}, {0.5f, 0.5f, 0.5f}, {0.3f, 0.3f, 0.3f}, {0.1f, 0.1f, 0.1f}};
+}
 
 // A plate of half-side h at distance d spans 2 f h / d pixels. Its edges fall inside pixels, whose
 // coverage must be exact.
 TEST(Render, APlateCoversWhatProjectionSays) {
   const lens::Lens lens = pinhole(300);
-  const Model model(plate(10, 100));
+  const shade::Model model(plate(10, 100));
   const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
   // 60 px, from 70 to 130.
   const double side = 2 * 300.0 * 10 / 100 * 1.0;
   EXPECT_NEAR(alpha_sum(layer), side * side, 0.5);
   // The plate spans 69.7 to 130.3 px.
-  const Model odd(plate(10.1f, 100));
+  const shade::Model odd(plate(10.1f, 100));
   const image::Layer other = render(view_through(lens), white(), {{&odd, {}, 0}}, {kAll});
   EXPECT_NEAR(other.pixels[other.index(69, 100)].alpha, 0.3, 1.0 / 64);
   EXPECT_NEAR(other.pixels[other.index(69, 69)].alpha, 0.09, 1.0 / 64);
@@ -111,7 +113,7 @@ TEST(Render, ADiscHasItsArea) {
   for (const double diameter_px : {10.0, 40.0, 90.0}) {
     const double r = diameter_px / 2 * 100 / 300;
     const int n = 90;
-    const Model model(disc(n, r, 100));
+    const shade::Model model(disc(n, r, 100));
     const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
     const double exact = n / 2.0 * r * r * std::sin(2 * kPi / n) * 9;
     EXPECT_NEAR(alpha_sum(layer) / exact, 1, 0.002) << diameter_px;
@@ -156,7 +158,7 @@ TEST(Render, ASlantedEdgeCoversEachPixelByItsExactShare) {
     aircraft::Mesh mesh;
     add_quad(
         mesh, {{corner(-400, -400), corner(400, -400), corner(400, 0.1), corner(-400, 0.1)}}, {});
-    const Model model(mesh);
+    const shade::Model model(mesh);
     const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
     const double c = across.dot(Eigen::Vector2d(100, 100)) + 0.3;  // 0.1 m is 0.3 px
     double worst = 0;
@@ -171,12 +173,12 @@ TEST(Render, ASlantedEdgeCoversEachPixelByItsExactShare) {
 
 TEST(Render, ASunlitPlateShinesAsLambertSays) {
   const lens::Lens lens = pinhole(300);
-  const Model model(plate(10, 100));
+  const shade::Model model(plate(10, 100));
   // The sun stands behind the camera and square to the plate. A vertical face sees half sky and
   // half ground.
   const image::Layer layer = render(view_through(lens), white(), {{&model, {}, 0}}, {kAll});
   EXPECT_NEAR(layer.pixels[layer.index(100, 100)].red, 0.5 + 0.2, 1e-4);
-  Light aslant = white();
+  shade::Light aslant = white();
   aslant.to_sun_in_world =
       // The sun stands 60 degrees off the plate's normal.
       Vector3(-1, 0, -std::sqrt(3.0)).normalized();
@@ -189,10 +191,10 @@ TEST(Render, APlateBetweenSunAndPlateCastsAShadow) {
   // A smaller plate beside the line of sight blocks the sun, which stands above and behind the
   // camera.
   add_quad(mesh, {{{90, -3, -13}, {90, 3, -13}, {90, 3, -7}, {90, -3, -7}}}, {});
-  Light light = white();
+  shade::Light light = white();
   light.to_sun_in_world = Vector3(-1, 0, -1).normalized();
   const lens::Lens lens = pinhole(300);
-  const Model model(mesh);
+  const shade::Model model(mesh);
   const image::Layer layer = render(view_through(lens), light, {{&model, {}, 0}}, {kAll});
   EXPECT_NEAR(layer.pixels[layer.index(100, 100)].red, 0.2, 1e-4);  // in the shadow
   EXPECT_NEAR(layer.pixels[layer.index(100, 120)].red,
@@ -202,8 +204,8 @@ TEST(Render, APlateBetweenSunAndPlateCastsAShadow) {
 
 TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {
   const lens::Lens lens = pinhole(300);
-  const Model glass(plate(5, 50, 0.25f));
-  const Model wall(plate(10, 100));
+  const shade::Model glass(plate(5, 50, 0.25f));
+  const shade::Model wall(plate(10, 100));
   const image::Layer layer =
       render(view_through(lens), white(), {{&wall, {}, 0}, {&glass, {}, 0}}, {kAll, kAll});
   const std::size_t middle = layer.index(100, 100);
@@ -218,7 +220,7 @@ TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {
 
 TEST(Render, AHomographyMovesTheLayer) {
   const lens::Lens lens = pinhole(300);
-  const Model model(plate(4.03f, 100));
+  const shade::Model model(plate(4.03f, 100));
   View view = view_through(lens);
   const image::Layer still = render(view, white(), {{&model, {}, 0}}, {kAll});
   Homography frame_from_nominal = Homography::Identity();
@@ -235,7 +237,7 @@ TEST(Render, AHomographyMovesTheLayer) {
 
 TEST(Render, WhatTheFrameCutsOffIsCounted) {
   const lens::Lens lens = pinhole(300);
-  const Model model(plate(10, 100));
+  const shade::Model model(plate(10, 100));
   const Rigid aside{Quaternion::Identity(),
                     // Its middle lies on the right border.
                     Vector3(0, 100.0 / 3, 0)};
@@ -247,7 +249,7 @@ TEST(Render, WhatTheFrameCutsOffIsCounted) {
 
 struct Stand {
   aircraft::Aircraft aircraft;
-  Model model;
+  shade::Model model;
   explicit Stand(const char* name)
       : aircraft(aircraft::load_aircraft(name)), model(aircraft.mesh) {}
 };
@@ -286,13 +288,13 @@ TEST(Quality3, HoldsAlphaWhereTheAircraftReachesBehindTheEye) {
       const image::Layer oracle = render(view, white(), one, {whole}, {.quality = 5});
       ASSERT_EQ(fast.pixels.size(), oracle.pixels.size());
       double worst = 0;
-      double seen = 0;
+      double visible = 0;
       for (std::size_t i = 0; i < fast.pixels.size(); ++i) {
         worst = std::max(worst, std::abs(double(fast.pixels[i].alpha) - oracle.pixels[i].alpha));
-        seen += oracle.pixels[i].alpha;
+        visible += oracle.pixels[i].alpha;
       }
       EXPECT_LT(worst, 1.0 / 16) << lens.name() << " at " << place.transpose();
-      EXPECT_GT(seen, 5) << lens.name() << " at " << place.transpose();
+      EXPECT_GT(visible, 5) << lens.name() << " at " << place.transpose();
     }
   }
 }

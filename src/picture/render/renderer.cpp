@@ -6,148 +6,180 @@
 #include <cmath>
 #include <limits>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include "foundation/base/error.h"
-#include "picture/render/refiner.h"
-#include "picture/render/tracer.h"
+#include "picture/render/reference.h"
+#include "picture/render/shade_pixel.h"
 
 namespace airtruth::render {
 namespace {
 
-// Samples along each side of the part of an aircraft that lies outside the frame.
-constexpr int kAreaSamples = 64;
-
-void write_pixel(const Canvas& canvas, std::size_t i, image::Layer& layer) {
-  const Sum& sum = canvas.sums[i];
-  if (sum.count == 0 || !(sum.alpha > 0)) return;
-  const double n = sum.count;
-  image::LayerPixel& pixel = layer.pixels[i];
-  std::array<float, 3> rgb;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double opaque =
-        sum.opaque_shaded > 0 ? sum.opaque_rgb[c] / sum.opaque_shaded * sum.opaque : 0.0;
-    const double translucent =
-        sum.translucent_shaded > 0
-            ? sum.translucent_rgb[c] / sum.translucent_shaded * sum.translucent
-            : 0.0;
-    rgb[c] = static_cast<float>((opaque + translucent) / n);
-  }
-  pixel = {rgb[0], rgb[1], rgb[2], static_cast<float>(std::min(1.0, sum.alpha / n))};
-  layer.depth_m[i] = static_cast<float>(sum.depth / sum.alpha);
-  for (std::size_t a = 0; a < canvas.actors; ++a)
-    if (!layer.coverage[a].empty())
-      layer.coverage[a][i] = static_cast<float>(canvas.coverage[i * canvas.actors + a] / n);
-}
-
-// The part of the search box that lies outside the frame, sampled on a grid.
-double area_outside(const View& view, const Tracer& tracer, int actor, const Box& search) {
-  const double limit = 4.0 * std::max(view.width, view.height);
-  const double x0 = std::max(search.x, -limit);
-  const double y0 = std::max(search.y, -limit);
-  const double x1 = std::min(search.right(), view.width + limit);
-  const double y1 = std::min(search.bottom(), view.height + limit);
-  if (x0 >= 0 && y0 >= 0 && x1 <= view.width && y1 <= view.height) return 0;
-  const double cell = (x1 - x0) * (y1 - y0) / (kAreaSamples * kAreaSamples);
-  std::vector<double> rows(kAreaSamples, 0.0);
-  tbb::parallel_for(0, kAreaSamples, [&](int row) {
-    std::array<std::vector<Fragment>, 1> unused;
-    for (int column = 0; column < kAreaSamples; ++column) {
-      const Pixel p(x0 + (column + 0.5) * (x1 - x0) / kAreaSamples,
-                    y0 + (row + 0.5) * (y1 - y0) / kAreaSamples);
-      if (p.x() >= 0 && p.y() >= 0 && p.x() < view.width && p.y() < view.height) continue;
-      const Vector3 direction = RayGrid::direction(view, p);
-      if (!direction.allFinite()) continue;
-      unused[0].clear();
-      const std::array<Shot, 1> shot{Shot{direction, 0, 0}};
-      rows[static_cast<std::size_t>(row)] += tracer.collect(actor, shot, 1e-3, unused);
-    }
-  });
-  double sum = 0;
-  for (double row : rows) sum += row;
-  return sum * cell;
-}
-
-std::optional<PixelBox> patch_of(const std::vector<std::optional<Box>>& search, const View& view) {
-  std::optional<PixelBox> patch;
-  for (const auto& box : search)
-    if (const auto pixels = pixels_to_search(box, view))
-      patch = patch ? bounds(*patch, *pixels) : *pixels;
-  return patch;
-}
-
-double largest_px(const std::vector<TracedIntruder>& actors) {
-  int largest = 0;
-  for (const TracedIntruder& actor : actors)
-    if (actor.pixels) largest = std::max({largest, actor.pixels->width, actor.pixels->height});
-  return largest;
-}
-
-image::Layer layer_of(const Canvas& canvas, const std::vector<TracedIntruder>& actors) {
+image::Layer empty_layer(const PixelBox& patch, const std::vector<PlacedInstance>& instances) {
   image::Layer layer;
-  layer.patch = canvas.patch;
-  layer.pixels.resize(canvas.sums.size());
-  layer.depth_m.assign(canvas.sums.size(), std::numeric_limits<float>::infinity());
-  layer.coverage.resize(actors.size());
-  layer.area_alone_in_frame_px.assign(actors.size(), 0.0);
-  layer.area_seen_px.assign(actors.size(), 0.0);
-  for (std::size_t a = 0; a < actors.size(); ++a)
-    if (actors[a].pixels) layer.coverage[a].assign(canvas.sums.size(), 0.0f);
-  for (std::size_t i = 0; i < canvas.sums.size(); ++i) {
-    write_pixel(canvas, i, layer);
-    if (canvas.sums[i].count == 0) continue;
-    for (std::size_t a = 0; a < actors.size(); ++a) {
-      const std::size_t of_actor = i * actors.size() + a;
-      layer.area_alone_in_frame_px[a] += canvas.alone[of_actor] / canvas.sums[i].count;
-      layer.area_seen_px[a] += canvas.coverage[of_actor] / canvas.sums[i].count;
-    }
-  }
+  layer.patch = patch;
+  const std::size_t pixels =
+      static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height);
+  layer.pixels.resize(pixels);
+  layer.depth_m.assign(pixels, std::numeric_limits<float>::infinity());
+  layer.coverage.resize(instances.size());
+  for (std::size_t i = 0; i < instances.size(); ++i)
+    if (instances[i].pixels) layer.coverage[i].assign(pixels, 0.0f);
+  layer.area_alone_in_frame_px.assign(instances.size(), 0.0);
+  layer.area_seen_px.assign(instances.size(), 0.0);
   return layer;
 }
 
+// Fills the pixels of a layer.
+class Painter {
+ public:
+  Painter(const View& view,
+          const shade::Light& light,
+          std::vector<PlacedInstance>& instances,
+          const PixelRays& rays,
+          const std::stop_token& stop,
+          image::Layer& layer)
+      : view_(view),
+        light_(light),
+        instances_(instances),
+        rays_(rays),
+        stop_(stop),
+        layer_(layer),
+        alone_(layer.pixels.size() * instances.size(), 0.0) {}
+
+  void paint(const SampleCounts& counts) {
+    if (counts.by_rays)
+      trace();
+    else
+      rasterise(counts);
+    add_areas();
+  }
+
+ private:
+  // What a thread keeps from one pixel to the next.
+  struct Scratch {
+    Visibility visibility;
+    PixelShading shading;
+    // Of a pixel, by instance.
+    std::vector<double> coverage;
+    std::vector<double> alone;
+  };
+
+  template <typename Row>
+  void each_row(const Row& row) {
+    tbb::parallel_for(layer_.patch.y, layer_.patch.bottom(), [&](int y) {
+      if (!stop_.stop_requested()) row(y);
+    });
+  }
+
+  void trace() {
+    each_row([&](int y) {
+      for (int x = layer_.patch.x; x < layer_.patch.right() && !stop_.stop_requested(); ++x) {
+        const TracedPixel pixel = trace_pixel(view_, light_, instances_, x, y);
+        write(x, y, pixel.rgb, pixel.alpha, pixel.distance_m, pixel.coverage, pixel.alone);
+      }
+    });
+  }
+
+  void rasterise(const SampleCounts& counts) {
+    const PixelBox& patch = layer_.patch;
+    const RayTriangles triangles(view_, patch, rays_.span(), instances_);
+    tbb::enumerable_thread_specific<Scratch> scratch([&] {
+      return Scratch{{triangles, instances_, rays_, counts},
+                     {triangles, instances_, rays_, light_},
+                     std::vector<double>(instances_.size()),
+                     std::vector<double>(instances_.size())};
+    });
+    each_row([&](int y) {
+      Scratch& here = scratch.local();
+      here.visibility.begin_row(y, patch.x, patch.right());
+      for (int x = patch.x; x < patch.right(); ++x) {
+        here.visibility.look(x);
+        if (here.visibility.alpha() > 0) finish(x, y, here);
+      }
+    });
+  }
+
+  void finish(int x, int y, Scratch& scratch) {
+    auto& [visibility, shading, coverage, alone] = scratch;
+    const PixelLight light = shading.light_of(visibility, x, y);
+    std::fill(coverage.begin(), coverage.end(), 0.0);
+    for (const VisibleSurface& surface : visibility.surfaces())
+      coverage[visibility.instance_of(surface)] += static_cast<double>(surface.weight);
+    const double alpha = visibility.alpha();
+    alone = coverage;
+    if (visibility.has_several())
+      for (std::uint32_t i = 0; i < instances_.size(); ++i) alone[i] = visibility.alpha_of(i);
+    write(x, y, light.rgb, alpha, light.distance_m, coverage, alone);
+  }
+
+  void write(int x,
+             int y,
+             const std::array<double, 3>& rgb,
+             double alpha,
+             double distance_m,
+             const std::vector<double>& coverage,
+             const std::vector<double>& alone) {
+    if (!(alpha > 0)) return;
+    const std::size_t i = layer_.index(x, y);
+    layer_.pixels[i] = {static_cast<float>(rgb[0]),
+                        static_cast<float>(rgb[1]),
+                        static_cast<float>(rgb[2]),
+                        static_cast<float>(std::min(1.0, alpha))};
+    layer_.depth_m[i] = static_cast<float>(distance_m / alpha);
+    for (std::size_t a = 0; a < instances_.size(); ++a) {
+      if (layer_.coverage[a].empty()) continue;
+      layer_.coverage[a][i] = static_cast<float>(coverage[a]);
+      alone_[i * instances_.size() + a] = alone[a];
+    }
+  }
+
+  void add_areas() {
+    for (std::size_t a = 0; a < instances_.size(); ++a)
+      for (std::size_t i = 0; i < layer_.coverage[a].size(); ++i) {
+        layer_.area_seen_px[a] += static_cast<double>(layer_.coverage[a][i]);
+        layer_.area_alone_in_frame_px[a] += alone_[i * instances_.size() + a];
+      }
+  }
+
+  const View& view_;
+  const shade::Light& light_;
+  std::vector<PlacedInstance>& instances_;
+  const PixelRays& rays_;
+  const std::stop_token& stop_;
+  image::Layer& layer_;
+  // Index: pixel * instances + instance.
+  std::vector<double> alone_;
+};
+
 }  // namespace
 
-Vector3 to_sun(double azimuth_deg, double elevation_deg) {
-  const double a = radians(azimuth_deg);
-  const double e = radians(elevation_deg);
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), -std::sin(e)};
-}
-
 image::Layer render(const View& view,
-                    const Light& light,
+                    const shade::Light& light,
                     const std::vector<Instance>& instances,
                     const std::vector<std::optional<Box>>& search,
                     const Options& options) {
   check(view.lens != nullptr && instances.size() == search.size(),
         "a view has a lens and an instance has its box");
-  const auto patch = patch_of(search, view);
-  const RayGrid grid(view, patch.value_or(PixelBox{0, 0, 1, 1}));
-  std::vector<TracedIntruder> actors;
+  const SampleCounts counts = counts_for(options.quality, view.shutter.exposure_s > 0);
+  std::optional<PixelBox> patch;
+  for (const auto& box : search)
+    if (const auto pixels = pixels_to_search(box, view))
+      patch = patch ? bounds(*patch, *pixels) : *pixels;
+  const Span span = span_of(view, patch.value_or(PixelBox{0, 0, 1, 1}));
+  std::vector<PlacedInstance> placed;
   for (std::size_t i = 0; i < instances.size(); ++i)
-    actors.push_back(place(instances[i], view, light, search[i], grid.span()));
-  SampleCounts counts = counts_for(options.quality, largest_px(actors));
-  // The samples have a third dimension, time, and need a larger number for the same error.
-  if (view.shutter.exposure_s > 0) {
-    counts.outline = std::min(2 * counts.outline, PixelSamples::kMost);
-    // The depth buffer of a large triangle in motion costs more than a few rays.
-    counts.sees = counts.at_once;
-  }
-  const Tracer tracer(light, actors, grid, counts);
-  image::Layer layer;
+    placed.push_back(place(instances[i], view, light, search[i], span));
+  image::Layer layer = empty_layer(patch.value_or(PixelBox{}), placed);
   if (patch) {
-    Canvas canvas(*patch, actors.size());
-    fill(view, actors, tracer, grid, counts, options.stop, canvas);
-    layer = layer_of(canvas, actors);
-  } else {
-    layer.coverage.resize(actors.size());
-    layer.area_alone_in_frame_px.assign(actors.size(), 0.0);
-    layer.area_seen_px.assign(actors.size(), 0.0);
+    const PixelRays rays(view, *patch);
+    Painter(view, light, placed, rays, options.stop, layer).paint(counts);
   }
   layer.area_free_px = layer.area_seen_px;
   layer.area_alone_px = layer.area_alone_in_frame_px;
-  for (std::size_t a = 0; a < actors.size(); ++a)
-    if (search[a])
-      layer.area_alone_px[a] += area_outside(view, tracer, static_cast<int>(a), *search[a]);
+  for (std::size_t a = 0; a < placed.size(); ++a)
+    if (search[a]) layer.area_alone_px[a] += area_outside(view, placed[a], *search[a]);
   return layer;
 }
 

@@ -2,19 +2,17 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <stop_token>
 #include <vector>
 
-#include "aircraft/model/mesh.h"
 #include "camera/lens/lens.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
 #include "foundation/image/layer.h"
-#include "picture/render/environment.h"
+#include "picture/shade/light.h"
+#include "picture/shade/model.h"
 
 // Traces rays through exactly the pixels that an intruder can touch (design: docs/architecture.md):
 //
@@ -25,29 +23,10 @@
 // exposure. Camera, aircraft and propellers take their poses of that time.
 //
 // Example: in a frame of 1280 x 960 pixels a pinhole with a vertical view of 75 degrees has a focal
-// length of 480 / tan(37.5 deg) = 625.5 px, and a wing of 11 m, seen square-on from 500 m, spans
+// length of 480 / tan(37.5 deg) = 625.5 px, and a wing of 11 m, viewed square-on from 500 m, spans
 // 625.5 * 11 / 500 = 13.8 px. For a sun in the east, 30 degrees high, to_sun(90, 30) is (0, 0.866,
 // -0.5).
 namespace airtruth::render {
-
-// The light of a scene. All colours are linear RGB.
-struct Light {
-  // Unit vector towards the sun.
-  Vector3 to_sun_in_world{0, 0, -1};
-  // Irradiance over pi on a surface that faces the sun.
-  std::array<float, 3> sun = {1, 1, 1};
-  // From straight above.
-  std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};
-  // From straight below.
-  std::array<float, 3> ground = {0.1f, 0.1f, 0.1f};
-  // Replaces sky and ground: the light by direction. The aircraft hides a part of it from itself,
-  // and paint with a clear coat mirrors it. Empty: the hemisphere of sky and ground, as in the
-  // OpenGL renderer of `backdrop`.
-  std::optional<Environment> surroundings = {};
-};
-
-// The unit vector to_sun_in_world for an azimuth (from north towards east) and an elevation.
-Vector3 to_sun(double azimuth_deg, double elevation_deg);
 
 // The camera of one frame.
 struct View {
@@ -66,28 +45,9 @@ struct View {
   View at(double dt_s) const;
 };
 
-// An aircraft prepared for rays: its BVH in body coordinates. A Model is immutable; intruders of
-// one type share one.
-class Model {
- public:
-  // Shares the mesh. `openness_cache`: a folder that keeps the openness of models from one run to
-  // the next (openness_cache.h); empty: none.
-  explicit Model(std::shared_ptr<const aircraft::Mesh> mesh,
-                 const std::filesystem::path& openness_cache = {});
-  // Copies the mesh.
-  explicit Model(const aircraft::Mesh& mesh);
-  ~Model();
-  Model(Model&&) noexcept;
-  struct Impl;
-  const Impl& impl() const { return *impl_; }
-
- private:
-  std::unique_ptr<Impl> impl_;
-};
-
 // One aircraft in a frame.
 struct Instance {
-  const Model* model = nullptr;
+  const shade::Model* model = nullptr;
   Rigid world_from_body;
   // The time that sets the propellers' angles.
   double time_s = 0;
@@ -110,7 +70,7 @@ struct Options {
 // box are never touched. The result has the same bytes for any number of threads (rows of tiles run
 // on oneTBB).
 image::Layer render(const View& view,
-                    const Light& light,
+                    const shade::Light& light,
                     const std::vector<Instance>& instances,
                     const std::vector<std::optional<Box>>& search,
                     const Options& options = {});

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/render/samples.h"
 
+#include <algorithm>
+#include <bit>
 #include <string>
+#include <vector>
 
 #include "foundation/base/error.h"
 
@@ -14,11 +17,9 @@ std::uint32_t hashed(std::uint32_t x, std::uint32_t y) {
   return h;
 }
 
-struct SobolPoints {
-  std::array<std::uint32_t, PixelSamples::kMost> x;
-  std::array<std::uint32_t, PixelSamples::kMost> y;
-  std::array<std::uint32_t, PixelSamples::kMost> t;
-};
+using SobolPoint = std::array<std::uint32_t, 3>;
+constexpr std::size_t kX = 0;
+constexpr std::size_t kT = 2;
 
 // Direction numbers of the primitive polynomial x^2 + x + 1 (Sobol 1967; m = 1, 3).
 constexpr std::array<std::uint32_t, 12> third_directions() {
@@ -27,141 +28,99 @@ constexpr std::array<std::uint32_t, 12> third_directions() {
   return v;
 }
 
-constexpr SobolPoints sobol_points() {
-  SobolPoints points{};
+constexpr SobolPoint sobol_point(std::uint32_t n) {
   constexpr auto third = third_directions();
-  for (std::uint32_t n = 0; n < PixelSamples::kMost; ++n) {
-    std::uint32_t vx = 1u << 31;
-    std::uint32_t vy = 1u << 31;
-    for (std::uint32_t i = n; i != 0; i >>= 1, vx >>= 1, vy ^= vy >> 1) {
-      if ((i & 1u) != 0) {
-        points.x[n] ^= vx;
-        points.y[n] ^= vy;
-      }
+  SobolPoint point{};
+  std::uint32_t vx = 1u << 31;
+  std::uint32_t vy = 1u << 31;
+  for (std::uint32_t i = n; i != 0; i >>= 1, vx >>= 1, vy ^= vy >> 1)
+    if ((i & 1u) != 0) {
+      point[0] ^= vx;
+      point[1] ^= vy;
     }
-    for (std::uint32_t bit = 0; bit < third.size(); ++bit)
-      if ((n >> bit & 1u) != 0) points.t[n] ^= third[bit];
+  for (std::uint32_t bit = 0; bit < third.size(); ++bit)
+    if ((n >> bit & 1u) != 0) point[2] ^= third[bit];
+  return point;
+}
+
+// The first n points, by their block of one dimension before the scrambling.
+struct SortedPoints {
+  std::array<std::vector<std::uint32_t>, 3> of;
+
+  SortedPoints(int n, std::size_t dimension) {
+    const int shift = 32 - std::countr_zero(static_cast<unsigned>(n / Samples::kBlock));
+    std::vector<SobolPoint> points;
+    for (int i = 0; i < n; ++i) points.push_back(sobol_point(static_cast<std::uint32_t>(i)));
+    std::stable_sort(points.begin(), points.end(), [&](const SobolPoint& a, const SobolPoint& b) {
+      return a[dimension] >> shift < b[dimension] >> shift;
+    });
+    for (const SobolPoint& point : points)
+      for (std::size_t k = 0; k < 3; ++k) of[k].push_back(point[k]);
   }
-  return points;
-}
+};
 
-constexpr SobolPoints kPoints = sobol_points();
-
-// The same points, ordered by the remainder of their index by kStrips.
-constexpr SobolPoints strip_points() {
-  SobolPoints sorted{};
-  std::size_t to = 0;
-  for (std::size_t remainder = 0; remainder < PixelSamples::kStrips; ++remainder)
-    for (std::size_t n = remainder; n < PixelSamples::kMost; n += PixelSamples::kStrips, ++to) {
-      sorted.x[to] = kPoints.x[n];
-      sorted.y[to] = kPoints.y[n];
-      sorted.t[to] = kPoints.t[n];
-    }
-  return sorted;
-}
-
-constexpr SobolPoints kStripPoints = strip_points();
-
-// The index of the point in each cell of a grid over the pixel, before the scrambling.
-template <std::uint32_t kSide>
-constexpr std::array<std::uint16_t, kSide * kSide> points_of_cells() {
-  std::array<std::uint16_t, kSide * kSide> result{};
-  constexpr std::uint32_t kCell = static_cast<std::uint32_t>((std::uint64_t{1} << 32) / kSide);
-  for (std::uint32_t n = 0; n < kSide * kSide; ++n)
-    result[kPoints.x[n] / kCell * kSide + kPoints.y[n] / kCell] = static_cast<std::uint16_t>(n);
-  return result;
-}
-
-template <std::uint32_t kSide>
-constexpr auto kPointsOfCells = points_of_cells<kSide>();
-
-float unit(std::uint32_t bits) {
-  return (static_cast<float>(static_cast<std::int32_t>(bits >> 9)) + 0.5f) * 0x1.0p-23f;
+const SortedPoints& sorted_points(int n, bool by_time) {
+  static const std::vector<std::array<SortedPoints, 2>> all = [] {
+    std::vector<std::array<SortedPoints, 2>> result;
+    for (int count = Samples::kBlock; count <= Samples::kMost; count *= 2)
+      result.push_back({SortedPoints(count, kX), SortedPoints(count, kT)});
+    return result;
+  }();
+  return all[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(n / Samples::kBlock)))]
+            [by_time ? 1 : 0];
 }
 
 }  // namespace
 
-PixelSamples::PixelSamples(int x, int y)
-    : scramble_x_(hashed(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))),
-      scramble_y_(hashed(scramble_x_, 0x68bc21ebu)),
-      scramble_t_(hashed(scramble_y_, 0x02e5be93u)) {}
-
-std::array<double, 2> PixelSamples::at(int i) const {
-  const auto n = static_cast<std::size_t>(i);
-  return {((kPoints.x[n] ^ scramble_x_) + 0.5) * 0x1.0p-32,
-          ((kPoints.y[n] ^ scramble_y_) + 0.5) * 0x1.0p-32};
+PixelSamples::PixelSamples(int x, int y) {
+  scramble_[0] = hashed(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+  scramble_[1] = hashed(scramble_[0], 0x68bc21ebu);
+  scramble_[2] = hashed(scramble_[1], 0x02e5be93u);
 }
 
-double PixelSamples::time(int i) const {
-  return ((kPoints.t[static_cast<std::size_t>(i)] ^ scramble_t_) + 0.5) * 0x1.0p-32;
+void PixelSamples::fill(int n, bool by_time, Samples& samples) const {
+  samples.count = n;
+  const SortedPoints& points = sorted_points(n, by_time);
+  constexpr int kBlock = Samples::kBlock;
+  const int blocks = n / kBlock;
+  // The scrambling permutes the blocks.
+  const int shift = 32 - std::countr_zero(static_cast<unsigned>(blocks));
+  const auto turned = static_cast<int>(scramble_[by_time ? kT : kX] >> shift);
+  const auto copy = [&](std::size_t dimension, float scale, float* to) {
+    // As a signed number the middle is 0.
+    const std::uint32_t scramble = scramble_[dimension] ^ 0x80000000u;
+    for (int block = 0; block < blocks; ++block) {
+      const std::uint32_t* from = points.of[dimension].data() + (block ^ turned) * kBlock;
+      for (int i = 0; i < kBlock; ++i)
+        to[block * kBlock + i] =
+            (static_cast<float>(static_cast<std::int32_t>(from[i] ^ scramble) >> 8) + 0.5f) * scale;
+    }
+  };
+  copy(0, 0x1p-24f, samples.x.data());
+  copy(1, 0x1p-24f, samples.y.data());
+  copy(2, 0x1p-23f, samples.t.data());
 }
 
-void PixelSamples::fill_times(int n, float* t) const {
-  fill_strips(n, kStripPoints.t, scramble_t_, t);
+std::array<double, 3> PixelSamples::at(int i) const {
+  const SobolPoint point = sobol_point(static_cast<std::uint32_t>(i));
+  std::array<double, 3> result;
+  for (std::size_t k = 0; k < 3; ++k) result[k] = ((point[k] ^ scramble_[k]) + 0.5) * 0x1p-32;
+  return result;
 }
 
-template <std::uint32_t kSide>
-void PixelSamples::fill_grid(float* x, float* y, float* t) const {
-  constexpr std::uint32_t kCell = static_cast<std::uint32_t>((std::uint64_t{1} << 32) / kSide);
-  const std::uint32_t column = scramble_x_ / kCell;
-  const std::uint32_t row = scramble_y_ / kCell;
-  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-    const std::uint16_t n = kPointsOfCells<kSide>[(i / kSide ^ column) * kSide + (i % kSide ^ row)];
-    x[i] = unit(kPoints.x[n] ^ scramble_x_);
-    y[i] = unit(kPoints.y[n] ^ scramble_y_);
-    t[i] = unit(kPoints.t[n] ^ scramble_t_);
-  }
-}
-
-void PixelSamples::fill_cells(int side, float* x, float* y, float* t) const {
-  if (side == 8)
-    fill_grid<8>(x, y, t);
-  else
-    fill_grid<16>(x, y, t);
-}
-
-void PixelSamples::fill(int n, float* x, float* y) const {
-  fill_strips(n, kStripPoints.x, scramble_x_, x);
-  fill_strips(n, kStripPoints.y, scramble_y_, y);
-}
-
-void PixelSamples::fill_strips(int n,
-                               const std::array<std::uint32_t, kMost>& points,
-                               std::uint32_t scramble,
-                               float* to) const {
-  const int each = n / kStrips;
-  for (int remainder = 0; remainder < kStrips; ++remainder) {
-    const std::uint32_t* from = points.data() + remainder * (kMost / kStrips);
-    float* strip = to + strip_of(remainder) * each;
-    for (int j = 0; j < each; ++j) strip[j] = unit(from[j] ^ scramble);
-  }
-}
-
-void PixelSamples::fill_in_sequence(int n, float* x, float* y, float* t) const {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-    x[i] = unit(kPoints.x[i] ^ scramble_x_);
-    y[i] = unit(kPoints.y[i] ^ scramble_y_);
-    t[i] = unit(kPoints.t[i] ^ scramble_t_);
-  }
-}
-
-SampleCounts counts_for(int quality, double size_px) {
+SampleCounts counts_for(int quality, bool exposes) {
+  const int more = exposes ? 2 : 1;
   switch (quality) {
     case 1:
-      return {4, 32, 64, 4, 4, 8, 2};
+      return {32 * more * more, 64, 64};
     case 2:
-      return {16, 128, 256, 8, 4, 8, 2};
+      return {64 * more * more, 64, 256 * more};
     case 3:
-      // In a smaller aircraft each pixel contains more of the livery, and fewer pixels need
-      // samples.
-      if (size_px <= 24) return {64, 1024, 1024, 64, 64, 16, 8, true};
-      if (size_px <= 64) return {16, 512, 512, 32, 16, 8, 4, true};
-      // A larger aircraft has more pixels on its outline, and with them a larger worst error.
-      return {16, 256, size_px <= 256 ? 512 : 2048, 16, 8, 8, 3};
+      return {exposes ? 384 : 128, 64, 512 * more};
     case 4:
-      return {64, 1024, 4096, 16, 16, 8, 4};
+      return {256 * more, 256, 1024 * more};
     case 5:
-      return {4096, 4096, 0, 16, 16, 8, 4};
+      return {0, PixelSamples::kMost, PixelSamples::kMost, true};
     default:
       break;
   }

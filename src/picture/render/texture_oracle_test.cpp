@@ -19,7 +19,7 @@ constexpr int kTextureSide = 120;
 constexpr int kFiner = 8;
 
 image::Layer textured_layer(const aircraft::Aircraft& aircraft,
-                            const Model& model,
+                            const shade::Model& model,
                             double size_px,
                             int finer,
                             const YawPitchRoll& attitude) {
@@ -34,20 +34,20 @@ image::Layer textured_layer(const aircraft::Aircraft& aircraft,
                   Homography::Identity(),
                   side,
                   side};
-  Light light;
-  light.to_sun_in_world = to_sun(160, 40);
+  shade::Light light;
+  light.to_sun_in_world = shade::to_sun(160, 40);
   light.sun = {0.6f, 0.58f, 0.55f};
-  light.surroundings = Environment::of([](const Vector3& d) {
-    return d.z() > 0 ? Rgb{0.05f, 0.05f, 0.04f} : Rgb{0.15f, 0.2f, 0.26f};
+  light.surroundings = shade::Environment::of([](const Vector3& d) {
+    return d.z() > 0 ? image::Rgb{0.05f, 0.05f, 0.04f} : image::Rgb{0.15f, 0.2f, 0.26f};
   });
   const Rigid world_from_body{airtruth::world_from_body(attitude),
                               Vector3(2000 * longest_m / size_px, 0.3, -0.2)};
   // The size of the box determines the number of samples.
-  const double reach = finer * (0.6 * size_px + 3);
+  const double half_px = finer * (0.6 * size_px + 3);
   return render(view,
                 light,
                 {{&model, world_from_body, 0}},
-                {Box{side / 2.0 - reach, side / 2.0 - reach, 2 * reach, 2 * reach}},
+                {Box{side / 2.0 - half_px, side / 2.0 - half_px, 2 * half_px, 2 * half_px}},
                 {.quality = finer > 1 ? 4 : 3});
 }
 
@@ -64,7 +64,7 @@ double code_of(double linear) {
 }
 
 TextureError texture_error(const aircraft::Aircraft& aircraft,
-                           const Model& model,
+                           const shade::Model& model,
                            double size_px,
                            const YawPitchRoll& attitude) {
   const image::Layer got = textured_layer(aircraft, model, size_px, 1, attitude);
@@ -105,7 +105,7 @@ TextureError texture_error(const aircraft::Aircraft& aircraft,
 TEST(Texture, IsNotWashedOutWhereAnAircraftIsSmall) {
   for (const char* name : {"738/738-Ryanair", "c172/news"}) {
     const aircraft::Aircraft aircraft = aircraft::load_aircraft(name);
-    const Model model(aircraft.mesh);
+    const shade::Model model(aircraft.mesh);
     for (const double size_px : {12.0, 30.0, 100.0})
       for (const YawPitchRoll& attitude :
            {YawPitchRoll{90, 0, 0}, YawPitchRoll{40, 5, 12}, YawPitchRoll{10, 3, 0}}) {

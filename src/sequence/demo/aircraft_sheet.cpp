@@ -38,7 +38,7 @@ image::Picture sky_tile(int tile_px) {
 }
 
 image::Rgb8 tile(const aircraft::Aircraft& aircraft,
-                 const render::Model& model,
+                 const shade::Model& model,
                  const Pose& pose,
                  int tile_px = kTilePx) {
   const aircraft::Extents size = aircraft::extents(aircraft.mesh);
@@ -61,8 +61,8 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft,
   const projection::SilhouettePoints silhouette{&aircraft.mesh,
                                                 aircraft::silhouette_points(aircraft.mesh)};
   const auto box = projection::exact_box(sight, silhouette, {}, 0).box;
-  render::Light light;
-  light.to_sun_in_world = render::to_sun(degrees(azimuth) + 35, 45);
+  shade::Light light;
+  light.to_sun_in_world = shade::to_sun(degrees(azimuth) + 35, 45);
   light.sun = {0.62f, 0.6f, 0.56f};
   light.sky = {0.28f, 0.34f, 0.42f};
   light.ground = {0.14f, 0.13f, 0.11f};
@@ -85,7 +85,7 @@ image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft) {
                                       {"right side", 90, 0, 380},
                                       {"right side, 40 px", 90, 5, 40},
                                       {"front left, 10 px", -40, 5, 10}}};
-  const render::Model model(aircraft.mesh);
+  const shade::Model model(aircraft.mesh);
   std::vector<drawing::NamedPicture> tiles;
   for (const Pose& pose : poses) tiles.push_back({pose.name, tile(aircraft, model, pose)});
   return drawing::tiled(aircraft.name, std::move(tiles), 3);
@@ -93,7 +93,7 @@ image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft) {
 
 image::Rgb8 aircraft_tile(const aircraft::Aircraft& aircraft) {
   constexpr int kSmallTilePx = 150;
-  return tile(aircraft, render::Model(aircraft.mesh), {"", -40, 18, 138}, kSmallTilePx);
+  return tile(aircraft, shade::Model(aircraft.mesh), {"", -40, 18, 138}, kSmallTilePx);
 }
 
 }  // namespace airtruth::demo

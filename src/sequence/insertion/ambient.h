@@ -39,7 +39,7 @@ struct Ambient {
   std::array<float, 3> ground{};  // radiance from below
   // Radiance of the background around the intruder, which haze approaches.
   std::array<float, 3> airlight{};
-  render::Environment surroundings;  // radiance of sky and ground by direction
+  shade::Environment surroundings;  // radiance of sky and ground by direction
 
   std::array<float, 3> sky() const {
     return {blue[0] + cloud[0], blue[1] + cloud[1], blue[2] + cloud[2]};

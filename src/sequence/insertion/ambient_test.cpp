@@ -34,7 +34,7 @@ struct ClearSky {
     sight = {&lens, Rigid{world_from_cam, Vector3::Zero()}.inverse(), Homography::Identity()};
     light.sun_azimuth_deg = sun_azimuth_deg;
     light.sun_elevation_deg = sun_elevation_deg;
-    const Skies all = skies(render::to_sun(sun_azimuth_deg, sun_elevation_deg));
+    const Skies all = skies(shade::to_sun(sun_azimuth_deg, sun_elevation_deg));
     image::Colour colour;
     colour.chroma = image::Chroma::k444;
     picture = image::make_picture(kSkySize, kSkySize, colour);

@@ -185,7 +185,7 @@ image::Layer render_layer(const scene::Scene& scene,
                           moment.sight.shutter,
                           moment.sight.camera,
                           moment.sight.frame_from_nominal_per_s};
-  const render::Light light{setup::to_sun_in_world(scene.light),
+  const shade::Light light{setup::to_sun_in_world(scene.light),
                             ambient.sun,
                             ambient.sky(),
                             ambient.ground,

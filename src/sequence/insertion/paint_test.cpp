@@ -138,7 +138,7 @@ aircraft::Mesh posed(const aircraft::Mesh& bird, double time_s) {
   return mesh;
 }
 
-std::vector<double> coverage_of_rows(const render::Model& model,
+std::vector<double> coverage_of_rows(const shade::Model& model,
                                      const render::View& view,
                                      double time_s) {
   const render::Instance instance{&model, {Quaternion::Identity(), {12, 0, 0}}, time_s, {}};
@@ -162,11 +162,11 @@ TEST(Distractors, EachRowSeesItsOwnMomentOfTheStroke) {
   const double time_s = 0.43;
   render::View rolling = view;
   rolling.shutter = {.exposure_s = 0, .readout_s = 0.03};
-  const std::vector<double> seen = coverage_of_rows(render::Model(bird), rolling, time_s);
+  const std::vector<double> seen = coverage_of_rows(shade::Model(bird), rolling, time_s);
   for (const int y : {215, 228, 236, 240, 244, 252, 265}) {
     const double row_s = rolling.shutter.middle_s({320.5, y + 0.5}, kSize.width, kSize.height);
     const std::vector<double> still =
-        coverage_of_rows(render::Model(posed(bird, time_s + row_s)), view, time_s);
+        coverage_of_rows(shade::Model(posed(bird, time_s + row_s)), view, time_s);
     const auto row = static_cast<std::size_t>(y);
     EXPECT_NEAR(seen[row], still[row], 0.15 + 0.02 * still[row]) << "row " << y;
   }

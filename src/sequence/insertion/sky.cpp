@@ -8,8 +8,8 @@
 namespace airtruth::insertion {
 namespace {
 
-using render::Environment;
-using render::Rgb;
+using image::Rgb;
+using shade::Environment;
 
 constexpr double kLowestSunDeg = 1;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "picture/render/environment.h"
+#include "picture/shade/light.h"
 
 // Relative brightness of sky, sun and ground. Luminances are in kcd/m2 and illuminances in klx;
 // only their ratios are used. The sky distributions are the CIE's models, the levels those of the
@@ -20,11 +20,11 @@ double overcast_over_zenith(double elevation_deg);
 
 // Skies as environments, black below the horizon, each of irradiance over pi 1 on a level surface.
 struct Skies {
-  render::Environment clear;
-  render::Environment overcast;
-  render::Environment ground;  // radiance 1 from all below the horizon
-  Vector3 to_sun{0, 0, -1};    // unit, in world axes
-  double clear_zenith = 1;     // the clear sky's luminance at the zenith, in the model's unit
+  shade::Environment clear;
+  shade::Environment overcast;
+  shade::Environment ground;  // radiance 1 from all below the horizon
+  Vector3 to_sun{0, 0, -1};   // unit, in world axes
+  double clear_zenith = 1;    // the clear sky's luminance at the zenith, in the model's unit
   // Irradiance over pi on a level surface of a sky whose luminance at the zenith is 1.
   double clear_level = 1;
   double overcast_level = 1;

@@ -25,7 +25,7 @@ TEST(Sky, IlluminancesAreThoseOfTheTables) {
 TEST(Sky, AnOvercastSkyIsThatOfMoonAndSpencer) {
   EXPECT_DOUBLE_EQ(overcast_over_zenith(0), 1.0 / 3);
   EXPECT_DOUBLE_EQ(overcast_over_zenith(90), 1);
-  const Skies all = skies(render::to_sun(0, 45));
+  const Skies all = skies(shade::to_sun(0, 45));
   EXPECT_NEAR(all.overcast.irradiance_over_pi(kUp)[0], 1, 0.02);
   // On a wall: 0.396 of the level surface's (Moon and Spencer 1942), without the ground's share.
   EXPECT_NEAR(all.overcast.irradiance_over_pi({1, 0, 0})[1], 0.396, 0.03);
@@ -36,14 +36,14 @@ TEST(Sky, AClearSkyIsBrightAboutTheSunAndAtTheHorizon) {
   EXPECT_DOUBLE_EQ(clear_sky_over_zenith(90, 50, 40), 1);
   EXPECT_GT(clear_sky_over_zenith(40, 5, 40), clear_sky_over_zenith(40, 60, 40));
   EXPECT_GT(clear_sky_over_zenith(3, 120, 40), clear_sky_over_zenith(60, 120, 40));
-  const Skies all = skies(render::to_sun(90, 40));
+  const Skies all = skies(shade::to_sun(90, 40));
   EXPECT_NEAR(all.clear.irradiance_over_pi(kUp)[0], 1, 0.03);
   EXPECT_GT(all.clear.irradiance_over_pi({0, 1, 0})[0],
             all.clear.irradiance_over_pi({0, -1, 0})[0]);
 }
 
 TEST(Sky, AGroundLightsWhatLooksDown) {
-  const Skies all = skies(render::to_sun(0, 30));
+  const Skies all = skies(shade::to_sun(0, 30));
   EXPECT_NEAR(all.ground.irradiance_over_pi(kDown)[0], 1, 0.02);
   EXPECT_NEAR(all.ground.irradiance_over_pi(kUp)[0], 0, 0.02);
   EXPECT_NEAR(all.ground.irradiance_over_pi({1, 0, 0})[0], 0.5, 0.02);

@@ -29,7 +29,7 @@ struct Boxes {
 };
 
 Boxes boxes_of(const aircraft::Aircraft& aircraft,
-               const render::Model& model,
+               const shade::Model& model,
                const projection::SilhouettePoints& silhouette,
                double size_px) {
   const aircraft::Extents extents = aircraft::extents(aircraft.mesh);
@@ -80,7 +80,7 @@ TEST(EveryAircraft, HasItsTwoBoxesTogetherNearAndFar) {
     SCOPED_TRACE(entry.name);
     kinds.insert(kind);
     const aircraft::Aircraft aircraft = aircraft::load_aircraft(entry.name);
-    const render::Model model(aircraft.mesh);
+    const shade::Model model(aircraft.mesh);
     const projection::SilhouettePoints silhouette{&aircraft.mesh,
                                                   aircraft::silhouette_points(aircraft.mesh)};
     for (const double size_px : {8.0, 60.0, 300.0}) {

@@ -31,7 +31,7 @@ struct Options {
   // unless hardware encodes the video. libx264 has eight threads of its own beside them.
   int threads = 0;
   bool use_cache = true;
-  // Folder of the cache for motion, calibrations and openness; empty: the user's own
+  // Folder of the cache for motion, calibrations and ambient occlusion; empty: the user's own
   // (disk_cache::user_folder).
   fs::path cache;
   // Inputs that runs of one process have in common (sequence/setup/shared_inputs.h); nullptr: this

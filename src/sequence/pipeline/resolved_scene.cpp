@@ -51,8 +51,9 @@ disk_cache::Cache cache_of(const Options& options, const char* kind) {
 
 // The inputs of the process, else those of one run.
 std::shared_ptr<setup::SharedInputs> inputs_of(const Options& options) {
-  return options.shared ? options.shared
-                        : std::make_shared<setup::SharedInputs>(cache_folder(options, "openness"));
+  return options.shared
+             ? options.shared
+             : std::make_shared<setup::SharedInputs>(cache_folder(options, "ambient_occlusion"));
 }
 
 // Measures the whole clip, so that all scenes over one clip have the same camera.

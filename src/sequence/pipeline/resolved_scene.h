@@ -107,8 +107,8 @@ bool needs_calibration(const scene::Scene& scene);
 // already. Does nothing where the scene needs no calibration.
 void calibrate_ahead(const scene::Scene& scene, const Options& options);
 
-// The folder of the cache for one kind of result: "motion", "calibration" or "openness"; empty:
-// none.
+// The folder of the cache for one kind of result: "motion", "calibration" or "ambient_occlusion";
+// empty: none.
 fs::path cache_folder(const Options& options, const char* kind);
 
 }  // namespace airtruth::pipeline

@@ -155,7 +155,7 @@ std::vector<encounter::AskedVolume> volumes_of(const scene::Truth& truth) {
 }
 
 Vector3 to_sun_in_world(const scene::Light& light) {
-  return render::to_sun(light.sun_azimuth_deg, light.sun_elevation_deg);
+  return shade::to_sun(light.sun_azimuth_deg, light.sun_elevation_deg);
 }
 
 Shutter shutter_of(const scene::CameraModel& model) {

@@ -38,7 +38,7 @@ std::string type_key(const scene::Intruder& intruder, const trajectory::Path& pa
 }
 
 std::size_t bytes_of(const aircraft::Mesh& mesh) {
-  // Of a triangle: its share of vertices, its BVH, and the openness of its sides.
+  // Of a triangle: its share of vertices, its BVH, and the ambient occlusion of its sides.
   constexpr std::size_t kBytesOfATriangle = 400;
   std::size_t texels = 0;
   for (const aircraft::Texture& texture : mesh.textures)
@@ -54,11 +54,11 @@ std::vector<FileStamp> stamps_of(const aircraft::Aircraft& aircraft) {
 
 std::shared_ptr<const Type> prepared(std::shared_ptr<const aircraft::Aircraft> aircraft,
                                      std::vector<std::string> warnings,
-                                     const std::filesystem::path& openness_cache) {
+                                     const std::filesystem::path& occlusion_cache) {
   auto type = std::make_shared<Type>();
   // The model shares the mesh within the aircraft.
   const std::shared_ptr<const aircraft::Mesh> mesh(aircraft, &aircraft->mesh);
-  type->model = std::make_shared<const render::Model>(mesh, openness_cache);
+  type->model = std::make_shared<const shade::Model>(mesh, occlusion_cache);
   type->silhouette = {&aircraft->mesh, aircraft::silhouette_points(aircraft->mesh)};
   type->bytes = bytes_of(aircraft->mesh);
   type->aircraft = std::move(aircraft);
@@ -82,8 +82,8 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
     const auto collect = [&](const std::string& text) { warnings.push_back(text); };
     const auto loaded = aircraft_of(intruder, path, collect, stop);
     type = twin_of(*loaded);
-    // The openness of a distractor is found faster than it is read.
-    const std::filesystem::path kept = is_aircraft(intruder) ? openness_cache_ : "";
+    // The ambient occlusion of a distractor is found faster than it is read.
+    const std::filesystem::path kept = is_aircraft(intruder) ? occlusion_cache_ : "";
     if (!type || type->warnings != warnings) type = prepared(loaded, warnings, kept);
     keep(*slot, type);
   }

@@ -29,11 +29,11 @@ class SharedInputs {
   // is loaded.
   static constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
 
-  // `openness_cache`: the folder that keeps the openness of aircraft (picture/render/renderer.h);
-  // empty: none.
-  explicit SharedInputs(std::filesystem::path openness_cache = {},
+  // `occlusion_cache`: the folder that keeps the ambient occlusion of aircraft
+  // (picture/render/renderer.h); empty: none.
+  explicit SharedInputs(std::filesystem::path occlusion_cache = {},
                         std::size_t max_kept_bytes = kMaxKeptBytes)
-      : openness_cache_(std::move(openness_cache)), max_kept_bytes_(max_kept_bytes) {}
+      : occlusion_cache_(std::move(occlusion_cache)), max_kept_bytes_(max_kept_bytes) {}
 
   // The intruder's aircraft in its configuration at the beginning of its path. Two that come out as
   // the same mesh, such as one type at two cruising speeds, share it with its BVH. A file that has
@@ -70,7 +70,7 @@ class SharedInputs {
   void keep(Slot& slot, std::shared_ptr<const Type> type);
   void drop_unused();
 
-  const std::filesystem::path openness_cache_;
+  const std::filesystem::path occlusion_cache_;
   const std::size_t max_kept_bytes_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Slot>> slots_;

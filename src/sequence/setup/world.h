@@ -28,7 +28,7 @@ class SharedInputs;
 // An aircraft that is ready to be drawn.
 struct Type {
   std::shared_ptr<const aircraft::Aircraft> aircraft;
-  std::shared_ptr<const render::Model> model;
+  std::shared_ptr<const shade::Model> model;
   projection::SilhouettePoints silhouette;
   std::vector<std::string> warnings;  // of its reader
   std::size_t bytes = 0;              // of memory, about

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/shade/model.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "foundation/base/error.h"
+#include "picture/shade/ambient_occlusion.h"
+#include "picture/shade/model_impl.h"
+#include "picture/shade/opaque.h"
+#include "picture/shade/outer_sides.h"
+#include "picture/shade/shade.h"
+
+namespace airtruth::shade {
+namespace {
+
+// The settings omit "threads=1": with it Embree would limit all of oneTBB, and so the whole
+// pipeline, to one thread. All machines use one instruction set, so that a frame has the same bytes
+// on each: AVX2 (2013 and later), or SSE4.2 where AVX2 is missing.
+struct Device {
+  RTCDevice device = nullptr;
+  // Embree's version and its settings.
+  std::string name;
+};
+Device new_device() {
+  for (const char* settings : {"isa=avx2", "isa=sse4.2", ""}) {
+    if (std::strstr(settings, "avx2") != nullptr && !__builtin_cpu_supports("avx2")) continue;
+    if (RTCDevice device = rtcNewDevice(settings))
+      return {device,
+              std::to_string(rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION)) + ' ' +
+                  settings};
+  }
+  throw Error("Embree has no device");
+}
+
+RTCScene scene_of(RTCDevice device, const aircraft::Mesh& mesh, const aircraft::Part& part) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+  if (!part.triangles.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry,
+                                                                 RTC_BUFFER_TYPE_VERTEX,
+                                                                 0,
+                                                                 RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float),
+                                                                 mesh.positions.size()));
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        vertices[3 * i + static_cast<std::size_t>(c)] = mesh.positions[i][c];
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry,
+                                                                   RTC_BUFFER_TYPE_INDEX,
+                                                                   0,
+                                                                   RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned),
+                                                                   part.triangles.size()));
+    for (std::size_t i = 0; i < part.triangles.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) indices[3 * i + c] = part.triangles[i].vertex[c];
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(scene);
+  return scene;
+}
+
+// Texels per metre over a triangle: the square root of the ratio of its area in the texture to that
+// in space.
+float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
+  const int texture = mesh.materials[triangle.material].texture;
+  if (texture < 0) return 0;
+  const auto& level = mesh.textures[static_cast<std::size_t>(texture)].levels.front();
+  const auto& [a, b, c] = triangle.vertex;
+  const Eigen::Vector2f p = mesh.uvs[b] - mesh.uvs[a];
+  const Eigen::Vector2f q = mesh.uvs[c] - mesh.uvs[a];
+  const float in_texels = std::abs(p.x() * q.y() - p.y() * q.x()) *
+                          static_cast<float>(level.width) * static_cast<float>(level.height);
+  const float in_m2 =
+      (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm();
+  return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;
+}
+
+PartGeometry geometry_of(const aircraft::Mesh& mesh, const aircraft::Part& part) {
+  constexpr std::uint32_t kNone = 0xffffffff;
+  PartGeometry geometry;
+  std::vector<std::uint32_t> of_vertex(mesh.positions.size(), kNone);
+  for (const aircraft::Triangle& triangle : part.triangles) {
+    PartGeometry::Triangle& result = geometry.triangles.emplace_back();
+    std::array<Eigen::Vector3d, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corner[k] = mesh.positions[triangle.vertex[k]].cast<double>();
+      std::uint32_t& own = of_vertex[triangle.vertex[k]];
+      if (own == kNone) {
+        own = static_cast<std::uint32_t>(geometry.positions.size());
+        geometry.positions.push_back(mesh.positions[triangle.vertex[k]]);
+      }
+      result.vertex[k] = own;
+    }
+    const Eigen::Vector3d ab = corner[1] - corner[0];
+    const Eigen::Vector3d ac = corner[2] - corner[0];
+    result.front_m2 = ab.cross(ac);
+    result.front_length_m2 = result.front_m2.norm();
+    result.longest_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+  }
+  return geometry;
+}
+
+Facet facet_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle, Opacity opacity) {
+  Facet facet;
+  for (std::size_t k = 0; k < 3; ++k) {
+    facet.corner[k] = mesh.positions[triangle.vertex[k]];
+    facet.normal[k] = mesh.normals[triangle.vertex[k]];
+    facet.uv[k] = mesh.uvs[triangle.vertex[k]];
+  }
+  facet.face = (facet.corner[1] - facet.corner[0]).cross(facet.corner[2] - facet.corner[0]);
+  facet.face.normalize();
+  facet.texels_per_m = density(mesh, triangle);
+  facet.material = triangle.material;
+  facet.is_opaque = opacity == Opacity::kOpaque;
+  facet.is_even = opacity != Opacity::kVaries;
+  if (facet.is_even)
+    facet.even_opacity =
+        opacity_at(mesh, facet, mesh.materials[triangle.material], 1.0f / 3, 1.0f / 3, 0);
+  return facet;
+}
+
+ModelOcclusion known_occlusion(const Model::Impl& model,
+                               const std::string& tracer,
+                               const disk_cache::Cache& cache) {
+  if (!cache.keeps()) return model_occlusion(model);
+  const disk_cache::Key key = occlusion_key(model.mesh, tracer);
+  const auto read = [&](const std::string& body) { return occlusion_from(body, model.mesh); };
+  if (auto known = cache.find(key, read)) return *std::move(known);
+  ModelOcclusion occlusion = model_occlusion(model);
+  cache.keep(key, stored(occlusion));
+  return occlusion;
+}
+
+}  // namespace
+
+Model::Model(const aircraft::Mesh& mesh) : Model(std::make_shared<const aircraft::Mesh>(mesh)) {}
+
+Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem::path& folder)
+    : impl_(std::make_unique<Impl>(std::move(shared))) {
+  const aircraft::Mesh& mesh = impl_->mesh;
+  const Device device = new_device();
+  impl_->device.reset(device.device);
+  const auto opacity = opacities(mesh);
+  for (const aircraft::Part& part : mesh.parts) {
+    impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
+    std::vector<Facet>& facets = impl_->facets.emplace_back();
+    const std::size_t p = impl_->facets.size() - 1;
+    std::vector<std::uint8_t>& opaque = impl_->opaque.emplace_back();
+    for (std::size_t i = 0; i < part.triangles.size(); ++i) {
+      facets.push_back(facet_of(mesh, part.triangles[i], opacity[p][i]));
+      opaque.push_back(facets.back().is_opaque ? 1 : 0);
+    }
+    impl_->geometry.push_back(geometry_of(mesh, part));
+  }
+  impl_->find_sphere();
+  impl_->occlusion = known_occlusion(*impl_, device.name, disk_cache::Cache(folder));
+  impl_->outer_sides = outer_sides(*impl_);
+}
+
+void Model::Impl::find_sphere() {
+  Eigen::AlignedBox3f bounds;
+  for (const aircraft::Part& part : mesh.parts)
+    for (const aircraft::Triangle& triangle : part.triangles)
+      for (std::uint32_t v : triangle.vertex) bounds.extend(mesh.positions[v]);
+  if (bounds.isEmpty()) bounds.extend(Eigen::Vector3f::Zero());
+  centre_in_body = bounds.center().cast<double>();
+  for (const aircraft::Part& part : mesh.parts) {
+    const Eigen::Vector3d hub = part.centre_in_body.cast<double>();
+    if (!part.hinges.empty())
+      radius_m =
+          std::max(radius_m, (hub - centre_in_body).norm() + double(aircraft::reach_m(mesh, part)));
+    for (const aircraft::Triangle& triangle : part.triangles) {
+      for (std::uint32_t v : triangle.vertex) {
+        const Eigen::Vector3d p = mesh.positions[v].cast<double>();
+        double far_m = (p - centre_in_body).norm();
+        if (part.spins) far_m = (hub - centre_in_body).norm() + (p - hub).norm();
+        radius_m = std::max(radius_m, far_m);
+      }
+    }
+  }
+  radius_m = radius_m * 1.01 + 0.01;
+}
+
+Model::~Model() = default;
+Model::Model(Model&&) noexcept = default;
+
+}  // namespace airtruth::shade

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "aircraft/model/mesh.h"
+
+namespace airtruth::shade {
+
+// An aircraft prepared for rays: its BVH in body coordinates. A Model is immutable; intruders of
+// one type share one.
+class Model {
+ public:
+  // Shares the mesh. `occlusion_cache`: a folder that keeps the ambient occlusion of models from
+  // one run to the next (ambient_occlusion.h); empty: none.
+  explicit Model(std::shared_ptr<const aircraft::Mesh> mesh,
+                 const std::filesystem::path& occlusion_cache = {});
+  // Copies the mesh.
+  explicit Model(const aircraft::Mesh& mesh);
+  ~Model();
+  Model(Model&&) noexcept;
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace airtruth::shade

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/shade/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace airtruth::shade {
+namespace {
+
+int wrapped(int i, int size, bool repeat) {
+  if (i >= 0 && i < size) return i;
+  return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
+}
+
+// Texture coordinates beyond this count as damaged.
+constexpr float kFarthestRepeat = 1e5f;
+
+// A place between two texels: the first of them, and the share of the second.
+struct TexelPlace {
+  int first;
+  float share;
+};
+
+// Textures have fewer than 2^14 texels a side, so that an int holds the number; std::floor is a
+// call of the library on machines that are only known to have SSE2.
+TexelPlace texel_place(float place) {
+  const auto towards_zero = static_cast<std::int64_t>(place);
+  const std::int64_t below = towards_zero - (place < static_cast<float>(towards_zero) ? 1 : 0);
+  return {static_cast<int>(below), place - static_cast<float>(below)};
+}
+
+// Four channels at once.
+using Channels = Eigen::Array4f;
+
+Channels bilinear(const aircraft::Texture& texture, std::size_t index, float u, float v) {
+  const auto& level = texture.levels[index];
+  const auto [x, fx] = texel_place(u * static_cast<float>(level.width) - 0.5f);
+  const auto [y, fy] = texel_place(v * static_cast<float>(level.height) - 0.5f);
+  const int x0 = wrapped(x, level.width, texture.repeat_u);
+  const int x1 = wrapped(x + 1, level.width, texture.repeat_u);
+  const int y0 = wrapped(y, level.height, texture.repeat_v);
+  const int y1 = wrapped(y + 1, level.height, texture.repeat_v);
+  const auto at = [&](int i, int j) {
+    return Eigen::Map<const Channels>(
+        level
+            .texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(level.width) +
+                    static_cast<std::size_t>(i)]
+            .data());
+  };
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x1, y0)) +
+         fy * ((1 - fx) * at(x0, y1) + fx * at(x1, y1));
+}
+
+}  // namespace
+
+TriangleTexture::TriangleTexture(const aircraft::Mesh& mesh, const Facet& facet, float footprint_m)
+    : facet_(&facet) {
+  const int index = mesh.materials[facet.material].texture;
+  if (index < 0) return;
+  texture_ = &mesh.textures[static_cast<std::size_t>(index)];
+  const float texels = footprint_m * facet.texels_per_m;
+  const float deepest = static_cast<float>(texture_->levels.size() - 1);
+  const float level = std::clamp(texels > 1 ? std::log2(texels) : 0.0f, 0.0f, deepest);
+  level_ = static_cast<std::size_t>(level + 0.5f);
+}
+
+Texel TriangleTexture::texel(float u, float v) const {
+  if (texture_ == nullptr) return {1, 1, 1, 1};
+  const Eigen::Vector2f uv = (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
+  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > kFarthestRepeat) return {1, 1, 1, 1};
+  Texel result;
+  Eigen::Map<Channels> channels(result.data());
+  channels = bilinear(*texture_, level_, uv.x(), uv.y());
+  return result;
+}
+
+Texel TriangleTexture::albedo(float u, float v) const {
+  Texel result = texel(u, v);
+  if (facet_->is_opaque && result[3] > 0 && result[3] < 1) {
+    const float alpha = result[3];
+    for (float& channel : result) channel = std::min(1.0f, channel / alpha);
+  }
+  return result;
+}
+
+}  // namespace airtruth::shade

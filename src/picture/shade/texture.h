@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "picture/shade/model_impl.h"
+
+namespace airtruth::shade {
+
+// A texture's value: linear RGBA, premultiplied.
+using Texel = std::array<float, 4>;
+
+// The texture of a triangle at the mip level nearest to one footprint (Williams 1983).
+class TriangleTexture {
+ public:
+  // References mesh and facet. `footprint_m`: the width on the surface that a sample represents.
+  TriangleTexture(const aircraft::Mesh& mesh, const Facet& facet, float footprint_m);
+  // By barycentric coordinates, as in Hit; white without a texture.
+  Texel texel(float u, float v) const;
+  // The same, without the holes that a coarse mip level mixes into an opaque triangle's own texels.
+  Texel albedo(float u, float v) const;
+
+ private:
+  const Facet* facet_;
+  // Null for a material without a texture.
+  const aircraft::Texture* texture_ = nullptr;
+  std::size_t level_ = 0;
+};
+
+}  // namespace airtruth::shade

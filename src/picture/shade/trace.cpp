@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/shade/trace.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace airtruth::shade {
+namespace {
+
+constexpr std::size_t kLanes = 8;
+
+using Lanes = std::array<int, kLanes>;  // -1 for a lane with a ray, else 0
+
+void find_blocked_of_eight(const Model::Impl& model,
+                           std::span<const BodyRay> rays,
+                           std::span<std::uint8_t> blocked) {
+  alignas(32) RTCRay8 packet{};
+  alignas(32) Lanes valid;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    valid[i] = i < rays.size() ? -1 : 0;
+    const BodyRay& ray = rays[std::min(i, rays.size() - 1)];
+    packet.org_x[i] = ray.origin.x();
+    packet.org_y[i] = ray.origin.y();
+    packet.org_z[i] = ray.origin.z();
+    packet.dir_x[i] = ray.direction.x();
+    packet.dir_y[i] = ray.direction.y();
+    packet.dir_z[i] = ray.direction.z();
+    packet.tfar[i] = INFINITY;
+    packet.mask[i] = 0xffffffffU;
+  }
+  for (std::size_t part = 0; part < model.scenes.size(); ++part) {
+    if (model.mesh.parts[part].moves()) continue;
+    occlude(valid.data(), model.scenes[part].get(), packet);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (packet.tfar[i] < 0) valid[i] = 0;
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = packet.tfar[i] < 0 ? 1 : 0;
+}
+
+}  // namespace
+
+bool is_blocked(const Model::Impl& model,
+                const Eigen::Vector3f& origin,
+                const Eigen::Vector3f& direction,
+                float within_m) {
+  for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+    if (model.mesh.parts[i].moves()) continue;
+    RTCRay ray{};
+    ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
+    ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
+    ray.tnear = 0;
+    ray.tfar = within_m;
+    ray.mask = 0xffffffffu;
+    occlude(model.scenes[i].get(), ray);
+    if (ray.tfar < 0) return true;
+  }
+  return false;
+}
+
+std::optional<Hit> nearest_blocker(const Model::Impl& model,
+                                   const Eigen::Vector3f& origin,
+                                   const Eigen::Vector3f& direction,
+                                   float within_m) {
+  RTCRayHit query{};
+  query.ray.org_x = origin.x(), query.ray.org_y = origin.y(), query.ray.org_z = origin.z();
+  query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y();
+  query.ray.dir_z = direction.z();
+  query.ray.tnear = 0;
+  // Embree shortens it to the distance of the nearest hit so far.
+  query.ray.tfar = within_m;
+  query.ray.mask = 0xffffffffu;
+  std::optional<Hit> best;
+  for (std::size_t i = 0; i < model.scenes.size(); ++i) {
+    if (model.mesh.parts[i].moves()) continue;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    intersect(model.scenes[i].get(), query);
+    if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID)
+      best = Hit{query.ray.tfar, static_cast<int>(i), query.hit.primID, query.hit.u, query.hit.v};
+  }
+  return best;
+}
+
+void find_blocked(const Model::Impl& model,
+                  std::span<const BodyRay> rays,
+                  std::span<std::uint8_t> blocked) {
+  for (std::size_t i = 0; i < rays.size(); i += kLanes) {
+    const std::size_t n = std::min(kLanes, rays.size() - i);
+    find_blocked_of_eight(model, rays.subspan(i, n), blocked.subspan(i, n));
+  }
+}
+
+std::optional<Hit> nearest_hit(const Model::Impl& model,
+                               std::span<const Eigen::Affine3f> body_from_part,
+                               const BodyRay& ray,
+                               float from_m) {
+  std::optional<Hit> best;
+  float far_m = INFINITY;
+  for (std::size_t part = 0; part < model.scenes.size(); ++part) {
+    const bool turns = model.mesh.parts[part].moves();
+    const Eigen::Affine3f part_from_body =
+        turns ? body_from_part[part].inverse(Eigen::Isometry) : Eigen::Affine3f::Identity();
+    const Eigen::Vector3f origin = part_from_body * ray.origin;
+    const Eigen::Vector3f direction = part_from_body.linear() * ray.direction;
+    RTCRayHit query{};
+    query.ray.org_x = origin.x(), query.ray.org_y = origin.y(), query.ray.org_z = origin.z();
+    query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y();
+    query.ray.dir_z = direction.z();
+    query.ray.tnear = from_m;
+    query.ray.tfar = far_m;
+    query.ray.mask = 0xffffffffU;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    intersect(model.scenes[part].get(), query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+    far_m = query.ray.tfar;
+    best = Hit{far_m, static_cast<int>(part), query.hit.primID, query.hit.u, query.hit.v};
+  }
+  return best;
+}
+
+}  // namespace airtruth::shade
