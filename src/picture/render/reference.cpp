@@ -86,12 +86,10 @@ class Then {
     const shade::Surface surface = shade::surface_at(
         placed, body_from_part_[static_cast<std::size_t>(hit.part)], ray.direction, hit);
     const shade::Sunlit sunlit = shade::sunlit_at(placed, surface, material);
-    float sun_share = 0;
-    if (sunlit.sun > 0) {
-      const shade::BodyRay to_sun =
-          shade::to_sun_from(placed, ray.origin + hit.t * ray.direction, surface);
-      sun_share = shade::is_blocked(*placed.model, to_sun.origin, to_sun.direction) ? 0 : 1;
-    }
+    const shade::BodyRay to_sun =
+        shade::to_sun_from(placed, ray.origin + hit.t * ray.direction, surface);
+    const bool in_shadow =
+        !(sunlit.sun > 0) || shade::is_blocked(*placed.model, to_sun.origin, to_sun.direction);
     const shade::TriangleTexture texture(
         placed.model->mesh, facet, static_cast<float>(fragment.distance_m * footprint_rad));
     return shade::colour_of(material,
@@ -99,7 +97,7 @@ class Then {
                             shade::around_at(placed, surface, hit, light),
                             sunlit,
                             surface.cosine,
-                            sun_share,
+                            in_shadow,
                             light);
   }
 

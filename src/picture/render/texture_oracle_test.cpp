@@ -22,7 +22,8 @@ image::Layer textured_layer(const aircraft::Aircraft& aircraft,
                             const shade::Model& model,
                             double size_px,
                             int finer,
-                            const YawPitchRoll& attitude) {
+                            const YawPitchRoll& attitude,
+                            int quality) {
   const aircraft::Extents extents = aircraft::extents(aircraft.mesh);
   const double longest_m = std::max(extents.length_m(), extents.span_m());
   const int side = finer * kTextureSide;
@@ -48,7 +49,7 @@ image::Layer textured_layer(const aircraft::Aircraft& aircraft,
                 light,
                 {{&model, world_from_body, 0}},
                 {Box{side / 2.0 - half_px, side / 2.0 - half_px, 2 * half_px, 2 * half_px}},
-                {.quality = finer > 1 ? 4 : 3});
+                {.quality = quality});
 }
 
 struct TextureError {
@@ -67,8 +68,8 @@ TextureError texture_error(const aircraft::Aircraft& aircraft,
                            const shade::Model& model,
                            double size_px,
                            const YawPitchRoll& attitude) {
-  const image::Layer got = textured_layer(aircraft, model, size_px, 1, attitude);
-  const image::Layer fine = textured_layer(aircraft, model, size_px, kFiner, attitude);
+  const image::Layer got = textured_layer(aircraft, model, size_px, 1, attitude, 3);
+  const image::Layer fine = textured_layer(aircraft, model, size_px, kFiner, attitude, 4);
   // Reference and rendered value.
   std::vector<std::pair<double, double>> pairs;
   for (int y = 0; y < kTextureSide; ++y)
@@ -119,6 +120,31 @@ TEST(Texture, IsNotWashedOutWhereAnAircraftIsSmall) {
           EXPECT_LT(std::abs(error.dark_codes), 3) << where;
         }
       }
+  }
+}
+
+// The reference traces 4,096 rays through a pixel and shades what each of them meets.
+TEST(Texture, HasTheReferencesColours) {
+  for (const char* name : {"738/738-Ryanair", "c172/news"}) {
+    const aircraft::Aircraft aircraft = aircraft::load_aircraft(name);
+    const shade::Model model(aircraft.mesh);
+    const image::Layer got = textured_layer(aircraft, model, 30, 1, {40, 5, 12}, 3);
+    const image::Layer reference = textured_layer(aircraft, model, 30, 1, {40, 5, 12}, 5);
+    double squares = 0;
+    int pixels = 0;
+    for (int y = 0; y < kTextureSide; ++y)
+      for (int x = 0; x < kTextureSide; ++x) {
+        if (!got.patch.contains(x, y) || !reference.patch.contains(x, y)) continue;
+        const image::LayerPixel& a = got.pixels[got.index(x, y)];
+        const image::LayerPixel& b = reference.pixels[reference.index(x, y)];
+        if (a.alpha < 0.5f || b.alpha < 0.5f) continue;
+        const double off = code_of(static_cast<double>(a.green / a.alpha)) -
+                           code_of(static_cast<double>(b.green / b.alpha));
+        squares += off * off;
+        ++pixels;
+      }
+    EXPECT_GT(pixels, 50) << name;
+    EXPECT_LT(std::sqrt(squares / pixels), 4) << name;
   }
 }
 

@@ -119,7 +119,7 @@ void find_fragments(const PixelFunctions& functions_of_triangle,
   for (int block = from; block < to; ++block)
     each_sample<7>(
         functions, farthest, nearest, samples, block, [&](int i, bool inside, float here) {
-          fragment[i] = inside & (here > depth[i]) ? here : 0.0f;
+          fragment[i] = (inside & (here > depth[i])) ? here : 0.0f;
         });
 }
 
