@@ -62,12 +62,12 @@ struct SortedPoints {
 const SortedPoints& sorted_points(int n, bool by_time) {
   static const std::vector<std::array<SortedPoints, 2>> all = [] {
     std::vector<std::array<SortedPoints, 2>> result;
-    for (int count = Samples::kBlock; count <= Samples::kMost; count *= 2)
+    for (int count = PixelSamples::kFewest; count <= Samples::kMost; count *= 2)
       result.push_back({SortedPoints(count, kX), SortedPoints(count, kT)});
     return result;
   }();
-  return all[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(n / Samples::kBlock)))]
-            [by_time ? 1 : 0];
+  return all[static_cast<std::size_t>(
+      std::countr_zero(static_cast<unsigned>(n / PixelSamples::kFewest)))][by_time ? 1 : 0];
 }
 
 }  // namespace

@@ -26,11 +26,12 @@ struct Samples {
 // slope.
 class PixelSamples {
  public:
-  // Largest number of points.
+  // Numbers of points: two blocks are the fewest that divide a dimension.
+  static constexpr int kFewest = 2 * Samples::kBlock;
   static constexpr int kMost = 4096;
 
   PixelSamples(int x, int y);
-  // The first n points, in blocks by time or by place. n: a power of two from Samples::kBlock to
+  // The first n points, in blocks by time or by place. n: a power of two from kFewest to
   // Samples::kMost.
   void fill(int n, bool by_time, Samples& samples) const;
   // Point i of [0, kMost): its place from the pixel's top left corner, and its time from the

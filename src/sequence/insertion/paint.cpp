@@ -186,12 +186,12 @@ image::Layer render_layer(const scene::Scene& scene,
                           moment.sight.camera,
                           moment.sight.frame_from_nominal_per_s};
   const shade::Light light{setup::to_sun_in_world(scene.light),
-                            ambient.sun,
-                            ambient.sky(),
-                            ambient.ground,
-                            scene.composite.method == scene::CompositeMethod::kChromaKey
-                                ? std::nullopt
-                                : std::optional(ambient.surroundings)};
+                           ambient.sun,
+                           ambient.sky(),
+                           ambient.ground,
+                           scene.composite.method == scene::CompositeMethod::kChromaKey
+                               ? std::nullopt
+                               : std::optional(ambient.surroundings)};
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
