@@ -233,7 +233,7 @@ TEST(TwoRenderers, AgreeOnATextureThatIsTranslucentInPlaces) {
 
 class TwoRenderersOnAircraft : public testing::TestWithParam<const char*> {};
 
-// The sky is even, because OpenGL casts no shadows. The ray tracer shades 16 samples of a pixel,
+// The sky is even, because OpenGL casts no shadows. The renderer shades some samples of a pixel,
 // which affects the colour of single pixels but not their mean. It averages texels over half a
 // pixel, and this OpenGL over a 32nd. From far away that half pixel reaches into the neighbours of
 // a painted part on its texture, and the colour of the 737 at 20 px changes by 8 %.
