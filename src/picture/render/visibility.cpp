@@ -67,6 +67,8 @@ template <int kTerms>
                                                    float nearest,
                                                    std::int32_t who,
                                                    const SampleBuffer& buffer) {
+  // A copy, which no write to the samples can change.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
   const PixelFunctions functions = functions_of_triangle;
   float* __restrict const depth = buffer.depth;
   std::int32_t* __restrict const nearest_of = buffer.nearest;
@@ -115,6 +117,8 @@ void find_fragments(const PixelFunctions& functions_of_triangle,
                     int to,
                     const float* __restrict depth,
                     float* __restrict fragment) {
+  // A copy, which no write to the samples can change.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
   const PixelFunctions functions = functions_of_triangle;
   for (int block = from; block < to; ++block)
     each_sample<7>(
@@ -126,7 +130,8 @@ void find_fragments(const PixelFunctions& functions_of_triangle,
 // The blocks that hold the samples of a range.
 template <typename Range>
 std::array<int, 2> blocks_of(const Range& range, const Samples& samples) {
-  const auto all = static_cast<float>(samples.count / Samples::kBlock);
+  const int blocks = samples.count / Samples::kBlock;
+  const auto all = static_cast<float>(blocks);
   return {static_cast<int>(std::clamp(range.from * all, 0.0f, all)),
           static_cast<int>(std::ceil(std::clamp(range.to * all, 0.0f, all)))};
 }
