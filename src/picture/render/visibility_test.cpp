@@ -103,9 +103,11 @@ void compare(const std::string& name, double size_px, bool moves) {
   int wrong = 0;
   double alpha = 0;
   double strange = 0;
-  for (int y = 0; y < kVisibleSide; ++y) {
+  // Where the aircraft is in the picture, with room for its motion.
+  const int half = static_cast<int>(0.75 * size_px) + 3;
+  for (int y = kVisibleSide / 2 - half; y < kVisibleSide / 2 + half; ++y) {
     visibility->begin_row(y, 0, kVisibleSide);
-    for (int x = 0; x < kVisibleSide; ++x) {
+    for (int x = kVisibleSide / 2 - half; x < kVisibleSide / 2 + half; ++x) {
       visibility->look(x);
       const Met met = met_by_rays(scene, placed[0], x, y);
       if (!met.all_opaque || (met.alpha == 0 && visibility->alpha() == 0)) continue;
@@ -121,15 +123,15 @@ void compare(const std::string& name, double size_px, bool moves) {
     }
   }
   const auto where = ::testing::Message() << name << " of " << size_px << " px, moves " << moves;
-  EXPECT_GT(pixels, 100) << where;
+  EXPECT_GT(pixels, 50) << where;
   EXPECT_LE(wrong, pixels / 200) << where;
   EXPECT_LT(strange / alpha, 0.02) << where;
 }
 
 TEST(Visibility, TheVisibilityBufferSeesWhatRaysMeet) {
   for (const bool moves : {false, true}) {
-    compare("738/738-Ryanair", 40, moves);
-    compare("c172/c-fgfs", 40, moves);
+    compare("738/738-Ryanair", 30, moves);
+    compare("c172/c-fgfs", 20, moves);
   }
 }
 
