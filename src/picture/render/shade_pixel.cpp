@@ -10,8 +10,8 @@
 namespace airtruth::render {
 namespace {
 
-// Of a pixel's reads every 16th is shaded, and one of each surface; then every fourth; then all,
-// until the mean is known.
+// Of a pixel's reads every fourth is shaded, and one of each surface; then all, unless the mean is
+// known.
 constexpr std::array<std::uint32_t, 2> kStrides{4, 1};
 
 // The barycentric weights of the second and the third corner. A place that is the mean of several
@@ -45,8 +45,6 @@ PixelShading::Point PixelShading::point_at(const Visibility& visibility,
   const Vector3 eye_in_body = eye[0] + span_u * (eye[1] + span_u * eye[2]);
   const Eigen::Vector3f view = (point.in_body - eye_in_body.cast<float>()).normalized();
   point.surface = shade::surface_at(*point.placed, body_from_part, view, point.hit);
-  point.sunlit = shade::sunlit_at(
-      *point.placed, point.surface, point.placed->material(point.placed->facet(point.hit)));
   return point;
 }
 
@@ -74,7 +72,7 @@ PixelShading::Shaded PixelShading::shaded(const Visibility& visibility,
   const shade::Placed& placed = *middle.placed;
   const auto reads = static_cast<float>(visible.end_read - visible.first_read);
   return {&visible,
-          middle,
+          middle.distance_m,
           shade::around_at(placed, middle.surface, middle.hit, light_),
           {placed.model->mesh,
            placed.facet(middle.hit),
@@ -95,7 +93,7 @@ void PixelShading::add_points(const Visibility& visibility, std::uint32_t stride
 }
 
 // Points that face away from the sun are in shadow without a ray.
-void PixelShading::find_shadows() {
+void PixelShading::find_sunlight() {
   for (std::size_t first = 0; first < points_.size();) {
     // Of one model at a time.
     const shade::Model::Impl* model = points_[first].placed->model;
@@ -103,10 +101,13 @@ void PixelShading::find_shadows() {
     of_ray_.clear();
     std::size_t i = first;
     for (; i < points_.size() && points_[i].placed->model == model; ++i) {
-      const Point& point = points_[i];
+      Point& point = points_[i];
+      const shade::Placed& placed = *point.placed;
+      point.sunlit =
+          shade::sunlit_at(placed, point.surface, placed.material(placed.facet(point.hit)));
       if (!(point.sunlit.sun > 0)) continue;
       of_ray_.push_back(static_cast<std::uint32_t>(i));
-      to_sun_.push_back(shade::to_sun_from(*point.placed, point.in_body, point.surface));
+      to_sun_.push_back(shade::to_sun_from(placed, point.in_body, point.surface));
     }
     blocked_.resize(to_sun_.size());
     shade::find_blocked(*model, to_sun_, blocked_);
@@ -117,7 +118,7 @@ void PixelShading::find_shadows() {
 }
 
 void PixelShading::shade_points() {
-  find_shadows();
+  find_sunlight();
   for (const Point& point : points_) {
     Shaded& surface = shaded_[point.of];
     const image::Rgb rgb = shade::colour_of(point.placed->material(point.placed->facet(point.hit)),
@@ -154,8 +155,7 @@ PixelLight PixelShading::light_of(const Visibility& visibility, int x, int y) {
     for (int c = 0; c < 3; ++c)
       sum.rgb[static_cast<std::size_t>(c)] +=
           static_cast<double>(visible.light * surface.sum[c] / surface.count);
-    sum.distance_m +=
-        static_cast<double>(visible.weight) * static_cast<double>(surface.middle.distance_m);
+    sum.distance_m += static_cast<double>(visible.weight) * static_cast<double>(surface.distance_m);
   }
   return sum;
 }

@@ -41,6 +41,7 @@ class PixelShading {
     Eigen::Vector3f in_body;
     float distance_m;
     shade::Surface surface;
+    // Of find_sunlight().
     shade::Sunlit sunlit;
     bool in_shadow = true;
     // In shaded_.
@@ -49,7 +50,8 @@ class PixelShading {
   // A visible surface, with the colours of its points.
   struct Shaded {
     const VisibleSurface* visible;
-    Point middle;
+    // At the middle of what is visible.
+    float distance_m;
     shade::Around around;
     shade::TriangleTexture texture;
     float count = 0;
@@ -74,7 +76,8 @@ class PixelShading {
   void add_points(const Visibility& visibility, std::uint32_t stride);
   // Adds the colours of the points to their surfaces.
   void shade_points();
-  void find_shadows();
+  // Sets what the sun does at each of the points.
+  void find_sunlight();
 
   const RayTriangles& triangles_;
   const std::vector<PlacedInstance>& instances_;

@@ -30,8 +30,6 @@ constexpr float kInset = 0.25f;
 constexpr float kStartM = 0.02f;
 // Albedo of the hiding parts: a light paint.
 constexpr float kOwnPaint = 0.6f;
-// From this open share on, nothing counts as hidden.
-constexpr float kNothingHidden = 0.999f;
 // Length of a ray, which exceeds half the length of any aircraft.
 constexpr float kRayM = 60.0f;
 
@@ -145,7 +143,7 @@ void find_given_back(const Model::Impl& model,
                      const Place& place,
                      std::span<const Eigen::Vector3f> about_z,
                      AmbientOcclusion& occlusion) {
-  if (occlusion.open_share > kNothingHidden || occlusion.open_share == 0) return;
+  if (occlusion.is_open() || occlusion.open_share == 0) return;
   for (const Eigen::Vector3f& d : about_z) {
     const Eigen::Vector3f direction = place.direction(d);
     if (const auto hit = nearest_blocker(model, place.point, direction, kRayM))

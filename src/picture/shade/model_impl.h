@@ -32,6 +32,9 @@ struct AmbientOcclusion {
   // Light that the hiding parts reflect: the length is the share of the irradiance on a surface
   // whose normal is this direction.
   Eigen::Vector3f given_back{0, 0, 0};
+
+  // True where so little is hidden that nothing counts as hidden.
+  bool is_open() const { return open_share > 0.999f; }
 };
 struct SideOcclusion {
   std::array<AmbientOcclusion, 3> corner;

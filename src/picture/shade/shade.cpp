@@ -130,12 +130,10 @@ Around light_around(const Placed& placed,
                     const AmbientOcclusion& occlusion,
                     const Eigen::Vector3f& mirror,
                     const Light& light) {
-  // From this open share on, nothing counts as hidden.
-  constexpr float kNothingHidden = 0.999f;
   const float open = occlusion.open_share;
   Around around;
   around.mirrored = placed.surroundings->radiance(mirror);
-  if (open > kNothingHidden) {
+  if (occlusion.is_open()) {
     around.diffuse = placed.surroundings->irradiance_over_pi(surface.normal);
     return around;
   }

@@ -38,6 +38,19 @@ void find_blocked_of_eight(const Model::Impl& model,
   for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = packet.tfar[i] < 0 ? 1 : 0;
 }
 
+RTCRay ray_between(const Eigen::Vector3f& origin,
+                   const Eigen::Vector3f& direction,
+                   float from_m,
+                   float to_m) {
+  RTCRay ray{};
+  ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
+  ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
+  ray.tnear = from_m;
+  ray.tfar = to_m;
+  ray.mask = 0xffffffffU;
+  return ray;
+}
+
 }  // namespace
 
 bool is_blocked(const Model::Impl& model,
@@ -46,12 +59,7 @@ bool is_blocked(const Model::Impl& model,
                 float within_m) {
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {
     if (model.mesh.parts[i].moves()) continue;
-    RTCRay ray{};
-    ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
-    ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
-    ray.tnear = 0;
-    ray.tfar = within_m;
-    ray.mask = 0xffffffffu;
+    RTCRay ray = ray_between(origin, direction, 0, within_m);
     occlude(model.scenes[i].get(), ray);
     if (ray.tfar < 0) return true;
   }
@@ -62,14 +70,8 @@ std::optional<Hit> nearest_blocker(const Model::Impl& model,
                                    const Eigen::Vector3f& origin,
                                    const Eigen::Vector3f& direction,
                                    float within_m) {
-  RTCRayHit query{};
-  query.ray.org_x = origin.x(), query.ray.org_y = origin.y(), query.ray.org_z = origin.z();
-  query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y();
-  query.ray.dir_z = direction.z();
-  query.ray.tnear = 0;
-  // Embree shortens it to the distance of the nearest hit so far.
-  query.ray.tfar = within_m;
-  query.ray.mask = 0xffffffffu;
+  // Embree shortens the ray to the distance of the nearest hit so far.
+  RTCRayHit query{ray_between(origin, direction, 0, within_m), {}};
   std::optional<Hit> best;
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {
     if (model.mesh.parts[i].moves()) continue;
@@ -102,13 +104,7 @@ std::optional<Hit> nearest_hit(const Model::Impl& model,
         turns ? body_from_part[part].inverse(Eigen::Isometry) : Eigen::Affine3f::Identity();
     const Eigen::Vector3f origin = part_from_body * ray.origin;
     const Eigen::Vector3f direction = part_from_body.linear() * ray.direction;
-    RTCRayHit query{};
-    query.ray.org_x = origin.x(), query.ray.org_y = origin.y(), query.ray.org_z = origin.z();
-    query.ray.dir_x = direction.x(), query.ray.dir_y = direction.y();
-    query.ray.dir_z = direction.z();
-    query.ray.tnear = from_m;
-    query.ray.tfar = far_m;
-    query.ray.mask = 0xffffffffU;
+    RTCRayHit query{ray_between(origin, direction, from_m, far_m), {}};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     intersect(model.scenes[part].get(), query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
