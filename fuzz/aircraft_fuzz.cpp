@@ -10,11 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    const auto wrapper = airtruth::aircraft::parse_wrapper(text, "a.xml");
-    for (const auto& animation : wrapper.animations) {
-      (void)airtruth::aircraft::value_of(animation.value, {});
-      if (animation.condition) (void)airtruth::aircraft::holds(*animation.condition, {});
-    }
+    (void)airtruth::aircraft::parse_wrapper(text, "a.xml");
   } catch (const airtruth::Error&) {
   }
   return 0;

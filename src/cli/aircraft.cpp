@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "aircraft/fleet/fleet.h"
-#include "aircraft/fleet/left_out.h"
 #include "aircraft/fleet/scale.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
@@ -51,7 +50,7 @@ void list_left_out(const std::string& filter, Context& context) {
                     aircraft::left_out().size()));
 }
 
-void list(const std::string& filter, bool sizes, Context& context) {
+void list_names(const std::string& filter, bool sizes, Context& context) {
   const std::vector<std::string> names = aircraft::aircraft_named_like(filter);
   for (const std::string& name : names)
     if (sizes)
@@ -91,6 +90,23 @@ void draw_sheet(const std::string& filter,
   video::write_still(
       out, drawing::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
   console.result(fmt::format("{}: one aircraft of each of {} types", out, names.size()));
+}
+
+struct ListArguments {
+  std::string filter;
+  std::string sheet;
+  bool sizes = false;
+  bool is_left_out = false;
+  bool overwrite = false;
+};
+
+void list(const ListArguments& arguments, Context& context) {
+  if (!arguments.sheet.empty())
+    draw_sheet(arguments.filter, arguments.sheet, arguments.overwrite, context);
+  else if (arguments.is_left_out)
+    list_left_out(arguments.filter, context);
+  else
+    list_names(arguments.filter, arguments.sizes, context);
 }
 
 struct ShowArguments {
@@ -142,43 +158,35 @@ void show(const ShowArguments& arguments, Context& context) {
 }
 
 void add_list(CLI::App& group, Context& context) {
-  auto* command = group.add_subcommand("list", "Print the name of every aircraft, a line each");
-  auto filter = std::make_shared<std::string>();
+  auto [command, arguments] =
+      add_command(group, context, "list", "Print the name of every aircraft, a line each", list);
   command->add_option("FILTER",
-                      *filter,
+                      arguments->filter,
                       "Show only names that contain this, or that it fits with * and ?; "
                       "letter case does not matter");
-  auto sizes = std::make_shared<bool>(false);
-  CLI::Option* sizes_flag =
-      command->add_flag("--sizes", *sizes, "Also the type of each and its published size");
-  auto is_left_out = std::make_shared<bool>(false);
-  CLI::Option* left_out_flag =
+  CLI::Option* sizes = command->add_flag(
+      "--sizes", arguments->sizes, "Also the type of each and its published size");
+  CLI::Option* left_out =
       command->add_flag("--left-out",
-                        *is_left_out,
+                        arguments->is_left_out,
                         "In their place: the names of the package that are not offered, and why");
-  left_out_flag->excludes(sizes_flag);
-  auto sheet = std::make_shared<std::string>();
+  left_out->excludes(sizes);
   command
-      ->add_option(
-          "--sheet", *sheet, "In their place: draw one aircraft of each type here (.png or .jpg)")
-      ->excludes(sizes_flag)
-      ->excludes(left_out_flag);
-  auto overwrite = std::make_shared<bool>(false);
-  command->add_flag("--overwrite", *overwrite, "Replace the picture if it exists");
-  command->callback([filter, sizes, is_left_out, sheet, overwrite, &context] {
-    if (!sheet->empty())
-      draw_sheet(*filter, *sheet, *overwrite, context);
-    else if (*is_left_out)
-      list_left_out(*filter, context);
-    else
-      list(*filter, *sizes, context);
-  });
+      ->add_option("--sheet",
+                   arguments->sheet,
+                   "In their place: draw one aircraft of each type here (.png or .jpg)")
+      ->excludes(sizes)
+      ->excludes(left_out);
+  command->add_flag("--overwrite", arguments->overwrite, "Replace the picture if it exists");
 }
 
 void add_show(CLI::App& group, Context& context) {
-  auto* command = group.add_subcommand(
-      "show", "Size and liveries of one aircraft, and a contact sheet of pictures");
-  auto arguments = std::make_shared<ShowArguments>();
+  auto [command, arguments] =
+      add_command(group,
+                  context,
+                  "show",
+                  "Size and liveries of one aircraft, and a contact sheet of pictures",
+                  show);
   command
       ->add_option(
           "NAME",
@@ -193,7 +201,6 @@ void add_show(CLI::App& group, Context& context) {
   command->add_option("--up", arguments->up, "Model file: its axis that is up");
   command->add_option("--scale", arguments->scale, "Model file: metres per unit")
       ->check(CLI::PositiveNumber);
-  command->callback([arguments, &context] { show(*arguments, context); });
 }
 
 }  // namespace

@@ -107,17 +107,12 @@ void report_count(const camera_file::Calibration& found, const std::string& out,
 camera_file::Options options_of(const CalibrateArguments& arguments,
                                 const lens::ImageSize& size,
                                 Context& context) {
-  Console& console = context.console();
   camera_file::Options options;
   if (!arguments.lens.empty()) options.lens = lens::read_calibration(arguments.lens, size);
   options.altitude_m = arguments.altitude_m;
   options.heading_deg = arguments.heading_deg;
   options.tone.gamma = arguments.gamma;
-  options.warn = console.warn();
-  options.stop = context.stop;
-  options.progress = [&console](std::int64_t done, std::int64_t total) {
-    console.progress("measuring", done, total);
-  };
+  follow(options, context, "measuring");
   return options;
 }
 
@@ -166,11 +161,7 @@ void find_mask(const MaskArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, arguments.overwrite);
   Console& console = context.console();
   own_aircraft::MaskOptions options;
-  options.stop = context.stop;
-  options.warn = console.warn();
-  options.progress = [&](std::int64_t done, std::int64_t total) {
-    console.progress("looking", done, total);
-  };
+  follow(options, context, "looking");
   const image::Mask mask = own_aircraft::find_own_aircraft(arguments.video, options);
   console.end_progress();
   video::write_still(arguments.out, insertion::picture_of(mask));
@@ -207,9 +198,8 @@ void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Context& context) {
-  auto* command =
-      app.add_subcommand("calibrate", "Measure what a clip's camera and air do to light");
-  auto arguments = std::make_shared<CalibrateArguments>();
+  auto [command, arguments] = add_command(
+      app, context, "calibrate", "Measure what a clip's camera and air do to light", calibrate);
   command->add_option("VIDEO", arguments->videos, "The video, or several of one camera")
       ->required();
   command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
@@ -225,18 +215,19 @@ void add_calibrate(CLI::App& app, Context& context) {
       "List the known cameras");
   command->add_option("--plot", arguments->plot, "Draw what was measured here (.png)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
-  command->callback([arguments, &context] { calibrate(*arguments, context); });
 }
 
 void add_mask(CLI::App& app, Context& context) {
-  auto* command =
-      app.add_subcommand("mask", "Find the own aircraft: what stays still while the world moves");
-  auto arguments = std::make_shared<MaskArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "mask",
+                  "Find the own aircraft: what stays still while the world moves",
+                  find_mask);
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("-o,--out", arguments->out, "Mask to write: black = own aircraft (.png)")
       ->required();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
-  command->callback([arguments, &context] { find_mask(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -2,7 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <stop_token>
+#include <string>
+#include <type_traits>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -19,7 +23,40 @@ struct Context {
   // Exit code of a command that finished its work and has faults to report.
   int exit_code = 0;
 };
-using Action = std::function<void()>;
+
+// Declares a command that calls run(arguments, context) after its arguments are parsed. Returns the
+// command, and the arguments that its options are to set.
+template <typename Parameter>
+std::pair<CLI::App*, std::remove_cvref_t<Parameter>*> add_command(CLI::App& group,
+                                                                  Context& context,
+                                                                  const char* name,
+                                                                  const char* about,
+                                                                  void (*run)(Parameter,
+                                                                              Context&)) {
+  CLI::App* command = group.add_subcommand(name, about);
+  auto arguments = std::make_shared<std::remove_cvref_t<Parameter>>();
+  command->callback([run, arguments, &context] { run(*arguments, context); });
+  return {command, arguments.get()};
+}
+
+// Shows the warnings of a stage and its progress, and lets an interrupt stop it.
+template <typename Options>
+void follow(Options& options, Context& context, const char* stage, const char* unit = "frames") {
+  Console& console = context.console();
+  if constexpr (requires { options.warn; }) options.warn = console.warn();
+  options.stop = context.stop;
+  options.progress = [&console, stage, unit](std::int64_t done, std::int64_t total) {
+    console.progress(stage, done, total, unit);
+  };
+}
+
+// --jobs, of what works on several sequences or files at a time.
+inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
+  command.add_option("--jobs,-j", jobs, about)->check(CLI::Range(1, 1024));
+}
+
+// Reads the width and height from "1280x960", the form of --size. Throws Error for any other form.
+std::pair<int, int> size_from(const std::string& text);
 
 void add_render(CLI::App& app, Context& context);
 void add_scene(CLI::App& app, Context& context);
@@ -35,14 +72,12 @@ void add_inspect(CLI::App& app, Context& context);
 void add_synth(CLI::App& app, Context& context);
 void add_evision(CLI::App& app, Context& context);
 void add_dataset(CLI::App& app, Context& context);
-void add_dataset_exchange(CLI::App& group, Context& context);  // `dataset export` and `import`
 void add_track(CLI::App& app, Context& context);
 void add_detect(CLI::App& app, Context& context);
 void add_evaluate(CLI::App& app, Context& context);
 void add_compare(CLI::App& app, Context& context);
 void add_judge(CLI::App& app, Context& context);
 void add_encounter(CLI::App& app, Context& context);
-void add_encounter_sample(CLI::App& group, Context& context);  // `encounter sample`
 void add_demo(CLI::App& app, Context& context);
 void add_describe(CLI::App& app, Context& context);
 

@@ -38,11 +38,7 @@ void compare(const CompareArguments& arguments, Context& context) {
   options.match = arguments.match;
   options.types = arguments.types;
   options.camera_pitch_deg = arguments.camera_pitch_deg;
-  options.warn = console.warn();
-  options.stop = context.stop;
-  options.progress = [&](std::int64_t done, std::int64_t total) {
-    console.progress("comparing", done, total);
-  };
+  follow(options, context, "comparing");
   const auto found = comparison::compare(arguments.real,
                                          match::read_boxes(arguments.boxes, arguments.origin_px),
                                          scene::read_scene(arguments.scene),
@@ -112,9 +108,12 @@ void add_match_options(CLI::App& command, CompareArguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "compare", "Put an aircraft beside a real one in its own clip, and measure how both look");
-  auto arguments = std::make_shared<CompareArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "compare",
+                  "Put an aircraft beside a real one in its own clip, and measure how both look",
+                  compare);
   command->add_option("--real", arguments->real, "Video with a real aircraft in it")->required();
   command
       ->add_option("--boxes",
@@ -135,15 +134,16 @@ void add_compare(CLI::App& app, Context& context) {
       ->capture_default_str();
   add_match_options(*command, *arguments);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the folder if it exists");
-  command->callback([arguments, &context] { compare(*arguments, context); });
 }
 
 void add_judge(CLI::App& app, Context& context) {
-  auto* command =
-      app.add_subcommand("judge",
-                         "Measure whether a classifier separates the real aircraft of comparisons "
-                         "from the inserted ones, and by what they differ");
-  auto arguments = std::make_shared<JudgeArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "judge",
+                  "Measure whether a classifier separates the real aircraft of comparisons "
+                  "from the inserted ones, and by what they differ",
+                  judge_all);
   command
       ->add_option("COMPARISON", arguments->comparisons, "Folders that `compare` made, one a clip")
       ->required()
@@ -160,7 +160,6 @@ void add_judge(CLI::App& app, Context& context) {
       ->check(CLI::Range(0, 1000));
   command->add_option("--seed", arguments->seed, "Of the interval's resampling")
       ->capture_default_str();
-  command->callback([arguments, &context] { judge_all(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

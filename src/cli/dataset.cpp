@@ -9,10 +9,186 @@
 #include "dataset/build/plan.h"
 #include "dataset/build/slurm.h"
 #include "dataset/build/verify.h"
+#include "dataset/labelled/export.h"
+#include "dataset/labelled/import.h"
+#include "dataset/set_report/report.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::cli {
 namespace {
+
+struct Export {
+  std::string set;
+  std::string out;
+  std::string format;
+  std::string images;
+  std::string split = "by-background";
+  std::string boxes = "covered";
+  std::vector<double> shares = {0.8, 0.1, 0.1};
+  labelled::ExportOptions options;
+};
+
+// The value that an option names.
+template <typename Enum>
+Enum value_of(const char* option, const std::string& name, const char* expected) {
+  if (const auto value = enum_named<Enum>(name)) return *value;
+  throw Error(fmt::format("{} is '{}'; expected {}", option, name, expected));
+}
+
+void run_export(Export arguments, Context& context) {
+  Console& console = context.console();
+  labelled::ExportOptions& options = arguments.options;
+  options.format = exchange::format_from_name(arguments.format);
+  if (!arguments.images.empty())
+    options.images = value_of<labelled::Images>("--images", arguments.images, "jpg, png or none");
+  options.split =
+      value_of<labelled::Split>("--split", arguments.split, "none, by-background or by-sequence");
+  options.boxes = value_of<dataset::Boxes>("--boxes", arguments.boxes, "covered, exact or visible");
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) sum += options.shares[i] = arguments.shares[i];
+  if (!(sum > 0)) throw Error("--shares are all 0; expected a share for one part at least");
+  for (double& share : options.shares) share /= sum;
+  follow(options, context, "exporting", "sequences");
+  const labelled::ExportSummary summary =
+      labelled::export_set(arguments.set, arguments.out, options);
+  std::string parts;
+  for (const auto& [part, frames] : summary.frames_of_part)
+    parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", part, frames);
+  console.result(fmt::format("{}: {} sequences, {} frames ({}){}",
+                             arguments.out,
+                             summary.sequences,
+                             summary.frames,
+                             parts,
+                             summary.was_there
+                                 ? "; was there already"
+                                 : fmt::format(", {} pictures written", summary.images)));
+}
+
+struct Import {
+  std::string source;
+  std::string out;
+  std::string format;
+  std::string size;
+  std::vector<std::string> videos;
+  std::vector<std::string> classes;
+  labelled::ImportOptions options;
+};
+
+void run_import(Import arguments, Context& context) {
+  Console& console = context.console();
+  labelled::ImportOptions& options = arguments.options;
+  options.format = exchange::format_from_name(arguments.format);
+  if (!arguments.size.empty()) options.read.size = size_from(arguments.size);
+  for (const std::string& given : arguments.videos) {
+    const auto equals = given.find('=');
+    if (equals == std::string::npos)
+      options.videos[""] = given;
+    else
+      options.videos[given.substr(0, equals)] = given.substr(equals + 1);
+  }
+  for (const std::string& given : arguments.classes)
+    options.classes.push_back(labelled::object_class_from(given));
+  options.warn = console.warn();
+  const labelled::ImportSummary summary =
+      labelled::import_set(arguments.source, arguments.out, options);
+  console.result(fmt::format("{}: {} clips, {} frames, {} boxes",
+                             arguments.out,
+                             summary.clips,
+                             summary.frames,
+                             summary.labels));
+}
+
+struct Report {
+  std::string set;
+  std::string out = "report.html";
+  set_report::ReportOptions options;
+};
+
+void run_report(Report arguments, Context& context) {
+  Console& console = context.console();
+  follow(arguments.options, context, "looking", "sequences");
+  set_report::write_report(arguments.set, arguments.out, arguments.options);
+  console.result(arguments.out);
+}
+
+constexpr const char* kWritten = "coco, yolo, mot, voc, cvat, aot, otb, got10k or vot";
+
+void add_export(CLI::App& group, Context& context) {
+  auto [command, out] =
+      add_command(group, context, "export", "Write a data set in a format of others", run_export);
+  command->add_option("DIR", out->set, "A data set, or a folder that `render` made")->required();
+  command->add_option("--format,-f", out->format, kWritten)->required();
+  command
+      ->add_option("--out,-o", out->out, "A new folder; an export that was stopped goes on in it")
+      ->required();
+  command->add_option("--images",
+                      out->images,
+                      "jpg (default; for aot, whose readers open no jpg: png), png or none");
+  command->add_option(
+      "--boxes",
+      out->boxes,
+      "covered (default): the pixels that the aircraft covers, to train on; exact: its projected "
+      "shape; visible: the pixels that changed, codec's ripple included");
+  command->add_option("--every", out->options.every, "Take every n-th frame (default: 1)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--split",
+                      out->split,
+                      "by-background (default): a video is in one part alone; by-sequence; "
+                      "none");
+  command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
+      ->expected(3)
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
+  command->add_flag(
+      "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
+  command->add_flag("--mot-classes",
+                    out->options.mot_classes,
+                    "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
+                    "one class that MOT17's evaluation counts)");
+  add_jobs(*command, out->options.jobs, "Sequences at a time (default: one per core)");
+}
+
+void add_report(CLI::App& group, Context& context) {
+  auto [command, page] = add_command(group,
+                                     context,
+                                     "report",
+                                     "A page on a data set: what is in it, and each sequence",
+                                     run_report);
+  command->add_option("DIR", page->set, "A data set, or a folder that `render` made")->required();
+  command->add_option("--out,-o", page->out, "The page (default: report.html)");
+  command->add_flag("--overwrite", page->options.overwrite, "Replace the page if it is there");
+  add_jobs(*command, page->options.jobs, "Sequences at a time (default: one per core)");
+}
+
+void add_import(CLI::App& group, Context& context) {
+  auto [command, in] = add_command(group,
+                                   context,
+                                   "import",
+                                   "Import labelled video of others, to look at and to evaluate on",
+                                   run_import);
+  command->add_option("SOURCE", in->source, "Its folder, or its annotation file")->required();
+  command
+      ->add_option(
+          "--format,-f", in->format, std::string(kWritten) + "; evision or csv (frame,x,y,w,h)")
+      ->required();
+  command->add_option("--out,-o", in->out, "A new folder")->required();
+  command->add_option(
+      "--video", in->videos, "CLIP=VIDEO, or VIDEO where there is one clip: where it is not found");
+  command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
+  command
+      ->add_option("--origin",
+                   in->options.read.origin_px,
+                   "Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
+      ->check(CLI::Range(0, 1));
+  command->add_option(
+      "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
+  command->add_option(
+      "--class",
+      in->classes,
+      "What the objects are, where they are no aircraft: bird, multirotor, balloon, "
+      "glint, dirt, insect, or ignore for regions that count neither way; "
+      "CLIP=CLASS for clips whose name fits (* and ?)");
+}
 
 struct DatasetArguments {
   std::string catalogue;
@@ -210,10 +386,7 @@ void verify(const DatasetArguments& arguments, Context& context) {
   if (arguments.finish && !build::finish(arguments.folder))
     console.warning("sequences are missing; no manifest is written");
   build::VerifyOptions options;
-  options.stop = context.stop;
-  options.progress = [&console](std::int64_t done, std::int64_t total) {
-    console.progress("verifying", done, total, "sequences");
-  };
+  follow(options, context, "verifying", "sequences");
   options.jobs = arguments.verify_jobs;
   if (arguments.deep) options.deep_every = arguments.deep_every;
   const build::VerifyResult result = build::verify(arguments.folder, options);
@@ -253,21 +426,17 @@ void add_build_options(CLI::App& command, DatasetArguments& arguments) {
                   arguments.folder,
                   "The data set's folder; a build that was stopped goes on in it")
       ->required();
-  command
-      .add_option("--jobs,-j", arguments.build.jobs, "Sequences at a time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(command, arguments.build.jobs, "Sequences at a time (default: one per core)");
   add_backgrounds(command, arguments.backgrounds);
   add_folder_size(command, arguments.build.max_in_a_folder);
 }
 
 void add_build(CLI::App& group, Context& context) {
-  auto arguments = std::make_shared<DatasetArguments>();
-  auto* command =
-      group.add_subcommand("build", "Make every sequence of a catalogue that is not there yet");
+  auto [command, arguments] = add_command(
+      group, context, "build", "Make every sequence of a catalogue that is not there yet", build);
   add_build_options(*command, *arguments);
   command->add_option(
       "--only", arguments->build.only, "Only sequences whose name fits this pattern (* and ?)");
-  command->callback([arguments, &context] { build(*arguments, context); });
 }
 
 void add_work(CLI::App& group, Context& context) {
@@ -291,25 +460,21 @@ void add_work(CLI::App& group, Context& context) {
 }
 
 void add_plan(CLI::App& group, Context& context) {
-  auto arguments = std::make_shared<DatasetArguments>();
-  auto* command =
-      group.add_subcommand("plan", "Say what a catalogue would make, how long and how large");
+  auto [command, arguments] = add_command(
+      group, context, "plan", "Say what a catalogue would make, how long and how large", plan);
   command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
   add_backgrounds(*command, arguments->backgrounds);
-  command->callback([arguments, &context] { plan(*arguments, context); });
 }
 
 void add_status(CLI::App& group, Context& context) {
-  auto arguments = std::make_shared<DatasetArguments>();
-  auto* command = group.add_subcommand("status", "Say how far a data set is");
+  auto [command, arguments] =
+      add_command(group, context, "status", "Say how far a data set is", status);
   command->add_option("DIR", arguments->folder, "The data set's folder")->required();
-  command->callback([arguments, &context] { status(*arguments, context); });
 }
 
 void add_verify(CLI::App& group, Context& context) {
-  auto arguments = std::make_shared<DatasetArguments>();
-  auto* command =
-      group.add_subcommand("verify", "Check every file, label and frame count of a data set");
+  auto [command, arguments] = add_command(
+      group, context, "verify", "Check every file, label and frame count of a data set", verify);
   command->add_option("DIR", arguments->folder, "The data set's folder")->required();
   command->add_flag("--finish",
                     arguments->finish,
@@ -319,16 +484,12 @@ void add_verify(CLI::App& group, Context& context) {
   command
       ->add_option("--every", arguments->deep_every, "With --deep: every n-th frame (default: 30)")
       ->check(CLI::PositiveNumber);
-  command
-      ->add_option(
-          "--jobs,-j", arguments->verify_jobs, "Sequences at a time (default: one per core)")
-      ->check(CLI::Range(1, 1024));
-  command->callback([arguments, &context] { verify(*arguments, context); });
+  add_jobs(*command, arguments->verify_jobs, "Sequences at a time (default: one per core)");
 }
 
 void add_submit(CLI::App& group, Context& context) {
-  auto arguments = std::make_shared<DatasetArguments>();
-  auto* command = group.add_subcommand("submit", "Have a cluster make a data set");
+  auto [command, arguments] =
+      add_command(group, context, "submit", "Have a cluster make a data set", submit);
   command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
   command
       ->add_option("--out,-o",
@@ -352,11 +513,8 @@ void add_submit(CLI::App& group, Context& context) {
                    "catalogue")
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--background",
-                      arguments->backgrounds,
-                      "NAME=VIDEO: a video in place of a background of the catalogue");
+  add_backgrounds(*command, arguments->backgrounds);
   command->add_flag("--dry-run", arguments->slurm.dry_run, "Write the scripts and submit nothing");
-  command->callback([arguments, &context] { submit(*arguments, context); });
 }
 
 }  // namespace
@@ -369,7 +527,9 @@ void add_dataset(CLI::App& app, Context& context) {
   add_plan(*group, context);
   add_status(*group, context);
   add_verify(*group, context);
-  add_dataset_exchange(*group, context);
+  add_export(*group, context);
+  add_report(*group, context);
+  add_import(*group, context);
   add_submit(*group, context);
 }
 

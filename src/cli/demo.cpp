@@ -38,9 +38,12 @@ void demo(DemoArguments arguments, Context& context) {
 }  // namespace
 
 void add_demo(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "demo", "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay");
-  auto arguments = std::make_shared<DemoArguments>();
+  auto [command, arguments] = add_command(
+      app,
+      context,
+      "demo",
+      "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay",
+      demo);
   command->add_option("--out,-o", arguments->out, "Folder to make")->capture_default_str();
   command->add_option("--seed", arguments->demo.seed, "Another flight")->capture_default_str();
   command->add_option("--frames", arguments->demo.frame_count, "Length")
@@ -48,7 +51,6 @@ void add_demo(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_flag(
       "--overwrite", arguments->demo.run.overwrite, "Replace the folder's files where they exist");
-  command->callback([arguments, &context] { demo(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

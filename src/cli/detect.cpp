@@ -69,16 +69,11 @@ std::optional<association::AssociationOptions> association_of(const Detect& argu
 }
 
 void run_detect(Detect arguments, Context& context) {
-  Console& console = context.console();
   runs::DetectOptions& options = arguments.options;
-  options.warn = console.warn();
-  options.stop = context.stop;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
   if (!arguments.mask.empty()) options.mask = arguments.mask;
   options.association = association_of(arguments);
-  options.progress = [&](std::int64_t done, std::int64_t total) {
-    console.progress("detecting", done, total, "done");
-  };
+  follow(options, context, "detecting", "done");
   check_output_folder(arguments.out);
   for (const runs::DetectSummary& summary : runs::detect(arguments.source, arguments.out, options))
     tell(summary, context);
@@ -143,17 +138,15 @@ void add_options(CLI::App& command, Detect& arguments) {
       .add_option(
           "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
       ->check(CLI::Range(0.001, 86'400.0));
-  command.add_option("--jobs,-j", options.jobs, "Sequences at a time (default: 1)")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(command, options.jobs, "Sequences at a time (default: 1)");
 }
 
 }  // namespace
 
 void add_detect(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Detect>();
-  auto* command = app.add_subcommand("detect", "Run detectors over a data set or a video");
+  auto [command, arguments] =
+      add_command(app, context, "detect", "Run detectors over a data set or a video", run_detect);
   add_options(*command, *arguments);
-  command->callback([arguments, &context] { run_detect(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -98,9 +98,12 @@ void evision(EvisionArguments arguments, Context& context) {
 }  // namespace
 
 void add_evision(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "evision", "Compare the published E-Vision annotations with boxes of our own");
-  auto arguments = std::make_shared<EvisionArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "evision",
+                  "Compare the published E-Vision annotations with boxes of our own",
+                  evision);
   evision::EvisionOptions& options = arguments->options;
   command->add_option("DIR", arguments->folder, "Folder with groundtruth/*.xml and positions/*.csv")
       ->required();
@@ -124,7 +127,6 @@ void add_evision(CLI::App& app, Context& context) {
                     arguments->still,
                     "Without the camera's motion, which moves and turns the published boxes");
   command->add_flag("--level", arguments->level, "Wings level, in place of banked turns");
-  command->callback([arguments, &context] { evision(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -6,7 +6,6 @@
 #include "camera/focal_length/lens_estimator.h"
 #include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
-#include "cli/picture_size.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
@@ -120,10 +119,13 @@ void crop(const CropArguments& arguments, Context& context) {
 void add_lens(CLI::App& app, Context& context) {
   auto* group = app.add_subcommand("lens", "Lenses");
   group->require_subcommand(1);
-  auto* command = group->add_subcommand("estimate",
-                                        "Estimate a camera's focal length from a video in which it "
-                                        "turns, where no calibration is at hand");
-  auto arguments = std::make_shared<EstimateArguments>();
+  auto [command, arguments] =
+      add_command(*group,
+                  context,
+                  "estimate",
+                  "Estimate a camera's focal length from a video in which it "
+                  "turns, where no calibration is at hand",
+                  estimate);
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("-o,--out", arguments->out, "Calibration to write, for [lens] file (.yml)");
@@ -131,17 +133,19 @@ void add_lens(CLI::App& app, Context& context) {
                     arguments->uncertain,
                     "Write the calibration also where other focal lengths fit as well");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
-  command->callback([arguments, &context] { estimate(*arguments, context); });
-  auto* crop_command = group->add_subcommand(
-      "crop", "Write the lens of a picture that is the middle of the calibrated one");
-  auto cut = std::make_shared<CropArguments>();
+
+  auto [crop_command, cut] =
+      add_command(*group,
+                  context,
+                  "crop",
+                  "Write the lens of a picture that is the middle of the calibrated one",
+                  crop);
   crop_command->add_option("CALIBRATION", cut->file, "OpenCV or Gyroflow calibration")->required();
   crop_command
       ->add_option("--size", cut->size, "WIDTHxHEIGHT of the video: its largest part of that shape")
       ->required();
   crop_command->add_option("-o,--out", cut->out, "Calibration to write, for [lens] file (.yml)");
   crop_command->add_flag("--overwrite", cut->overwrite, "Replace the file if it exists");
-  crop_command->callback([cut, &context] { crop(*cut, context); });
 }
 
 }  // namespace airtruth::cli

@@ -85,7 +85,7 @@ struct LogShowArguments {
   std::string file;
 };
 
-void show(const LogShowArguments& arguments, Context& context) {
+void show_log(const LogShowArguments& arguments, Context& context) {
   context.console().result(description(setup::read_log(arguments.file)));
 }
 
@@ -148,19 +148,21 @@ void align(const AlignArguments& arguments, Context& context) {
 }
 
 void add_show(CLI::App& group, Context& context) {
-  auto* command = group.add_subcommand("show", "Say what is in a flight log");
-  auto arguments = std::make_shared<LogShowArguments>();
+  auto [command, arguments] =
+      add_command(group, context, "show", "Say what is in a flight log", show_log);
   command
       ->add_option(
           "FILE", arguments->file, "DJI .srt, GoPro .mp4, PX4 .ulg, ArduPilot .bin, .gpx or .csv")
       ->required();
-  command->callback([arguments, &context] { show(*arguments, context); });
 }
 
 void add_align(CLI::App& group, Context& context) {
-  auto* command = group.add_subcommand(
-      "align", "Find the time of a log at a video's first frame, from the turn rates of both");
-  auto arguments = std::make_shared<AlignArguments>();
+  auto [command, arguments] =
+      add_command(group,
+                  context,
+                  "align",
+                  "Find the time of a log at a video's first frame, from the turn rates of both",
+                  align);
   command->add_option("LOG", arguments->log, "Flight log with attitudes or turn rates")->required();
   command->add_option("VIDEO", arguments->video, "Video of the same flight")->required();
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
@@ -171,7 +173,6 @@ void add_align(CLI::App& group, Context& context) {
       ->add_option(
           "--first-frame", arguments->first_frame, "First frame of the video that counts [0]")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
-  command->callback([arguments, &context] { align(*arguments, context); });
 }
 
 }  // namespace

@@ -145,8 +145,8 @@ void measure(const MotionArguments& arguments, Context& context) {
 }  // namespace
 
 void add_motion(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand("motion", "Measure how a video's camera moved");
-  auto arguments = std::make_shared<MotionArguments>();
+  auto [command, arguments] =
+      add_command(app, context, "motion", "Measure how a video's camera moved", measure);
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command
       ->add_option(
@@ -175,7 +175,6 @@ void add_motion(CLI::App& app, Context& context) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
-  command->callback([arguments, &context] { measure(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -23,10 +23,7 @@ void overlay(const OverlayArguments& arguments, Context& context) {
   Console& console = context.console();
   replay::OverlayOptions options;
   options.overwrite = arguments.overwrite;
-  options.stop = context.stop;
-  options.progress = [&console](std::int64_t done, std::int64_t total) {
-    console.progress("overlay", done, total);
-  };
+  follow(options, context, "overlay");
   replay::write_overlay(finished, arguments.out, options);
   console.result(fmt::format("{}: {} frames", arguments.out, finished.truth.frames.size()));
 }
@@ -52,21 +49,22 @@ void inspect(const InspectArguments& arguments, Context& context) {
 }  // namespace
 
 void add_overlay(CLI::App& app, Context& context) {
-  auto* command =
-      app.add_subcommand("overlay", "Burn boxes, range and id into a copy of a finished video");
-  auto arguments = std::make_shared<OverlayArguments>();
+  auto [command, arguments] = add_command(
+      app, context, "overlay", "Burn boxes, range and id into a copy of a finished video", overlay);
   command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")
       ->required();
   command->add_option("-o,--out", arguments->out, "The video to write (.mp4, .mkv or .avi)")
       ->required();
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
-  command->callback([arguments, &context] { overlay(*arguments, context); });
 }
 
 void add_inspect(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "inspect", "Show a frame's intruder: background, alpha and result, enlarged");
-  auto arguments = std::make_shared<InspectArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "inspect",
+                  "Show a frame's intruder: background, alpha and result, enlarged",
+                  inspect);
   command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")
       ->required();
   command->add_option("--frame", arguments->frame, "Frame number, from 0")->required();
@@ -76,7 +74,6 @@ void add_inspect(CLI::App& app, Context& context) {
   command->add_option("--zoom", arguments->zoom, "Enlargement (default 8)")
       ->check(CLI::Range(1, 64));
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
-  command->callback([arguments, &context] { inspect(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

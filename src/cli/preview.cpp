@@ -81,9 +81,12 @@ void preview(const PreviewArguments& arguments, Context& context) {
 }  // namespace
 
 void add_preview(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "preview", "Show where a scene's intruders will be, without rendering the clip");
-  auto arguments = std::make_shared<PreviewArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "preview",
+                  "Show where a scene's intruders will be, without rendering the clip",
+                  preview);
   command->add_option("SCENE", arguments->scene, "Scene file (.toml)")->required();
   command->add_option(
       "-o,--out",
@@ -96,7 +99,6 @@ void add_preview(CLI::App& app, Context& context) {
       "and show each moment as it will be rendered. Without it a motion that is kept "
       "is used, and else none is shown");
   command->add_flag("--watch", arguments->watch, "Draw anew whenever the scene file is saved");
-  command->callback([arguments, &context] { preview(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -90,9 +90,12 @@ void render(const RenderArguments& arguments, Context& context) {
 }  // namespace
 
 void add_render(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "render", "Put the scene's intruders into its video, with the truth of every frame");
-  auto arguments = std::make_shared<RenderArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "render",
+                  "Put the scene's intruders into its video, with the truth of every frame",
+                  render);
   command
       ->add_option(
           "SCENE", arguments->scene, "Scene file (.toml); examples/render.toml shows every key")
@@ -112,7 +115,6 @@ void add_render(CLI::App& app, Context& context) {
   command->add_flag("--no-cache",
                     arguments->no_cache,
                     "Measure the camera's motion and the aircraft's occlusion anew");
-  command->callback([arguments, &context] { render(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -28,11 +28,7 @@ void new_scene(const NewArguments& arguments, Context& context) {
   Console& console = context.console();
   new_scene::NewSceneOptions options;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
-  options.warn = console.warn();
-  options.stop = context.stop;
-  options.progress = [&console](std::int64_t done, std::int64_t total) {
-    console.progress("looking for lens and motion", done, total);
-  };
+  follow(options, context, "looking for lens and motion");
   const std::string text = new_scene::scene_text(arguments.video, options);
   console.end_progress();
   write_file(out, text);
@@ -44,16 +40,18 @@ void new_scene(const NewArguments& arguments, Context& context) {
 void add_scene(CLI::App& app, Context& context) {
   auto* group = app.add_subcommand("scene", "Scene files");
   group->require_subcommand(1);
-  auto* command =
-      group->add_subcommand("new", "Write a commented scene for a video, with a first encounter");
-  auto arguments = std::make_shared<NewArguments>();
+  auto [command, arguments] =
+      add_command(*group,
+                  context,
+                  "new",
+                  "Write a commented scene for a video, with a first encounter",
+                  new_scene);
   command->add_option("VIDEO", arguments->video, "The onboard video")->required();
   command->add_option("-o,--out",
                       arguments->out,
                       "Scene file to write (default: the video's name with .toml, here)");
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
-  command->callback([arguments, &context] { new_scene(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -45,10 +45,7 @@ void synth(SynthArguments arguments, Context& context) {
   demo::VirtualFlightOptions how;
   how.format = video::format_of_file(out);
   how.quality = arguments.quality;
-  how.stop = context.stop;
-  how.progress = [&console](std::int64_t done, std::int64_t total) {
-    console.progress("flying", done, total);
-  };
+  follow(how, context, "flying");
   const synthetic::Flight flight(options);
   demo::write_flight(flight, out, how);
   if (!arguments.truth.empty()) write_file(arguments.truth, synthetic::csv_from_flight(flight));
@@ -132,9 +129,12 @@ void add_disturbance_options(CLI::App& command, SynthArguments& arguments) {
 }  // namespace
 
 void add_synth(CLI::App& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "synth", "Make a virtual flight: onboard video of a world that is known exactly");
-  auto arguments = std::make_shared<SynthArguments>();
+  auto [command, arguments] =
+      add_command(app,
+                  context,
+                  "synth",
+                  "Make a virtual flight: onboard video of a world that is known exactly",
+                  synth);
   add_file_options(*command, *arguments);
   command
       ->add_option("--seed",
@@ -148,7 +148,6 @@ void add_synth(CLI::App& app, Context& context) {
       ->check(CLI::Range(0, 51))
       ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
-  command->callback([arguments, &context] { synth(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -152,21 +152,17 @@ void add_run_options(CLI::App& command, runs::TrackOptions& options) {
       .add_option(
           "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
       ->check(CLI::Range(0.001, 86'400.0));
-  command
-      .add_option("--jobs,-j",
-                  options.jobs,
-                  "Sequences at a time (default: 1, so that times are a tracker's own)")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(
+      command, options.jobs, "Sequences at a time (default: 1, so that times are a tracker's own)");
 }
 
 }  // namespace
 
 void add_track(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Track>();
-  auto* command = app.add_subcommand("track", "Run trackers over a data set or a video");
+  auto [command, arguments] =
+      add_command(app, context, "track", "Run trackers over a data set or a video", run_track);
   add_source_options(*command, *arguments);
   add_run_options(*command, arguments->options);
-  command->callback([arguments, &context] { run_track(*arguments, context); });
 }
 
 }  // namespace airtruth::cli

@@ -8,12 +8,13 @@
 #include <fmt/format.h>
 
 #include "aircraft/ac3d/ac_tokens.h"
+#include "aircraft/model/raw_model.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::aircraft {
 namespace {
 
-constexpr std::size_t kMaxAcMaterials = 4096;
+// Bounds for untrusted files, far above those of any aircraft.
 constexpr std::size_t kMaxAcObjects = 100'000;
 constexpr int kMaxKidsDepth = 64;
 constexpr std::uint32_t kMaxCornersOfSurface = 10'000;
@@ -29,32 +30,22 @@ constexpr std::size_t kBytesOfVertex = 6;   // "0 0 0\n"
 constexpr std::size_t kBytesOfSurface = 6;  // "SURF 0"
 constexpr std::size_t kBytesOfCorner = 6;   // "0 0 0\n"
 
-// Row-major rotation and shift: file = turn * local + shift.
+// file = turn * local + shift. The sums are written out, so that every compiler adds in the same
+// order and the result is the same.
 struct Placement {
-  std::array<double, 9> turn{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  std::array<double, 3> shift{};
-};
+  Matrix3 turn = Matrix3::Identity();
+  Vector3 shift = Vector3::Zero();
 
-Placement combined(const Placement& outer, const Placement& inner) {
-  Placement result;
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) {
-      double sum = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-        sum += outer.turn[3 * row + k] * inner.turn[3 * k + column];
-      result.turn[3 * row + column] = sum;
-    }
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k) sum += outer.turn[3 * row + k] * inner.shift[k];
-    result.shift[row] = sum + outer.shift[row];
+  Vector3 turned(const Vector3& v) const {
+    return turn.col(0) * v.x() + turn.col(1) * v.y() + turn.col(2) * v.z();
   }
-  return result;
-}
-
-struct InheritedTexture {
-  bool present = false;
-  std::string name;
-  int line = 0;
+  Vector3 placed(const Vector3& v) const { return turned(v) + shift; }
+  Placement operator*(const Placement& inner) const {
+    Placement result;
+    for (int i = 0; i < 3; ++i) result.turn.col(i) = turned(inner.turn.col(i));
+    result.shift = placed(inner.shift);
+    return result;
+  }
 };
 
 class AcParser {
@@ -71,9 +62,14 @@ class AcParser {
   }
 
  private:
+  // A texture's name and the line that states it.
+  struct Texture {
+    std::string name;
+    int line = 0;
+  };
   struct State {
-    Placement own;
-    InheritedTexture texture;
+    Placement outer_from_own;
+    Texture texture;
     std::array<float, 2> repeat{1, 1};
     std::array<float, 2> offset{0, 0};
   };
@@ -81,7 +77,10 @@ class AcParser {
   AcObject& object(std::size_t index) { return file_.objects[index]; }
 
   // Reads one OBJECT with its kids. The materials come before the first one.
-  void read_object(const Placement& outer, const InheritedTexture& texture, int parent, int depth) {
+  void read_object(const Placement& file_from_outer,
+                   const Texture& texture,
+                   int parent,
+                   int depth) {
     if (depth > kMaxKidsDepth)
       tokens_.fail(fmt::format("nests objects more than {} deep", kMaxKidsDepth));
     if (file_.objects.size() >= kMaxAcObjects)
@@ -95,8 +94,9 @@ class AcParser {
       const std::string_view word = tokens_.word();
       if (word.empty()) return at_the_end(depth, is_begun);
       is_begun = true;
-      if (word == "kids") return read_kids(combined(outer, state.own), state, index, depth);
-      read_line(word, outer, state, index);
+      if (word == "kids")
+        return read_kids(file_from_outer * state.outer_from_own, state, index, depth);
+      read_line(word, file_from_outer, state, index);
     }
   }
 
@@ -107,13 +107,16 @@ class AcParser {
     if (depth > 0) file_.objects.pop_back();
   }
 
-  void read_kids(const Placement& placement, const State& state, std::size_t index, int depth) {
+  void read_kids(const Placement& file_from_own, const State& state, std::size_t index, int depth) {
     const std::uint32_t kids = tokens_.count("kids", kMaxAcObjects);
     for (std::uint32_t i = 0; i < kids && tokens_.bytes_left() > 0; ++i)
-      read_object(placement, state.texture, static_cast<int>(index), depth + 1);
+      read_object(file_from_own, state.texture, static_cast<int>(index), depth + 1);
   }
 
-  void read_line(std::string_view word, const Placement& outer, State& state, std::size_t index) {
+  void read_line(std::string_view word,
+                 const Placement& file_from_outer,
+                 State& state,
+                 std::size_t index) {
     if (word == "MATERIAL") {
       read_material();
     } else if (word == "OBJECT") {
@@ -121,7 +124,8 @@ class AcParser {
     } else if (word == "name") {
       object(index).name = tokens_.string();
     } else if (word == "texture") {
-      read_texture(state.texture);
+      state.texture.name = tokens_.string();
+      state.texture.line = tokens_.line();
     } else if (word == "texrep" || word == "texoff") {
       for (float& value : word == "texrep" ? state.repeat : state.offset)
         value = tokens_.number("a texture's repetition or offset", kLargestUv);
@@ -129,13 +133,15 @@ class AcParser {
       object(index).crease_deg =
           std::min(tokens_.number("crease", kLargestCoordinate), kLargestCreaseDeg);
     } else if (word == "rot") {
-      for (double& value : state.own.turn) value = tokens_.number("rot", kLargestCoordinate);
+      for (int i = 0; i < 9; ++i)
+        state.outer_from_own.turn(i / 3, i % 3) = tokens_.number("rot", kLargestCoordinate);
     } else if (word == "loc") {
-      for (double& value : state.own.shift) value = tokens_.number("loc", kLargestCoordinate);
+      for (double& value : state.outer_from_own.shift)
+        value = tokens_.number("loc", kLargestCoordinate);
     } else if (word == "data") {
       skip_data();
     } else if (word == "numvert") {
-      read_vertices(combined(outer, state.own), object(index));
+      read_vertices(file_from_outer * state.outer_from_own, object(index));
     } else if (word == "numsurf") {
       read_surfaces(state, object(index));
     } else {
@@ -144,29 +150,24 @@ class AcParser {
   }
 
   void read_material() {
-    if (file_.materials.size() >= kMaxAcMaterials)
-      tokens_.fail(fmt::format("holds more than {} materials", kMaxAcMaterials));
-    AcMaterial material;
+    if (file_.materials.size() >= kMaxMaterials)
+      tokens_.fail(fmt::format("holds more than {} materials", kMaxMaterials));
+    Material material;
     std::array<float, 3> ambient{};
     material.finish = finish_named(tokens_.string());
     const auto colour = [&](const char* what, std::array<float, 3>& value) {
       tokens_.expect(what);
       for (float& channel : value) channel = tokens_.number(what, kLargestCoordinate);
     };
-    colour("rgb", material.rgb);
+    colour("rgb", material.diffuse);
     colour("amb", ambient);
     colour("emis", material.emission);
     colour("spec", material.specular);
     tokens_.expect("shi");
     material.shininess = std::clamp(tokens_.number("shi", kLargestCoordinate), 0.0f, 128.0f);
     tokens_.expect("trans");
-    material.transparency = std::clamp(tokens_.number("trans", kLargestCoordinate), 0.0f, 1.0f);
+    material.opacity = 1 - std::clamp(tokens_.number("trans", kLargestCoordinate), 0.0f, 1.0f);
     file_.materials.push_back(material);
-  }
-
-  void read_texture(InheritedTexture& texture) {
-    const std::string name = tokens_.string();
-    texture = {!name.empty(), name, tokens_.line()};
   }
 
   void skip_data() {
@@ -185,29 +186,24 @@ class AcParser {
     return count;
   }
 
-  void read_vertices(const Placement& placement, AcObject& target) {
+  void read_vertices(const Placement& file_from_own, AcObject& target) {
     const std::uint32_t count = count_of("numvert", kBytesOfVertex, kMaxCorners);
     target.vertices.reserve(target.vertices.size() + count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      std::array<double, 3> local{};
-      for (double& value : local) value = tokens_.number("a coordinate", kLargestCoordinate);
-      std::array<float, 3> vertex{};
-      for (std::size_t row = 0; row < 3; ++row) {
-        double sum = 0;
-        for (std::size_t k = 0; k < 3; ++k) sum += placement.turn[3 * row + k] * local[k];
-        sum += placement.shift[row];
-        if (!(std::abs(sum) <= kLargestCoordinate))
-          tokens_.fail(fmt::format(
-              "rot and loc put a vertex at {:g}; expected at most {:g}", sum, kLargestCoordinate));
-        vertex[row] = static_cast<float>(sum);
-      }
-      target.vertices.push_back(vertex);
+      Vector3 own;
+      for (double& value : own) value = tokens_.number("a coordinate", kLargestCoordinate);
+      const Vector3 vertex = file_from_own.placed(own);
+      for (const double value : vertex)
+        if (!(std::abs(value) <= kLargestCoordinate))
+          tokens_.fail(fmt::format("rot and loc put a vertex at {:g}; expected at most {:g}",
+                                   value,
+                                   kLargestCoordinate));
+      target.vertices.push_back(vertex.cast<float>());
     }
   }
 
   void read_surfaces(const State& state, AcObject& target) {
     const std::uint32_t count = count_of("numsurf", kBytesOfSurface, kMaxTriangles);
-    target.has_texture = state.texture.present;
     target.texture = state.texture.name;
     target.texture_line = state.texture.line;
     target.surfaces.reserve(target.surfaces.size() + count);
@@ -218,7 +214,7 @@ class AcParser {
     tokens_.expect("SURF");
     const std::uint32_t flags = tokens_.count("SURF", kAnyFlags);
     tokens_.expect("mat");
-    const std::uint32_t material = tokens_.count("mat", kMaxAcMaterials);
+    const std::uint32_t material = tokens_.count("mat", kMaxMaterials);
     if (material >= file_.materials.size())
       tokens_.fail(fmt::format(
           "mat is {}, but the file has {} materials", material, file_.materials.size()));

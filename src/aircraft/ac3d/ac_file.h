@@ -1,30 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "aircraft/model/finish.h"
-#include "aircraft/model/model_limits.h"
+#include "aircraft/model/mesh.h"
 
 // The content of an AC3D text file (.ac) after checks, without interpretation. The format:
 // https://www.inivis.com/ac3d/man/ac3dfileformat.html
 namespace airtruth::aircraft {
 
 namespace fs = std::filesystem;
-
-struct AcMaterial {
-  std::array<float, 3> rgb{};  // sRGB, 0..1
-  std::array<float, 3> emission{};
-  std::array<float, 3> specular{};
-  float shininess = 0;     // 0..128
-  float transparency = 0;  // 0..1
-  Finish finish = Finish::kPaint;
-};
 
 struct AcCorner {
   std::uint32_t vertex = 0;  // index into AcObject::vertices
@@ -43,18 +32,18 @@ struct AcSurface {
 struct AcObject {
   int parent = -1;  // index into AcFile::objects
   std::string name;
-  bool has_texture = false;  // its own, or that of an object around it
-  std::string texture;       // as the file names it
+  std::string
+      texture;  // its own, or that of an object around it, as the file names it; empty: none
   int texture_line = 0;
-  float crease_deg = 61;                       // AC3D's own where the file states none
-  std::vector<std::array<float, 3>> vertices;  // in the file's frame: rot and loc applied
-  std::vector<AcSurface> surfaces;             // lines are left out
+  float crease_deg = 61;                  // AC3D's own where the file states none
+  std::vector<Eigen::Vector3f> vertices;  // in the file's frame: rot and loc applied
+  std::vector<AcSurface> surfaces;        // lines are left out
   std::vector<AcCorner> corners;
 };
 
 // Objects in the order of the file: one comes before what it holds.
 struct AcFile {
-  std::vector<AcMaterial> materials;
+  std::vector<Material> materials;  // colours in sRGB, without textures
   std::vector<AcObject> objects;
 };
 

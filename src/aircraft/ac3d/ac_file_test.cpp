@@ -65,12 +65,12 @@ TEST(AcFile, PlacesTexturesAndNamesFollowTheTree) {
   EXPECT_EQ(names_of(file, file.objects.size() - 1),
             (std::vector<std::string>{"World", "wing", "tip"}));
   // Local (1, 0, 0) is (2, 0, 0) in the group, (0, 2, 0) turned, (10, 2, 0) in the file.
-  EXPECT_EQ(tip.vertices[1], (std::array<float, 3>{10, 2, 0}));
+  EXPECT_EQ(tip.vertices[1], Eigen::Vector3f(10, 2, 0));
   EXPECT_EQ(tip.texture, "a b.rgb");
   EXPECT_FLOAT_EQ(tip.corners[1].u, 2.5f);
   EXPECT_FLOAT_EQ(tip.corners[2].v, 3);
   EXPECT_FLOAT_EQ(file.materials[0].shininess, 64);
-  EXPECT_FLOAT_EQ(file.materials[0].transparency, 0.25f);
+  EXPECT_FLOAT_EQ(file.materials[0].opacity, 0.75f);
 }
 
 TEST(AcFile, EachFaultIsOneLineWithItsPlace) {

@@ -14,12 +14,7 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Written out, so that every compiler adds in the same order and the result is the same.
-float scalar_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
-}
-
-float length_of(const Eigen::Vector3f& v) { return std::sqrt(scalar_product(v, v)); }
+float length_of(const Eigen::Vector3f& v) { return std::sqrt(dot_product(v, v)); }
 
 Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& v) {
   const float length = length_of(v);
@@ -35,15 +30,10 @@ struct Facet {
   Cut cut = Cut::kFan;
 };
 
-Eigen::Vector3f vertex_of(const AcObject& object, const AcCorner& corner) {
-  const auto& v = object.vertices[corner.vertex];
-  return {v[0], v[1], v[2]};
-}
-
 Facet facet_of(const AcObject& object, const AcSurface& surface) {
   Facet facet;
   for (std::uint32_t i = 0; i < surface.corners; ++i)
-    facet.positions.push_back(vertex_of(object, object.corners[surface.first_corner + i]));
+    facet.positions.push_back(object.vertices[object.corners[surface.first_corner + i].vertex]);
   facet.weighted_normal = area_normal(facet.positions);
   facet.cut = is_concave(facet.positions) ? Cut::kEars
               : surface.corners == 3      ? Cut::kTriangle
@@ -75,7 +65,7 @@ void smooth_vertex(std::vector<Meeting>& meetings,
       for (std::size_t i = 0; i < count; ++i) {
         if (taken[i]) continue;
         const Meeting& b = meetings[i];
-        if (!(cos_crease * (b.length * a.length) <= scalar_product(b.normal, a.normal))) continue;
+        if (!(cos_crease * (b.length * a.length) <= dot_product(b.normal, a.normal))) continue;
         taken[i] = true;
         set.push_back(i);
       }
@@ -126,15 +116,13 @@ std::vector<Eigen::Vector3f> corner_normals(const AcObject& object,
   return result;
 }
 
-struct Vertex {
-  std::array<std::uint32_t, 8> bits;
-  bool operator==(const Vertex&) const = default;
-};
+// A vertex by the bits of its position, normal and texture coordinates.
+using VertexBits = std::array<std::uint32_t, 8>;
 
 struct VertexHash {
-  std::size_t operator()(const Vertex& vertex) const {
+  std::size_t operator()(const VertexBits& bits) const {
     std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
-    for (const std::uint32_t word : vertex.bits) hash = (hash ^ word) * 0x100000001b3u;
+    for (const std::uint32_t word : bits) hash = (hash ^ word) * 0x100000001b3u;
     return static_cast<std::size_t>(hash ^ (hash >> 29));
   }
 };
@@ -146,19 +134,12 @@ class BatchBuilder {
                const std::vector<Eigen::Vector3f>& normals)
       : object_(object), facets_(facets), normals_(normals) {}
 
-  void begin(const AcMaterial& material) {
+  void begin(const Material& material) {
     batch_ = {};
     index_.clear();
-    batch_.diffuse = material.rgb;
-    batch_.emission = material.emission;
-    batch_.specular = material.specular;
-    batch_.shininess = material.shininess;
-    batch_.opacity = 1 - material.transparency;
-    batch_.finish = material.finish;
-    if (object_.has_texture) {
-      batch_.texture = object_.texture;
-      batch_.texture_line = object_.texture_line;
-    }
+    batch_.srgb = material;
+    batch_.texture = object_.texture;
+    batch_.texture_line = object_.texture_line;
   }
 
   void add(std::size_t surface_index) {
@@ -183,15 +164,16 @@ class BatchBuilder {
     const AcCorner& corner = object_.corners[corner_index];
     const Eigen::Vector3f& normal = normals_[corner_index];
     const Eigen::Vector2f uv =
-        object_.has_texture ? Eigen::Vector2f(corner.u, corner.v) : Eigen::Vector2f(0, 0);
-    const Vertex key{{std::bit_cast<std::uint32_t>(position.x()),
-                      std::bit_cast<std::uint32_t>(position.y()),
-                      std::bit_cast<std::uint32_t>(position.z()),
-                      std::bit_cast<std::uint32_t>(normal.x()),
-                      std::bit_cast<std::uint32_t>(normal.y()),
-                      std::bit_cast<std::uint32_t>(normal.z()),
-                      std::bit_cast<std::uint32_t>(uv.x()),
-                      std::bit_cast<std::uint32_t>(uv.y())}};
+        object_.texture.empty() ? Eigen::Vector2f(0, 0) : Eigen::Vector2f(corner.u, corner.v);
+    const std::array<float, 8> values{position.x(),
+                                      position.y(),
+                                      position.z(),
+                                      normal.x(),
+                                      normal.y(),
+                                      normal.z(),
+                                      uv.x(),
+                                      uv.y()};
+    const auto key = std::bit_cast<VertexBits>(values);
     const auto [known, is_new] =
         index_.try_emplace(key, static_cast<std::uint32_t>(batch_.positions.size()));
     if (is_new) {
@@ -206,7 +188,7 @@ class BatchBuilder {
   const std::vector<Facet>& facets_;
   const std::vector<Eigen::Vector3f>& normals_;
   Batch batch_;
-  std::unordered_map<Vertex, std::uint32_t, VertexHash> index_;
+  std::unordered_map<VertexBits, std::uint32_t, VertexHash> index_;
 };
 
 // Sorts surfaces by material, then smooth before flat, two-sided before one-sided, then by their

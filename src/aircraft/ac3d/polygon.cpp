@@ -3,18 +3,10 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace airtruth::aircraft {
 namespace {
-
-// Written out, so that every compiler adds in the same order and the result is the same.
-Eigen::Vector3f cross_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  return {
-      a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
-}
-
-float dot_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
-}
 
 using Planar = std::array<double, 2>;
 
@@ -100,10 +92,14 @@ class EarClipper {
 
 }  // namespace
 
+float dot_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
 Eigen::Vector3f area_normal(std::span<const Eigen::Vector3f> corners) {
   Eigen::Vector3f sum(0, 0, 0);
   for (std::size_t i = 2; i < corners.size(); ++i)
-    sum += cross_product(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    sum += (corners[i - 1] - corners[0]).cross(corners[i] - corners[0]);
   return sum;
 }
 
@@ -112,10 +108,10 @@ bool is_concave(std::span<const Eigen::Vector3f> corners) {
   Eigen::Vector3f sum(0, 0, 0);
   Eigen::Vector3f before(0, 0, 0);  // normal at the corner before
   for (std::size_t i = 2; i < corners.size(); ++i) {
-    const Eigen::Vector3f fan = cross_product(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    const Eigen::Vector3f fan = (corners[i - 1] - corners[0]).cross(corners[i] - corners[0]);
     if (dot_product(fan, sum) < 0) return true;
     const Eigen::Vector3f here =
-        i == 2 ? fan : cross_product(corners[i - 1] - corners[i - 2], corners[i] - corners[i - 2]);
+        i == 2 ? fan : (corners[i - 1] - corners[i - 2]).cross(corners[i] - corners[i - 2]);
     if (i > 2 && dot_product(here, before) < 0) return true;
     before = here;
     sum += fan;

@@ -10,6 +10,10 @@
 
 namespace airtruth::aircraft {
 
+// The scalar product, written out so that every compiler adds in the same order and the result is
+// the same.
+float dot_product(const Eigen::Vector3f& a, const Eigen::Vector3f& b);
+
 // Twice the area of a polygon times its normal: the sum over the fan of its first corner.
 Eigen::Vector3f area_normal(std::span<const Eigen::Vector3f> corners);
 

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "aircraft/ac3d/ac_file.h"
 #include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"
 #include "foundation/sandbox/sandbox.h"

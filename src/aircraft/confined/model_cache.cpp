@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aircraft/confined/model_cache.h"
 
-#include "aircraft/ac3d/ac_file.h"
 #include "aircraft/confined/child.h"
 #include "aircraft/confined/protocol.h"
 #include "foundation/base/error.h"

@@ -1,175 +1,141 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aircraft/confined/protocol.h"
 
-#include "aircraft/ac3d/ac_file.h"
+#include <type_traits>
 
 namespace airtruth::aircraft {
 namespace {
 
 constexpr std::size_t kMaxTextBytes = 65536;
 
-template <int kRows>
-void put_vectors(WireWriter& out, const std::vector<Eigen::Matrix<float, kRows, 1>>& vectors) {
-  static_assert(sizeof(Eigen::Matrix<float, kRows, 1>) == kRows * sizeof(float));
-  out.put(static_cast<std::uint64_t>(vectors.size()));
-  out.put_raw(vectors.data(), vectors.size() * kRows * sizeof(float));
+// Puts the fields of a record into bytes. Put and Get have the same functions, so that one
+// description of a record serves both directions.
+struct Put {
+  WireWriter out;
+
+  void number(const auto& value) { out.put(value); }
+  void flag(bool value) { out.put(std::uint8_t{value}); }
+  void text(const std::string& value) { out.put_text(value.substr(0, kMaxTextBytes)); }
+  // Values without padding, as they are in memory.
+  template <typename Value>
+  void raw(const std::vector<Value>& values, std::size_t) {
+    out.put(std::uint64_t{values.size()});
+    out.put_raw(values.data(), values.size() * sizeof(Value));
+  }
+  void list(const auto& values, std::size_t, const auto& each) {
+    out.put(std::uint64_t{values.size()});
+    for (const auto& value : values) each(value);
+  }
+};
+
+// Gets the fields of a record from bytes. Throws Error where a list has more than `most` values.
+struct Get {
+  WireReader in;
+
+  template <typename Value>
+  void number(Value& value) {
+    value = in.get<Value>();
+  }
+  void flag(bool& value) { value = in.get<std::uint8_t>() != 0; }
+  void text(std::string& value) { value = in.get_text(kMaxTextBytes); }
+  template <typename Value>
+  void raw(std::vector<Value>& values, std::size_t most) {
+    values.resize(in.get_count(most, sizeof(Value)));
+    in.get_raw(values.data(), values.size() * sizeof(Value));
+  }
+  void list(auto& values, std::size_t most, const auto& each) {
+    values.resize(in.get_count(most, 1));
+    for (auto& value : values) each(value);
+  }
+};
+
+static_assert(sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Vector2f) == 8);
+static_assert(sizeof(Triangle) == 16 && sizeof(Finish) == 1);
+
+void material_fields(auto& wire, auto& material) {
+  for (auto* colour : {&material.diffuse, &material.emission, &material.specular})
+    for (auto& channel : *colour) wire.number(channel);
+  wire.number(material.shininess);
+  wire.number(material.opacity);
+  wire.number(material.texture);
+  auto finish = static_cast<std::uint8_t>(material.finish);
+  wire.number(finish);
+  if constexpr (std::is_same_v<std::remove_reference_t<decltype(wire)>, Get>)
+    material.finish = static_cast<Finish>(finish);
 }
 
-template <int kRows>
-std::vector<Eigen::Matrix<float, kRows, 1>> get_vectors(WireReader& in) {
-  std::vector<Eigen::Matrix<float, kRows, 1>> vectors(
-      in.get_count(kMaxCorners, kRows * sizeof(float)));
-  in.get_raw(vectors.data(), vectors.size() * kRows * sizeof(float));
-  return vectors;
+void part_fields(auto& wire, auto& part) {
+  wire.text(part.name);
+  wire.flag(part.spins);
+  for (auto* vector : {&part.axis_in_body, &part.centre_in_body})
+    for (auto& value : *vector) wire.number(value);
+  wire.number(part.revolutions_per_s);
+  wire.raw(part.triangles, kMaxTriangles);
 }
 
-void put_floats(WireWriter& out, const std::array<float, 3>& values) {
-  for (const float value : values) out.put(value);
+void picture_fields(auto& wire, auto& raw) {
+  wire.number(raw.picture.width);
+  wire.number(raw.picture.height);
+  wire.flag(raw.repeat_u);
+  wire.flag(raw.repeat_v);
+  wire.raw(raw.picture.rgba, 4 * kMaxPixels);
 }
 
-std::array<float, 3> get_floats(WireReader& in) {
-  std::array<float, 3> values{};
-  for (float& value : values) value = in.get<float>();
-  return values;
+void model_fields(auto& wire, auto& model) {
+  wire.raw(model.mesh.positions, kMaxCorners);
+  wire.raw(model.mesh.normals, kMaxCorners);
+  wire.raw(model.mesh.uvs, kMaxCorners);
+  wire.list(model.mesh.materials, kMaxMaterials, [&](auto& m) { material_fields(wire, m); });
+  wire.list(model.mesh.parts, kMaxParts, [&](auto& part) { part_fields(wire, part); });
+  wire.list(model.pictures, kMaxPictures, [&](auto& raw) { picture_fields(wire, raw); });
+  wire.list(model.warnings, kMaxWarnings, [&](auto& warning) { wire.text(warning); });
 }
 
-void put_material(WireWriter& out, const Material& material) {
-  put_floats(out, material.diffuse);
-  put_floats(out, material.emission);
-  put_floats(out, material.specular);
-  out.put(material.shininess);
-  out.put(material.opacity);
-  out.put(static_cast<std::int32_t>(material.texture));
-  out.put(static_cast<std::uint8_t>(material.finish));
-}
-
-Material get_material(WireReader& in) {
-  Material material;
-  material.diffuse = get_floats(in);
-  material.emission = get_floats(in);
-  material.specular = get_floats(in);
-  material.shininess = in.get<float>();
-  material.opacity = in.get<float>();
-  material.texture = in.get<std::int32_t>();
-  material.finish = static_cast<Finish>(in.get<std::uint8_t>());
-  return material;
-}
-
-constexpr std::size_t kMaterialBytes = 12 * 4 + 1;
-
-static_assert(sizeof(Triangle) == 4 * sizeof(std::uint32_t));
-
-void put_part(WireWriter& out, const Part& part) {
-  out.put_text(part.name.substr(0, kMaxTextBytes));
-  out.put(static_cast<std::uint8_t>(part.spins));
-  put_floats(out, {part.axis_in_body.x(), part.axis_in_body.y(), part.axis_in_body.z()});
-  put_floats(out, {part.centre_in_body.x(), part.centre_in_body.y(), part.centre_in_body.z()});
-  out.put(part.revolutions_per_s);
-  out.put(static_cast<std::uint64_t>(part.triangles.size()));
-  out.put_raw(part.triangles.data(), part.triangles.size() * sizeof(Triangle));
-}
-
-Part get_part(WireReader& in) {
-  Part part;
-  part.name = in.get_text(kMaxTextBytes);
-  part.spins = in.get<std::uint8_t>() != 0;
-  const auto axis = get_floats(in);
-  const auto centre = get_floats(in);
-  part.axis_in_body = {axis[0], axis[1], axis[2]};
-  part.centre_in_body = {centre[0], centre[1], centre[2]};
-  part.revolutions_per_s = in.get<double>();
-  part.triangles.resize(in.get_count(kMaxTriangles, sizeof(Triangle)));
-  in.get_raw(part.triangles.data(), part.triangles.size() * sizeof(Triangle));
-  return part;
-}
-
-void put_picture(WireWriter& out, const RawPicture& raw) {
-  out.put(static_cast<std::int32_t>(raw.picture.width));
-  out.put(static_cast<std::int32_t>(raw.picture.height));
-  out.put(static_cast<std::uint8_t>(raw.repeat_u));
-  out.put(static_cast<std::uint8_t>(raw.repeat_v));
-  out.put(static_cast<std::uint64_t>(raw.picture.rgba.size()));
-  out.put_raw(raw.picture.rgba.data(), raw.picture.rgba.size());
-}
-
-RawPicture get_picture(WireReader& in) {
-  RawPicture raw;
-  raw.picture.width = in.get<std::int32_t>();
-  raw.picture.height = in.get<std::int32_t>();
-  raw.repeat_u = in.get<std::uint8_t>() != 0;
-  raw.repeat_v = in.get<std::uint8_t>() != 0;
-  raw.picture.rgba.resize(in.get_count(4 * kMaxPixels, 1));
-  in.get_raw(raw.picture.rgba.data(), raw.picture.rgba.size());
-  return raw;
+void job_fields(auto& wire, auto& job, auto& axes) {
+  wire.text(job.file);
+  wire.text(job.shown_folder);
+  wire.text(job.in_data_root);
+  wire.number(job.options.airspeed_kt);
+  wire.number(job.options.altitude_agl_ft);
+  wire.text(axes.forward);
+  wire.text(axes.up);
+  wire.number(axes.scale);
 }
 
 }  // namespace
 
 std::string bytes_of(const RawModel& model) {
-  WireWriter out;
-  put_vectors(out, model.mesh.positions);
-  put_vectors(out, model.mesh.normals);
-  put_vectors(out, model.mesh.uvs);
-  out.put(static_cast<std::uint64_t>(model.mesh.materials.size()));
-  for (const Material& material : model.mesh.materials) put_material(out, material);
-  out.put(static_cast<std::uint64_t>(model.mesh.parts.size()));
-  for (const Part& part : model.mesh.parts) put_part(out, part);
-  out.put(static_cast<std::uint64_t>(model.pictures.size()));
-  for (const RawPicture& picture : model.pictures) put_picture(out, picture);
-  out.put(static_cast<std::uint64_t>(model.warnings.size()));
-  for (const std::string& warning : model.warnings) out.put_text(warning.substr(0, kMaxTextBytes));
-  return out.take();
+  Put put;
+  model_fields(put, model);
+  return put.out.take();
 }
 
 RawModel model_from_bytes(std::string_view bytes) {
-  WireReader in(bytes);
+  Get get{WireReader(bytes)};
   RawModel model;
-  model.mesh.positions = get_vectors<3>(in);
-  model.mesh.normals = get_vectors<3>(in);
-  model.mesh.uvs = get_vectors<2>(in);
-  model.mesh.materials.resize(in.get_count(kMaxMaterials, kMaterialBytes));
-  for (Material& material : model.mesh.materials) material = get_material(in);
-  model.mesh.parts.resize(in.get_count(kMaxParts, 1));
-  for (Part& part : model.mesh.parts) part = get_part(in);
-  model.pictures.resize(in.get_count(kMaxPictures, 1));
-  for (RawPicture& picture : model.pictures) picture = get_picture(in);
-  model.warnings.resize(in.get_count(kMaxWarnings, 1));
-  for (std::string& warning : model.warnings) warning = in.get_text(kMaxTextBytes);
-  in.expect_end();
+  model_fields(get, model);
+  get.in.expect_end();
   check_model(model);
   return model;
 }
 
 std::string bytes_of(const ReaderJob& job) {
-  WireWriter out;
-  out.put_text(job.file);
-  out.put_text(job.shown_folder);
-  out.put_text(job.in_data_root);
-  out.put(job.options.airspeed_kt);
-  out.put(job.options.altitude_agl_ft);
-  out.put(static_cast<std::uint8_t>(job.options.axes.has_value()));
+  Put put;
+  put.flag(job.options.axes.has_value());
   const ModelAxes axes = job.options.axes.value_or(ModelAxes{});
-  out.put_text(axes.forward);
-  out.put_text(axes.up);
-  out.put(axes.scale);
-  return out.take();
+  job_fields(put, job, axes);
+  return put.out.take();
 }
 
 ReaderJob job_from_bytes(std::string_view bytes) {
-  WireReader in(bytes);
+  Get get{WireReader(bytes)};
   ReaderJob job;
-  job.file = in.get_text(kMaxTextBytes);
-  job.shown_folder = in.get_text(kMaxTextBytes);
-  job.in_data_root = in.get_text(kMaxTextBytes);
-  job.options.airspeed_kt = in.get<double>();
-  job.options.altitude_agl_ft = in.get<double>();
-  const bool has_axes = in.get<std::uint8_t>() != 0;
   ModelAxes axes;
-  axes.forward = in.get_text(kMaxTextBytes);
-  axes.up = in.get_text(kMaxTextBytes);
-  axes.scale = in.get<double>();
+  bool has_axes = false;
+  get.flag(has_axes);
+  job_fields(get, job, axes);
   if (has_axes) job.options.axes = axes;
-  in.expect_end();
+  get.in.expect_end();
   return job;
 }
 

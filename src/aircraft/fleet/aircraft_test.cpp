@@ -152,13 +152,12 @@ TEST_F(Models, SaysWhatIsWrong) {
 
 TEST(Texture, DecodesPremultipliesAndAverages) {
   const Texture texture =
-      texture_from_srgb(2, 1, {{1, 1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f}}, true, true);
+      texture_from_picture({2, 1, {255, 255, 255, 255, 128, 128, 128, 128}}, true, true);
+  constexpr float kAlpha = 128.0f / 255;
   EXPECT_TRUE(texture.has_translucency);
-  EXPECT_NEAR(texture.levels[0].texels[1][0],
-              0.5f * 0.2158605f,
-              1e-5f);  // 128/255 decoded, times alpha
+  EXPECT_NEAR(texture.levels[0].texels[1][0], kAlpha * 0.2158605f, 1e-5f);  // 128 decoded
   ASSERT_EQ(texture.levels.size(), 2u);
-  EXPECT_NEAR(texture.levels[1].texels[0][3], 0.75f, 1e-6f);
+  EXPECT_NEAR(texture.levels[1].texels[0][3], 0.5f * (1 + kAlpha), 1e-6f);
 }
 
 // Boeing's published figures for the 737-800 with winglets: 39.5 m long, 35.8 m

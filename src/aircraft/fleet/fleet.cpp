@@ -10,11 +10,14 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "aircraft/confined/child.h"
 #include "aircraft/confined/model_cache.h"
-#include "aircraft/fleet/left_out.h"
 #include "aircraft/fleet/scale.h"
 #include "aircraft/wrapper/model_files.h"
+#include "aircraft/wrapper/part_names.h"
 #include "aircraft/wrapper/reader.h"
 #include "aircraft/wrapper/wrapper.h"
 #include "foundation/base/error.h"
@@ -24,7 +27,19 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr std::size_t kMaxSketchBytes = std::size_t{8} << 20;
+std::map<std::string, std::string> read_rows(std::string_view text) {
+  std::map<std::string, std::string> rows;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  std::getline(lines, line);  // the heading
+  while (std::getline(lines, line)) {
+    if (line.empty()) continue;
+    const auto comma = line.find(',');
+    check(comma != std::string::npos, "a row of what is left out has a name and a reason");
+    rows[line.substr(0, comma)] = line.substr(comma + 1);
+  }
+  return rows;
+}
 
 std::vector<fs::path> folders() {
   const char* stated = std::getenv("AIRTRUTH_AIRCRAFT_PATH");
@@ -57,12 +72,12 @@ std::optional<Sketch> sketch_of(const fs::path& file, ModelFiles& files, const f
   const std::string name = file.filename().string();
   if (is_effect_path(name)) return std::nullopt;
   try {
-    const WrapperText text = parse_wrapper(read_file(file, kMaxSketchBytes), file);
+    const Wrapper text = parse_wrapper(read_file(file, kMaxWrapperBytes), file);
     Sketch sketch;
     sketch.file = file;
     const fs::path folder = file.parent_path();
     if (!text.include.empty()) sketch.includes = (folder / text.include).lexically_normal();
-    for (const WrapperText::Nested& nested : text.nested) {
+    for (const Wrapper& nested : text.nested) {
       if (is_effect_path(nested.path)) continue;
       const fs::path found = find_named_file(files, nested.path, folder.lexically_relative(root));
       if (!found.empty()) sketch.nests.push_back((root / found).lexically_normal());
@@ -149,12 +164,6 @@ void list_folder(const fs::path& root, std::vector<Entry>& entries) {
   }
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::vector<std::string> names_that(const std::function<bool(const std::string&)>& wanted) {
   std::vector<std::string> names;
   for (const Entry& entry : list_aircraft())
@@ -163,6 +172,11 @@ std::vector<std::string> names_that(const std::function<bool(const std::string&)
 }
 
 }  // namespace
+
+const std::map<std::string, std::string>& left_out() {
+  static const std::map<std::string, std::string> rows = read_rows(left_out_table());
+  return rows;
+}
 
 std::vector<Entry> list_aircraft() {
   std::vector<Entry> entries;
@@ -184,8 +198,10 @@ Entry find_aircraft(const std::string& name) {
     const bool plain = !name.empty() && name.find("..") == std::string::npos && name.front() != '/';
     if (plain && fs::is_regular_file(file, ignored)) return {name, file, folder};
   }
-  throw Error("unknown aircraft '" + name + "'; the nearest names are " +
-              joined(nearest_aircraft(name, 3)) + " (`airtruth aircraft list` shows all)");
+  throw Error(fmt::format(
+      "unknown aircraft '{}'; the nearest names are {} (`airtruth aircraft list` shows all)",
+      name,
+      fmt::join(nearest_aircraft(name, 3), ", ")));
 }
 
 fs::path aircraft_file(const std::string& name) {
@@ -348,6 +364,48 @@ Aircraft load_aircraft(const std::string& name, const LoadOptions& options, cons
   aircraft.sources.erase(std::unique(aircraft.sources.begin(), aircraft.sources.end()),
                          aircraft.sources.end());
   return aircraft;
+}
+
+namespace {
+
+// All that a wrapper derives from the state at cruise, as text: whether each condition holds, and
+// the value of each animation. Two states with the same outcomes give the same model.
+std::string outcomes_of(const Wrapper& wrapper) {
+  // Every bit of a number counts.
+  const auto outcome = [](const std::optional<bool>& condition) {
+    return condition ? int{*condition} : -1;
+  };
+  std::string text = fmt::format("({}", outcome(wrapper.condition));
+  for (const Animation& animation : wrapper.animations)
+    text += fmt::format("|{},{:a},{:a},{:a},{:a}",
+                        outcome(animation.condition),
+                        animation.value,
+                        animation.scale.x(),
+                        animation.scale.y(),
+                        animation.scale.z());
+  for (const Wrapper& nested : wrapper.nested) text += outcomes_of(nested);
+  return text + ")";
+}
+
+}  // namespace
+
+std::string configuration_of(const std::string& name, const LoadOptions& options) {
+  if (is_model_file(name) && ending_of(name) != ".xml") return {};
+  const std::string state = fmt::format("{:a} {:a}", options.airspeed_kt, options.altitude_agl_ft);
+  if (is_model_file(name)) return state;
+  try {
+    const Entry entry = find_aircraft(name);
+    if (entry.catalogue_folder != fs::path(kDebianAircraft)) return state;
+    const fs::path root = data_root_of(entry.catalogue_folder);
+    DiskFiles files(root, {});
+    std::set<std::string> missing;
+    return outcomes_of(read_wrapper(files,
+                                    fs::absolute(entry.file).lexically_relative(root),
+                                    {options.airspeed_kt, options.altitude_agl_ft},
+                                    missing));
+  } catch (const Error&) {
+    return state;  // load_aircraft() reports it
+  }
 }
 
 }  // namespace airtruth::aircraft

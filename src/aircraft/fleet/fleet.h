@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "aircraft/model/load_options.h"
@@ -88,5 +89,20 @@ Aircraft load_aircraft(const std::string& name,
 
 // The other liveries in the same model folder: the names that differ in the livery alone.
 std::vector<std::string> liveries(const std::string& name);
+
+// The configuration (gear, flaps, propellers) that an aircraft shows at the airspeed and the height
+// of the options, as text. load_aircraft() returns the same aircraft wherever the text and the
+// other options are the same. Most aircraft of the list have one configuration for all cruising
+// speeds: their gear follows a limit, and their flaps are up above it. The text is empty for a bare
+// model file. Of wrappers that are read in a confined process it states the airspeed and the height
+// themselves.
+std::string configuration_of(const std::string& name, const LoadOptions& options);
+
+// Names of Debian's catalogue that cannot be drawn, or are no aircraft, with the reason
+// (data/aircraft-left-out/README.md). They are not offered.
+const std::map<std::string, std::string>& left_out();
+// data/aircraft-left-out/left-out.csv, which the build embeds in the program: the name and the
+// reason, a line each, below one heading.
+std::string_view left_out_table();
 
 }  // namespace airtruth::aircraft

@@ -27,6 +27,8 @@ struct FlightLimits {
   double usual_bank_deg = 0;
   double first_hour = 0;  // of the day, local solar time
   double last_hour = 0;
+  // The folders of Debian's flightgear-data-ai that hold its types, with blanks between.
+  std::string_view types;
 };
 
 const std::vector<FlightLimits>& flight_classes();

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/fleet/left_out.h"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "aircraft/model/model_limits.h"
 #include "aircraft/model/texture.h"
 #include "foundation/base/error.h"
 

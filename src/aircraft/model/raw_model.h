@@ -22,6 +22,14 @@ struct RawModel {
   std::vector<std::string> warnings;
 };
 
+// Limits on the content of a model file, so that an untrusted file cannot exhaust memory or time. A
+// model beyond a limit is an Error. Each limit is about ten times the largest value in
+// flightgear-data-ai.
+constexpr std::size_t kMaxModelBytes = std::size_t{256} << 20;  // the size of one file
+constexpr std::size_t kMaxCorners = 6'000'000;                  // over all surfaces of a model
+constexpr std::size_t kMaxTriangles = 2'000'000;                // over all surfaces of a model
+constexpr double kLargestCoordinate = 1e6;  // in units of the file, or in metres in body axes
+
 // Limits on the result of a reader and on an entry of the cache.
 constexpr std::size_t kMaxParts = 1024;
 constexpr std::size_t kMaxMaterials = 4096;

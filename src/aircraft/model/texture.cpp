@@ -57,27 +57,6 @@ float linear_channel(float srgb) {
   return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
 
-Texture texture_from_srgb(
-    int width, int height, std::vector<Texel> texels, bool repeat_u, bool repeat_v) {
-  Texture texture;
-  texture.repeat_u = repeat_u;
-  texture.repeat_v = repeat_v;
-  std::array<float, 256> table;
-  for (std::size_t i = 0; i < 256; ++i) table[i] = linear_channel(static_cast<float>(i) / 255.0f);
-  for (Texel& texel : texels) {
-    if (texel[3] < kOpaque) texture.has_translucency = true;
-    const float alpha = texel[3] < kOpaque ? texel[3] : 1.0f;
-    for (std::size_t c = 0; c < 3; ++c)
-      texel[c] =
-          alpha *
-          table[static_cast<std::size_t>(std::lround(std::clamp(texel[c], 0.0f, 1.0f) * 255.0f))];
-    texel[3] = alpha;
-  }
-  texture.levels.push_back({width, height, std::move(texels)});
-  add_mip_chain(texture);
-  return texture;
-}
-
 Texture texture_from_picture(const Picture& picture, bool repeat_u, bool repeat_v) {
   Texture texture;
   texture.repeat_u = repeat_u;

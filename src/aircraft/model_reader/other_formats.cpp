@@ -17,7 +17,6 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include "aircraft/ac3d/ac_file.h"
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 
@@ -25,14 +24,10 @@ namespace airtruth::model_reader {
 namespace {
 
 namespace fs = std::filesystem;
-using aircraft::Assembly;
-using aircraft::Batch;
-using aircraft::ChoosePart;
-using aircraft::ModelFiles;
-using aircraft::PartChoice;
+using namespace aircraft;  // what a model is made of
 
-constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states no normals; chosen
-constexpr int kMaxNodeDepth = 256;
+constexpr float kSmoothBelowDeg = 60;   // the crease angle where a file states no normals; chosen
+constexpr int kMaxNodeDepth = 256;      // bounds the recursion over a hostile file
 constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
 
 class MemoryStream : public Assimp::IOStream {
@@ -77,34 +72,23 @@ fs::path plain_path(const char* path) {
 class AssimpFiles : public Assimp::IOSystem {
  public:
   explicit AssimpFiles(ModelFiles& files) : files_(files) {}
-
-  bool Exists(const char* path) const override;
+  bool Exists(const char* path) const override {
+    return files_.kind(plain_path(path)) == ModelFiles::Kind::kFile;
+  }
   char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char* path, const char* mode) override;
-  void Close(Assimp::IOStream* stream) override;
-
+  Assimp::IOStream* Open(const char* path, const char* mode) override {
+    if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
+    if (Exists(path)) return new MemoryStream(files_.read(plain_path(path), kMaxModelBytes));
+    missing_.insert(plain_path(path).string());
+    return nullptr;
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
   const std::set<std::string>& missing() const { return missing_; }
 
  private:
   ModelFiles& files_;
   std::set<std::string> missing_;
 };
-
-bool AssimpFiles::Exists(const char* path) const {
-  return files_.kind(plain_path(path)) == ModelFiles::Kind::kFile;
-}
-
-Assimp::IOStream* AssimpFiles::Open(const char* path, const char* mode) {
-  const std::filesystem::path plain = plain_path(path);
-  if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
-  if (files_.kind(plain) != ModelFiles::Kind::kFile) {
-    missing_.insert(plain.string());
-    return nullptr;
-  }
-  return new MemoryStream(files_.read(plain, aircraft::kMaxModelBytes));
-}
-
-void AssimpFiles::Close(Assimp::IOStream* stream) { delete stream; }
 
 float srgb_channel(float linear) {
   const float c = std::clamp(linear, 0.0f, 1.0f);
@@ -123,17 +107,8 @@ std::array<float, 3> colour_of(const aiColor3D& c, bool is_linear) {
 
 class SceneReader {
  public:
-  SceneReader(const aiScene& scene,
-              Assembly& assembly,
-              const fs::path& file,
-              const std::vector<fs::path>& folders,
-              const ChoosePart& choose)
-      : scene_(scene),
-        assembly_(assembly),
-        file_(file),
-        folders_(folders),
-        choose_(choose),
-        ending_(aircraft::ending_of(file)) {}
+  SceneReader(const aiScene& scene, Assembly& assembly, const ModelFile& file)
+      : scene_(scene), assembly_(assembly), file_(file), ending_(ending_of(file.path)) {}
 
   void read() {
     // assimp turns 3D Studio's axes here; model_forward and model_up speak of the file's own.
@@ -146,10 +121,9 @@ class SceneReader {
     if (depth > kMaxNodeDepth) throw Error("nests objects too deep");
     const bool named = node.mName.length > 0;
     if (named) names_.emplace_back(node.mName.C_Str());
-    const PartChoice choice = node.mNumMeshes > 0 ? choose_(names_) : PartChoice{};
+    const PartChoice choice = node.mNumMeshes > 0 ? file_.choose(names_) : PartChoice{};
     for (unsigned i = 0; i < node.mNumMeshes && !choice.hidden; ++i)
-      assembly_.add(
-          batch_of(*scene_.mMeshes[node.mMeshes[i]], file_from_node), choice, file_, folders_);
+      assembly_.add(batch_of(*scene_.mMeshes[node.mMeshes[i]], file_from_node), choice, file_);
     for (unsigned i = 0; i < node.mNumChildren; ++i)
       read_node(*node.mChildren[i], file_from_node * node.mChildren[i]->mTransformation, depth + 1);
     if (named) names_.pop_back();
@@ -187,19 +161,20 @@ class SceneReader {
     const bool is_linear = ending_ == ".gltf" || ending_ == ".glb";
     aiColor3D colour;
     if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
-      batch.diffuse = colour_of(colour, is_linear);
+      batch.srgb.diffuse = colour_of(colour, is_linear);
     if (material.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS)
-      batch.emission = colour_of(colour, is_linear);
+      batch.srgb.emission = colour_of(colour, is_linear);
     if (material.Get(AI_MATKEY_COLOR_SPECULAR, colour) == aiReturn_SUCCESS)
-      batch.specular = colour_of(colour, is_linear);
+      batch.srgb.specular = colour_of(colour, is_linear);
     aiString name;
     if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS)
-      batch.finish = aircraft::finish_named(name.C_Str());
+      batch.srgb.finish = finish_named(name.C_Str());
     float value = 0;
     if (material.Get(AI_MATKEY_OPACITY, value) == aiReturn_SUCCESS && value >= 0)
-      batch.opacity = std::min(value, 1.0f);
+      batch.srgb.opacity = std::min(value, 1.0f);
     if (material.Get(AI_MATKEY_SHININESS, value) == aiReturn_SUCCESS && value >= 0)
-      batch.shininess = std::min(ending_ == ".obj" ? value / 4 : value, 128.0f);  // it takes 4 Ns
+      batch.srgb.shininess =
+          std::min(ending_ == ".obj" ? value / 4 : value, 128.0f);  // it takes 4 Ns
     read_texture(material, batch, uv_channel);
   }
 
@@ -229,34 +204,18 @@ class SceneReader {
     const std::string_view bytes(reinterpret_cast<const char*>(texture.pcData), texture.mWidth);
     if (texture.mHeight != 0)
       throw Error("has a texture inside that is no file; expected PNG or JPEG");
-    const int index = assembly_.add_picture(
-        aircraft::read_picture(bytes, assembly_.picture_limits()), repeat_u, repeat_v);
+    const int index =
+        assembly_.add_picture(read_picture(bytes, assembly_.picture_limits()), repeat_u, repeat_v);
     picture_of_texture_[key] = index;
     return index;
   }
 
   const aiScene& scene_;
   Assembly& assembly_;
-  const fs::path& file_;
-  const std::vector<fs::path>& folders_;
-  const ChoosePart& choose_;
+  const ModelFile& file_;
   std::string ending_;
   std::vector<std::string> names_;
   std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
-};
-
-// assimp's Importer would delete its file system, so it receives this wrapper.
-class LentFiles {
- public:
-  LentFiles(Assimp::Importer& importer, AssimpFiles& files) : importer_(importer) {
-    importer.SetIOHandler(&files);
-  }
-  ~LentFiles() { importer_.SetIOHandler(nullptr); }
-  LentFiles(const LentFiles&) = delete;
-  LentFiles& operator=(const LentFiles&) = delete;
-
- private:
-  Assimp::Importer& importer_;
 };
 
 // Removes all importers except those of the ending, so that the content of a file cannot choose
@@ -276,7 +235,7 @@ void warn_of_missing(Assembly& assembly, const AssimpFiles& files) {
   std::size_t shown = 0;
   for (const std::string& name : files.missing())
     if (++shown <= kNamedFiles) names += (shown == 1 ? "" : ", ") + name;
-  if (assembly.model().warnings.size() < aircraft::kMaxWarnings)
+  if (assembly.model().warnings.size() < kMaxWarnings)
     assembly.model().warnings.push_back("files that are not in its folder and are left out: " +
                                         names + (shown > kNamedFiles ? ", ..." : ""));
 }
@@ -289,36 +248,32 @@ std::string one_sentence(const char* message) {
 
 }  // namespace
 
-void append_other_format(Assembly& assembly,
-                         const fs::path& file,
-                         const std::vector<fs::path>& folders,
-                         const ChoosePart& choose) {
-  const std::string shown = assembly.files().shown(file).string();
-  if (assembly.files().kind(file) != aircraft::ModelFiles::Kind::kFile)
+void append_other_format(Assembly& assembly, const ModelFile& file) {
+  const std::string shown = assembly.files().shown(file.path).string();
+  if (assembly.files().kind(file.path) != ModelFiles::Kind::kFile)
     throw Error("does not exist; expected a 3D model", {shown});
-  AssimpFiles files(assembly.files());
+  auto* files = new AssimpFiles(assembly.files());
   Assimp::Importer importer;
-  const LentFiles lent(importer, files);
-  const std::string ending = aircraft::ending_of(file);
-  keep_importers_of(importer, ending);
+  importer.SetIOHandler(files);  // the importer deletes it
+  keep_importers_of(importer, ending_of(file.path));
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(
-      file.string(),
+      file.path.string(),
       aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_GenSmoothNormals |
           aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw Error("cannot be read as a 3D model: " + one_sentence(importer.GetErrorString()),
                 {shown});
   try {
-    SceneReader(*scene, assembly, file, folders, choose).read();
+    SceneReader(*scene, assembly, file).read();
   } catch (const Error& error) {
     if (!error.where().file.empty()) throw;
     throw Error(error.message(), {shown});
   }
-  warn_of_missing(assembly, files);
+  warn_of_missing(assembly, *files);
 }
 
 }  // namespace airtruth::model_reader

@@ -10,13 +10,9 @@ namespace airtruth::model_reader {
 
 // Appends the triangles of a model file in another format than .ac by the Open Asset Import Library
 // (assimp): .obj .3ds .stl .ply .dae .gltf .glb .fbx. Only the importer for the ending of the file
-// runs. Files that the model names come from assembly.files(), and textures are searched in
-// `folders` in their order. `choose` states for each named node what to do with its triangles.
-// Coordinates are those of the file; PartChoice::body_from_file converts them. Throws Error where
-// the file is unreadable, has no triangles or exceeds a limit.
-void append_other_format(aircraft::Assembly& assembly,
-                         const std::filesystem::path& file,
-                         const std::vector<std::filesystem::path>& folders,
-                         const aircraft::ChoosePart& choose);
+// runs. Files that the model names come from assembly.files(). Coordinates are those of the file;
+// PartChoice::body_from_file converts them. Throws Error where the file is unreadable, has no
+// triangles or exceeds a limit.
+void append_other_format(aircraft::Assembly& assembly, const aircraft::ModelFile& file);
 
 }  // namespace airtruth::model_reader

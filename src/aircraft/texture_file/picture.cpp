@@ -32,8 +32,6 @@ class PngImage {
   png_image image_{};
 };
 
-bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG\r\n\x1a\n"); }
-
 Picture read_png(std::string_view bytes, const PictureLimits& limits) {
   PngImage image;
   if (png_image_begin_read_from_memory(image.get(), bytes.data(), bytes.size()) == 0) image.fail();
@@ -53,8 +51,6 @@ struct CloseJpeg {
 [[noreturn]] void fail_jpeg(void* handle) {
   throw Error(std::string("is a JPEG file with a fault: ") + tjGetErrorStr2(handle));
 }
-
-bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8\xff"); }
 
 Picture read_jpeg(std::string_view bytes, const PictureLimits& limits) {
   const std::unique_ptr<void, CloseJpeg> handle(tjInitDecompress());
@@ -99,10 +95,10 @@ Picture blank_picture(std::uint64_t width, std::uint64_t height, const PictureLi
 }
 
 Picture read_picture(std::string_view bytes, const PictureLimits& limits) {
-  if (is_png(bytes)) return read_png(bytes, limits);
-  if (is_jpeg(bytes)) return read_jpeg(bytes, limits);
-  if (is_sgi(bytes)) return read_sgi(bytes, limits);
-  if (is_tga(bytes)) return read_tga(bytes, limits);
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return read_png(bytes, limits);
+  if (bytes.starts_with("\xff\xd8\xff")) return read_jpeg(bytes, limits);
+  if (bytes.starts_with("\x01\xda")) return read_sgi(bytes, limits);
+  if (auto picture = read_tga(bytes, limits)) return *std::move(picture);
   throw Error("is no picture that can be read; expected PNG, JPEG, SGI or TGA");
 }
 

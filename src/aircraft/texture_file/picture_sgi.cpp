@@ -111,8 +111,6 @@ class SgiReader {
 
 }  // namespace
 
-bool is_sgi(std::string_view bytes) { return bytes.starts_with("\x01\xda"); }
-
 Picture read_sgi(std::string_view bytes, const PictureLimits& limits) {
   return SgiReader(bytes, limits).read();
 }

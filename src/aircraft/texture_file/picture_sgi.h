@@ -8,7 +8,6 @@
 // The SGI Image File Format 0.97 (Paul Haeberli). read_sgi() throws Error without a place.
 namespace airtruth::aircraft {
 
-bool is_sgi(std::string_view bytes);
 Picture read_sgi(std::string_view bytes, const PictureLimits& limits);
 
 }  // namespace airtruth::aircraft

@@ -15,50 +15,42 @@ namespace {
 constexpr std::size_t kTgaHeaderBytes = 18;
 
 struct TgaHeader {
-  std::uint32_t id_bytes = 0;
-  bool has_map = false;
-  std::uint32_t kind = 0;  // 1 palette, 2 colour, 3 gray
-  bool run_length = false;
-  std::uint32_t map_first = 0;
-  std::uint32_t map_length = 0;
-  std::uint32_t map_bits = 0;
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::uint32_t bits = 0;
-  std::uint32_t alpha_bits = 0;
-  bool from_right = false;
-  bool from_top = false;
+  std::uint32_t id_bytes, kind, map_first, map_length, map_bits, width, height, bits, alpha_bits;
+  bool has_map, run_length, from_right, from_top;
 };
 
 bool is_colour_depth(std::uint32_t bits) {
   return bits == 15 || bits == 16 || bits == 24 || bits == 32;
 }
 
-// False for a header that contradicts itself.
-bool read_tga_header(std::string_view bytes, TgaHeader& header) {
-  if (bytes.size() < kTgaHeaderBytes) return false;
+// Empty for a header that contradicts itself. The kind is 1 for a palette, 2 colour, 3 gray.
+std::optional<TgaHeader> tga_header(std::string_view bytes) {
+  if (bytes.size() < kTgaHeaderBytes) return std::nullopt;
   const auto byte = [&](std::size_t i) -> std::uint32_t {
     return static_cast<unsigned char>(bytes[i]);
   };
   const auto word = [&](std::size_t i) { return byte(i) | byte(i + 1) << 8; };
-  header.id_bytes = byte(0);
-  header.has_map = byte(1) == 1;
-  header.kind = byte(2) & 7;
-  header.run_length = (byte(2) & 8) != 0;
-  header.map_first = word(3);
-  header.map_length = word(5);
-  header.map_bits = byte(7);
-  header.width = word(12);
-  header.height = word(14);
-  header.bits = byte(16);
-  header.alpha_bits = byte(17) & 15;
-  header.from_right = (byte(17) & 16) != 0;
-  header.from_top = (byte(17) & 32) != 0;
-  if (byte(1) > 1 || (byte(2) & ~11u) != 0 || header.kind < 1 || header.kind > 3) return false;
-  if ((byte(17) & 0xc0) != 0 || header.width == 0 || header.height == 0) return false;
-  if (header.has_map && !is_colour_depth(header.map_bits)) return false;
-  if (header.kind == 1) return header.has_map && (header.bits == 8 || header.bits == 16);
-  return header.kind == 2 ? is_colour_depth(header.bits) : header.bits == 8 || header.bits == 16;
+  const TgaHeader header{.id_bytes = byte(0),
+                         .kind = byte(2) & 7,
+                         .map_first = word(3),
+                         .map_length = word(5),
+                         .map_bits = byte(7),
+                         .width = word(12),
+                         .height = word(14),
+                         .bits = byte(16),
+                         .alpha_bits = byte(17) & 15,
+                         .has_map = byte(1) == 1,
+                         .run_length = (byte(2) & 8) != 0,
+                         .from_right = (byte(17) & 16) != 0,
+                         .from_top = (byte(17) & 32) != 0};
+  const bool is_sound = byte(1) <= 1 && (byte(2) & ~11u) == 0 && header.kind >= 1 &&
+                        header.kind <= 3 && (byte(17) & 0xc0) == 0 && header.width > 0 &&
+                        header.height > 0 && (!header.has_map || is_colour_depth(header.map_bits));
+  const bool fits_bytes = header.bits == 8 || header.bits == 16;
+  const bool has_bits = header.kind == 1   ? header.has_map && fits_bytes
+                        : header.kind == 2 ? is_colour_depth(header.bits)
+                                           : fits_bytes;
+  return is_sound && has_bits ? std::optional(header) : std::nullopt;
 }
 
 using Rgba = std::array<std::uint8_t, 4>;
@@ -152,15 +144,9 @@ class TgaReader {
 
 }  // namespace
 
-bool is_tga(std::string_view bytes) {
-  TgaHeader header;
-  return read_tga_header(bytes, header);
-}
-
-Picture read_tga(std::string_view bytes, const PictureLimits& limits) {
-  TgaHeader header;
-  if (!read_tga_header(bytes, header)) throw Error("is no TGA picture");
-  return TgaReader(bytes, header, limits).read();
+std::optional<Picture> read_tga(std::string_view bytes, const PictureLimits& limits) {
+  const auto header = tga_header(bytes);
+  return header ? std::optional(TgaReader(bytes, *header, limits).read()) : std::nullopt;
 }
 
 }  // namespace airtruth::aircraft

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "aircraft/texture_file/picture.h"
 
-// Truevision TGA File Format 2.0. It has no signature: is_tga() is true for a header without
-// contradictions. read_tga() throws Error without a place.
+// Truevision TGA File Format 2.0.
 namespace airtruth::aircraft {
 
-bool is_tga(std::string_view bytes);
-Picture read_tga(std::string_view bytes, const PictureLimits& limits);
+// Empty where the header contradicts itself, since the format has no signature. Throws Error
+// without a place.
+std::optional<Picture> read_tga(std::string_view bytes, const PictureLimits& limits);
 
 }  // namespace airtruth::aircraft

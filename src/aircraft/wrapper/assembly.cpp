@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "aircraft/ac3d/ac_file.h"
 #include "aircraft/ac3d/ac_mesh.h"
 #include "aircraft/model/texture.h"
@@ -13,16 +16,6 @@ namespace airtruth::aircraft {
 namespace {
 
 constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
-
-bool look_the_same(const Material& a, const Material& b) {
-  return a.diffuse == b.diffuse && a.emission == b.emission && a.specular == b.specular &&
-         a.shininess == b.shininess && a.opacity == b.opacity && a.texture == b.texture &&
-         a.finish == b.finish;
-}
-
-std::array<float, 3> linear_colour(const std::array<float, 3>& srgb) {
-  return {linear_channel(srgb[0]), linear_channel(srgb[1]), linear_channel(srgb[2])};
-}
 
 // A propeller at cruise transmits nine tenths of the light, because its blades cover a tenth of its
 // disc (solidities are 0.04 to 0.15: Torenbeek 1982, section 6). The blades are dark and mat.
@@ -46,13 +39,6 @@ void make_propeller_disc(Material& material, const Picture* picture) {
   material.specular = {};
   material.shininess = 0;
   material.finish = Finish::kMat;
-}
-
-std::string listed_folders(const ModelFiles& files, const std::vector<fs::path>& folders) {
-  std::string text;
-  for (const fs::path& folder : folders)
-    text += (text.empty() ? "" : ", ") + files.shown(folder.empty() ? "." : folder).string();
-  return text;
 }
 
 }  // namespace
@@ -85,20 +71,22 @@ int Assembly::read_texture(const fs::path& path, bool repeat_u, bool repeat_v) {
   return index;
 }
 
-int Assembly::texture_of(const Batch& batch,
-                         const PartChoice& choice,
-                         const fs::path& file,
-                         const std::vector<fs::path>& folders) {
+int Assembly::texture_of(const Batch& batch, const PartChoice& choice, const ModelFile& file) {
   const bool replaced = !choice.texture.empty();
   if (!replaced && batch.picture >= 0) return batch.picture;
   if (!replaced && batch.texture.empty()) return -1;
-  const Where where{files_.shown(file).string(), replaced ? 0 : batch.texture_line};
+  const Where where{files_.shown(file.path).string(), replaced ? 0 : batch.texture_line};
   const fs::path path =
-      replaced ? fs::path(choice.texture) : find_texture(files_, batch.texture, folders);
-  if (path.empty())
-    throw Error("wants the texture " + batch.texture +
-                    ", which is in none of: " + listed_folders(files_, folders),
+      replaced ? fs::path(choice.texture) : find_texture(files_, batch.texture, file.folders);
+  if (path.empty()) {
+    std::vector<std::string> searched;
+    for (const fs::path& folder : file.folders)
+      searched.push_back(files_.shown(folder.empty() ? "." : folder).string());
+    throw Error(fmt::format("wants the texture {}, which is in none of: {}",
+                            batch.texture,
+                            fmt::join(searched, ", ")),
                 where);
+  }
   try {
     return read_texture(path, replaced || batch.repeat_u, replaced || batch.repeat_v);
   } catch (const Error& error) {
@@ -108,25 +96,24 @@ int Assembly::texture_of(const Batch& batch,
 }
 
 std::uint32_t Assembly::material_of(const Batch& batch, const PartChoice& choice, int texture) {
-  Material material;
-  material.diffuse = linear_colour(batch.diffuse);
-  material.emission = linear_colour(batch.emission);
-  material.specular = linear_colour(batch.specular);
-  material.shininess = std::clamp(batch.shininess, 0.0f, 128.0f);
-  material.opacity = choice.opacity * std::clamp(batch.opacity, 0.0f, 1.0f);
+  Material material = batch.srgb;
+  for (std::array<float, 3>* colour : {&material.diffuse, &material.emission, &material.specular})
+    for (float& channel : *colour) channel = linear_channel(channel);
+  material.shininess = std::clamp(material.shininess, 0.0f, 128.0f);
+  material.opacity = choice.opacity * std::clamp(material.opacity, 0.0f, 1.0f);
   material.texture = texture;
-  material.finish = batch.finish;
   if (choice.is_propeller_disc)
     make_propeller_disc(
         material,
         texture < 0 ? nullptr : &model_.pictures[static_cast<std::size_t>(texture)].picture);
   auto& materials = model_.mesh.materials;
-  for (std::size_t i = 0; i < materials.size(); ++i)
-    if (look_the_same(materials[i], material)) return static_cast<std::uint32_t>(i);
+  const auto same = std::find(materials.begin(), materials.end(), material);
+  const auto index = static_cast<std::uint32_t>(same - materials.begin());
+  if (same != materials.end()) return index;
   if (materials.size() >= kMaxMaterials)
     throw Error("has more than " + std::to_string(kMaxMaterials) + " materials");
   materials.push_back(material);
-  return static_cast<std::uint32_t>(materials.size() - 1);
+  return index;
 }
 
 void Assembly::add_vertices(const Batch& batch, const Eigen::Affine3d& body_from_file) {
@@ -144,42 +131,34 @@ void Assembly::add_vertices(const Batch& batch, const Eigen::Affine3d& body_from
   }
 }
 
-void Assembly::add(const Batch& batch,
-                   const PartChoice& choice,
-                   const fs::path& file,
-                   const std::vector<fs::path>& folders) {
+void Assembly::add(const Batch& batch, const PartChoice& choice, const ModelFile& file) {
   if (batch.triangles.empty()) return;
   Mesh& mesh = model_.mesh;
   triangles_ += batch.triangles.size();
   if (triangles_ > kMaxTriangles || mesh.positions.size() + batch.positions.size() > kMaxCorners)
     throw Error("makes an aircraft of more than " + std::to_string(kMaxTriangles) +
                     " triangles or " + std::to_string(kMaxCorners) + " vertices",
-                {files_.shown(file).string()});
-  const std::uint32_t material =
-      material_of(batch, choice, texture_of(batch, choice, file, folders));
+                {files_.shown(file.path).string()});
+  const std::uint32_t material = material_of(batch, choice, texture_of(batch, choice, file));
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   try {
     add_vertices(batch, choice.body_from_file);
   } catch (const Error& error) {
-    throw Error(error.message(), {files_.shown(file).string()});
+    throw Error(error.message(), {files_.shown(file.path).string()});
   }
   Part& part = mesh.parts[static_cast<std::size_t>(choice.part)];
   for (const auto& [a, b, c] : batch.triangles)
     part.triangles.push_back({{base + a, base + b, base + c}, material});
 }
 
-void append_ac(Assembly& assembly,
-               const fs::path& file,
-               const std::vector<fs::path>& folders,
-               const ChoosePart& choose) {
+void append_ac(Assembly& assembly, const ModelFile& file) {
   ModelFiles& files = assembly.files();
-  const AcFile ac = parse_ac(files.read(file, kMaxModelBytes), files.shown(file));
+  const AcFile ac = parse_ac(files.read(file.path, kMaxModelBytes), files.shown(file.path));
   for (std::size_t i = 0; i < ac.objects.size(); ++i) {
     if (ac.objects[i].surfaces.empty()) continue;
-    const PartChoice choice = choose(names_of(ac, i));
+    const PartChoice choice = file.choose(names_of(ac, i));
     if (choice.hidden) continue;
-    for (const Batch& batch : batches_of(ac, ac.objects[i]))
-      assembly.add(batch, choice, file, folders);
+    for (const Batch& batch : batches_of(ac, ac.objects[i])) assembly.add(batch, choice, file);
   }
 }
 

@@ -24,6 +24,12 @@ struct PartChoice {
 };
 using ChoosePart = std::function<PartChoice(const std::vector<std::string>& names)>;
 
+struct ModelFile {
+  fs::path path;
+  std::vector<fs::path> folders;  // in which its textures are searched, in order
+  ChoosePart choose;
+};
+
 class Assembly {
  public:
   explicit Assembly(ModelFiles& files);
@@ -31,13 +37,10 @@ class Assembly {
   ModelFiles& files() { return files_; }
   RawModel& model() { return model_; }
 
-  // Appends triangles of `file`. Their textures are searched in `folders`, in order. Throws Error,
-  // with the file and the line that names the texture, where a texture is missing or unreadable,
-  // and where triangles, vertices or pixels exceed a limit.
-  void add(const Batch& batch,
-           const PartChoice& choice,
-           const fs::path& file,
-           const std::vector<fs::path>& folders);
+  // Appends triangles of a file. Throws Error, with the file and the line that names the texture,
+  // where a texture is missing or unreadable, and where triangles, vertices or pixels exceed a
+  // limit.
+  void add(const Batch& batch, const PartChoice& choice, const ModelFile& file);
 
   // Adds a picture from inside a model file and returns its index for Batch::picture.
   int add_picture(Picture picture, bool repeat_u, bool repeat_v);
@@ -45,10 +48,7 @@ class Assembly {
   PictureLimits picture_limits() const;
 
  private:
-  int texture_of(const Batch& batch,
-                 const PartChoice& choice,
-                 const fs::path& file,
-                 const std::vector<fs::path>& folders);
+  int texture_of(const Batch& batch, const PartChoice& choice, const ModelFile& file);
   int read_texture(const fs::path& path, bool repeat_u, bool repeat_v);
   std::uint32_t material_of(const Batch& batch, const PartChoice& choice, int texture);
   void add_vertices(const Batch& batch, const Eigen::Affine3d& body_from_file);
@@ -61,9 +61,6 @@ class Assembly {
 };
 
 // Appends an AC3D file's triangles.
-void append_ac(Assembly& assembly,
-               const fs::path& file,
-               const std::vector<fs::path>& folders,
-               const ChoosePart& choose);
+void append_ac(Assembly& assembly, const ModelFile& file);
 
 }  // namespace airtruth::aircraft

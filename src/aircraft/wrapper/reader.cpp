@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "aircraft/wrapper/part_names.h"
 #include "aircraft/wrapper/scope.h"
 #include "aircraft/wrapper/wrapper.h"
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::aircraft {
 namespace {
@@ -116,47 +120,6 @@ Eigen::Affine3d body_from_axes(const ModelAxes& axes) {
   return Eigen::Affine3d(axes.scale * m);
 }
 
-// Whether an object is a lamp, its glow, a shadow on the ground or smoke. These are effects of the
-// game and no part of the aircraft's body.
-bool is_effect(const std::string& object) {
-  static const std::array<const char*, 8> kWords = {
-      "halo", "glow", "shadow", "contrail", "smoke", "flare", "beam", "vapor"};
-  static const std::array<const char*, 3> kLamps = {"light", "beacon", "strobe"};
-  std::string name = object;
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  // "Disk.noshadow" casts none.
-  if (const auto casts_none = name.find("noshadow"); casts_none != std::string::npos)
-    name.erase(casts_none, std::string("noshadow").size());
-  const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
-  if (std::any_of(kWords.begin(), kWords.end(), has)) return true;
-  return object.ends_with("On") && std::any_of(kLamps.begin(), kLamps.end(), has);
-}
-
-bool has_effect(const std::vector<std::string>& names) {
-  return std::any_of(names.begin(), names.end(), is_effect);
-}
-
-bool contains_any(const std::string& text, std::initializer_list<const char*> words) {
-  return std::any_of(words.begin(), words.end(), [&](const char* word) {
-    return text.find(word) != std::string::npos;
-  });
-}
-
-// Whether the names are those of a propeller or rotor that turns fast, and not of a jet engine's
-// fan. FlightGear's models mark them by name only ("Prop_Blur_L", "no1propdisk", "Propeller.Fast",
-// "Disk").
-bool is_propeller_disc(const std::vector<std::string>& names) {
-  if (names.empty()) return false;
-  std::string name = names.back();
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (contains_any(name, {"fan", "eng"})) return false;
-  if (contains_any(name, {"_blur", "-blur"}) || name.starts_with("disk") ||
-      name.starts_with("disc"))
-    return true;
-  return contains_any(name, {"prop", "prplr", "rotor"}) &&
-         contains_any(name, {"disk", "disc", "blur", "fast"});
-}
-
 // Animations without an effect here: lamps, and what is visible only in a cockpit or at night.
 bool is_known(const std::string& type) {
   static const std::set<std::string> kKnown = {
@@ -168,24 +131,34 @@ bool is_known(const std::string& type) {
   return kKnown.contains(type);
 }
 
-using Append = std::function<void(
-    Assembly&, const fs::path&, const std::vector<fs::path>&, const ChoosePart&)>;
+PartChoice choice_by_names(const std::vector<std::string>& names) {
+  PartChoice choice;
+  choice.hidden = std::any_of(names.begin(), names.end(), is_effect);
+  choice.is_propeller_disc = is_propeller_disc(names);
+  return choice;
+}
 
+// A model file by its ending; how it is read.
+void append_file(Assembly& assembly, const ModelFile& file, const AppendOther& append_other) {
+  const std::string ending = ending_of(file.path);
+  const std::string shown = assembly.files().shown(file.path).string();
+  if (kScenes.contains(ending))
+    throw Error("is a scene of OpenSceneGraph, which can run code and is not read; export the " +
+                    std::string("model as ") + kReadable,
+                {shown});
+  if (ending == ".ac") return append_ac(assembly, file);
+  if (!kOthers.contains(ending) || !append_other)
+    throw Error("is no 3D model that can be read; expected " + std::string(kReadable), {shown});
+  append_other(assembly, file);
+}
+
+// Adds the models of a wrapper and of those that it nests.
 class Loader {
  public:
-  Loader(const LoadOptions& options, Assembly& assembly, const Append& append)
-      : cruise_{options.airspeed_kt, options.altitude_agl_ft},
-        assembly_(assembly),
-        append_(append) {}
+  Loader(Assembly& assembly, const AppendOther& append) : assembly_(assembly), append_(append) {}
 
-  void add(const Wrapper& wrapper) { add(wrapper, Scope(body_from_flightgear(), cruise_), {}); }
-
-  const std::set<std::string>& unknown() const { return unknown_; }
-
- private:
   void add(const Wrapper& wrapper, const Scope& outside, const std::vector<fs::path>& outer) {
-    for (const Condition& condition : wrapper.conditions)
-      if (!holds(condition, cruise_)) return;
+    if (!wrapper.condition.value_or(true)) return;
     note_unknown(wrapper);
     const Scope scope = outside.inside(wrapper);
     std::vector<fs::path> folders;
@@ -197,23 +170,26 @@ class Loader {
     for (const Wrapper& nested : wrapper.nested) add(nested, scope, folders);
   }
 
+  const std::set<std::string>& unknown() const { return unknown_; }
+
+ private:
   void add_model(const fs::path& file, const Scope& scope, const std::vector<fs::path>& folders) {
     const bool is_ac = ending_of(file) == ".ac";
     const Eigen::Affine3d model_from_file =
         is_ac ? flightgear_from_ac() : Eigen::Affine3d::Identity();
-    append_(assembly_, file, folders, [&](const std::vector<std::string>& names) {
+    const auto choose = [&](const std::vector<std::string>& names) {
       const Animated animated = scope.animated(names);
-      PartChoice choice;
-      choice.hidden = animated.hidden || has_effect(names);
+      PartChoice choice = choice_by_names(names);
+      choice.hidden = choice.hidden || animated.hidden;
       if (choice.hidden) return choice;
       choice.body_from_file = animated.body_from_model * model_from_file;
       choice.opacity = animated.opacity;
-      choice.is_propeller_disc = is_propeller_disc(names);
       if (!animated.texture.empty())
         choice.texture = find_texture(assembly_.files(), animated.texture, folders).string();
       if (animated.spin) choice.part = part_of(*animated.spin);
       return choice;
-    });
+    };
+    append_file(assembly_, {file, folders, choose}, append_);
   }
 
   int part_of(const Spin& spin) {
@@ -233,44 +209,19 @@ class Loader {
   void note_unknown(const Wrapper& wrapper) {
     for (const Animation& animation : wrapper.animations) {
       if (!is_known(animation.type)) unknown_.insert(animation.type);
-      if (!animation.axis_object.empty() && value_of(animation.value, cruise_) != 0)
+      if (!animation.axis_object.empty() && animation.value != 0)
         unknown_.insert(animation.type + " about the object " + animation.axis_object);
     }
   }
 
-  Cruise cruise_;
   Assembly& assembly_;
-  const Append& append_;
+  const AppendOther& append_;
   std::set<std::string> unknown_;
 };
 
-std::string joined(const std::set<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-// A model file by its ending; how it is read.
-void append_file(Assembly& assembly,
-                 const fs::path& file,
-                 const std::vector<fs::path>& folders,
-                 const ChoosePart& choose,
-                 const AppendOther& append_other) {
-  const std::string ending = ending_of(file);
-  const std::string shown = assembly.files().shown(file).string();
-  if (kScenes.contains(ending))
-    throw Error("is a scene of OpenSceneGraph, which can run code and is not read; export the " +
-                    std::string("model as ") + kReadable,
-                {shown});
-  if (ending == ".ac") return append_ac(assembly, file, folders, choose);
-  if (!kOthers.contains(ending) || !append_other)
-    throw Error("is no 3D model that can be read; expected " + std::string(kReadable), {shown});
-  append_other(assembly, file, folders, choose);
-}
-
 void read_wrapped(const fs::path& file,
                   const LoadOptions& options,
-                  const Append& append,
+                  const AppendOther& append,
                   Assembly& assembly) {
   if (options.axes)
     throw Error(
@@ -278,38 +229,35 @@ void read_wrapped(const fs::path& file,
         "file without a wrapper",
         {assembly.files().shown(file).string()});
   std::set<std::string> missing;
-  const Wrapper wrapper = read_wrapper(assembly.files(), file, missing);
-  Loader loader(options, assembly, append);
-  loader.add(wrapper);
+  const Wrapper wrapper =
+      read_wrapper(assembly.files(), file, {options.airspeed_kt, options.altitude_agl_ft}, missing);
+  Loader loader(assembly, append);
+  loader.add(wrapper, Scope(body_from_flightgear()), {});
   std::vector<std::string>& warnings = assembly.model().warnings;
   if (!loader.unknown().empty())
-    warnings.push_back("animations that are not known and are left out: " +
-                       joined(loader.unknown()));
+    warnings.push_back(fmt::format("animations that are not known and are left out: {}",
+                                   fmt::join(loader.unknown(), ", ")));
   if (!missing.empty())
-    warnings.push_back("parts that are not installed and are left out: " + joined(missing));
+    warnings.push_back(
+        fmt::format("parts that are not installed and are left out: {}", fmt::join(missing, ", ")));
 }
 
 void read_bare(const fs::path& file,
                const LoadOptions& options,
-               const Append& append,
+               const AppendOther& append,
                Assembly& assembly) {
   const Eigen::Affine3d body_from_file = body_from_axes(options.axes.value_or(ModelAxes{}));
-  append(assembly, file, {file.parent_path()}, [&](const std::vector<std::string>& names) {
-    PartChoice choice;
-    choice.hidden = has_effect(names);
-    choice.is_propeller_disc = is_propeller_disc(names);
+  const auto choose = [&](const std::vector<std::string>& names) {
+    PartChoice choice = choice_by_names(names);
     choice.body_from_file = body_from_file;
     return choice;
-  });
+  };
+  append_file(assembly, {file, {file.parent_path()}, choose}, append);
 }
 
 }  // namespace
 
-std::string ending_of(const fs::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
+std::string ending_of(const fs::path& file) { return lower_case(file.extension().string()); }
 
 bool is_model_file(const std::string& name) {
   const std::string ending = ending_of(name);
@@ -322,16 +270,10 @@ RawModel read_model(ModelFiles& files,
                     const LoadOptions& options,
                     const AppendOther& append_other) {
   Assembly assembly(files);
-  const Append append = [&](Assembly& into,
-                            const fs::path& model,
-                            const std::vector<fs::path>& folders,
-                            const ChoosePart& choose) {
-    append_file(into, model, folders, choose, append_other);
-  };
   if (ending_of(file) == ".xml") {
-    read_wrapped(file, options, append, assembly);
+    read_wrapped(file, options, append_other, assembly);
   } else {
-    read_bare(file, options, append, assembly);
+    read_bare(file, options, append_other, assembly);
   }
   RawModel model = std::move(assembly.model());
   tidy(model.mesh);

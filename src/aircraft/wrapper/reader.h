@@ -18,10 +18,7 @@ namespace airtruth::aircraft {
 
 // The reader of other formats than .ac (.obj, .3ds and others), which only airtruth-model-reader
 // has. Where it is empty, such files are an Error.
-using AppendOther = std::function<void(Assembly& assembly,
-                                       const fs::path& file,
-                                       const std::vector<fs::path>& folders,
-                                       const ChoosePart& choose)>;
+using AppendOther = std::function<void(Assembly& assembly, const ModelFile& file)>;
 
 // `file` is a path below the folder of `files`: a wrapper .xml, an .ac, or another model file.
 // Throws Error as load_aircraft does. The result passes check_model.

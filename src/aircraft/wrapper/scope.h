@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "aircraft/wrapper/condition.h"
 #include "aircraft/wrapper/wrapper.h"
 
 // The combined effect of the animations of a wrapper, and of the wrappers around it, on one object.
@@ -31,7 +30,8 @@ struct Animated {
 // where it names none), in the order of the file, outer wrappers first.
 class Scope {
  public:
-  Scope(const Eigen::Affine3d& body_from_outside, const Cruise& cruise);
+  explicit Scope(const Eigen::Affine3d& body_from_outside)
+      : body_from_outside_(body_from_outside) {}
 
   // The scope inside a wrapper that is nested in this one.
   Scope inside(const Wrapper& wrapper) const;
@@ -50,10 +50,8 @@ class Scope {
     std::size_t begin;  // its content's first link
   };
   static void install(const Animation& animation, std::size_t begin, std::vector<Link>& links);
-  void apply(const Animation& animation, Animated& result) const;
 
   Eigen::Affine3d body_from_outside_;
-  Cruise cruise_;
   std::vector<Link> links_;
   std::vector<Level> levels_;
 };

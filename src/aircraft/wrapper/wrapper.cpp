@@ -2,90 +2,16 @@
 #include "aircraft/wrapper/wrapper.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
+#include <utility>
 
+#include "aircraft/wrapper/part_names.h"
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
 
 namespace airtruth::aircraft {
 namespace {
 
-constexpr std::size_t kMaxWrapperBytes = 8u << 20;
+// Of files that include or nest each other; bounds the recursion over a hostile file.
 constexpr int kMaxDepth = 12;
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-WrapperText read_text(ModelFiles& files, const fs::path& file, int depth) {
-  if (depth > kMaxDepth) throw Error("includes itself", {files.shown(file).string()});
-  WrapperText own = parse_wrapper(files.read(file, kMaxWrapperBytes), files.shown(file));
-  for (Animation& animation : own.animations) {
-    if (animation.table_file.empty()) continue;
-    const fs::path table = file.parent_path() / animation.table_file;
-    animation.value.table = parse_table(files.read(table, kMaxWrapperBytes), files.shown(table));
-  }
-  if (own.include.empty()) return own;
-  WrapperText base = read_text(files, file.parent_path() / own.include, depth + 1);
-  if (!own.path.empty()) base.path = own.path;
-  if (!own.texture_path.empty()) base.texture_path = own.texture_path;
-  if (own.parent_from_model) base.parent_from_model = own.parent_from_model;
-  base.animations.insert(base.animations.end(), own.animations.begin(), own.animations.end());
-  base.nested.insert(base.nested.end(), own.nested.begin(), own.nested.end());
-  return base;
-}
-
-Wrapper read_at(ModelFiles& files, const fs::path& file, std::set<std::string>& missing, int depth);
-
-void add_nested(const WrapperText::Nested& text,
-                Wrapper& wrapper,
-                ModelFiles& files,
-                std::set<std::string>& missing,
-                int depth) {
-  if (text.path.empty() || is_effect_path(text.path)) return;
-  const fs::path path = find_named_file(files, text.path, wrapper.file.parent_path());
-  if (path.empty()) {
-    missing.insert(text.path);
-    return;
-  }
-  Wrapper nested;
-  if (path.extension() == ".xml") {
-    nested = read_at(files, path, missing, depth + 1);
-  } else {
-    nested.file = path;
-    nested.model = path;
-  }
-  nested.name = text.name;
-  nested.parent_from_nested = text.parent_from_model;
-  if (text.condition) nested.conditions.push_back(*text.condition);
-  wrapper.nested.push_back(std::move(nested));
-}
-
-Wrapper read_at(ModelFiles& files,
-                const fs::path& file,
-                std::set<std::string>& missing,
-                int depth) {
-  if (depth > kMaxDepth) throw Error("nests itself", {files.shown(file).string()});
-  const WrapperText text = read_text(files, file, 0);
-  Wrapper wrapper;
-  wrapper.file = file;
-  if (!text.path.empty()) {
-    wrapper.model = find_named_file(files, text.path, file.parent_path());
-    if (wrapper.model.empty())
-      throw Error("names the model " + text.path + ", which does not exist below the folder " +
-                      files.shown(".").lexically_normal().string(),
-                  {files.shown(file).string()});
-  }
-  if (!text.texture_path.empty())
-    wrapper.texture_folder = find_named_file(files, text.texture_path, file.parent_path());
-  if (text.parent_from_model) wrapper.nested_from_model = *text.parent_from_model;
-  wrapper.animations = text.animations;
-  for (const WrapperText::Nested& nested : text.nested)
-    add_nested(nested, wrapper, files, missing, depth);
-  return wrapper;
-}
 
 // The part of a path below the data root that lies below the folder of `files`; empty: none.
 fs::path below_folder(const ModelFiles& files, const fs::path& in_data_root) {
@@ -94,31 +20,72 @@ fs::path below_folder(const ModelFiles& files, const fs::path& in_data_root) {
   return below.empty() || *below.begin() == ".." ? fs::path() : below;
 }
 
-}  // namespace
+class WrapperReader {
+ public:
+  WrapperReader(ModelFiles& files, const Cruise& cruise, std::set<std::string>& missing)
+      : files_(files), cruise_(cruise), missing_(missing) {}
 
-bool is_effect_path(const std::string& path) {
-  static const std::array<const char*, 12> kWords = {"light",
-                                                     "beacon",
-                                                     "strobe",
-                                                     "halo",
-                                                     "flare",
-                                                     "/effects/",
-                                                     "smoke",
-                                                     "contrail",
-                                                     "rain",
-                                                     "/sounds/",
-                                                     "/sound/",
-                                                     "exhaust"};
-  std::string text = lower(path);
-  std::replace(text.begin(), text.end(), '\\', '/');
-  const auto lightning = text.find("lightning");  // an aircraft
-  if (lightning != std::string::npos) text.erase(lightning, 9);
-  const auto train = text.find("train");  // and "trainer"
-  if (train != std::string::npos) text.erase(train, 5);
-  return std::any_of(kWords.begin(), kWords.end(), [&](const char* word) {
-    return text.find(word) != std::string::npos;
-  });
-}
+  Wrapper read(const fs::path& file, int depth) {
+    if (depth > kMaxDepth) throw Error("nests itself", {files_.shown(file).string()});
+    Wrapper wrapper = read_text(file, 0);
+    wrapper.file = file;
+    const fs::path folder = file.parent_path();
+    if (!wrapper.path.empty()) wrapper.model = find_named_file(files_, wrapper.path, folder);
+    if (!wrapper.path.empty() && wrapper.model.empty())
+      throw Error("names the model " + wrapper.path + ", which does not exist below the folder " +
+                      files_.shown(".").lexically_normal().string(),
+                  {files_.shown(file).string()});
+    if (!wrapper.texture_path.empty())
+      wrapper.texture_folder = find_named_file(files_, wrapper.texture_path, folder);
+    for (const Wrapper& stated : std::exchange(wrapper.nested, {}))
+      if (auto nested = nested_of(stated, folder, depth))
+        wrapper.nested.push_back(*std::move(nested));
+    return wrapper;
+  }
+
+ private:
+  Wrapper read_text(const fs::path& file, int depth) {
+    if (depth > kMaxDepth) throw Error("includes itself", {files_.shown(file).string()});
+    const auto read_table = [&](const std::string& name) {
+      const fs::path table = file.parent_path() / name;
+      return parse_table(files_.read(table, kMaxWrapperBytes), files_.shown(table));
+    };
+    Wrapper own =
+        parse_wrapper(files_.read(file, kMaxWrapperBytes), files_.shown(file), cruise_, read_table);
+    if (own.include.empty()) return own;
+    Wrapper base = read_text(file.parent_path() / own.include, depth + 1);
+    if (!own.path.empty()) base.path = own.path;
+    if (!own.texture_path.empty()) base.texture_path = own.texture_path;
+    if (own.nested_from_model) base.nested_from_model = own.nested_from_model;
+    base.animations.insert(base.animations.end(), own.animations.begin(), own.animations.end());
+    base.nested.insert(base.nested.end(), own.nested.begin(), own.nested.end());
+    return base;
+  }
+
+  std::optional<Wrapper> nested_of(const Wrapper& stated, const fs::path& folder, int depth) {
+    if (stated.path.empty() || is_effect_path(stated.path)) return std::nullopt;
+    const fs::path path = find_named_file(files_, stated.path, folder);
+    if (path.empty()) {
+      missing_.insert(stated.path);
+      return std::nullopt;
+    }
+    Wrapper nested;
+    if (path.extension() == ".xml")
+      nested = read(path, depth + 1);
+    else
+      nested.file = nested.model = path;
+    nested.name = stated.name;
+    nested.parent_from_nested = stated.parent_from_nested;
+    nested.condition = stated.condition;
+    return nested;
+  }
+
+  ModelFiles& files_;
+  const Cruise& cruise_;
+  std::set<std::string>& missing_;
+};
+
+}  // namespace
 
 fs::path find_named_file(ModelFiles& files, const std::string& path, const fs::path& folder) {
   const auto is_there = [&](const fs::path& at) {
@@ -136,8 +103,11 @@ fs::path find_named_file(ModelFiles& files, const std::string& path, const fs::p
   return {};
 }
 
-Wrapper read_wrapper(ModelFiles& files, const fs::path& file, std::set<std::string>& missing) {
-  return read_at(files, file, missing, 0);
+Wrapper read_wrapper(ModelFiles& files,
+                     const fs::path& file,
+                     const Cruise& cruise,
+                     std::set<std::string>& missing) {
+  return WrapperReader(files, cruise, missing).read(file, 0);
 }
 
 }  // namespace airtruth::aircraft

@@ -13,18 +13,10 @@
 namespace airtruth::aircraft {
 namespace {
 
-constexpr int kMaxConditionDepth = 64;
+using Node = pugi::xml_node;
 
-std::string trimmed(const char* text) {
-  std::string result = text;
-  const auto first = result.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return "";
-  return result.substr(first, result.find_last_not_of(" \t\r\n") - first + 1);
-}
-
-std::string text_of(const pugi::xml_node& node, const char* child) {
-  return trimmed(node.child_value(child));
-}
+std::string text_of(const Node& node) { return std::string(trimmed(node.child_value())); }
+std::string text_of(const Node& node, const char* child) { return text_of(node.child(child)); }
 
 std::optional<double> number(const std::string& text) {
   double value = 0;
@@ -35,12 +27,12 @@ std::optional<double> number(const std::string& text) {
   return value;
 }
 
-double number(const pugi::xml_node& node, const char* child, double otherwise) {
+double number(const Node& node, const char* child, double otherwise) {
   return number(text_of(node, child)).value_or(otherwise);
 }
 
 // Fields are spelled ".../x" or ".../x-m".
-Vector3 vector(const pugi::xml_node& node, const char* suffix) {
+Vector3 vector(const Node& node, const char* suffix) {
   Vector3 v;
   const char* names[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i)
@@ -48,57 +40,107 @@ Vector3 vector(const pugi::xml_node& node, const char* suffix) {
   return v;
 }
 
-Condition condition_of(const pugi::xml_node& node, int depth = 0);
-
-std::vector<Condition> parts_of(const pugi::xml_node& node, int depth) {
-  std::vector<Condition> parts;
-  if (depth > kMaxConditionDepth) return parts;
-  for (const pugi::xml_node child : node.children())
-    if (child.type() == pugi::node_element) parts.push_back(condition_of(child, depth + 1));
-  return parts;
+double property_value(const std::string& property, const Cruise& cruise) {
+  constexpr double kGearUpAboveFt = 500;  // chosen: an approach is stabilised by then, gear down
+  constexpr double kFpsFromKt = 1.68781;  // feet a second: 1852 m / 3600 s / 0.3048 m
+  constexpr double kKtOfMach1 = 661.5;    // at sea level in the standard atmosphere
+  const auto contains = [&](const char* part) { return property.find(part) != std::string::npos; };
+  const double gear_down = cruise.altitude_agl_ft > kGearUpAboveFt ? 0 : 1;
+  if (contains("gear/gear")) return contains("position-norm") ? gear_down : 0;
+  if (contains("gear-down")) return gear_down;
+  if (contains("speed-kt")) return cruise.airspeed_kt;  // air and ground
+  if (contains("uBody-fps")) return cruise.airspeed_kt * kFpsFromKt;
+  if (contains("velocities/mach")) return cruise.airspeed_kt / kKtOfMach1;
+  if (contains("altitude-agl-ft") || contains("altitude-ft")) return cruise.altitude_agl_ft;
+  // Usual speeds at cruise, in revolutions a minute: of a helicopter's main and tail rotor, and of
+  // a piston engine's propeller.
+  if (contains("rotors/main/rpm")) return 300;
+  if (contains("rotors/tail/rpm")) return 1500;
+  if (contains("engine") && contains("rpm")) return 2300;
+  if (contains("/n1") || contains("/n2")) return 80;  // percent
+  if (contains("running")) return 1;
+  return 0;  // surfaces, canopies, switches, speed brakes at rest
 }
 
-Condition comparison(const pugi::xml_node& node, Condition::Kind kind) {
-  Condition condition;
-  condition.kind = kind;
-  const pugi::xml_node first = node.child("property");
-  condition.property = trimmed(first.child_value());
-  if (const pugi::xml_node second = first.next_sibling("property"))
-    condition.other_property = trimmed(second.child_value());
-  const std::string value = text_of(node, "value");
-  const std::optional<double> stated = value == "true" ? 1 : number(value);
-  condition.value = stated.value_or(0);
-  condition.compares_text = !stated && !value.empty() && value != "false";
-  return condition;
-}
-
-Condition condition_of(const pugi::xml_node& node, int depth) {
-  using Kind = Condition::Kind;
-  static const std::vector<std::pair<std::string, Kind>> kComparisons = {
-      {"less-than", Kind::kLess},
-      {"less-than-equals", Kind::kLessEquals},
-      {"greater-than", Kind::kGreater},
-      {"greater-than-equals", Kind::kGreaterEquals},
-      {"equals", Kind::kEquals},
-      {"not-equals", Kind::kNotEquals}};
+// Whether a comparison of a property with a value, or with another property, holds; empty where the
+// element is no comparison. A word that is no number equals no property here.
+std::optional<bool> compared(const Node& node, const Cruise& cruise) {
   const std::string name = node.name();
-  for (const auto& [word, kind] : kComparisons)
-    if (name == word) return comparison(node, kind);
-  Condition condition;
-  if (name == "property") {
-    condition.kind = Kind::kTrue;
-    condition.property = trimmed(node.child_value());
-    return condition;
-  }
-  // <condition> means the same as <and>.
-  condition.kind = name == "or" ? Kind::kOr : name == "not" ? Kind::kNot : Kind::kAnd;
-  condition.parts = parts_of(node, depth);
-  return condition;
+  const std::string stated = text_of(node, "value");
+  const std::optional<double> value = stated == "true" ? 1 : number(stated);
+  const bool is_word = !value && !stated.empty() && stated != "false";
+  const Node first = node.child("property");
+  const Node second = first.next_sibling("property");
+  const double a = property_value(text_of(first), cruise);
+  const double b = second ? property_value(text_of(second), cruise) : value.value_or(0);
+  if (name == "less-than") return a < b;
+  if (name == "less-than-equals") return a <= b;
+  if (name == "greater-than") return a > b;
+  if (name == "greater-than-equals") return a >= b;
+  if (name == "equals") return !is_word && a == b;
+  if (name == "not-equals") return is_word || a != b;
+  return std::nullopt;
 }
 
-void read_axis(const pugi::xml_node& node, Animation& animation) {
+// <condition> means the same as <and>.
+bool holds(const Node& node, const Cruise& cruise, int depth = 0) {
+  constexpr int kMaxConditionDepth = 64;  // bounds the recursion over a hostile file
+  if (const auto comparison = compared(node, cruise)) return *comparison;
+  const std::string name = node.name();
+  if (name == "property") return property_value(text_of(node), cruise) != 0;
+  bool all = true;
+  bool any = false;
+  for (const Node child : node.children()) {
+    if (depth > kMaxConditionDepth || child.type() != pugi::node_element) continue;
+    const bool part = holds(child, cruise, depth + 1);
+    all = all && part;
+    any = any || part;
+  }
+  return name == "or" ? any : all != (name == "not");
+}
+
+std::optional<bool> condition_of(const Node& node, const Cruise& cruise) {
+  const Node condition = node.child("condition");
+  return condition ? std::optional(holds(condition, cruise)) : std::nullopt;
+}
+
+double interpolated(const Table& table, double x) {
+  if (x <= table.front().first) return table.front().second;
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    if (x > table[i].first) continue;
+    const double span = table[i].first - table[i - 1].first;
+    const double t = span > 0 ? (x - table[i - 1].first) / span : 1;
+    return table[i - 1].second + t * (table[i].second - table[i - 1].second);
+  }
+  return table.back().second;
+}
+
+// A number that follows a property: by a table, or factor * value + offset, within bounds.
+struct Driven {
+  std::string prefix;  // and suffix of its fields: "" and "-deg", "-m", or "x-" and ""
+  std::string suffix;
+  double offset = 0;
+  Table table = {};
+
+  double at(const Node& node, const Cruise& cruise) const {
+    const auto field = [&](const char* name) {
+      const auto plain = number(text_of(node, (prefix + name).c_str()));
+      return plain ? plain : number(text_of(node, (prefix + name + suffix).c_str()));
+    };
+    const std::string property = text_of(node, "property");
+    const double x = property.empty() ? 0 : property_value(property, cruise);
+    if (!table.empty()) return interpolated(table, x);
+    const double factor = field("factor").value_or(prefix.empty() ? 1 : 0);
+    double value = factor * x + field("offset").value_or(offset);
+    if (const auto least = field("min")) value = std::max(value, *least);
+    if (const auto most = field("max")) value = std::min(value, *most);
+    return value;
+  }
+};
+
+void read_axis(const Node& node, Animation& animation) {
   animation.centre = vector(node.child("center"), "-m");
-  const pugi::xml_node axis = node.child("axis");
+  const Node axis = node.child("axis");
   animation.axis_object = text_of(axis, "object-name");
   if (axis.child("x1-m") || axis.child("y1-m") || axis.child("z1-m")) {
     const Vector3 a(number(axis, "x1-m", 0), number(axis, "y1-m", 0), number(axis, "z1-m", 0));
@@ -110,48 +152,32 @@ void read_axis(const pugi::xml_node& node, Animation& animation) {
   }
 }
 
-std::vector<std::pair<double, double>> table_of(const pugi::xml_node& node) {
-  std::vector<std::pair<double, double>> table;
-  for (const pugi::xml_node entry : node.children("entry"))
+Table table_of(const Node& node) {
+  Table table;
+  for (const Node entry : node.children("entry"))
     table.emplace_back(number(entry, "ind", 0), number(entry, "dep", 0));
   std::stable_sort(
       table.begin(), table.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   return table;
 }
 
-// `prefix` and `suffix` of its fields: "" and "-deg", "-m", or "x-" and "".
-Driven driven_by(const pugi::xml_node& node,
-                 const std::string& prefix,
-                 const std::string& suffix,
-                 double offset) {
-  const auto field = [&](const char* name) {
-    const auto plain = number(text_of(node, (prefix + name).c_str()));
-    return plain ? plain : number(text_of(node, (prefix + name + suffix).c_str()));
-  };
-  Driven driven;
-  driven.property = text_of(node, "property");
-  driven.factor = field("factor").value_or(prefix.empty() ? 1 : 0);
-  driven.offset = field("offset").value_or(offset);
-  driven.least = field("min");
-  driven.most = field("max");
-  return driven;
-}
-
-Animation animation_of(const pugi::xml_node& node) {
+Animation animation_of(const Node& node, const Cruise& cruise, const ReadTable& read_table) {
   Animation animation;
   animation.type = text_of(node, "type");
   animation.name = text_of(node, "name");
-  for (const pugi::xml_node name : node.children("object-name"))
-    animation.objects.push_back(trimmed(name.child_value()));
-  if (const pugi::xml_node condition = node.child("condition"))
-    animation.condition = condition_of(condition);
+  for (const Node name : node.children("object-name")) animation.objects.push_back(text_of(name));
+  animation.condition = condition_of(node, cruise);
   const bool turns = animation.type == "rotate" || animation.type == "spin";
-  animation.value = driven_by(node, "", turns ? "-deg" : "-m", 0);
-  animation.value.table = table_of(node.child("interpolation"));
-  animation.table_file = node.child("interpolation").attribute("include").value();
+  const Node interpolation = node.child("interpolation");
+  const std::string table_file = interpolation.attribute("include").value();
+  Driven driven{"", turns ? "-deg" : "-m"};
+  if (table_file.empty()) driven.table = table_of(interpolation);
+  if (!table_file.empty() && read_table) driven.table = read_table(table_file);
+  animation.value = driven.at(node, cruise);
   if (animation.type == "scale")
-    animation.scale = {
-        driven_by(node, "x-", "", 1), driven_by(node, "y-", "", 1), driven_by(node, "z-", "", 1)};
+    for (int i = 0; i < 3; ++i)
+      animation.scale[i] =
+          Driven{std::string(1, static_cast<char>('x' + i)) + "-", "", 1}.at(node, cruise);
   animation.least_m = number(node, "min-m", animation.least_m);
   animation.most_m = number(node, "max-m", animation.most_m);
   animation.texture = text_of(node, "texture");
@@ -160,7 +186,7 @@ Animation animation_of(const pugi::xml_node& node) {
 }
 
 // Pitch about y, then roll about x, then heading about z, then the translation.
-Eigen::Affine3d offsets_of(const pugi::xml_node& node) {
+Eigen::Affine3d offsets_of(const Node& node) {
   using Eigen::AngleAxisd;
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   if (!node) return result;
@@ -171,41 +197,42 @@ Eigen::Affine3d offsets_of(const pugi::xml_node& node) {
   return result;
 }
 
-pugi::xml_node load(pugi::xml_document& document, std::string_view text, const fs::path& name) {
+Node load(pugi::xml_document& document, std::string_view text, const fs::path& name) {
   const auto parsed = document.load_buffer(text.data(), text.size());
   if (!parsed)
     throw Error(std::string("is not XML: ") + parsed.description(),
                 {name.string(), line_of(text, parsed.offset)});
-  const pugi::xml_node root = document.child("PropertyList");
+  const Node root = document.child("PropertyList");
   if (!root) throw Error("has no <PropertyList>; expected a model of FlightGear", {name.string()});
   return root;
 }
 
 }  // namespace
 
-WrapperText parse_wrapper(std::string_view text, const fs::path& name) {
+Wrapper parse_wrapper(std::string_view text,
+                      const fs::path& name,
+                      const Cruise& cruise,
+                      const ReadTable& read_table) {
   pugi::xml_document document;
-  const pugi::xml_node root = load(document, text, name);
-  WrapperText result;
+  const Node root = load(document, text, name);
+  Wrapper result;
   result.include = root.attribute("include").value();
   result.path = text_of(root, "path");
   result.texture_path = text_of(root, "texture-path");
-  if (root.child("offsets")) result.parent_from_model = offsets_of(root.child("offsets"));
-  for (const pugi::xml_node node : root.children("animation"))
-    result.animations.push_back(animation_of(node));
-  for (const pugi::xml_node node : root.children("model")) {
-    WrapperText::Nested nested;
+  if (root.child("offsets")) result.nested_from_model = offsets_of(root.child("offsets"));
+  for (const Node node : root.children("animation"))
+    result.animations.push_back(animation_of(node, cruise, read_table));
+  for (const Node node : root.children("model")) {
+    Wrapper& nested = result.nested.emplace_back();
     nested.path = text_of(node, "path");
     nested.name = text_of(node, "name");
-    nested.parent_from_model = offsets_of(node.child("offsets"));
-    if (const pugi::xml_node condition = node.child("condition"))
-      nested.condition = condition_of(condition);
-    result.nested.push_back(std::move(nested));
+    nested.parent_from_nested = offsets_of(node.child("offsets"));
+    nested.condition = condition_of(node, cruise);
   }
   return result;
 }
 
-std::vector<std::pair<double, double>> parse_table(std::string_view text, const fs::path& name) {
+Table parse_table(std::string_view text, const fs::path& name) {
   pugi::xml_document document;
   return table_of(load(document, text, name));
 }

@@ -12,11 +12,11 @@
 #include "dataset/build/plan.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/folder.h"
-#include "encounter/model/small_model.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
+#include "support/small_encounter_model.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::catalogue {

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "encounter/model/small_model.h"
 #include "foundation/base/error.h"
+#include "support/small_encounter_model.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "encounter/model/sampler.h"
-#include "encounter/model/small_model.h"
-#include "encounter/track/chi_square.h"
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
+#include "support/chi_square.h"
+#include "support/small_encounter_model.h"
 
 namespace airtruth::encounter {
 namespace {

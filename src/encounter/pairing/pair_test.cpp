@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "encounter/track/chi_square.h"
 #include "foundation/base/error.h"
+#include "support/chi_square.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "encounter/track/chi_square.h"
+#include "support/chi_square.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -15,8 +15,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "encounter/separation/random_encounter.h"
 #include "encounter/separation/violation.h"
+#include "support/random_encounter.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "encounter/separation/random_encounter.h"
+#include "support/random_encounter.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "encounter/model/small_model.h"
 #include "encounter/sets/write_set.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/small_encounter_model.h"
 
 namespace airtruth::encounter {
 namespace {

@@ -13,6 +13,7 @@
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::encounter {
 namespace {
@@ -40,38 +41,19 @@ const std::vector<std::string> kNames = {"encounter",
                                          "east_mps",
                                          "down_mps",
                                          "weight"};
-constexpr std::size_t kAbsent = ~std::size_t{0};
 constexpr double kMaxEncounters = 1e9;
 // Added to a number, it makes -0 a plain 0 and changes no other.
 constexpr double kPlainZero = 0;
 
-using Places = std::array<std::size_t, kColumns>;
+using Places = std::vector<std::size_t>;
 
-Places places_of(const std::vector<std::string_view>& headings, const Where& where) {
-  Places places;
-  places.fill(kAbsent);
-  for (std::size_t i = 0; i < headings.size(); ++i) {
-    const std::string word(headings[i]);
-    const auto known = std::find(kNames.begin(), kNames.end(), word);
-    if (known == kNames.end()) {
-      const auto near = nearest_spelling(word, kNames);
-      throw Error(fmt::format("unknown column '{}'; {}",
-                              word.substr(0, 40),
-                              near ? "did you mean '" + *near + "'?"
-                                   : fmt::format("expected {}", fmt::join(kNames, ","))),
-                  where);
-    }
-    std::size_t& place = places[static_cast<std::size_t>(known - kNames.begin())];
-    if (place != kAbsent)
-      throw Error(fmt::format("the column '{}' is twice there; expected it once", word), where);
-    place = i;
-  }
+Places columns_of(const std::vector<std::string_view>& headings, const Where& where) {
+  const Places places = airtruth::places_of(kNames, {headings.begin(), headings.end()}, where);
+  const auto is_there = [&](Column column) { return places[column] != kNoColumn; };
+  const bool has_velocity = is_there(kNorthSpeed) || is_there(kEastSpeed) || is_there(kDownSpeed);
   for (std::size_t column = 0; column < kColumns; ++column) {
-    const bool is_needed =
-        column <= kDown ||
-        (column <= kDownSpeed &&
-         places[kNorthSpeed] + places[kEastSpeed] + places[kDownSpeed] != 3 * kAbsent);
-    if (is_needed && places[column] == kAbsent)
+    const bool is_needed = column <= kDown || (column <= kDownSpeed && has_velocity);
+    if (is_needed && places[column] == kNoColumn)
       throw Error(fmt::format("has no column '{}'; expected it in the header", kNames[column]),
                   where);
   }
@@ -91,11 +73,11 @@ class EncounterRows {
     if (number < 0 || number > kMaxEncounters || number != std::floor(number))
       throw Error(fmt::format("encounter is {}; expected a whole number from 0", number), where);
     if (builder_.is_empty() || number != number_) begin(number, where);
-    if (places_[kWeight] != kAbsent) set_weight(value(kWeight), where);
+    if (places_[kWeight] != kNoColumn) set_weight(value(kWeight), where);
     const std::string name = aircraft_name_in(cells[places_[kAircraft]], where);
     const double time_s = value(kTime);
     const Vector3 position(value(kNorth), value(kEast), value(kDown));
-    if (places_[kNorthSpeed] == kAbsent) {
+    if (places_[kNorthSpeed] == kNoColumn) {
       builder_.add(name, time_s, position, nullptr, where);
     } else {
       const Vector3 velocity(value(kNorthSpeed), value(kEastSpeed), value(kDownSpeed));
@@ -121,7 +103,7 @@ class EncounterRows {
   void end() {
     if (builder_.is_empty()) return;
     encounters_.push_back(builder_.take());
-    if (places_[kWeight] != kAbsent) encounters_.back().weight = weight_;
+    if (places_[kWeight] != kNoColumn) encounters_.back().weight = weight_;
   }
   void set_weight(double weight, const Where& where) {
     if (!(weight > 0))
@@ -144,21 +126,13 @@ class EncounterRows {
 
 }  // namespace
 
-bool is_encounter_csv(std::string_view text) {
-  Lines lines(text, "");
-  if (!lines.next()) return false;
-  std::vector<std::string_view> cells;
-  split_row(lines.line(), cells);
-  return std::find(cells.begin(), cells.end(), kNames[kEncounter]) != cells.end();
-}
-
 std::vector<Encounter> parse_encounter_csv(std::string_view text,
                                            const std::filesystem::path& file) {
   Lines lines(text, file.string());
   std::vector<std::string_view> cells;
   if (!lines.next()) throw Error("is empty; expected a header and rows", {file.string()});
   split_row(lines.line(), cells);
-  const Places places = places_of(cells, lines.where());
+  const Places places = columns_of(cells, lines.where());
   const std::size_t columns = cells.size();
   EncounterRows rows(places);
   while (lines.next()) {

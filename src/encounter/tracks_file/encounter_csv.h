@@ -18,9 +18,6 @@
 // aircraft. The first aircraft of an encounter is the own one.
 namespace airtruth::encounter {
 
-// True where the text begins with a header of this format: a column "encounter".
-bool is_encounter_csv(std::string_view text);
-
 // Throws Error with file and line where a column is missing, unknown or twice there, a row has
 // another number of cells, a cell is no finite number, a time of an aircraft does not increase, the
 // rows of an encounter are apart, or its weights differ or are not positive.

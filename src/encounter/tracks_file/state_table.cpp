@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::encounter {
 namespace {
@@ -38,47 +38,31 @@ enum Column {
   kColumns
 };
 
-// Headings in lower case, and what their columns mean.
+// Headings in lower case that mean one column, and what the column holds.
 struct Heading {
-  std::string_view word;
+  std::string_view words;
   Column column;
   Dimension dimension;
 };
+
 constexpr auto kHeadings = std::to_array<Heading>({
-    {"name", kName, Dimension::kNone},
-    {"aircraft", kName, Dimension::kNone},
-    {"id", kName, Dimension::kNone},
-    {"time", kTime, Dimension::kTime},
-    {"tm", kTime, Dimension::kTime},
-    {"st", kTime, Dimension::kTime},
+    {"name aircraft id", kName, Dimension::kNone},
+    {"time tm st", kTime, Dimension::kTime},
     {"clock", kClock, Dimension::kNone},
-    {"sx", kEast, Dimension::kLength},
-    {"east", kEast, Dimension::kLength},
-    {"sy", kNorth, Dimension::kLength},
-    {"north", kNorth, Dimension::kLength},
-    {"sz", kAltitude, Dimension::kLength},
-    {"alt", kAltitude, Dimension::kLength},
-    {"altitude", kAltitude, Dimension::kLength},
-    {"lat", kLatitude, Dimension::kAngle},
-    {"latitude", kLatitude, Dimension::kAngle},
-    {"lon", kLongitude, Dimension::kAngle},
-    {"long", kLongitude, Dimension::kAngle},
-    {"longitude", kLongitude, Dimension::kAngle},
-    {"trk", kCourse, Dimension::kAngle},
-    {"track", kCourse, Dimension::kAngle},
-    {"hdg", kCourse, Dimension::kAngle},
-    {"gs", kGroundSpeed, Dimension::kSpeed},
-    {"groundspeed", kGroundSpeed, Dimension::kSpeed},
-    {"groundspd", kGroundSpeed, Dimension::kSpeed},
+    {"sx east", kEast, Dimension::kLength},
+    {"sy north", kNorth, Dimension::kLength},
+    {"sz alt altitude", kAltitude, Dimension::kLength},
+    {"lat latitude", kLatitude, Dimension::kAngle},
+    {"lon long longitude", kLongitude, Dimension::kAngle},
+    {"trk track hdg", kCourse, Dimension::kAngle},
+    {"gs groundspeed groundspd", kGroundSpeed, Dimension::kSpeed},
     {"speed", kAirspeed, Dimension::kSpeed},
-    {"vs", kClimb, Dimension::kSpeed},
-    {"verticalspeed", kClimb, Dimension::kSpeed},
-    {"hdot", kClimb, Dimension::kSpeed},
-    {"dh", kClimb, Dimension::kSpeed},
+    {"vs verticalspeed hdot dh", kClimb, Dimension::kSpeed},
     {"vx", kEastSpeed, Dimension::kSpeed},
     {"vy", kNorthSpeed, Dimension::kSpeed},
     {"vz", kUpSpeed, Dimension::kSpeed},
 });
+
 constexpr std::size_t kAbsent = ~std::size_t{0};
 
 // Where the columns stand, and the factors of their units.
@@ -90,12 +74,6 @@ struct Layout {
 
   bool has(Column column) const { return place[column] != kAbsent; }
 };
-
-std::string lower(std::string_view word) {
-  std::string result(word);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 // The columns that `layout` must have; the Error names what is missing.
 void require_columns(const Layout& layout, const Where& where) {
@@ -120,10 +98,11 @@ Layout layout_of(const std::vector<std::string_view>& headings, const Where& whe
   layout.place.fill(kAbsent);
   layout.cells = headings.size();
   for (std::size_t i = 0; i < headings.size(); ++i) {
-    const std::string word = lower(headings[i]);
-    const auto known = std::find_if(kHeadings.begin(),
-                                    kHeadings.end(),
-                                    [&](const Heading& heading) { return heading.word == word; });
+    const std::string word = lower_case(headings[i]);
+    const auto known =
+        std::find_if(kHeadings.begin(), kHeadings.end(), [&](const Heading& heading) {
+          return is_among(word, heading.words);
+        });
     if (known == kHeadings.end()) continue;  // a column of something else
     if (layout.has(known->column))
       throw Error(fmt::format("the headings hold '{}' and '{}' for the same; expected one",
@@ -150,14 +129,14 @@ void take_units(Layout& layout, const std::vector<std::string_view>& units, cons
         fmt::format("has {} units for {} headings; expected one each", units.size(), layout.cells),
         where);
   for (const Heading& heading : kHeadings) {
-    if (!layout.has(heading.column) || layout.word[heading.column] != heading.word) continue;
+    if (!layout.has(heading.column)) continue;
     const std::string_view unit = units[layout.place[heading.column]];
     // The clock is no number of a unit; DAIDALUS names any.
     const auto factor =
         heading.column == kClock ? std::optional(1.0) : factor_of(unit, heading.dimension);
     if (!factor)
       throw Error(fmt::format("the unit of '{}' is {}; expected one of {}",
-                              heading.word,
+                              layout.word[heading.column],
                               unit.empty() ? "missing" : unit.substr(0, 40),
                               units_of(heading.dimension)),
                   where);

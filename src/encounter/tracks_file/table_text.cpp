@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "encounter/track/track.h"
 #include "foundation/base/text.h"
@@ -84,51 +86,31 @@ std::string aircraft_name_in(std::string_view cell, const Where& where) {
 
 namespace {
 
+// A unit by its names, of which messages use the first.
 struct Unit {
-  std::string_view name;
+  std::string_view names;
   Dimension dimension;
   double factor;
-  // True for one name of each unit, which messages use.
-  bool is_shown = false;
 };
 
 constexpr auto kUnits = std::to_array<Unit>({
-    {"none", Dimension::kNone, 1, true},
-    {"unitless", Dimension::kNone, 1, true},
-    {"unspecified", Dimension::kNone, 1},
-    {"m", Dimension::kLength, 1, true},
-    {"meter", Dimension::kLength, 1},
-    {"metre", Dimension::kLength, 1},
-    {"km", Dimension::kLength, 1000, true},
-    {"ft", Dimension::kLength, kMetresOfFoot, true},
-    {"feet", Dimension::kLength, kMetresOfFoot},
-    {"foot", Dimension::kLength, kMetresOfFoot},
-    {"nmi", Dimension::kLength, kMetresOfNauticalMile, true},
-    {"nm", Dimension::kLength, kMetresOfNauticalMile},
-    {"NM", Dimension::kLength, kMetresOfNauticalMile},
-    {"deg", Dimension::kAngle, radians(1), true},
-    {"degree", Dimension::kAngle, radians(1)},
-    {"rad", Dimension::kAngle, 1, true},
-    {"radian", Dimension::kAngle, 1},
-    {"m/s", Dimension::kSpeed, 1, true},
-    {"mps", Dimension::kSpeed, 1},
-    {"km/h", Dimension::kSpeed, 1 / 3.6, true},
-    {"kph", Dimension::kSpeed, 1 / 3.6},
-    {"knot", Dimension::kSpeed, kMpsOfKnot, true},
-    {"kn", Dimension::kSpeed, kMpsOfKnot},
-    {"kt", Dimension::kSpeed, kMpsOfKnot},
-    {"kts", Dimension::kSpeed, kMpsOfKnot},
-    {"fpm", Dimension::kSpeed, kMpsOfFootPerMinute, true},
-    {"ft/min", Dimension::kSpeed, kMpsOfFootPerMinute},
-    {"ftps", Dimension::kSpeed, kMetresOfFoot, true},
-    {"fps", Dimension::kSpeed, kMetresOfFoot},
-    {"ft/s", Dimension::kSpeed, kMetresOfFoot},
-    {"s", Dimension::kTime, 1, true},
-    {"sec", Dimension::kTime, 1},
+    {"none", Dimension::kNone, 1},
+    {"unitless unspecified", Dimension::kNone, 1},
+    {"m meter metre", Dimension::kLength, 1},
+    {"km", Dimension::kLength, 1000},
+    {"ft feet foot", Dimension::kLength, kMetresOfFoot},
+    {"nmi nm NM", Dimension::kLength, kMetresOfNauticalMile},
+    {"deg degree", Dimension::kAngle, radians(1)},
+    {"rad radian", Dimension::kAngle, 1},
+    {"m/s mps", Dimension::kSpeed, 1},
+    {"km/h kph", Dimension::kSpeed, 1 / 3.6},
+    {"knot kn kt kts", Dimension::kSpeed, kMpsOfKnot},
+    {"fpm ft/min", Dimension::kSpeed, kMpsOfFootPerMinute},
+    {"ftps fps ft/s", Dimension::kSpeed, kMetresOfFoot},
+    {"s sec", Dimension::kTime, 1},
     {"ms", Dimension::kTime, 1e-3},
-    {"min", Dimension::kTime, 60, true},
-    {"h", Dimension::kTime, 3600, true},
-    {"hour", Dimension::kTime, 3600},
+    {"min", Dimension::kTime, 60},
+    {"h hour", Dimension::kTime, 3600},
 });
 
 std::string_view without_brackets(std::string_view word) {
@@ -139,25 +121,36 @@ std::string_view without_brackets(std::string_view word) {
 
 }  // namespace
 
+bool begins_with_column(std::string_view text, std::string_view column) {
+  Lines lines(text, "");
+  return lines.next() && is_among(column, lines.line());
+}
+
+bool is_among(std::string_view word, std::string_view words) {
+  std::vector<std::string_view> cells;
+  split_row(words, cells);
+  return std::find(cells.begin(), cells.end(), word) != cells.end();
+}
+
 std::optional<double> factor_of(std::string_view unit, Dimension dimension) {
   const std::string_view name = without_brackets(unit);
   for (const Unit& known : kUnits)
-    if (known.dimension == dimension && known.name == name) return known.factor;
+    if (known.dimension == dimension && is_among(name, known.names)) return known.factor;
   return std::nullopt;
 }
 
 bool is_unit_word(std::string_view word) {
   return without_brackets(word) != word ||
-         std::any_of(
-             kUnits.begin(), kUnits.end(), [&](const Unit& unit) { return unit.name == word; });
+         std::any_of(kUnits.begin(), kUnits.end(), [&](const Unit& unit) {
+           return is_among(word, unit.names);
+         });
 }
 
 std::string units_of(Dimension dimension) {
-  std::string names;
+  std::vector<std::string_view> names;
   for (const Unit& unit : kUnits)
-    if (unit.dimension == dimension && unit.is_shown)
-      names += (names.empty() ? "" : ", ") + std::string(unit.name);
-  return names;
+    if (unit.dimension == dimension) names.push_back(unit.names.substr(0, unit.names.find(' ')));
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace airtruth::encounter

@@ -34,6 +34,12 @@ class Lines {
 // out. One empty cell at the end, after a last comma, is left out too.
 void split_row(std::string_view line, std::vector<std::string_view>& cells);
 
+// Whether the first line with content has this cell.
+bool begins_with_column(std::string_view text, std::string_view column);
+
+// Whether the word is one of `words`, which have blanks between them.
+bool is_among(std::string_view word, std::string_view words);
+
 // The largest number of a file of tracks, in its own units. Its square stays far from overflow.
 constexpr double kMaxNumber = 1e9;
 

@@ -35,14 +35,6 @@ std::array<std::size_t, kColumnNames.size()> places_of(
 
 }  // namespace
 
-bool is_track_csv(std::string_view text) {
-  Lines lines(text, "");
-  if (!lines.next()) return false;
-  std::vector<std::string_view> cells;
-  split_row(lines.line(), cells);
-  return std::find(cells.begin(), cells.end(), kColumnNames[1]) != cells.end();
-}
-
 Encounter parse_track_csv(std::string_view text, const std::filesystem::path& file) {
   Lines lines(text, file.string());
   std::vector<std::string_view> cells;

@@ -14,9 +14,6 @@
 // right, so the track begins northward: x is north, y is east, z is the altitude.
 namespace airtruth::encounter {
 
-// True where the text begins with a header that has the column "x_ft".
-bool is_track_csv(std::string_view text);
-
 // One aircraft, named "track", without velocities. Throws Error with file and line where a column
 // is missing, unknown or twice there, a row has another number of cells, a cell is no finite
 // number, a time does not increase, or there is no row.

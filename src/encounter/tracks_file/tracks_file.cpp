@@ -12,6 +12,7 @@
 
 #include "encounter/tracks_file/encounter_csv.h"
 #include "encounter/tracks_file/state_table.h"
+#include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "encounter/tracks_file/track_csv.h"
 #include "encounter/tracks_file/waypoint_file.h"
@@ -45,8 +46,8 @@ std::vector<Encounter> read_encounters(const fs::path& file) {
 
 std::vector<Encounter> parse_encounters(std::string_view bytes, const fs::path& file) {
   if (tracks_format_of(file) == TracksFormat::kWaypoints) return parse_waypoints(bytes, file);
-  if (is_encounter_csv(bytes)) return parse_encounter_csv(bytes, file);
-  if (is_track_csv(bytes)) return {parse_track_csv(bytes, file)};
+  if (begins_with_column(bytes, "encounter")) return parse_encounter_csv(bytes, file);
+  if (begins_with_column(bytes, "x_ft")) return {parse_track_csv(bytes, file)};
   return {parse_state_table(bytes, file)};
 }
 

@@ -39,6 +39,12 @@ bool matches(std::string_view pattern, std::string_view name, LetterCase letter_
   return p == pattern.size();
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
 bool contains_ignoring_case(std::string_view text, std::string_view part) {
   return std::search(text.begin(), text.end(), part.begin(), part.end(), [](char a, char b) {
            return same_letter(a, b, LetterCase::kIgnored);
@@ -53,14 +59,6 @@ bool is_named_like(std::string_view name, std::string_view word) {
 }
 
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  return result;
-}
 
 int exact_distance(std::string_view a, std::string_view b) {
   const std::size_t width = b.size() + 1;
@@ -84,7 +82,7 @@ int exact_distance(std::string_view a, std::string_view b) {
 
 int edit_distance(std::string_view a, std::string_view b) {
   const int with_case = exact_distance(a, b);
-  const int without_case = exact_distance(lower(a), lower(b));
+  const int without_case = exact_distance(lower_case(a), lower_case(b));
   return without_case + (with_case - without_case) / 3;
 }
 

@@ -62,6 +62,9 @@ bool matches(std::string_view pattern,
              std::string_view name,
              LetterCase letter_case = LetterCase::kMatters);
 
+// The text with its ASCII capitals as small letters.
+std::string lower_case(std::string_view text);
+
 // Whether `part` occurs in `text`, whatever the case of its letters.
 bool contains_ignoring_case(std::string_view text, std::string_view part);
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/base/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include <openssl/evp.h>
+
+#include "foundation/base/names.h"
 
 namespace airtruth {
 
@@ -28,6 +31,29 @@ double finite_number(const std::string& cell, const Where& where) {
   if (failed != std::errc() || rest != end || !std::isfinite(value))
     throw Error("'" + cell.substr(0, 40) + "' is not a finite number", where);
   return value;
+}
+
+std::vector<std::size_t> places_of(const std::vector<std::string>& names,
+                                   const std::vector<std::string>& header,
+                                   const Where& where) {
+  std::vector<std::size_t> places(names.size(), kNoColumn);
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const std::string shown = header[i].substr(0, 40);
+    const auto known = std::find(names.begin(), names.end(), header[i]);
+    if (known == names.end()) {
+      std::string expected;
+      for (const std::string& name : names) expected += (expected.empty() ? "" : ",") + name;
+      const auto near = nearest_spelling(header[i], names);
+      throw Error("unknown column '" + shown + "'; " +
+                      (near ? "did you mean '" + *near + "'?" : "expected " + expected),
+                  where);
+    }
+    std::size_t& place = places[static_cast<std::size_t>(known - names.begin())];
+    if (place != kNoColumn)
+      throw Error("the column '" + shown + "' is twice there; expected it once", where);
+    place = i;
+  }
+  return places;
 }
 
 std::string base64_of(std::string_view bytes) {

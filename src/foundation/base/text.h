@@ -38,6 +38,15 @@ std::vector<std::string> cells_of(std::string_view line);
 // The cell as a number. Throws Error where it is not a number or not finite.
 double finite_number(const std::string& cell, const Where& where);
 
+// Where a column stands that a header lacks.
+inline constexpr std::size_t kNoColumn = std::string::npos;
+
+// Where each of the names stands among the cells of a header. Throws Error for a cell that is none
+// of them, with the nearest one, and for a name that stands there twice.
+std::vector<std::size_t> places_of(const std::vector<std::string>& names,
+                                   const std::vector<std::string>& header,
+                                   const Where& where);
+
 // The base64 text of bytes, with padding (RFC 4648).
 std::string base64_of(std::string_view bytes);
 

@@ -188,7 +188,7 @@ class FlightReader {
     if (!entries(pictures).empty()) clip_.media = pictures;
     const auto frames = whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMaxFrames);
     if (!frames) about.fail("number_of_frames is no number of frames");
-    clip_.frames.resize(static_cast<std::size_t>(*frames));
+    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1);
     const std::vector<JsonObject> entities = flight_.objects("entities");
     // Times in the published files count from 1970; those of a Clip count from the flight's first
     // frame.
@@ -197,8 +197,6 @@ class FlightReader {
         if (const auto time = entity.maybe_integer("time"))
           origin_ns_ = std::min(origin_ns_.value_or(*time), *time);
     for (const JsonObject& entity : entities) add(entity);
-    for (std::size_t i = 0; i < clip_.frames.size(); ++i)
-      clip_.frames[i].frame = static_cast<std::int64_t>(i);
     return clip_;
   }
 
@@ -207,9 +205,7 @@ class FlightReader {
     const JsonObject blob = entity.object("blob");
     const std::int64_t number = blob.whole("frame");
     if (number < 0 || number > kMaxFrames) blob.fail("frame is out of range");
-    const auto i = static_cast<std::size_t>(number);
-    if (i >= clip_.frames.size()) clip_.frames.resize(i + 1);
-    LabelledFrame& frame = clip_.frames[i];
+    LabelledFrame& frame = frame_at(clip_, static_cast<std::size_t>(number));
     const auto time = entity.maybe_integer("time");
     if (time && has_times_) frame.time_s = static_cast<double>(*time - *origin_ns_) / 1e9;
     if (!entity.has("id") || !entity.has("bb")) return;
@@ -224,10 +220,7 @@ class FlightReader {
       const auto above = entity.object("labels").maybe_number("is_above_horizon");
       if (above && *above != 0) label.above_horizon = *above > 0;
     }
-    if (is_in_picture(label.box_px, clip_.width, clip_.height))
-      frame.labels.push_back(label);
-    else
-      left_out_.add("boxes that are empty or outside their image", entity.place());
+    add_label(frame, label, clip_, left_out_, entity.place());
   }
 
   // Where a range is unknown, the published files contain NaN, a string or no key.
@@ -261,29 +254,28 @@ class FlightReader {
 
 }  // namespace
 
-std::unique_ptr<Writer> aot_writer(const fs::path& root, const WriteOptions& options) {
+std::unique_ptr<Writer> aot_writer(Format, const fs::path& root, const WriteOptions& options) {
   return std::make_unique<AotWriter>(root, options);
 }
 
-Clips read_aot(const fs::path& source, const ReadOptions&, const Warn& warn) {
+Clips read_aot(const Reading& in) {
   std::vector<fs::path> files;
-  if (fs::is_directory(source)) {
-    const fs::path own = source / "ImageSets" / "groundtruth.json";
-    if (fs::exists(own)) files.push_back(own);
-    for (const fs::path& part : entries(source))
-      if (const fs::path file = part / "ImageSets" / "groundtruth.json"; fs::exists(file))
+  if (fs::is_directory(in.source)) {
+    std::vector<fs::path> folders = entries(in.source);
+    folders.insert(folders.begin(), in.source);
+    for (const fs::path& folder : folders)
+      if (const fs::path file = folder / "ImageSets" / "groundtruth.json"; fs::exists(file))
         files.push_back(file);
   } else {
-    files = {source};
+    files = {in.source};
   }
-  if (files.empty()) throw Error("holds no ImageSets/groundtruth.json", {source.string()});
-  LeftOut left_out(warn);
+  if (files.empty()) throw Error("holds no ImageSets/groundtruth.json", {in.source.string()});
   Clips clips;
   for (const fs::path& file : files) {
     const JsonDocument json = python_json(file);
     const JsonObject samples = json.object("samples");
     for (const std::string& id : samples.keys())
-      clips.push_back(FlightReader(file, id, samples.object(id), left_out).read());
+      clips.push_back(FlightReader(file, id, samples.object(id), in.left_out).read());
   }
   return clips;
 }

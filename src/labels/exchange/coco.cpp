@@ -110,7 +110,7 @@ class CocoReader {
       label->track = annotation.has("track_id")      ? annotation.whole("track_id")
                      : annotation.has("instance_id") ? annotation.whole("instance_id")
                                                      : ++labels_without_track[image];
-      add_attributes(annotation, *label);
+      get_known(annotation, *label, "visibility");
       picture.labels.labels.push_back(*std::move(label));
     }
     if (!labels_without_track.empty())
@@ -137,18 +137,10 @@ class CocoReader {
     }
     label.box_px = *box;
     if (!is_in_picture(*box, picture.width, picture.height)) {
-      left_out_.add("boxes that are empty or outside their image", annotation.place());
+      left_out_.add(kOutside, annotation.place());
       return std::nullopt;
     }
     return label;
-  }
-
-  static void add_attributes(const JsonObject& annotation, Label& label) {
-    label.visible = annotation.maybe_number("visibility");
-    label.occluded = annotation.maybe_truth("occluded");
-    label.truncated = annotation.maybe_truth("truncated");
-    label.range_m = annotation.maybe_number("range_m");
-    label.above_horizon = annotation.maybe_truth("above_horizon");
   }
 
   // The box is bbox, or the bounds of the polygons.
@@ -215,16 +207,16 @@ class CocoReader {
 
 }  // namespace
 
-Clips read_coco(const fs::path& source, const ReadOptions&, const Warn& warn) {
-  std::vector<fs::path> files = {source};
-  if (fs::is_directory(source)) {
-    files = files_with(source / "annotations", ".json");
-    if (files.empty()) files = files_with(source, ".json");
+Clips read_coco(const Reading& in) {
+  std::vector<fs::path> files = {in.source};
+  if (fs::is_directory(in.source)) {
+    files = files_with(in.source / "annotations", ".json");
+    if (files.empty()) files = files_with(in.source, ".json");
   }
-  if (files.empty()) throw Error("holds no annotation file (*.json)", {source.string()});
+  if (files.empty()) throw Error("holds no annotation file (*.json)", {in.source.string()});
   Clips clips;
   for (const fs::path& file : files) {
-    Clips more = CocoReader(file, warn).read();
+    Clips more = CocoReader(file, in.warn).read();
     std::move(more.begin(), more.end(), std::back_inserter(clips));
   }
   return clips;
@@ -262,13 +254,12 @@ Json segmentation_of(const Label& label) {
   return Json::array({{b.x, b.y, b.x, b.bottom(), b.right(), b.bottom(), b.right(), b.y}});
 }
 
-class CocoWriter : public IndexedWriter {
+class CocoWriter : public FolderWriter {
  public:
-  CocoWriter(fs::path root, const WriteOptions& options)
-      : root_(std::move(root)), options_(options) {
+  CocoWriter(const fs::path& root, const WriteOptions& options) : FolderWriter(root, options) {
     fs::create_directories(folder());
     for (const std::string& part : options.parts) {
-      Lists& lists = lists_[part];
+      Lists& lists = parts_[part];
       for (const char* what : {"images", "annotations"})
         lists_on_disk_.push_back(Unfinished::path(list(part, what)));
       lists.images.open(list(part, "images"), std::ios::binary);
@@ -279,7 +270,7 @@ class CocoWriter : public IndexedWriter {
   // A failed run leaves no half-written file either.
   ~CocoWriter() override {
     std::error_code ignored;
-    for (const auto& [part, lists] : lists_) {
+    for (const auto& [part, lists] : parts_) {
       fs::remove(list(part, "images"), ignored);
       fs::remove(list(part, "annotations"), ignored);
       fs::remove(part_path(whole(part)), ignored);
@@ -289,12 +280,12 @@ class CocoWriter : public IndexedWriter {
   CocoWriter& operator=(const CocoWriter&) = delete;
 
   void add(const Clip& clip, const std::string& part) override {
-    Lists& lists = lists_.at(part);
+    Lists& lists = parts_.at(part);
     const auto video = static_cast<std::int64_t>(lists.videos.size()) + 1;
     Json about = {{"id", video}, {"name", clip.name}};
     if (clip.width > 0) about["width"] = clip.width;
     if (clip.height > 0) about["height"] = clip.height;
-    if (clip.frame_rate_hz) about["frame_rate_hz"] = *clip.frame_rate_hz;
+    put(about, "frame_rate_hz", clip.frame_rate_hz);
     about["length"] = clip.frames.size();
     lists.videos.push_back(about);
     for (std::size_t i = 0; i < clip.frames.size(); ++i) add_frame(clip, i, video, lists);
@@ -303,7 +294,7 @@ class CocoWriter : public IndexedWriter {
   }
 
   void finish() override {
-    for (auto& [part, lists] : lists_) {
+    for (auto& [part, lists] : parts_) {
       lists.images.close();
       lists.annotations.close();
       if (!lists.images || !lists.annotations)
@@ -327,11 +318,6 @@ class CocoWriter : public IndexedWriter {
   std::string file_name(const Clip& clip, std::size_t i) const {
     return clip.name + "/" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension;
   }
-  std::int64_t category_id(const std::string& category) const {
-    const auto& all = options_.categories;
-    return std::find(all.begin(), all.end(), category) - all.begin() + 1;
-  }
-
   void add_frame(const Clip& clip, std::size_t i, std::int64_t video, Lists& lists) {
     const LabelledFrame& frame = clip.frames[i];
     const std::int64_t id = lists.next_image++;
@@ -341,7 +327,7 @@ class CocoWriter : public IndexedWriter {
                   {"height", clip.height},
                   {"video_id", video},
                   {"frame_id", i}};
-    if (frame.time_s) image["time_s"] = *frame.time_s;
+    put(image, "time_s", frame.time_s);
     lists.images << (id > 1 ? ",\n" : "") << image.dump();
     for (const Label& label : frame.labels) {
       const Box& b = label.box_px;
@@ -350,17 +336,13 @@ class CocoWriter : public IndexedWriter {
       Json json = {{"id", number},
                    {"image_id", id},
                    {"video_id", video},
-                   {"category_id", category_id(label.category)},
+                   {"category_id", class_of(label.category) + 1},
                    {"track_id", label.track},
                    {"bbox", {b.x, b.y, b.width, b.height}},
                    {"area", label.mask ? double(label.mask->area_px) : b.area()},
                    {"segmentation", segmentation_of(label)},
                    {"iscrowd", 0}};
-      if (label.visible) json["visibility"] = *label.visible;
-      if (label.occluded) json["occluded"] = *label.occluded;
-      if (label.truncated) json["truncated"] = *label.truncated;
-      if (label.range_m) json["range_m"] = *label.range_m;
-      if (label.above_horizon) json["above_horizon"] = *label.above_horizon;
+      put_known(json, label, "visibility");
       lists.annotations << (number > 1 ? ",\n" : "") << json.dump();
     }
   }
@@ -369,7 +351,7 @@ class CocoWriter : public IndexedWriter {
     Json categories = Json::array();
     for (const std::string& category : options_.categories)
       categories.push_back(
-          {{"id", category_id(category)}, {"name", category}, {"supercategory", "aircraft"}});
+          {{"id", class_of(category) + 1}, {"name", category}, {"supercategory", "aircraft"}});
     const fs::path file = whole(part);
     Unfinished unfinished = Unfinished::path(part_path(file));
     {
@@ -405,15 +387,13 @@ class CocoWriter : public IndexedWriter {
     if (in.peek() != std::ifstream::traits_type::eof()) out << in.rdbuf();
   }
 
-  fs::path root_;
-  WriteOptions options_;
-  std::map<std::string, Lists> lists_;
+  std::map<std::string, Lists> parts_;
   std::vector<Unfinished> lists_on_disk_;
 };
 
 }  // namespace
 
-std::unique_ptr<Writer> coco_writer(const fs::path& root, const WriteOptions& options) {
+std::unique_ptr<Writer> coco_writer(Format, const fs::path& root, const WriteOptions& options) {
   return std::make_unique<CocoWriter>(root, options);
 }
 

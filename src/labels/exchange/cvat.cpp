@@ -20,18 +20,11 @@ namespace {
 
 constexpr const char* kAttributes[] = {"visible", "truncated", "range_m", "above_horizon"};
 
-pugi::xml_node add(pugi::xml_node node, const char* name, const std::string& text) {
-  pugi::xml_node child = node.append_child(name);
-  child.text().set(text.c_str());
-  return child;
-}
-
 std::string number(double value) { return fmt::format("{}", value); }
 
-class CvatWriter : public IndexedWriter {
+class CvatWriter : public FolderWriter {
  public:
-  CvatWriter(fs::path root, const WriteOptions& options)
-      : root_(std::move(root)), options_(options) {}
+  using FolderWriter::FolderWriter;
 
   void add(const Clip& clip, const std::string& part) override {
     pugi::xml_document document;
@@ -39,15 +32,13 @@ class CvatWriter : public IndexedWriter {
     declaration.append_attribute("version") = "1.0";
     declaration.append_attribute("encoding") = "utf-8";
     pugi::xml_node top = document.append_child("annotations");
-    exchange::add(top, "version", "1.1");
+    add_text(top, "version", "1.1");
     add_task(top.append_child("meta").append_child("task"), clip);
     if (options_.with_images) add_images(top, clip);
     for (const std::int64_t track : tracks_of(clip)) add_track(top, clip, track);
     fs::create_directories(root_ / part / clip.name);
     write_file(root_ / part / clip.name / "annotations.xml", text_of(document));
   }
-
-  void finish() override {}
 
  private:
   fs::path image(const Clip& clip, const std::string& part, std::size_t i) const override {
@@ -70,31 +61,31 @@ class CvatWriter : public IndexedWriter {
 
   void add_task(pugi::xml_node task, const Clip& clip) const {
     const std::size_t last = clip.frames.empty() ? 0 : clip.frames.size() - 1;
-    exchange::add(task, "name", clip.name);
-    exchange::add(task, "size", std::to_string(clip.frames.size()));
-    exchange::add(task, "mode", "interpolation");
-    exchange::add(task, "overlap", "0");
-    exchange::add(task, "start_frame", "0");
-    exchange::add(task, "stop_frame", std::to_string(last));
-    exchange::add(task, "frame_filter", "");
+    add_text(task, "name", clip.name);
+    add_text(task, "size", std::to_string(clip.frames.size()));
+    add_text(task, "mode", "interpolation");
+    add_text(task, "overlap", "0");
+    add_text(task, "start_frame", "0");
+    add_text(task, "stop_frame", std::to_string(last));
+    add_text(task, "frame_filter", "");
     pugi::xml_node labels = task.append_child("labels");
     for (const std::string& category : options_.categories) {
       pugi::xml_node label = labels.append_child("label");
-      exchange::add(label, "name", category);
-      exchange::add(label, "type", "any");
+      add_text(label, "name", category);
+      add_text(label, "type", "any");
       pugi::xml_node attributes = label.append_child("attributes");
       for (const char* name : kAttributes) {
         pugi::xml_node attribute = attributes.append_child("attribute");
-        exchange::add(attribute, "name", name);
-        exchange::add(attribute, "mutable", "True");
-        exchange::add(attribute, "input_type", "text");
-        exchange::add(attribute, "default_value", "");
-        exchange::add(attribute, "values", "");
+        add_text(attribute, "name", name);
+        add_text(attribute, "mutable", "True");
+        add_text(attribute, "input_type", "text");
+        add_text(attribute, "default_value", "");
+        add_text(attribute, "values", "");
       }
     }
     pugi::xml_node size = task.append_child("original_size");
-    exchange::add(size, "width", std::to_string(clip.width));
-    exchange::add(size, "height", std::to_string(clip.height));
+    add_text(size, "width", std::to_string(clip.width));
+    add_text(size, "height", std::to_string(clip.height));
   }
 
   static void add_track(pugi::xml_node top, const Clip& clip, std::int64_t id) {
@@ -132,16 +123,13 @@ class CvatWriter : public IndexedWriter {
     box.append_attribute("ybr") = number(b.bottom()).c_str();
     box.append_attribute("z_order") = 0;
     const auto attribute = [&](const char* name, const std::string& value) {
-      exchange::add(box, "attribute", value).append_attribute("name") = name;
+      add_text(box, "attribute", value).append_attribute("name") = name;
     };
     if (label.visible) attribute("visible", number(*label.visible));
     if (label.truncated) attribute("truncated", *label.truncated ? "true" : "false");
     if (label.range_m) attribute("range_m", number(*label.range_m));
     if (label.above_horizon) attribute("above_horizon", *label.above_horizon ? "true" : "false");
   }
-
-  fs::path root_;
-  WriteOptions options_;
 };
 
 Label label_of(const XmlFile& xml,
@@ -188,13 +176,10 @@ class CvatReader {
     about(top.child("meta"));
     for (const pugi::xml_node& image : top.children("image")) add_image(image);
     for (const pugi::xml_node& track : top.children("track")) add(track);
-    for (std::size_t i = 0; i < clip_.frames.size(); ++i) {
-      clip_.frames[i].frame = static_cast<std::int64_t>(i);
-      auto& labels = clip_.frames[i].labels;
-      std::stable_sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) {
-        return a.track < b.track;
-      });
-    }
+    for (LabelledFrame& frame : clip_.frames)
+      std::stable_sort(frame.labels.begin(),
+                       frame.labels.end(),
+                       [](const Label& a, const Label& b) { return a.track < b.track; });
     return clip_;
   }
 
@@ -208,7 +193,7 @@ class CvatReader {
       clip_.name = file_.parent_path().filename().string();
     const auto frames = whole_in(number_in(task.child_value("size")).value_or(0), 0, kMaxFrames);
     if (!frames) xml_.fail(task, "has a size that is no number of frames");
-    clip_.frames.resize(static_cast<std::size_t>(*frames));
+    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1);
     const pugi::xml_node size = task.child("original_size");
     clip_.width = side_of(number_in(size.child_value("width")));
     clip_.height = side_of(number_in(size.child_value("height")));
@@ -222,7 +207,7 @@ class CvatReader {
     const auto number = whole_in(xml_.attribute(image, "id"), 0, kMaxFrames);
     if (!number) xml_.fail(image, "has an id that is no whole number from 0 on");
     const auto frame = static_cast<std::size_t>(*number);
-    if (frame >= clip_.frames.size()) clip_.frames.resize(frame + 1);
+    frame_at(clip_, frame);
     if (clip_.width == 0) {
       clip_.width = side_of(number_in(image.attribute("width").value()));
       clip_.height = side_of(number_in(image.attribute("height").value()));
@@ -264,11 +249,7 @@ class CvatReader {
   }
 
   void put(const Label& label, std::size_t frame) {
-    if (frame >= clip_.frames.size()) clip_.frames.resize(frame + 1);
-    if (is_in_picture(label.box_px, clip_.width, clip_.height))
-      clip_.frames[frame].labels.push_back(label);
-    else
-      left_out_.add("boxes that are empty or outside their image", file_.string());
+    add_label(frame_at(clip_, frame), label, clip_, left_out_, file_.string());
   }
 
   fs::path file_;
@@ -279,26 +260,25 @@ class CvatReader {
 
 }  // namespace
 
-std::unique_ptr<Writer> cvat_writer(const fs::path& root, const WriteOptions& options) {
+std::unique_ptr<Writer> cvat_writer(Format, const fs::path& root, const WriteOptions& options) {
   return std::make_unique<CvatWriter>(root, options);
 }
 
-Clips read_cvat(const fs::path& source, const ReadOptions&, const Warn& warn) {
+Clips read_cvat(const Reading& in) {
   std::vector<fs::path> files;
-  if (fs::is_directory(source)) {
-    files = files_with(source, ".xml");
-    for (const fs::path& folder : entries(source)) {
+  if (fs::is_directory(in.source)) {
+    files = files_with(in.source, ".xml");
+    for (const fs::path& folder : entries(in.source)) {
       for (const fs::path& file : files_with(folder, ".xml")) files.push_back(file);
       for (const fs::path& inner : entries(folder))
         if (fs::exists(inner / "annotations.xml")) files.push_back(inner / "annotations.xml");
     }
   } else {
-    files = {source};
+    files = {in.source};
   }
-  if (files.empty()) throw Error("holds no annotations.xml", {source.string()});
-  LeftOut left_out(warn);
+  if (files.empty()) throw Error("holds no annotations.xml", {in.source.string()});
   Clips clips;
-  for (const fs::path& file : files) clips.push_back(CvatReader(file, left_out).read());
+  for (const fs::path& file : files) clips.push_back(CvatReader(file, in.left_out).read());
   return clips;
 }
 

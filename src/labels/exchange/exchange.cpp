@@ -6,6 +6,8 @@
 #include <set>
 
 #include <airtruth/labels.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
@@ -19,8 +21,10 @@ struct About {
   Format format;
   const char* name;
   const char* title;
-  const char* kept;
-  const char* lost;
+  ReadFormat* read;
+  MakeWriter* write;  // null: the format can only be read
+  const char* kept = "";
+  const char* lost = "";
 };
 
 constexpr const char* kPictures =
@@ -31,6 +35,8 @@ constexpr std::array<About, 11> kAll = {{
     {Format::kCoco,
      "coco",
      "COCO, with videos and tracks",
+     read_coco,
+     coco_writer,
      "box, class, track, frame and time; visibility, occluded, truncated, range_m and "
      "above_horizon "
      "as further keys, which COCO's readers pass over",
@@ -38,11 +44,15 @@ constexpr std::array<About, 11> kAll = {{
     {Format::kYolo,
      "yolo",
      "YOLO",
+     read_yolo,
+     yolo_writer,
      "box (as shares of the picture), class",
      "track, time, visibility, occlusion, range"},
     {Format::kMot,
      "mot",
      "MOTChallenge",
+     read_mot,
+     mot_writer,
      "box, track, visibility; range in metres as the tenth column, which its readers pass over; "
      "the "
      "class of a track in tracks.txt, and as the number of the class where that was asked for; "
@@ -51,16 +61,22 @@ constexpr std::array<About, 11> kAll = {{
     {Format::kVoc,
      "voc",
      "Pascal VOC",
+     read_voc,
+     voc_writer,
      "box (the whole pixels that it touches), class, truncated, occluded",
      "track, time, visibility, range"},
     {Format::kCvat,
      "cvat",
      "CVAT for video 1.1",
+     read_cvat,
+     cvat_writer,
      "box, class, track, occluded; visible, truncated, range_m and above_horizon as attributes",
      "time stamps, frame rate"},
     {Format::kAot,
      "aot",
      "Airborne Object Tracking",
+     read_aot,
+     aot_writer,
      "box, track, time in nanoseconds, range, above or below the horizon; the class as a further "
      "key "
      "of `blob`",
@@ -69,6 +85,8 @@ constexpr std::array<About, 11> kAll = {{
     {Format::kOtb,
      "otb",
      "OTB",
+     read_single_object,
+     single_object_writer,
      "box",
      "class, time, visibility, occlusion, range; of a sequence all before the first frame that "
      "shows the object whole and after the "
@@ -76,6 +94,8 @@ constexpr std::array<About, 11> kAll = {{
     {Format::kGot10k,
      "got10k",
      "GOT-10k",
+     read_single_object,
+     single_object_writer,
      "box, class, absence, truncation, visibility in eighths (steps of 15 %)",
      "time stamps, occlusion, range; of a sequence all before the first frame that shows the "
      "object whole and after the "
@@ -83,12 +103,14 @@ constexpr std::array<About, 11> kAll = {{
     {Format::kVot,
      "vot",
      "VOT",
+     read_single_object,
+     single_object_writer,
      "box, class, occlusion and range by frame",
      "time stamps, visibility, truncation; of a sequence all before the first frame that shows the "
      "object whole and after the "
      "last that shows it; where it begins in the video"},
-    {Format::kEvision, "evision", "E-Vision", "", ""},
-    {Format::kCsv, "csv", "frame,x,y,w,h", "", ""},
+    {Format::kEvision, "evision", "E-Vision", read_evision, nullptr},
+    {Format::kCsv, "csv", "frame,x,y,w,h", read_csv, nullptr},
 }};
 
 const About& about(Format format) {
@@ -104,31 +126,22 @@ Format format_from_name(std::string_view name) {
     if (name == a.name) return a.format;
     names.emplace_back(a.name);
   }
-  std::string all;
-  for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
   const auto nearest = nearest_spelling(name, names);
   throw Error("unknown format '" + std::string(name) + "'" +
-              (nearest ? "; did you mean '" + *nearest + "'?" : "; expected one of " + all));
+              (nearest ? "; did you mean '" + *nearest + "'?"
+                       : fmt::format("; expected one of {}", fmt::join(names, ", "))));
 }
 
 const char* name(Format format) { return about(format).name; }
 
-bool can_write(Format format) { return format != Format::kEvision && format != Format::kCsv; }
+bool can_write(Format format) { return about(format).write != nullptr; }
 
-bool is_single_object(Format format) {
-  return format == Format::kOtb || format == Format::kGot10k || format == Format::kVot;
-}
+bool is_single_object(Format format) { return about(format).read == read_single_object; }
 
 Pictures pictures_of(Format format) {
   if (format == Format::kAot) return Pictures::kPngAlone;
   if (format == Format::kOtb || format == Format::kGot10k) return Pictures::kJpgExpected;
   return Pictures::kAny;
-}
-
-std::vector<fs::path> IndexedWriter::images(const Clip& clip, const std::string& part) const {
-  std::vector<fs::path> files;
-  for (std::size_t i = 0; i < clip.frames.size(); ++i) files.push_back(image(clip, part, i));
-  return files;
 }
 
 Clip aircraft_alone(Clip clip) {
@@ -168,28 +181,9 @@ std::vector<Clip> arranged(Format format, const Clip& clip) {
 std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options) {
-  switch (format) {
-    case Format::kCoco:
-      return coco_writer(root, options);
-    case Format::kYolo:
-      return yolo_writer(root, options);
-    case Format::kMot:
-      return mot_writer(root, options);
-    case Format::kVoc:
-      return voc_writer(root, options);
-    case Format::kCvat:
-      return cvat_writer(root, options);
-    case Format::kAot:
-      return aot_writer(root, options);
-    case Format::kOtb:
-    case Format::kGot10k:
-    case Format::kVot:
-      return single_object_writer(format, root, options);
-    case Format::kEvision:
-    case Format::kCsv:
-      break;
-  }
-  throw Error(std::string("'") + name(format) + "' can be read, not written");
+  if (!can_write(format))
+    throw Error(std::string("'") + name(format) + "' can be read, not written");
+  return about(format).write(format, root, options);
 }
 
 std::string loss(Format format) {
@@ -207,29 +201,8 @@ std::vector<Clip> read_clips(Format format,
                              const ReadOptions& options,
                              const Warn& warn) {
   if (!fs::exists(source)) throw Error("does not exist", {source.string()});
-  switch (format) {
-    case Format::kCoco:
-      return read_coco(source, options, warn);
-    case Format::kYolo:
-      return read_yolo(source, options, warn);
-    case Format::kMot:
-      return read_mot(source, options, warn);
-    case Format::kVoc:
-      return read_voc(source, options, warn);
-    case Format::kCvat:
-      return read_cvat(source, options, warn);
-    case Format::kAot:
-      return read_aot(source, options, warn);
-    case Format::kOtb:
-    case Format::kGot10k:
-    case Format::kVot:
-      return read_single_object(format, source, options, warn);
-    case Format::kEvision:
-      return read_evision(source, options);
-    case Format::kCsv:
-      return read_csv(source, options);
-  }
-  return {};
+  LeftOut left_out(warn);
+  return about(format).read({format, source, options, warn, left_out});
 }
 
 namespace {

@@ -12,6 +12,7 @@
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/object_class.h"
+#include "labels/exchange/python_json.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -21,11 +22,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "airtruth labels 1";
 // The class of a region in which detections count neither way.
 constexpr const char* kIgnore = "ignore";
-
-template <typename T>
-void put(Json& json, const char* key, const std::optional<T>& value) {
-  if (value) json[key] = *value;
-}
 
 constexpr std::int64_t kLongestSide_px = 1'000'000;
 constexpr double kHighestRate_hz = 1e6;
@@ -47,11 +43,7 @@ Json json_of(const Label& label) {
                {"category", label.category},
                {"box_px", {b.x, b.y, b.width, b.height}}};
   if (!annotation::is_aircraft(label.object_class)) json["class"] = label.object_class;
-  put(json, "visible", label.visible);
-  put(json, "occluded", label.occluded);
-  put(json, "truncated", label.truncated);
-  put(json, "range_m", label.range_m);
-  put(json, "above_horizon", label.above_horizon);
+  put_known(json, label, "visible");
   return json;
 }
 
@@ -64,11 +56,7 @@ Label label_of(const JsonObject& json) {
   label.object_class = json.maybe_text("class").value_or(label.object_class);
   if (!annotation::is_object_class(label.object_class) && label.object_class != kIgnore)
     json.fail("class", "aircraft, bird, multirotor, balloon, glint, dirt, insect or ignore");
-  label.visible = json.maybe_number("visible");
-  label.occluded = json.maybe_truth("occluded");
-  label.truncated = json.maybe_truth("truncated");
-  label.range_m = json.maybe_number("range_m");
-  label.above_horizon = json.maybe_truth("above_horizon");
+  get_known(json, label, "visible");
   return label;
 }
 

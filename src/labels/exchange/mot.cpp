@@ -32,10 +32,9 @@ constexpr double kUnknown = -1;
 constexpr std::string_view kExactRate = "; exact frame rate: ";
 constexpr std::string_view kNoVisibility = "; visibility: unknown, written as 1";
 
-class MotWriter : public IndexedWriter {
+class MotWriter : public FolderWriter {
  public:
-  MotWriter(fs::path root, const WriteOptions& options)
-      : root_(std::move(root)), options_(options) {}
+  using FolderWriter::FolderWriter;
 
   void add(const Clip& clip, const std::string& part) override {
     const fs::path folder = root_ / part / clip.name;
@@ -48,13 +47,13 @@ class MotWriter : public IndexedWriter {
     write_file(folder / "gt" / "labels.txt", classes());
     write_file(folder / "seqinfo.ini", about(clip));
     write_file(folder / "tracks.txt", tracks(clip));
-    maps_[part] += in_csv(clip.name) + "\n";
+    lists_[part] += in_csv(clip.name) + "\n";
   }
 
   void finish() override {
     fs::create_directories(root_ / "seqmaps");
     for (const std::string& part : options_.parts)
-      write_file(root_ / "seqmaps" / (part + ".txt"), "name\n" + maps_[part]);
+      write_file(root_ / "seqmaps" / (part + ".txt"), "name\n" + lists_[part]);
     write_file(root_ / "labels.txt", classes());
   }
 
@@ -98,10 +97,8 @@ class MotWriter : public IndexedWriter {
     return quoted + "\"";
   }
 
-  std::int64_t class_of(const Label& label) const {
-    if (!options_.mot_classes) return 1;
-    const auto& all = options_.categories;
-    return std::find(all.begin(), all.end(), label.category) - all.begin() + 1;
+  std::size_t number_of_class(const Label& label) const {
+    return options_.mot_classes ? class_of(label.category) + 1 : 1;
   }
 
   std::string line_of(const Label& label, std::size_t i, double unknown_visibility) const {
@@ -116,7 +113,7 @@ class MotWriter : public IndexedWriter {
                        b.width,
                        b.height,
                        is_considered ? 1 : 0,
-                       class_of(label),
+                       number_of_class(label),
                        label.visible.value_or(unknown_visibility),
                        label.range_m.value_or(kUnknown));
   }
@@ -136,10 +133,6 @@ class MotWriter : public IndexedWriter {
     if (!knows_visibility(clip)) text += std::string(kNoVisibility) + "\n";
     return text;
   }
-
-  fs::path root_;
-  WriteOptions options_;
-  std::map<std::string, std::string> maps_;
 };
 
 constexpr std::int64_t kMaxTracks = 1'000'000'000;
@@ -147,11 +140,8 @@ constexpr std::int64_t kMaxTracks = 1'000'000'000;
 // The folder of one sequence.
 class SequenceFolder {
  public:
-  SequenceFolder(fs::path folder,
-                 const std::vector<std::string>& classes,
-                 const ReadOptions& options,
-                 LeftOut& left_out)
-      : folder_(std::move(folder)), classes_(classes), options_(options), left_out_(left_out) {
+  SequenceFolder(fs::path folder, const std::vector<std::string>& classes, const Reading& in)
+      : folder_(std::move(folder)), classes_(classes), in_(in) {
     if (classes_.empty() && fs::exists(folder_ / "gt" / "labels.txt"))
       for (const Line& line : lines_of(folder_ / "gt" / "labels.txt"))
         classes_.push_back(line.text);
@@ -165,8 +155,6 @@ class SequenceFolder {
     const fs::path file = folder_ / "gt" / "gt.txt";
     for (const Line& line : lines_of(file))
       add(numbers_of(line, file), {file.string(), line.number});
-    for (std::size_t i = 0; i < clip_.frames.size(); ++i)
-      clip_.frames[i].frame = static_cast<std::int64_t>(i);
     return clip_;
   }
 
@@ -180,7 +168,7 @@ class SequenceFolder {
     clip_.height = side_of(number_in(about, "imHeight"));
     const auto frames = whole_in(number_in(about, "seqLength").value_or(0), 0, kMaxFrames);
     if (!frames) throw Error("seqLength is no number of frames", {file.string()});
-    clip_.frames.resize(static_cast<std::size_t>(*frames));
+    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1);
     for (const Line& line : lines_of(file)) {
       if (line.text == kNoVisibility) knows_visibility_ = false;
       if (!line.text.starts_with(kExactRate)) continue;
@@ -207,7 +195,7 @@ class SequenceFolder {
     const auto track = whole_in(n[1], -1, kMaxTracks);
     if (!track) throw Error("the id is no whole number", where);
     if (n.size() > 6 && n[6] == 0)
-      return left_out_.add("lines that are not to be considered (conf 0)", to_string(where));
+      return in_.left_out.add("lines that are not to be considered (conf 0)", to_string(where));
     Label label;
     label.track = *track;
     label.box_px = {n[2] - 1, n[3] - 1, n[4], n[5]};
@@ -215,16 +203,14 @@ class SequenceFolder {
     if (n.size() > 8 && n[8] >= 0 && knows_visibility_) label.visible = n[8];
     if (n.size() > 9 && n[9] >= 0) label.range_m = n[9];
     if (!is_in_picture(label.box_px, clip_.width, clip_.height))
-      return left_out_.add("boxes that are empty or outside their image", to_string(where));
-    const auto i = static_cast<std::size_t>(*frame) - 1;
-    if (i >= clip_.frames.size()) clip_.frames.resize(i + 1);
-    clip_.frames[i].labels.push_back(label);
+      return in_.left_out.add(kOutside, to_string(where));
+    frame_at(clip_, static_cast<std::size_t>(*frame) - 1).labels.push_back(label);
   }
 
   std::string category_of(std::int64_t track, double number) const {
     if (const auto found = categories_.find(track); found != categories_.end())
       return found->second;
-    if (!(number >= 1)) return options_.category;
+    if (!(number >= 1)) return in_.options.category;
     return number <= static_cast<double>(classes_.size())
                ? classes_[static_cast<std::size_t>(number) - 1]
                : fmt::format("{}", number);
@@ -232,8 +218,7 @@ class SequenceFolder {
 
   fs::path folder_;
   std::vector<std::string> classes_;
-  const ReadOptions& options_;
-  LeftOut& left_out_;
+  const Reading& in_;
   std::map<std::int64_t, std::string> categories_;
   bool knows_visibility_ = true;
   Clip clip_;
@@ -241,26 +226,19 @@ class SequenceFolder {
 
 }  // namespace
 
-std::unique_ptr<Writer> mot_writer(const fs::path& root, const WriteOptions& options) {
+std::unique_ptr<Writer> mot_writer(Format, const fs::path& root, const WriteOptions& options) {
   return std::make_unique<MotWriter>(root, options);
 }
 
-Clips read_mot(const fs::path& source, const ReadOptions& options, const Warn& warn) {
+Clips read_mot(const Reading& in) {
   std::vector<std::string> categories;
-  if (fs::exists(source / "labels.txt"))
-    for (const Line& line : lines_of(source / "labels.txt")) categories.push_back(line.text);
-  LeftOut left_out(warn);
+  if (fs::exists(in.source / "labels.txt"))
+    for (const Line& line : lines_of(in.source / "labels.txt")) categories.push_back(line.text);
   Clips clips;
-  const auto look = [&](const fs::path& folder) {
+  for (const fs::path& folder : two_levels(in.source))
     if (fs::exists(folder / "gt" / "gt.txt"))
-      clips.push_back(SequenceFolder(folder, categories, options, left_out).read());
-  };
-  look(source);
-  for (const fs::path& folder : entries(source)) {
-    look(folder);
-    for (const fs::path& inner : entries(folder)) look(inner);
-  }
-  if (clips.empty()) throw Error("holds no gt/gt.txt", {source.string()});
+      clips.push_back(SequenceFolder(folder, categories, in).read());
+  if (clips.empty()) throw Error("holds no gt/gt.txt", {in.source.string()});
   return clips;
 }
 

@@ -1,45 +1,82 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "labels/exchange/exchange.h"
+#include "labels/exchange/text.h"
 
-// The writers and readers of the single formats. Only exchange.cpp uses this header.
+// The writers and readers of the single formats. Only their own files and exchange.cpp use this
+// header.
 namespace airtruth::exchange {
 
-// A writer whose picture names depend on the picture's index in the clip.
-class IndexedWriter : public Writer {
+// What the writers of most formats have in common.
+class FolderWriter : public Writer {
  public:
-  std::vector<fs::path> images(const Clip& clip, const std::string& part) const final;
+  FolderWriter(fs::path root, const WriteOptions& options)
+      : root_(std::move(root)), options_(options) {}
+  std::vector<fs::path> images(const Clip& clip, const std::string& part) const override;
+  void finish() override {}
 
- private:
+ protected:
+  // The path of the i-th picture of a clip.
   virtual fs::path image(const Clip& clip, const std::string& part, std::size_t i) const = 0;
+  // The number of a category, counted from 0.
+  std::size_t class_of(const std::string& category) const;
+
+  fs::path root_;
+  WriteOptions options_;
+  // By part: the lines of the file that lists its clips or pictures.
+  std::map<std::string, std::string> lists_;
 };
 
-std::unique_ptr<Writer> coco_writer(const fs::path& root, const WriteOptions& options);
-std::unique_ptr<Writer> yolo_writer(const fs::path& root, const WriteOptions& options);
-std::unique_ptr<Writer> mot_writer(const fs::path& root, const WriteOptions& options);
-std::unique_ptr<Writer> voc_writer(const fs::path& root, const WriteOptions& options);
-std::unique_ptr<Writer> cvat_writer(const fs::path& root, const WriteOptions& options);
-std::unique_ptr<Writer> aot_writer(const fs::path& root, const WriteOptions& options);
-std::unique_ptr<Writer> single_object_writer(Format format,
-                                             const fs::path& root,
-                                             const WriteOptions& options);
+// "NAME_000012": the picture, without its extension.
+std::string numbered_stem(const Clip& clip, std::size_t i);
+
+using MakeWriter = std::unique_ptr<Writer>(Format format,
+                                           const fs::path& root,
+                                           const WriteOptions& options);
+MakeWriter coco_writer, yolo_writer, mot_writer, voc_writer, cvat_writer, aot_writer,
+    single_object_writer;
 
 using Clips = std::vector<Clip>;
-Clips read_coco(const fs::path& source, const ReadOptions& options, const Warn& warn);
-Clips read_yolo(const fs::path& source, const ReadOptions& options, const Warn& warn);
-Clips read_mot(const fs::path& source, const ReadOptions& options, const Warn& warn);
-Clips read_voc(const fs::path& source, const ReadOptions& options, const Warn& warn);
-Clips read_cvat(const fs::path& source, const ReadOptions& options, const Warn& warn);
-Clips read_aot(const fs::path& source, const ReadOptions& options, const Warn& warn);
-Clips read_single_object(Format format,
-                         const fs::path& source,
-                         const ReadOptions& options,
-                         const Warn& warn);
-Clips read_evision(const fs::path& source, const ReadOptions& options);
-Clips read_csv(const fs::path& source, const ReadOptions& options);
+
+// What a reader is given.
+struct Reading {
+  Format format;
+  const fs::path& source;
+  const ReadOptions& options;
+  const Warn& warn;
+  LeftOut& left_out;
+};
+
+using ReadFormat = Clips(const Reading& in);
+ReadFormat read_coco, read_yolo, read_mot, read_voc, read_cvat, read_aot, read_single_object,
+    read_evision, read_csv;
+
+// The frame of that number in a clip that has its frames from 0 on; frames that are missing up to
+// it are added.
+LabelledFrame& frame_at(Clip& clip, std::size_t number);
+
+// Why a label is left out whose box has no area or lies outside the picture.
+inline constexpr const char* kOutside = "boxes that are empty or outside their image";
+
+// Adds a label to a frame of the clip; `place` says where a label stands that is left out.
+void add_label(LabelledFrame& frame,
+               Label label,
+               const Clip& clip,
+               LeftOut& left_out,
+               const std::string& place);
+
+// The folder itself, what it holds, and what that holds, each folder before its content.
+std::vector<fs::path> two_levels(const fs::path& folder);
+
+// The numbered pictures NAME_%06d of a clip in a folder; the folder where there are none; empty
+// where there is no folder.
+fs::path numbered_media(const fs::path& pictures, const std::string& name);
 
 }  // namespace airtruth::exchange

@@ -2,6 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include <airtruth/labels.h>
+#include <nlohmann/json.hpp>
 
 #include "foundation/json/json_object.h"
 
@@ -10,5 +14,16 @@ namespace airtruth::exchange {
 // A JSON file of at most 8 GiB as Python's json module writes it: the words that the module adds to
 // JSON, NaN and Infinity in any case and with a sign, are read as null.
 JsonDocument python_json(const std::filesystem::path& file);
+
+// Adds what is known: an empty value adds no key.
+template <typename T>
+void put(nlohmann::ordered_json& json, const char* key, const std::optional<T>& value) {
+  if (value) json[key] = *value;
+}
+
+// The fields of a label that may be unknown, except its mask: visible share, occluded, truncated,
+// range_m and above_horizon. `visible_key` is the key of the visible share.
+void put_known(nlohmann::ordered_json& json, const Label& label, const char* visible_key);
+void get_known(const JsonObject& json, Label& label, const char* visible_key);
 
 }  // namespace airtruth::exchange

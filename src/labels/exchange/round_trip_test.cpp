@@ -6,8 +6,8 @@
 
 #include "foundation/geometry/box.h"
 #include "labels/exchange/exchange.h"
-#include "labels/exchange/test_folder.h"
 #include "labels/exchange/text.h"
+#include "support/exchange_formats.h"
 
 namespace airtruth::exchange {
 namespace {

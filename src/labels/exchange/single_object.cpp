@@ -31,6 +31,16 @@ namespace {
 // A side of a picture, in pixels, that no camera reaches.
 constexpr std::int64_t kLongestSide = 1'000'000;
 
+const char* boxes_in(Format format) {
+  return format == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt";
+}
+
+fs::path pictures_in(Format format, const fs::path& folder) {
+  return format == Format::kOtb   ? folder / "img"
+         : format == Format::kVot ? folder / "color"
+                                  : folder;
+}
+
 // Columns beside the boxes; empty where the file does not exist.
 std::vector<double> column(const fs::path& file) {
   std::vector<double> values;
@@ -84,12 +94,12 @@ std::string got10k_value(const fs::path& file, const std::string& key) {
 
 class SequenceReader {
  public:
-  SequenceReader(Format format, fs::path folder, const ReadOptions& options, LeftOut& left_out)
-      : format_(format), folder_(std::move(folder)), options_(options), left_out_(left_out) {}
+  SequenceReader(fs::path folder, const Reading& in)
+      : format_(in.format), folder_(std::move(folder)), in_(in) {}
 
   Clip read() {
     clip_.name = folder_.filename().string();
-    category_ = options_.category;
+    category_ = in_.options.category;
     about();
     boxes();
     columns();
@@ -98,12 +108,11 @@ class SequenceReader {
 
  private:
   void about() {
-    const fs::path pictures = format_ == Format::kOtb   ? folder_ / "img"
-                              : format_ == Format::kVot ? folder_ / "color"
-                                                        : folder_;
-    const auto size = options_.size ? options_.size : size_of_pictures(pictures, options_);
+    const fs::path pictures = pictures_in(format_, folder_);
+    const ReadOptions& options = in_.options;
+    const auto size = options.size ? options.size : size_of_pictures(pictures, options);
     if (size) std::tie(clip_.width, clip_.height) = *size;
-    if (size && !options_.size) clip_.media = pictures;
+    if (size && !options.size) clip_.media = pictures;
     if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
       const auto settings = settings_of(folder_ / "sequence");
       clip_.frame_rate_hz = number_in(settings, "fps");
@@ -143,28 +152,21 @@ class SequenceReader {
   }
 
   void boxes() {
-    const fs::path file =
-        folder_ / (format_ == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt");
+    const fs::path file = folder_ / boxes_in(format_);
     const double from = format_ == Format::kVot ? 0 : 1;
     for (const Line& line : lines_of(file)) {
-      LabelledFrame frame;
-      frame.frame = static_cast<std::int64_t>(clip_.frames.size());
+      LabelledFrame& frame = frame_at(clip_, clip_.frames.size());
       const auto box = format_ == Format::kVot && line.text.starts_with('m')
                            ? box_of_mask(line, file)
                            : box_of(numbers_of(line, file), from);
       if (!box)
         throw Error("is no box: expected x, y, width, height", {file.string(), line.number});
-      const bool empty = box->width == 0 && box->height == 0;
-      if (is_in_picture(*box, clip_.width, clip_.height)) {
-        Label label;
-        label.category = category_;
-        label.box_px = *box;
-        frame.labels.push_back(label);
-      } else if (std::isfinite(box->x) && !empty) {
-        left_out_.add("boxes that are empty or outside their image",
-                      file.string() + ":" + std::to_string(line.number));
-      }
-      clip_.frames.push_back(std::move(frame));
+      const bool is_stated = std::isfinite(box->x) && (box->width != 0 || box->height != 0);
+      if (!is_stated) continue;
+      Label label;
+      label.category = category_;
+      label.box_px = *box;
+      add_label(frame, label, clip_, in_.left_out, to_string(Where{file.string(), line.number}));
     }
   }
 
@@ -206,8 +208,7 @@ class SequenceReader {
 
   Format format_;
   fs::path folder_;
-  const ReadOptions& options_;
-  LeftOut& left_out_;
+  const Reading& in_;
   std::string category_;
   bool knows_cut_ = true;
   bool knows_cover_ = true;
@@ -216,27 +217,15 @@ class SequenceReader {
 
 }  // namespace
 
-Clips read_single_object(Format format,
-                         const fs::path& source,
-                         const ReadOptions& options,
-                         const Warn& warn) {
-  LeftOut left_out(warn);
+Clips read_single_object(const Reading& in) {
   Clips clips;
-  const auto look = [&](const fs::path& folder) {
-    if (fs::exists(folder / (format == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt")))
-      clips.push_back(SequenceReader(format, folder, options, left_out).read());
-  };
-  look(source);
-  for (const fs::path& folder : entries(source)) {
-    look(folder);
-    for (const fs::path& inner : entries(folder)) look(inner);
-  }
+  for (const fs::path& folder : two_levels(in.source))
+    if (fs::exists(folder / boxes_in(in.format)))
+      clips.push_back(SequenceReader(folder, in).read());
   if (clips.empty())
-    throw Error(std::string("holds no sequence of ") + name(format), {source.string()});
+    throw Error(std::string("holds no sequence of ") + name(in.format), {in.source.string()});
   return clips;
 }
-
-// Writes the formats of single_object_reader.cpp, where their files are described.
 
 namespace {
 
@@ -250,10 +239,10 @@ int cover_of(double visible) {
   return std::min(7, static_cast<int>(std::ceil(visible / 0.15)));
 }
 
-class SingleObjectWriter : public IndexedWriter {
+class SingleObjectWriter : public FolderWriter {
  public:
-  SingleObjectWriter(Format format, fs::path root, const WriteOptions& options)
-      : format_(format), root_(std::move(root)), options_(options) {}
+  SingleObjectWriter(Format format, const fs::path& root, const WriteOptions& options)
+      : FolderWriter(root, options), format_(format) {}
 
   void add(const Clip& clip, const std::string& part) override {
     const fs::path folder = root_ / part / clip.name;
@@ -261,8 +250,7 @@ class SingleObjectWriter : public IndexedWriter {
     lists_[part] += clip.name + "\n";
     std::string boxes;
     for (const LabelledFrame& frame : clip.frames) boxes += line_of(frame);
-    write_file(folder / (format_ == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt"),
-               boxes);
+    write_file(folder / boxes_in(format_), boxes);
     if (format_ == Format::kGot10k) add_got10k(clip, folder);
     if (format_ == Format::kVot) add_vot(clip, folder);
   }
@@ -278,9 +266,7 @@ class SingleObjectWriter : public IndexedWriter {
     const int digits = format_ == Format::kOtb ? std::max(4, longest) : 8;
     const std::string name =
         padded(static_cast<std::int64_t>(i) + 1, digits) + options_.image_extension;
-    const fs::path folder = fs::path(part) / clip.name;
-    if (format_ == Format::kOtb) return folder / "img" / name;
-    return format_ == Format::kVot ? folder / "color" / name : folder / name;
+    return pictures_in(format_, fs::path(part) / clip.name) / name;
   }
 
   std::string line_of(const LabelledFrame& frame) const {
@@ -385,9 +371,6 @@ class SingleObjectWriter : public IndexedWriter {
   }
 
   Format format_;
-  fs::path root_;
-  WriteOptions options_;
-  std::map<std::string, std::string> lists_;
 };
 
 }  // namespace

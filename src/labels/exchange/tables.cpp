@@ -35,14 +35,14 @@ std::string category_of(const std::string& name, const std::string& otherwise) {
 
 }  // namespace
 
-Clips read_evision(const fs::path& source, const ReadOptions& options) {
+Clips read_evision(const Reading& in) {
   Clips clips;
-  for (const fs::path& file : files_of(source, ".xml")) {
+  for (const fs::path& file : files_of(in.source, ".xml")) {
     const annotation::Evision evision = annotation::read_evision(file);
     Clip clip;
     clip.name = file.stem().string();
     clip.media = video_beside(file);
-    if (options.size) std::tie(clip.width, clip.height) = *options.size;
+    if (in.options.size) std::tie(clip.width, clip.height) = *in.options.size;
     for (std::size_t i = 0; i < evision.frames.size(); ++i) {
       const auto& frame = evision.frames[i];
       const auto number =
@@ -56,7 +56,7 @@ Clips read_evision(const fs::path& source, const ReadOptions& options) {
       if (frame && frame->rect_px.width > 0 && frame->rect_px.height > 0) {
         const PixelBox& r = frame->rect_px;
         Label label;
-        label.category = category_of(clip.name, options.category);
+        label.category = category_of(clip.name, in.options.category);
         label.box_px = {double(r.x), double(r.y), double(r.width), double(r.height)};
         if (frame->distance_m > 0) label.range_m = frame->distance_m;
         labelled.labels.push_back(label);
@@ -68,13 +68,13 @@ Clips read_evision(const fs::path& source, const ReadOptions& options) {
   return clips;
 }
 
-Clips read_csv(const fs::path& source, const ReadOptions& options) {
+Clips read_csv(const Reading& in) {
   Clips clips;
-  for (const fs::path& file : files_of(source, ".csv")) {
+  for (const fs::path& file : files_of(in.source, ".csv")) {
     Clip clip;
     clip.name = file.stem().string();
     clip.media = video_beside(file);
-    if (options.size) std::tie(clip.width, clip.height) = *options.size;
+    if (in.options.size) std::tie(clip.width, clip.height) = *in.options.size;
     bool first = true;
     for (const Line& line : lines_of(file)) {
       const bool is_header = first && line.text.find_first_of("0123456789") != 0;
@@ -89,12 +89,12 @@ Clips read_csv(const fs::path& source, const ReadOptions& options) {
       while (std::ssize(clip.frames) <= *i)
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
       LabelledFrame& frame = clip.frames[static_cast<std::size_t>(*i)];
-      const Box box{n[1] - options.origin_px, n[2] - options.origin_px, n[3], n[4]};
+      const Box box{n[1] - in.options.origin_px, n[2] - in.options.origin_px, n[3], n[4]};
       // "0,0,0,0" and "nan" mean no box.
       if (!is_in_picture(box, clip.width, clip.height)) continue;
       Label label;
       label.track = std::ssize(frame.labels) + 1;
-      label.category = options.category;
+      label.category = in.options.category;
       label.box_px = box;
       frame.labels.push_back(label);
     }

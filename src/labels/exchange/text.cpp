@@ -18,15 +18,20 @@ namespace {
 std::optional<double> number_from(std::string_view text) {
   if (text == "nan" || text == "NaN" || text == "NAN")
     return std::numeric_limits<double>::quiet_NaN();
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  return number_in(text);
+}
+
+}  // namespace
+
+std::optional<double> number_in(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failed != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     return std::nullopt;
   return value;
 }
-
-}  // namespace
 
 std::vector<Line> lines_of(const fs::path& file) {
   const std::string text = read_file(file);

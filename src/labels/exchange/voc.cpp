@@ -19,27 +19,23 @@
 namespace airtruth::exchange {
 namespace {
 
-void add_text(pugi::xml_node node, const char* name, const std::string& text) {
-  node.append_child(name).text().set(text.c_str());
-}
-
 void add_number(pugi::xml_node node, const char* name, double value) {
   add_text(node, name, fmt::format("{}", value));
 }
 
-class VocWriter : public IndexedWriter {
+class VocWriter : public FolderWriter {
  public:
-  VocWriter(fs::path root, const WriteOptions& options)
-      : root_(std::move(root)), options_(options) {
+  VocWriter(const fs::path& root, const WriteOptions& options) : FolderWriter(root, options) {
     fs::create_directories(root_ / "Annotations");
     fs::create_directories(root_ / "ImageSets" / "Main");
   }
 
   void add(const Clip& clip, const std::string& part) override {
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
-      write_file(
-          root_ / "Annotations" / (stem(clip, i) + ".xml"), annotation(clip, i), Flush::kLater);
-      lists_[part] += stem(clip, i) + "\n";
+      write_file(root_ / "Annotations" / (numbered_stem(clip, i) + ".xml"),
+                 annotation(clip, i),
+                 Flush::kLater);
+      lists_[part] += numbered_stem(clip, i) + "\n";
     }
   }
 
@@ -50,18 +46,14 @@ class VocWriter : public IndexedWriter {
 
  private:
   fs::path image(const Clip& clip, const std::string&, std::size_t i) const override {
-    return fs::path("JPEGImages") / (stem(clip, i) + options_.image_extension);
-  }
-
-  static std::string stem(const Clip& clip, std::size_t i) {
-    return clip.name + "_" + padded(static_cast<std::int64_t>(i), 6);
+    return fs::path("JPEGImages") / (numbered_stem(clip, i) + options_.image_extension);
   }
 
   std::string annotation(const Clip& clip, std::size_t i) const {
     pugi::xml_document document;
     pugi::xml_node top = document.append_child("annotation");
     add_text(top, "folder", fs::absolute(root_).lexically_normal().filename().string());
-    add_text(top, "filename", stem(clip, i) + options_.image_extension);
+    add_text(top, "filename", numbered_stem(clip, i) + options_.image_extension);
     pugi::xml_node source = top.append_child("source");
     add_text(source, "database", "airtruth");
     add_text(source, "annotation", "airtruth");
@@ -94,10 +86,6 @@ class VocWriter : public IndexedWriter {
     add_number(box, "xmax", pixels.right());
     add_number(box, "ymax", pixels.bottom());
   }
-
-  fs::path root_;
-  WriteOptions options_;
-  std::map<std::string, std::string> lists_;
 };
 
 std::optional<bool> flag(const pugi::xml_node& object, const char* name) {
@@ -126,41 +114,32 @@ void read_picture(const fs::path& file, Clip& clip, LeftOut& left_out) {
     const double x = xml.number(box, "xmin") - 1;
     const double y = xml.number(box, "ymin") - 1;
     label.box_px = {x, y, xml.number(box, "xmax") - x, xml.number(box, "ymax") - y};
-    if (!is_in_picture(label.box_px, clip.width, clip.height)) {
-      left_out.add("boxes that are empty or outside their image", file.string());
-      continue;
-    }
-    frame.labels.push_back(label);
+    add_label(frame, label, clip, left_out, file.string());
   }
   clip.frames.push_back(std::move(frame));
 }
 
 }  // namespace
 
-std::unique_ptr<Writer> voc_writer(const fs::path& root, const WriteOptions& options) {
+std::unique_ptr<Writer> voc_writer(Format, const fs::path& root, const WriteOptions& options) {
   return std::make_unique<VocWriter>(root, options);
 }
 
-Clips read_voc(const fs::path& source, const ReadOptions&, const Warn& warn) {
-  const fs::path folder =
-      fs::is_directory(source / "Annotations") ? source / "Annotations" : source;
-  const fs::path pictures = source / "JPEGImages";
+Clips read_voc(const Reading& in) {
+  const fs::path annotations = in.source / "Annotations";
   std::map<std::string, Clip> clips;
-  LeftOut left_out(warn);
-  for (const fs::path& file : files_with(folder, ".xml")) {
+  for (const fs::path& file :
+       files_with(fs::is_directory(annotations) ? annotations : in.source, ".xml")) {
     const std::string name = name_and_number(file.stem().string()).first;
     Clip& clip = clips[name];
     clip.name = name.empty() ? "images" : name;
-    read_picture(file, clip, left_out);
-    for (const char* extension : {".jpg", ".png"})
-      if (fs::exists(pictures / (name + "_000000" + extension)))
-        clip.media = pictures / (name + "_%06d" + extension);
+    clip.media = numbered_media(in.source / "JPEGImages", name);
+    read_picture(file, clip, in.left_out);
   }
-  if (clips.empty()) throw Error("holds no Annotations/*.xml", {source.string()});
+  if (clips.empty()) throw Error("holds no Annotations/*.xml", {in.source.string()});
   Clips result;
   for (auto& [name, clip] : clips) {
     sort_frames(clip);
-    if (clip.media.empty() && fs::is_directory(pictures)) clip.media = pictures;
     result.push_back(std::move(clip));
   }
   return result;

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "labels/exchange/exchange.h"
-#include "labels/exchange/test_folder.h"
+#include "support/exchange_formats.h"
 
 namespace airtruth::exchange {
 namespace {

@@ -11,20 +11,6 @@
 
 namespace airtruth::exchange {
 
-std::optional<double> number_in(const std::string& text) {
-  double value = 0;
-  const char* first = text.data();
-  const char* last = first + text.size();
-  while (first < last && (*first == ' ' || *first == '\n' || *first == '\t' || *first == '\r'))
-    ++first;
-  while (first < last &&
-         (last[-1] == ' ' || last[-1] == '\n' || last[-1] == '\t' || last[-1] == '\r'))
-    --last;
-  const auto [end, failed] = std::from_chars(first, last, value);
-  if (failed != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 XmlFile::XmlFile(const std::filesystem::path& file)
     : file_(file), text_(read_file(file, std::size_t{4} << 30)) {
   const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
@@ -63,6 +49,12 @@ double XmlFile::attribute(const pugi::xml_node& node, const char* name) const {
 void XmlFile::fail(const pugi::xml_node& node, const std::string& what) const {
   throw Error("<" + std::string(node.name()) + "> " + what,
               {file_.string(), line_of(text_, node.offset_debug())});
+}
+
+pugi::xml_node add_text(pugi::xml_node node, const char* name, const std::string& text) {
+  pugi::xml_node child = node.append_child(name);
+  child.text().set(text.c_str());
+  return child;
 }
 
 std::string text_of(const pugi::xml_document& document) {

@@ -28,8 +28,8 @@ class XmlFile {
   pugi::xml_document document_;
 };
 
-// The text as a number; empty where it is not one.
-std::optional<double> number_in(const std::string& text);
+// Appends an element that holds a text, and returns it.
+pugi::xml_node add_text(pugi::xml_node node, const char* name, const std::string& text);
 
 // The document as text, indented by two blanks.
 std::string text_of(const pugi::xml_document& document);

@@ -41,39 +41,21 @@ const std::vector<std::string> kNames = {"time_s",
                                          "rate_x_radps",
                                          "rate_y_radps",
                                          "rate_z_radps"};
-constexpr std::size_t kAbsent = std::string::npos;
-using Places = std::array<std::size_t, kColumns>;
+using Places = std::vector<std::size_t>;
 
 std::string_view line_at_start(std::string_view text) { return text.substr(0, text.find('\n')); }
 
-Places places_of(std::string_view header, const std::string& file) {
-  Places places;
-  places.fill(kAbsent);
-  const auto cells = cells_of(header);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto found = std::find(kNames.begin(), kNames.end(), cells[i]);
-    if (found == kNames.end()) {
-      const auto near = nearest_spelling(cells[i], kNames);
-      throw Error(fmt::format("unknown column '{}'; {}",
-                              printable(cells[i]),
-                              near ? "did you mean '" + *near + "'?"
-                                   : fmt::format("expected {}", fmt::join(kNames, ","))),
-                  {file, 1});
-    }
-    std::size_t& place = places[static_cast<std::size_t>(found - kNames.begin())];
-    if (place != kAbsent)
-      throw Error("column '" + printable(cells[i]) + "' stands twice", {file, 1});
-    place = i;
-  }
+Places columns_of(std::string_view header, const std::string& file) {
+  const Places places = places_of(kNames, cells_of(header), {file, 1});
   const auto require_together = [&](std::vector<Column> columns) {
     for (const Column column : columns)
-      if (places[column] == kAbsent)
+      if (places[column] == kNoColumn)
         throw Error(fmt::format("has no column {}", kNames[column]), {file, 1});
   };
   require_together({kTime, kLatitude, kLongitude, kAltitude});
   for (const std::vector<Column>& group :
        {std::vector{kYaw, kPitch, kRoll}, std::vector{kRateX, kRateY, kRateZ}})
-    if (std::any_of(group.begin(), group.end(), [&](Column c) { return places[c] != kAbsent; }))
+    if (std::any_of(group.begin(), group.end(), [&](Column c) { return places[c] != kNoColumn; }))
       require_together(group);
   return places;
 }
@@ -86,15 +68,15 @@ void add_row(FlightLog& log, const Places& places, std::string_view line, const 
     return finite_number(cells[places[column]], where);
   };
   Fix fix{number(kTime), number(kLatitude), number(kLongitude), number(kAltitude), {}};
-  if (places[kHeight] != kAbsent) fix.height_m = number(kHeight);
+  if (places[kHeight] != kNoColumn) fix.height_m = number(kHeight);
   if (!log.fixes.empty() && fix.time_s <= log.fixes.back().time_s)
     throw Error(fmt::format("time_s is {}, not after the row before; expected times that increase",
                             fix.time_s),
                 where);
   add_fix(log, fix, where);
-  if (places[kYaw] != kAbsent)
+  if (places[kYaw] != kNoColumn)
     add_attitude(log, {fix.time_s, {number(kYaw), number(kPitch), number(kRoll)}}, where);
-  if (places[kRateX] != kAbsent)
+  if (places[kRateX] != kNoColumn)
     add_rates(log, {fix.time_s, {number(kRateX), number(kRateY), number(kRateZ)}}, where);
 }
 
@@ -116,7 +98,7 @@ FlightLog from_csv(std::string_view text, const std::string& file) {
   text = without_mark(text);
   FlightLog log;
   log.format = Format::kCsv;
-  const Places places = places_of(line_at_start(text), file);
+  const Places places = columns_of(line_at_start(text), file);
   for (int number = 1; !text.empty(); ++number) {
     const std::string_view line = line_at_start(text);
     text.remove_prefix(std::min(line.size() + 1, text.size()));

@@ -22,32 +22,21 @@ constexpr std::size_t kRequired = 4;
 // Largest number of a path file, in metres, seconds or degrees. Its square stays far from overflow.
 constexpr double kLargest = 1e9;
 
-// The cell of each known column; npos where the header lacks the column.
-using Places = std::array<std::size_t, 7>;
-Places columns_of(const std::string& header, const std::string& file) {
-  Places place;
-  place.fill(std::string::npos);
-  const auto names = cells_of(header);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto at = std::find(kColumns.begin(), kColumns.end(), names[i]);
-    if (at == kColumns.end()) {
-      const auto near = nearest_spelling(names[i], kColumns);
-      throw Error(
-          "unknown column '" + names[i].substr(0, 60) + "'" +
-              (near ? "; did you mean '" + *near + "'?"
-                    : "; expected time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg]"),
-          {file, 1});
-    }
-    auto& slot = place[static_cast<std::size_t>(at - kColumns.begin())];
-    if (slot != std::string::npos) throw Error("column '" + names[i] + "' stands twice", {file, 1});
-    slot = i;
-  }
+// The columns of a file: where each known column stands, and how many there are.
+struct Header {
+  std::vector<std::size_t> place;
+  std::size_t columns = 0;
+};
+
+Header header_of(const std::string& line, const std::string& file) {
+  const auto cells = cells_of(line);
+  const Header header{places_of(kColumns, cells, {file, 1}), cells.size()};
   for (std::size_t i = 0; i < kRequired; ++i)
-    if (place[i] == std::string::npos)
+    if (header.place[i] == kNoColumn)
       throw Error("has no column " + kColumns[i] +
                       "; expected time_s,north_m,east_m,down_m[,yaw_deg,pitch_deg,roll_deg]",
                   {file, 1});
-  return place;
+  return header;
 }
 
 double number_of(const std::string& cell, const std::string& column, const Where& where) {
@@ -58,12 +47,6 @@ double number_of(const std::string& cell, const std::string& column, const Where
     throw Error(column + " is '" + cell.substr(0, 40) + "'; expected a number up to 1e9", where);
   return value;
 }
-
-// The columns of a file: where each known column stands, and how many there are.
-struct Header {
-  Places place;
-  std::size_t columns = 0;
-};
 
 // Adds the values of one row, which must follow those before in time.
 void add_row(const std::vector<std::string>& cells,
@@ -76,7 +59,7 @@ void add_row(const std::vector<std::string>& cells,
                 where);
   const auto value = [&](std::size_t column) {
     const std::size_t place = header.place[column];
-    if (place == std::string::npos) return 0.0;
+    if (place == kNoColumn) return 0.0;
     if (place >= cells.size()) throw Error("has no value for " + kColumns[column], where);
     return number_of(cells[place], kColumns[column], where);
   };
@@ -101,10 +84,10 @@ Samples read_samples(std::string_view text, const std::string& file) {
   if (!std::getline(lines, line))
     throw Error("is empty; expected a header and at least two rows", {file});
   if (line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
-  const Header header{columns_of(line, file), cells_of(line).size()};
+  const Header header = header_of(line, file);
   Samples samples;
   for (std::size_t i = 0; i < 3; ++i)
-    samples.has_angle[i] = header.place[kRequired + i] != std::string::npos;
+    samples.has_angle[i] = header.place[kRequired + i] != kNoColumn;
   int number = 1;
   while (std::getline(lines, line)) {
     ++number;

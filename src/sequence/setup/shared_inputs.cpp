@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "aircraft/fleet/configuration.h"
+#include "aircraft/fleet/fleet.h"
 #include "foundation/base/files.h"
 
 namespace airtruth::setup {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/picture_size.h"
+#include "cli/commands.h"
 
 #include <charconv>
 

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft/wrapper/part_names.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+
+#include "foundation/base/names.h"
+
+namespace airtruth::aircraft {
+namespace {
+
+bool contains_any(const std::string& text, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* word) {
+    return text.find(word) != std::string::npos;
+  });
+}
+
+std::string without(std::string text, std::string_view word) {
+  const auto at = text.find(word);
+  return at == std::string::npos ? text : text.erase(at, word.size());
+}
+
+}  // namespace
+
+bool is_effect_path(const std::string& path) {
+  std::string text = lower_case(path);
+  std::replace(text.begin(), text.end(), '\\', '/');
+  // An aircraft; and "train" as well as "trainer".
+  text = without(without(std::move(text), "lightning"), "train");
+  return contains_any(text,
+                      {"light",
+                       "beacon",
+                       "strobe",
+                       "halo",
+                       "flare",
+                       "/effects/",
+                       "smoke",
+                       "contrail",
+                       "rain",
+                       "/sounds/",
+                       "/sound/",
+                       "exhaust"});
+}
+
+bool is_effect(const std::string& object) {
+  const std::string name = without(lower_case(object), "noshadow");  // "Disk.noshadow" casts none
+  return contains_any(name,
+                      {"halo", "glow", "shadow", "contrail", "smoke", "flare", "beam", "vapor"}) ||
+         (object.ends_with("On") && contains_any(name, {"light", "beacon", "strobe"}));
+}
+
+bool is_propeller_disc(const std::vector<std::string>& names) {
+  if (names.empty()) return false;
+  const std::string name = lower_case(names.back());
+  if (contains_any(name, {"fan", "eng"})) return false;
+  return contains_any(name, {"_blur", "-blur"}) || name.starts_with("disk") ||
+         name.starts_with("disc") ||
+         (contains_any(name, {"prop", "prplr", "rotor"}) &&
+          contains_any(name, {"disk", "disc", "blur", "fast"}));
+}
+
+bool is_wheel(const std::string& object) {
+  return contains_any(lower_case(object), {"wheel", "tire", "tyre", "roue", "gear"});
+}
+
+}  // namespace airtruth::aircraft

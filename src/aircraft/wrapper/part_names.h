@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+// What FlightGear's models tell by names alone: lamps and other effects of the game, propellers
+// that turn too fast to be seen, and wheels. Letter case matters only where it is said.
+namespace airtruth::aircraft {
+
+// Whether the path is that of a lamp, smoke, rain or a sound.
+bool is_effect_path(const std::string& path);
+
+// Whether an object is a lamp, its glow, a shadow on the ground or smoke. These are effects of the
+// game and no part of the aircraft's body. A lamp that is lit has a name that ends in "On".
+bool is_effect(const std::string& object);
+
+// Whether the names, outermost first, are those of a propeller or rotor that turns fast, and not of
+// a jet engine's fan ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk").
+bool is_propeller_disc(const std::vector<std::string>& names);
+
+bool is_wheel(const std::string& object);
+
+}  // namespace airtruth::aircraft

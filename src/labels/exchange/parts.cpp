@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "labels/exchange/parts.h"
+
+#include <algorithm>
+
+namespace airtruth::exchange {
+
+std::vector<fs::path> FolderWriter::images(const Clip& clip, const std::string& part) const {
+  std::vector<fs::path> files;
+  for (std::size_t i = 0; i < clip.frames.size(); ++i) files.push_back(image(clip, part, i));
+  return files;
+}
+
+std::size_t FolderWriter::class_of(const std::string& category) const {
+  const auto& all = options_.categories;
+  return static_cast<std::size_t>(std::find(all.begin(), all.end(), category) - all.begin());
+}
+
+std::string numbered_stem(const Clip& clip, std::size_t i) {
+  return clip.name + "_" + padded(static_cast<std::int64_t>(i), 6);
+}
+
+LabelledFrame& frame_at(Clip& clip, std::size_t number) {
+  for (std::size_t i = clip.frames.size(); i <= number; ++i)
+    clip.frames.push_back({static_cast<std::int64_t>(i), std::nullopt, {}});
+  return clip.frames[number];
+}
+
+void add_label(LabelledFrame& frame,
+               Label label,
+               const Clip& clip,
+               LeftOut& left_out,
+               const std::string& place) {
+  if (is_in_picture(label.box_px, clip.width, clip.height))
+    frame.labels.push_back(std::move(label));
+  else
+    left_out.add(kOutside, place);
+}
+
+std::vector<fs::path> two_levels(const fs::path& folder) {
+  std::vector<fs::path> found = {folder};
+  for (const fs::path& outer : entries(folder)) {
+    found.push_back(outer);
+    for (const fs::path& inner : entries(outer)) found.push_back(inner);
+  }
+  return found;
+}
+
+fs::path numbered_media(const fs::path& pictures, const std::string& name) {
+  for (const char* extension : {".jpg", ".png"})
+    if (fs::exists(pictures / (name + "_000000" + extension)))
+      return pictures / (name + "_%06d" + extension);
+  return fs::is_directory(pictures) ? pictures : fs::path();
+}
+
+}  // namespace airtruth::exchange
