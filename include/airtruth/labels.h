@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -64,6 +65,11 @@ struct LabelledFrame {
   std::int64_t frame = 0;
   std::optional<double> time_s;
   std::vector<Label> labels;
+  // The file of the frame's picture as its set names it, relative to the set's folder of pictures;
+  // empty for a frame of a video.
+  std::string picture = {};
+  // The number of the picture in its set (COCO's image id).
+  std::optional<std::int64_t> image_id = {};
   bool operator==(const LabelledFrame&) const = default;
 };
 
@@ -71,12 +77,15 @@ struct LabelledFrame {
 struct Clip {
   // A plain file name.
   std::string name;
-  // A video, a folder or a pattern of numbered images; empty: none.
+  // A video, a list of pictures (.txt, a path on each line), or the folder below which
+  // LabelledFrame::picture lies; empty: none.
   std::filesystem::path media;
   // 0: unknown.
   int width = 0;
   int height = 0;
   std::optional<double> frame_rate_hz;
+  // The categories by their numbers in the clip's set (COCO's category ids).
+  std::map<std::int64_t, std::string> category_ids;
   // In order, including the frames without an object.
   std::vector<LabelledFrame> frames;
 };
@@ -130,6 +139,10 @@ struct ReadOptions {
   std::optional<std::pair<int, int>> size;
   // The category of objects where the format has none.
   std::string category = "aircraft";
+  // Label::object_class by category, for categories whose word states no class or another one.
+  // "Airplane", "helicopter", "Bird", "Flock", "Drone", "UAV", "Balloon" and the like state it, and
+  // the classes' own names; what states none is an aircraft.
+  std::map<std::string, std::string> class_of = {};
   // CSV only: the coordinate of the first pixel, 0 or 1.
   int origin_px = 0;
   // Returns width and height of a JPEG or PNG file, for formats whose labels do not state them

@@ -71,6 +71,7 @@ struct Import {
   std::string size;
   std::vector<std::string> videos;
   std::vector<std::string> classes;
+  std::vector<std::string> classes_of_categories;
   labelled::ImportOptions options;
 };
 
@@ -88,6 +89,8 @@ void run_import(Import arguments, Context& context) {
   }
   for (const std::string& given : arguments.classes)
     options.classes.push_back(labelled::object_class_from(given));
+  for (const std::string& given : arguments.classes_of_categories)
+    options.read.class_of.insert(labelled::class_of_category_from(given));
   options.warn = console.warn();
   const labelled::ImportSummary summary =
       labelled::import_set(arguments.source, arguments.out, options);
@@ -182,6 +185,14 @@ void add_import(CLI::App& group, Context& context) {
       ->check(CLI::Range(0, 1));
   command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
+  command
+      ->add_option("--frame-rate",
+                   in->options.frame_rate_hz,
+                   "Frames a second of numbered pictures, where nothing says it")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--class-of",
+                      in->classes_of_categories,
+                      "CATEGORY=CLASS, for a category whose word states no class or another one");
   command->add_option(
       "--class",
       in->classes,

@@ -109,6 +109,11 @@ void add_options(CLI::App& command, Detect& arguments) {
   command.add_flag("--backgrounds,!--no-backgrounds",
                    options.backgrounds,
                    "The videos that a set was made over as well, which show no intruder (default)");
+  command
+      .add_option("--frame-rate",
+                  options.frame_rate_hz,
+                  "Frames a second of numbered pictures, where nothing states it")
+      ->check(CLI::PositiveNumber);
   command.add_option("--lens",
                      arguments.lens,
                      "Calibration file for what states no lens (default: a guess of 60 degrees)");

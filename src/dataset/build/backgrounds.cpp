@@ -62,7 +62,9 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                    const catalogue::Folder& folder,
                                    const BuildOptions& options) {
   catalogue::BackgroundFiles files = files_of(background, folder, options);
-  const video::StreamInfo info = video::Reader(files.video, {.threads = 1}).info();
+  const video::StreamInfo info =
+      video::Reader(files.video, {.picture_rate_hz = background.frame_rate_hz, .threads = 1})
+          .info();
   files.width = info.width;
   files.height = info.height;
   files.frame_rate_hz = info.frame_rate.value();
@@ -73,7 +75,9 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
 video::StreamInfo stream_of(const catalogue::Background& background) {
   const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
   if (flight == nullptr)
-    return video::Reader(std::get<fs::path>(background.source), {.threads = 1}).info();
+    return video::Reader(std::get<fs::path>(background.source),
+                         {.picture_rate_hz = background.frame_rate_hz, .threads = 1})
+        .info();
   video::StreamInfo info;
   info.width = flight->width;
   info.height = flight->height;

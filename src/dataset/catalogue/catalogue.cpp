@@ -56,6 +56,7 @@ Background background_from(const TableReader& table) {
   }
   background.mask = table.path("mask");
   background.first_frame = table.whole("first_frame", 0, kMost).value_or(0);
+  background.frame_rate_hz = table.number("frame_rate_hz", scene::kFrameRate_hz);
   background.lens = scene::lens_in(table);
   background.motion = scene::motion_in(table);
   background.camera = scene::camera_in(table, background.motion, background.first_frame);
@@ -142,6 +143,7 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
                                                                          "flight",
                                                                          "mask",
                                                                          "first_frame",
+                                                                         "frame_rate_hz",
                                                                          "lens",
                                                                          "camera",
                                                                          "motion",

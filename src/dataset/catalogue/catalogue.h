@@ -34,6 +34,8 @@ struct Background {
   // The mask of a video; a flight brings its own.
   std::optional<fs::path> mask;
   std::int64_t first_frame = 0;
+  // Of numbered pictures, which state none.
+  std::optional<double> frame_rate_hz;
   scene::Lens lens;
   scene::Camera camera;
   scene::Motion motion;

@@ -147,6 +147,8 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
   scene.output = catalogue.output;
   scene.seed = catalogue.seed;
   scene.file = catalogue.file;
+  scene.background.name = background.name;
+  scene.background.frame_rate_hz = background.frame_rate_hz;
   scene.background.where = background.where;
   return scene;
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/labelled/import.h"
 
+#include <algorithm>
 #include <set>
+#include <utility>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
@@ -12,7 +14,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "labels/annotation/object_class.h"
-#include "picture/video/numbered_images.h"
+#include "labels/exchange/pictures.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
@@ -21,41 +23,65 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The reader takes numbered pictures in the order of their numbers, beginning with the first.
-// Labels match them only where every picture has its own label.
-void match_pictures(exchange::Clip& clip, const Warn& warn) {
-  if (clip.media.empty() || fs::is_regular_file(clip.media)) return;
-  const auto images = video::numbered_images(clip.media);
-  const std::size_t pictures = images ? images->files.size() : 0;
-  if (pictures != clip.frames.size()) {
-    airtruth::warn(warn,
-                   clip.media.string() + ": holds " + std::to_string(pictures) +
-                       " pictures, and there are labels for " + std::to_string(clip.frames.size()) +
-                       " frames of " + clip.name + "; they are imported without the pictures");
-    clip.media.clear();
-    return;
-  }
+// The list of a clip's pictures, beside its labels.
+constexpr const char* kPictureList = "pictures.txt";
+
+// Whether the frames of a clip are pictures, and their folder is its media.
+bool has_pictures(const exchange::Clip& clip) { return fs::is_directory(clip.media); }
+
+// Pictures that the user names for a clip: those that the labels name, or else one for each frame
+// in the order of their names.
+void join_given_folder(exchange::Clip& clip, const Warn& warn) {
+  const fs::path folder = std::exchange(clip.media, {});
+  const bool are_named = std::all_of(
+      clip.frames.begin(), clip.frames.end(), [&](const exchange::LabelledFrame& frame) {
+        return !frame.picture.empty() && fs::is_regular_file(folder / frame.picture);
+      });
+  if (are_named)
+    clip.media = folder;
+  else
+    exchange::join_in_order(clip, folder, warn);
+}
+
+// The frames of pictures are numbered by their places.
+void number_by_place(exchange::Clip& clip) {
   for (std::size_t i = 0; i < clip.frames.size(); ++i)
     clip.frames[i].frame = static_cast<std::int64_t>(i);
 }
 
+void expect_size(exchange::Clip& clip, int width, int height, const fs::path& file) {
+  if (clip.width == 0) {
+    clip.width = width;
+    clip.height = height;
+  } else if (clip.width != width || clip.height != height) {
+    throw Error(fmt::format("is {}x{}, and the labels of {} are for {}x{}",
+                            width,
+                            height,
+                            clip.name,
+                            clip.width,
+                            clip.height),
+                {file.string()});
+  }
+}
+
+std::pair<int, int> size_of_picture(const fs::path& file) {
+  const image::Rgb8 picture = video::read_still(file);
+  return {picture.width, picture.height};
+}
+
 // Fills in sizes, rates and times that the labels lack and the video states.
 void ask_video(exchange::Clip& clip, const Warn& warn) {
-  if (clip.media.empty()) return;
-  const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
-  if (clip.width == 0) {
-    clip.width = info.width;
-    clip.height = info.height;
-  } else if (clip.width != info.width || clip.height != info.height) {
-    throw Error("is " + std::to_string(info.width) + "x" + std::to_string(info.height) +
-                    ", and the labels of " + clip.name + " are for " + std::to_string(clip.width) +
-                    "x" + std::to_string(clip.height),
-                {clip.media.string()});
+  if (clip.media.empty() || clip.frames.empty()) return;
+  if (has_pictures(clip)) {
+    const fs::path first = clip.media / clip.frames.front().picture;
+    const auto [width, height] = size_of_picture(first);
+    return expect_size(clip, width, height, first);
   }
-  const bool is_video = fs::is_regular_file(clip.media);
-  if (!clip.frame_rate_hz && is_video) clip.frame_rate_hz = info.frame_rate.value();
-  const std::int64_t labelled = clip.frames.empty() ? 0 : clip.frames.back().frame + 1;
-  if (is_video && info.frame_count_estimate > 0 && labelled > info.frame_count_estimate)
+  const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
+  expect_size(clip, info.width, info.height, clip.media);
+  if (!clip.frame_rate_hz) clip.frame_rate_hz = info.frame_rate.value();
+  const std::int64_t labelled = clip.frames.back().frame + 1;
+  if (info.frame_count_estimate > 0 && labelled > info.frame_count_estimate)
     airtruth::warn(warn,
                    clip.media.string() + ": has about " +
                        std::to_string(info.frame_count_estimate) + " frames, and the labels of " +
@@ -79,7 +105,10 @@ Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
                  {"labels", labels},
                  {"categories", categories}};
   if (!distractors.empty()) record["distractors"] = distractors;
-  if (!clip.media.empty()) record["media"] = clip.media.string();
+  // Clips of one folder of pictures are known by their first pictures.
+  if (!clip.media.empty())
+    record["media"] =
+        (has_pictures(clip) ? clip.media / clip.frames.front().picture : clip.media).string();
   return record;
 }
 
@@ -143,25 +172,51 @@ void complete(std::vector<exchange::Clip>& clips,
     if (video != options.videos.end()) clip.media = video->second;
     if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
     require_utf8(clip.media);
-    match_pictures(clip, options.warn);
+    if (video != options.videos.end() && has_pictures(clip)) join_given_folder(clip, options.warn);
+    if (has_pictures(clip)) number_by_place(clip);
+    if (!clip.frame_rate_hz) clip.frame_rate_hz = options.frame_rate_hz;
     ask_video(clip, options.warn);
     clip.name = free_name(clip.name, taken);
     expect_rate(clip, source);
   }
 }
 
+std::string list_of_pictures(const exchange::Clip& clip) {
+  std::string text;
+  for (const exchange::LabelledFrame& frame : clip.frames)
+    text += (clip.media / frame.picture).lexically_normal().string() + "\n";
+  return text;
+}
+
 // Returns the record of the clip.
-Json write_clip(const exchange::Clip& clip, const ImportOptions& options, const fs::path& folder) {
+Json write_clip(exchange::Clip clip, const ImportOptions& options, const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
   Json record = record_of(clip, options);
+  if (has_pictures(clip)) {
+    write_file(folder / kPictureList, list_of_pictures(clip), Flush::kLater);
+    clip.media = kPictureList;
+  }
   write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
   // Categories come unchanged from the labels and may be invalid UTF-8.
   write_file(folder / "sequence.json",
              record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
              Flush::kLater);
   return record;
+}
+
+void expect_class(const std::string& word,
+                  const char* option,
+                  const std::string& text,
+                  const char* form) {
+  if (!annotation::is_object_class(word) && word != "ignore")
+    throw Error(
+        fmt::format("{} is '{}'; expected aircraft, bird, multirotor, balloon, glint, dirt, "
+                    "insect or ignore, {}",
+                    option,
+                    text,
+                    form));
 }
 
 }  // namespace
@@ -172,12 +227,16 @@ ImportOptions::ObjectClass object_class_from(const std::string& text) {
       equals == std::string::npos
           ? ImportOptions::ObjectClass{"*", text}
           : ImportOptions::ObjectClass{text.substr(0, equals), text.substr(equals + 1)};
-  if (!annotation::is_object_class(given.name) && given.name != "ignore")
-    throw Error(
-        "--class is '" + text +
-        "'; expected aircraft, bird, multirotor, balloon, glint, dirt, insect or ignore, or "
-        "CLIP=CLASS");
+  expect_class(given.name, "--class", text, "or CLIP=CLASS");
   return given;
+}
+
+std::pair<std::string, std::string> class_of_category_from(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0)
+    throw Error("--class-of is '" + text + "'; expected CATEGORY=CLASS");
+  expect_class(text.substr(equals + 1), "--class-of", text, "as in CATEGORY=CLASS");
+  return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
 ImportSummary import_set(const fs::path& source,
@@ -187,10 +246,7 @@ ImportSummary import_set(const fs::path& source,
     throw Error("exists and is not empty; expected a new folder", {out.string()});
   check_output_folder(out);
   exchange::ReadOptions read = options.read;
-  read.size_of_picture = [](const fs::path& file) {
-    const image::Rgb8 picture = video::read_still(file);
-    return std::pair(picture.width, picture.height);
-  };
+  read.size_of_picture = size_of_picture;
   std::vector<exchange::Clip> clips =
       exchange::read_clips(options.format, source, read, options.warn);
   complete(clips, source, options);

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dataset/sequences/layout.h"
@@ -28,6 +30,8 @@ struct ImportOptions {
     std::string name;
   };
   std::vector<ObjectClass> classes;
+  // Of pictures, for sets that state none.
+  std::optional<double> frame_rate_hz;
   // More clips lie in numbered folders with as many each (dataset/sequences/layout.h).
   std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder;
   Warn warn;
@@ -43,10 +47,14 @@ struct ImportSummary {
 // fits. Throws Error for a class that is none.
 ImportOptions::ObjectClass object_class_from(const std::string& text);
 
-// Reads labelled video of another format and writes out/sequences/NAME/labels.jsonl and
-// sequence.json (docs/formats/labels.md). `overlay`, `dataset export` and the evaluation read these
-// like rendered sequences. The videos stay where they are. Throws Error where `out` exists and is
-// not empty, for a class that is none, and for a pattern that fits no clip.
+// "CATEGORY=CLASS" as the category and the class. Throws Error for any other text.
+std::pair<std::string, std::string> class_of_category_from(const std::string& text);
+
+// Reads labelled video of another format and writes out/sequences/NAME/labels.jsonl,
+// sequence.json and, of pictures, pictures.txt (docs/formats/labels.md). `overlay`, `dataset
+// export` and the evaluation read these like rendered sequences. The videos stay where they are.
+// Throws Error where `out` exists and is not empty, for a class that is none, and for a pattern
+// that fits no clip.
 ImportSummary import_set(const fs::path& source, const fs::path& out, const ImportOptions& options);
 
 }  // namespace airtruth::labelled

@@ -112,6 +112,7 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
   if (record.has("scene_toml")) {
     const scene::Scene scene = scene::parse_scene(record.text("scene_toml"), file);
     facts.background = scene.background.video.string();
+    facts.background_name = scene.background.name;
     facts.frames = record.object("summary").count("frames");
     std::set<std::string> distractors;
     for (const scene::Intruder& intruder : scene.intruders)
@@ -127,6 +128,8 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     facts.frames = record.count("frames");
     for (const std::string& category : record.texts("categories")) categories.insert(category);
   }
+  if (facts.background_name.empty())
+    facts.background_name = fs::path(facts.background).filename().string();
   if (record.has("distractors")) facts.distractors = record.texts("distractors");
   facts.categories = {categories.begin(), categories.end()};
   return facts;

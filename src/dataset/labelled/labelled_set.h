@@ -20,6 +20,8 @@ struct ClipFacts {
   std::string name;
   // The background video; for an imported clip, its own video.
   std::string background;
+  // What the scene or catalogue calls it, or the name of its file.
+  std::string background_name;
   // The categories of the objects that may appear in the sequence.
   std::vector<std::string> categories;
   // Those of them that are no aircraft.

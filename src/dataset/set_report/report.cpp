@@ -133,7 +133,7 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
   const auto& scene = portrait.scene;
   return {
       {"name", portrait.facts.name},
-      {"background", fs::path(portrait.facts.background).filename().string()},
+      {"background", portrait.facts.background_name},
       {"aircraft", portrait.facts.categories},
       {"frames", portrait.facts.frames},
       {"seconds", rounded(portrait.duration_s, 0.01)},

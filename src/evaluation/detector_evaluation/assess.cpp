@@ -24,8 +24,14 @@ namespace {
 std::vector<results::ExpectedSequence> expected_of(
     const std::vector<scores::TruthSequence>& truths) {
   std::vector<results::ExpectedSequence> expected;
-  for (const scores::TruthSequence& truth : truths)
+  for (const scores::TruthSequence& truth : truths) {
     expected.push_back({truth.name, truth.width, truth.height, std::ssize(truth.frames)});
+    expected.back().category_ids = truth.category_ids;
+    for (const scores::TruthFrame& frame : truth.frames) {
+      expected.back().pictures.push_back(frame.picture);
+      expected.back().image_ids.push_back(frame.image_id);
+    }
+  }
   return expected;
 }
 

@@ -54,13 +54,17 @@ scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std
   scores::TruthSequence truth;
   truth.name = name;
   truth.media = clip.media;
-  truth.background = clip.media.filename().string();
+  truth.background_file = clip.media.filename().string();
+  truth.background = set.facts(name).background_name;
+  truth.category_ids = clip.category_ids;
   truth.width = clip.width;
   truth.height = clip.height;
   truth.frame_rate_hz = clip.frame_rate_hz.value_or(0);
   for (const exchange::LabelledFrame& labelled : clip.frames) {
     scores::TruthFrame& frame = truth.frames.emplace_back();
     frame.frame = labelled.frame;
+    frame.picture = labelled.picture;
+    frame.image_id = labelled.image_id;
     frame.time_s = labelled.time_s.value_or(
         truth.frame_rate_hz > 0 ? static_cast<double>(labelled.frame) / truth.frame_rate_hz : 0);
     for (const exchange::Label& label : labelled.labels)
@@ -243,7 +247,9 @@ RenderedTruth rendered_truth(const fs::path& folder,
   rendered.first_background_frame = finished.scene->background.first_frame;
   scores::TruthSequence& truth = rendered.truth;
   truth.media = finished.video;
-  truth.background = finished.scene->background.video.filename().string();
+  truth.background_file = finished.scene->background.video.filename().string();
+  truth.background = finished.scene->background.name.empty() ? truth.background_file
+                                                             : finished.scene->background.name;
   truth.background_cut = fmt::format("{} from {}",
                                      finished.scene->background.video.string(),
                                      finished.scene->background.first_frame);
@@ -287,7 +293,9 @@ std::optional<std::int64_t> offset_of(const scores::IgnoredRegion& region,
                                       const scores::TruthSequence& truth,
                                       std::int64_t first_of_background) {
   if (matches(region.sequence, truth.name)) return 0;
-  if (!truth.background.empty() && region.sequence == truth.background) return first_of_background;
+  if (!region.sequence.empty() &&
+      (region.sequence == truth.background_file || region.sequence == truth.background))
+    return first_of_background;
   return std::nullopt;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,9 @@ struct TruthFrame {
   std::vector<TruthObject> objects;
   // Regions in which detections count neither way: unlabelled aircraft of the background.
   std::vector<Box> ignored_px;
+  // Of an imported clip: the file of the frame's picture and its number in its set.
+  std::string picture;
+  std::optional<std::int64_t> image_id;
 };
 
 // What is known of the encounter with one aircraft.
@@ -72,8 +76,11 @@ struct TruthEncounter {
 
 struct TruthSequence {
   std::string name;
-  // File name of the background video; for an imported clip, of its own video.
+  // What the scene calls its background, or the name of its file; for an imported clip, of its own
+  // video.
   std::string background;
+  // The name of the background's file, by which ignored regions may name it.
+  std::string background_file;
   // The same for sequences over the same frames of one background; empty for an imported clip.
   std::string background_cut;
   // The video that detectors see; may be empty for an imported clip.
@@ -86,6 +93,8 @@ struct TruthSequence {
   std::optional<lens::Lens> lens;
   // Of the encounter among those of its encounter model; 1 where the set has none.
   double weight = 1;
+  // Of an imported clip: its categories by their numbers in its set.
+  std::map<std::int64_t, std::string> category_ids;
   std::vector<TruthFrame> frames;
   std::vector<TruthEncounter> encounters;  // one for each aircraft that any frame shows
   // Number of intruders that no frame shows. No measure holds them: no detector could find them.

@@ -49,7 +49,7 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& w
   std::vector<TruthClip> truths;
   for (const std::string& name : set.names()) {
     const auto lens = lens_of(set, name);
-    const std::string background = fs::path(set.facts(name).background).filename().string();
+    const std::string background = set.facts(name).background_name;
     for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name, boxes))) {
       truths.push_back(truth_from(std::move(clip)));
       truths.back().lens = lens;

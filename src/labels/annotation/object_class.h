@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string_view>
 
 // The classes of what a scene puts into a video: an aircraft, or a distractor, which a detector may
@@ -25,5 +26,10 @@ constexpr bool is_object_class(std::string_view word) {
   return is_aircraft(word) || is_on_lens(word) ||
          std::find(kInTheAir.begin(), kInTheAir.end(), word) != kInTheAir.end();
 }
+
+// The class of a category of somebody's labels: "Airplane", "helicopter" and the like are aircraft,
+// "Flock" is a bird, "UAV" and "Drone" are multirotors, "Ignored regions" is "ignore". Letter case,
+// a plural's s, and signs between words do not matter. Empty for any other word.
+std::optional<std::string_view> class_of_category(std::string_view category);
 
 }  // namespace airtruth::annotation

@@ -11,6 +11,7 @@
 #include "foundation/base/unfinished.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/pictures.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
 
@@ -169,8 +170,11 @@ class AotWriter : public Writer {
 
 class FlightReader {
  public:
-  FlightReader(const fs::path& file, const std::string& id, const JsonObject& flight, LeftOut& left)
-      : file_(file), flight_(flight), left_out_(left) {
+  FlightReader(const fs::path& file,
+               const std::string& id,
+               const JsonObject& flight,
+               const Reading& in)
+      : file_(file), flight_(flight), left_out_(in.left_out), warn_(in.warn) {
     clip_.name = id;
   }
 
@@ -184,8 +188,6 @@ class FlightReader {
       clip_.width = side_of(about.object("resolution").number("width"));
       clip_.height = side_of(about.object("resolution").number("height"));
     }
-    const fs::path pictures = file_.parent_path().parent_path() / "Images" / clip_.name;
-    if (!entries(pictures).empty()) clip_.media = pictures;
     const auto frames = whole_in(about.maybe_number("number_of_frames").value_or(0), 0, kMaxFrames);
     if (!frames) about.fail("number_of_frames is no number of frames");
     if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1);
@@ -197,6 +199,7 @@ class FlightReader {
         if (const auto time = entity.maybe_integer("time"))
           origin_ns_ = std::min(origin_ns_.value_or(*time), *time);
     for (const JsonObject& entity : entities) add(entity);
+    join();
     return clip_;
   }
 
@@ -206,6 +209,7 @@ class FlightReader {
     const std::int64_t number = blob.whole("frame");
     if (number < 0 || number > kMaxFrames) blob.fail("frame is out of range");
     LabelledFrame& frame = frame_at(clip_, static_cast<std::size_t>(number));
+    if (const auto name = entity.maybe_text("img_name")) frame.picture = *name;
     const auto time = entity.maybe_integer("time");
     if (time && has_times_) frame.time_s = static_cast<double>(*time - *origin_ns_) / 1e9;
     if (!entity.has("id") || !entity.has("bb")) return;
@@ -221,6 +225,25 @@ class FlightReader {
       if (above && *above != 0) label.above_horizon = *above > 0;
     }
     add_label(frame, label, clip_, left_out_, entity.place());
+  }
+
+  // Pictures belong to frames by img_name.
+  void join() {
+    const fs::path images = file_.parent_path().parent_path() / "Images" / clip_.name;
+    if (pictures_in(images).empty()) return;
+    const auto missing =
+        std::find_if(clip_.frames.begin(), clip_.frames.end(), [&](const LabelledFrame& frame) {
+          return frame.picture.empty() || !fs::is_regular_file(images / frame.picture);
+        });
+    if (missing == clip_.frames.end())
+      clip_.media = images;
+    else
+      airtruth::warn(
+          warn_,
+          fmt::format("{}: holds no picture of frame {} of {}; it is imported without pictures",
+                      images.string(),
+                      missing->frame,
+                      clip_.name));
   }
 
   // Where a range is unknown, the published files contain NaN, a string or no key.
@@ -246,6 +269,7 @@ class FlightReader {
   fs::path file_;
   const JsonObject& flight_;
   LeftOut& left_out_;
+  const Warn& warn_;
   std::map<std::string, std::int64_t> tracks_;
   std::optional<std::int64_t> origin_ns_;
   bool has_times_ = true;
@@ -275,7 +299,7 @@ Clips read_aot(const Reading& in) {
     const JsonDocument json = python_json(file);
     const JsonObject samples = json.object("samples");
     for (const std::string& id : samples.keys())
-      clips.push_back(FlightReader(file, id, samples.object(id), in.left_out).read());
+      clips.push_back(FlightReader(file, id, samples.object(id), in).read());
   }
   return clips;
 }

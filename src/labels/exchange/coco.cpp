@@ -12,11 +12,13 @@
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
 #include "foundation/geometry/box.h"
+#include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/pictures.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
 
-// Reads COCO; the format is described in coco_writer.cpp.
+// Reads COCO; the writer below describes the format.
 namespace airtruth::exchange {
 namespace {
 
@@ -30,22 +32,29 @@ class CocoReader {
     categories();
     images();
     annotations();
-    Clips clips;
-    for (auto& [key, video] : videos_) clips.push_back(clip_of(video));
+    std::vector<LabelledPicture> of_no_video;
+    for (auto& [id, image] : images_)
+      (image.video ? videos_.at(*image.video).pictures : of_no_video)
+          .push_back(std::move(image.picture));
+    Clips clips = clips_of_pictures(std::move(of_no_video), file_.stem().string(), file_, warn_);
+    for (auto& [id, video] : videos_) {
+      clips.push_back(clip_of_pictures(
+          fs::path(video.name).filename().string(), std::move(video.pictures), file_, warn_));
+      clips.back().frame_rate_hz = video.frame_rate_hz;
+    }
+    for (Clip& clip : clips) clip.category_ids = categories_;
     return clips;
   }
 
  private:
-  struct Picture {
-    std::string file_name;
-    std::int64_t frame = 0;
-    LabelledFrame labels;
-    int width = 0, height = 0;
+  struct Image {
+    LabelledPicture picture;
+    std::optional<std::int64_t> video;
   };
   struct Video {
     std::string name;
     std::optional<double> frame_rate_hz;
-    std::vector<std::int64_t> images;
+    std::vector<LabelledPicture> pictures;
   };
 
   void categories() {
@@ -53,65 +62,67 @@ class CocoReader {
       categories_[category.whole("id")] = category.text("name");
     if (!json_.has("videos")) return;
     for (const JsonObject& video : json_.objects("videos")) {
-      Video& about = videos_["#" + padded(video.whole("id"), 12)];
+      Video& about = videos_[video.whole("id")];
       about.name = video.has("name") ? video.text("name") : video.text("file_name");
       about.frame_rate_hz = video.maybe_number("frame_rate_hz");
     }
   }
 
   void images() {
-    for (const JsonObject& image : json_.objects("images")) {
-      const std::int64_t id = image.whole("id");
-      Picture picture;
-      picture.file_name = image.text("file_name");
-      picture.width = side_of(image.number("width"));
-      picture.height = side_of(image.number("height"));
-      picture.labels.time_s = image.maybe_number("time_s");
-      Video& video = video_of(image, picture.file_name);
-      // The frame's number follows from its place in the video, its number, or its place in the
-      // list.
-      picture.frame = image.has("frame_id")
-                          ? image.whole("frame_id")
-                          : name_and_number(fs::path(picture.file_name).stem().string())
-                                .second.value_or(std::ssize(video.images));
-      if (!pictures_.emplace(id, picture).second)
-        image.fail("id is " + std::to_string(id) + ", as an earlier image's");
-      video.images.push_back(id);
+    const std::vector<fs::path> folders = folders_of_pictures();
+    for (const JsonObject& json : json_.objects("images")) {
+      Image image;
+      LabelledPicture& picture = image.picture;
+      picture.image_id = json.whole("id");
+      picture.name = json.text("file_name");
+      picture.folder = folder_of_picture(folders, picture.name);
+      picture.width = side_of(json.number("width"));
+      picture.height = side_of(json.number("height"));
+      picture.time_s = json.maybe_number("time_s");
+      picture.number = json.maybe_integer("frame_id");
+      image.video = json.maybe_integer("video_id");
+      if (image.video && !videos_.contains(*image.video)) json.fail("video_id names no video");
+      if (!images_.emplace(*picture.image_id, std::move(image)).second)
+        json.fail("id is " + std::to_string(json.whole("id")) + ", as an earlier image's");
     }
   }
 
-  // Pictures without a video form one clip for each of their folders.
-  Video& video_of(const JsonObject& image, const std::string& file_name) {
-    if (image.has("video_id")) {
-      const auto found = videos_.find("#" + padded(image.whole("video_id"), 12));
-      if (found == videos_.end()) image.fail("video_id names no video");
-      return found->second;
-    }
-    const std::string folder = fs::path(file_name).parent_path().string();
-    Video& video = videos_[folder];
-    std::string name = folder.empty() ? file_.stem().string() : folder;
-    std::replace(name.begin(), name.end(), '/', '-');
-    video.name = name;
-    return video;
+  // The folders near the annotations in which the pictures may lie: images/PART as this program
+  // and CVAT write them, PART and images as COCO is published, and the annotations' own folder, as
+  // Roboflow writes them.
+  std::vector<fs::path> folders_of_pictures() const {
+    const std::string stem = file_.stem().string();
+    const std::string part = stem.substr(stem.rfind('_') + 1);
+    const fs::path root = file_.parent_path().parent_path();
+    return {root / "images" / part, root / "images", root / part, root, file_.parent_path()};
+  }
+
+  // The track of an annotation, where it has one; CVAT writes it as an attribute.
+  static std::optional<std::int64_t> track_of(const JsonObject& annotation) {
+    for (const char* key : {"track_id", "instance_id"})
+      if (const auto track = annotation.maybe_integer(key)) return track;
+    if (!annotation.has("attributes")) return std::nullopt;
+    return annotation.object("attributes").maybe_integer("track_id");
   }
 
   void annotations() {
     std::map<std::int64_t, std::int64_t> labels_without_track;
     for (const JsonObject& annotation : json_.objects("annotations")) {
       const std::int64_t image = annotation.whole("image_id");
-      const auto found = pictures_.find(image);
-      if (found == pictures_.end()) {
+      const auto found = images_.find(image);
+      if (found == images_.end()) {
         left_out_.add("annotations of images that are not listed", annotation.place());
         continue;
       }
-      Picture& picture = found->second;
+      LabelledPicture& picture = found->second.picture;
       std::optional<Label> label = label_of(annotation, picture);
       if (!label) continue;
-      label->track = annotation.has("track_id")      ? annotation.whole("track_id")
-                     : annotation.has("instance_id") ? annotation.whole("instance_id")
-                                                     : ++labels_without_track[image];
+      const auto track = track_of(annotation);
+      label->track = track ? *track : ++labels_without_track[image];
       get_known(annotation, *label, "visibility");
-      picture.labels.labels.push_back(*std::move(label));
+      if (annotation.has("attributes") && !label->occluded)
+        label->occluded = annotation.object("attributes").maybe_truth("occluded");
+      picture.labels.push_back(*std::move(label));
     }
     if (!labels_without_track.empty())
       warn(warn_,
@@ -121,7 +132,7 @@ class CocoReader {
   }
 
   // Category and box of an annotation; empty if it is left out.
-  std::optional<Label> label_of(const JsonObject& annotation, const Picture& picture) {
+  std::optional<Label> label_of(const JsonObject& annotation, const LabelledPicture& picture) {
     if (annotation.maybe_truth("iscrowd").value_or(false)) {
       left_out_.add("crowds (iscrowd = 1), which are regions and no objects", annotation.place());
       return std::nullopt;
@@ -156,63 +167,48 @@ class CocoReader {
     return bounds.box();
   }
 
-  Clip clip_of(Video& video) {
-    std::stable_sort(video.images.begin(), video.images.end(), [&](std::int64_t a, std::int64_t b) {
-      return pictures_.at(a).frame < pictures_.at(b).frame;
-    });
-    Clip clip;
-    clip.name = fs::path(video.name).filename().string();
-    clip.frame_rate_hz = video.frame_rate_hz;
-    bool same_size = true;
-    for (const std::int64_t id : video.images) {
-      Picture& picture = pictures_.at(id);
-      same_size = same_size && (clip.frames.empty() ||
-                                (picture.width == clip.width && picture.height == clip.height));
-      clip.width = picture.width;
-      clip.height = picture.height;
-      picture.labels.frame = picture.frame;
-      clip.frames.push_back(picture.labels);
-    }
-    if (!same_size) {
-      warn(warn_,
-           file_.string() + ": the pictures of " + clip.name +
-               " differ in size, as those of no video do; they are imported without size and "
-               "pictures");
-      clip.width = clip.height = 0;
-      return clip;
-    }
-    if (!video.images.empty()) clip.media = media_of(pictures_.at(video.images.front()).file_name);
-    return clip;
-  }
-
-  // The folder of a clip's pictures, where it can be found near the annotations.
-  fs::path media_of(const std::string& file_name) const {
-    const std::string stem = file_.stem().string();
-    const std::string part = stem.substr(stem.rfind('_') + 1);
-    const fs::path root = file_.parent_path().parent_path();
-    for (const fs::path& base :
-         {root / "images" / part, root / "images", root / part, root, file_.parent_path()})
-      if (fs::exists(base / file_name)) return (base / file_name).parent_path();
-    return {};
-  }
-
   fs::path file_;
   JsonDocument json_;
   LeftOut left_out_;
   const Warn& warn_;
   std::map<std::int64_t, std::string> categories_;
-  std::map<std::int64_t, Picture> pictures_;
-  std::map<std::string, Video> videos_;
+  std::map<std::int64_t, Image> images_;
+  std::map<std::int64_t, Video> videos_;
 };
+
+// The annotation files of a folder: those in annotations/, of which the published sets hold further
+// kinds, of the same pictures, beside the boxes (captions, key points, panoptic, and the bare
+// pictures of the test part); or one in the folder or in each part's, as Roboflow writes them.
+std::vector<fs::path> annotation_files(const fs::path& folder, const Warn& warn) {
+  std::vector<fs::path> files = files_with(folder / "annotations", ".json");
+  std::vector<fs::path> instances;
+  std::copy_if(files.begin(), files.end(), std::back_inserter(instances), [](const fs::path& file) {
+    return file.filename().string().starts_with("instances");
+  });
+  if (!instances.empty() && instances.size() < files.size()) {
+    const auto other = std::find_if(files.begin(), files.end(), [](const fs::path& file) {
+      return !file.filename().string().starts_with("instances");
+    });
+    airtruth::warn(warn,
+                   fmt::format("{}: {} files beside instances_*.json are not read (the first: {})",
+                               other->parent_path().string(),
+                               files.size() - instances.size(),
+                               other->filename().string()));
+  }
+  if (!instances.empty()) return instances;
+  if (files.empty()) files = files_with(folder, ".json");
+  for (const fs::path& part : entries(folder))
+    if (const fs::path file = part / "_annotations.coco.json"; fs::exists(file))
+      files.push_back(file);
+  return files;
+}
 
 }  // namespace
 
 Clips read_coco(const Reading& in) {
-  std::vector<fs::path> files = {in.source};
-  if (fs::is_directory(in.source)) {
-    files = files_with(in.source / "annotations", ".json");
-    if (files.empty()) files = files_with(in.source, ".json");
-  }
+  const std::vector<fs::path> files = fs::is_directory(in.source)
+                                          ? annotation_files(in.source, in.warn)
+                                          : std::vector<fs::path>{in.source};
   if (files.empty()) throw Error("holds no annotation file (*.json)", {in.source.string()});
   Clips clips;
   for (const fs::path& file : files) {
@@ -351,7 +347,10 @@ class CocoWriter : public FolderWriter {
     Json categories = Json::array();
     for (const std::string& category : options_.categories)
       categories.push_back(
-          {{"id", class_of(category) + 1}, {"name", category}, {"supercategory", "aircraft"}});
+          {{"id", class_of(category) + 1},
+           {"name", category},
+           {"supercategory",
+            std::string(annotation::class_of_category(category).value_or(annotation::kAircraft))}});
     const fs::path file = whole(part);
     Unfinished unfinished = Unfinished::path(part_path(file));
     {

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
 
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/box.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
 #include "labels/exchange/xml_file.h"
 
@@ -18,6 +23,7 @@
 namespace airtruth::exchange {
 namespace {
 
+constexpr const char* kNoBox = "shapes that bound no area (points, cuboids, skeletons and tags)";
 constexpr const char* kAttributes[] = {"visible", "truncated", "range_m", "above_horizon"};
 
 std::string number(double value) { return fmt::format("{}", value); }
@@ -132,22 +138,78 @@ class CvatWriter : public FolderWriter {
   }
 };
 
+// "x,y;x,y;..."
+BoxBounds bounds_of_points(const XmlFile& xml, const pugi::xml_node& shape) {
+  BoxBounds bounds;
+  const std::string text = shape.attribute("points").value();
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(';', at), text.size());
+    const std::string point = text.substr(at, end - at);
+    const std::size_t comma = std::min(point.find(','), point.size());
+    const auto x = number_in(point.substr(0, comma));
+    const auto y = comma < point.size() ? number_in(point.substr(comma + 1)) : std::nullopt;
+    if (!x || !y) xml.fail(shape, "has points that are no x,y;x,y;...");
+    bounds.add({*x, *y});
+    at = end + 1;
+  }
+  return bounds;
+}
+
+Box box_about(double x, double y, double half_width, double half_height) {
+  return {x - half_width, y - half_height, 2 * half_width, 2 * half_height};
+}
+
+// The bounds of a shape; empty for one that encloses nothing (points, tag) and for those of further
+// dimensions (cuboid, skeleton).
+std::optional<Box> box_of(const XmlFile& xml, const pugi::xml_node& shape) {
+  const std::string kind = shape.name();
+  const double degrees = number_in(shape.attribute("rotation").value()).value_or(0);
+  const double cosine = std::abs(std::cos(degrees * std::numbers::pi / 180));
+  const double sine = std::abs(std::sin(degrees * std::numbers::pi / 180));
+  if (kind == "box") {
+    const double x = xml.attribute(shape, "xtl");
+    const double y = xml.attribute(shape, "ytl");
+    const double width = xml.attribute(shape, "xbr") - x;
+    const double height = xml.attribute(shape, "ybr") - y;
+    if (degrees == 0) return Box{x, y, width, height};
+    return box_about(x + width / 2,
+                     y + height / 2,
+                     (width * cosine + height * sine) / 2,
+                     (width * sine + height * cosine) / 2);
+  }
+  if (kind == "ellipse") {
+    const double rx = xml.attribute(shape, "rx");
+    const double ry = xml.attribute(shape, "ry");
+    return box_about(xml.attribute(shape, "cx"),
+                     xml.attribute(shape, "cy"),
+                     std::hypot(rx * cosine, ry * sine),
+                     std::hypot(rx * sine, ry * cosine));
+  }
+  if (kind == "mask")
+    return Box{xml.attribute(shape, "left"),
+               xml.attribute(shape, "top"),
+               xml.attribute(shape, "width"),
+               xml.attribute(shape, "height")};
+  if (kind == "polygon" || kind == "polyline") return bounds_of_points(xml, shape).box();
+  return std::nullopt;
+}
+
+// A label without its box.
 Label label_of(const XmlFile& xml,
-               const pugi::xml_node& box,
+               const pugi::xml_node& shape,
                const std::string& category,
                std::int64_t track) {
   Label label;
   label.track = track;
   label.category = category;
-  const double x = xml.attribute(box, "xtl");
-  const double y = xml.attribute(box, "ytl");
-  label.box_px = {x, y, xml.attribute(box, "xbr") - x, xml.attribute(box, "ybr") - y};
-  label.occluded = xml.attribute(box, "occluded") != 0;
-  for (const pugi::xml_node& attribute : box.children("attribute")) {
+  if (shape.attribute("occluded")) label.occluded = xml.attribute(shape, "occluded") != 0;
+  for (const pugi::xml_node& attribute : shape.children("attribute")) {
     const std::string name = attribute.attribute("name").value();
     const std::string value = attribute.child_value();
     if (name == "visible") label.visible = number_in(value);
     if (name == "range_m") label.range_m = number_in(value);
+    if (name == "track_id")
+      if (const auto id = whole_in(number_in(value).value_or(-1), 0, kMaxTracks)) label.track = *id;
     if (value != "true" && value != "false") continue;
     if (name == "truncated") label.truncated = value == "true";
     if (name == "above_horizon") label.above_horizon = value == "true";
@@ -166,97 +228,197 @@ Label between(const Label& from, const Label& to, double share) {
   return label;
 }
 
-class CvatReader {
+// A file of "CVAT for video": frames, and tracks that are shown in them.
+class TrackReader {
  public:
-  CvatReader(const fs::path& file, LeftOut& left_out)
-      : file_(file), xml_(file), left_out_(left_out) {}
+  TrackReader(const fs::path& file, const XmlFile& xml, const Reading& in)
+      : file_(file), xml_(xml), in_(in) {}
 
-  Clip read() {
-    const pugi::xml_node top = xml_.top("annotations");
-    about(top.child("meta"));
-    for (const pugi::xml_node& image : top.children("image")) add_image(image);
+  Clip read(const pugi::xml_node& top, const pugi::xml_node& task, const std::string& name) {
+    clip_.name = name;
+    const pugi::xml_node size = task.child("original_size");
+    clip_.width = side_of(number_in(size.child_value("width")));
+    clip_.height = side_of(number_in(size.child_value("height")));
+    frames(top, task);
     for (const pugi::xml_node& track : top.children("track")) add(track);
     for (LabelledFrame& frame : clip_.frames)
       std::stable_sort(frame.labels.begin(),
                        frame.labels.end(),
                        [](const Label& a, const Label& b) { return a.track < b.track; });
+    join(top);
     return clip_;
   }
 
  private:
-  // The element is <task>, or <job> in files of newer servers.
-  void about(const pugi::xml_node& meta) {
-    pugi::xml_node task = meta.child("task");
-    if (!task) task = meta.child("job");
-    clip_.name = task.child_value("name");
-    if (clip_.name.empty() || clip_.name.find('/') != std::string::npos)
-      clip_.name = file_.parent_path().filename().string();
-    const auto frames = whole_in(number_in(task.child_value("size")).value_or(0), 0, kMaxFrames);
-    if (!frames) xml_.fail(task, "has a size that is no number of frames");
-    if (*frames > 0) frame_at(clip_, static_cast<std::size_t>(*frames) - 1);
-    const pugi::xml_node size = task.child("original_size");
-    clip_.width = side_of(number_in(size.child_value("width")));
-    clip_.height = side_of(number_in(size.child_value("height")));
-    if (const fs::path images = file_.parent_path() / "images"; !entries(images).empty())
-      clip_.media = images;
+  std::int64_t frame_of(const pugi::xml_node& node, const char* attribute) const {
+    const auto number = whole_in(xml_.attribute(node, attribute), 0, kMaxFrames);
+    if (!number) xml_.fail(node, std::string("has ") + attribute + " that is no frame, from 0 on");
+    return *number;
   }
 
-  // In "CVAT for images 1.1" these elements contain the boxes. In a file of tracks they only name
-  // the pictures.
-  void add_image(const pugi::xml_node& image) {
-    const auto number = whole_in(xml_.attribute(image, "id"), 0, kMaxFrames);
-    if (!number) xml_.fail(image, "has an id that is no whole number from 0 on");
-    const auto frame = static_cast<std::size_t>(*number);
-    frame_at(clip_, frame);
-    if (clip_.width == 0) {
-      clip_.width = side_of(number_in(image.attribute("width").value()));
-      clip_.height = side_of(number_in(image.attribute("height").value()));
+  // The frames of the task: every step-th of the video from its start on, by their numbers in the
+  // video. Where a label has another number, frames are counted within the task.
+  void frames(const pugi::xml_node& top, const pugi::xml_node& task) {
+    const auto stated = [&](const char* name) {
+      return whole_in(number_in(task.child_value(name)).value_or(0), 0, kMaxFrames);
+    };
+    const auto size = stated("size");
+    if (!size) xml_.fail(task, "has a size that is no number of frames");
+    first_ = stated("start_frame").value_or(0);
+    const std::string filter = task.child_value("frame_filter");
+    if (filter.starts_with("step="))
+      step_ = whole_in(number_in(filter.substr(5)).value_or(0), 1, kMaxFrames).value_or(1);
+    std::int64_t last = first_ + (std::max<std::int64_t>(*size, 1) - 1) * step_;
+    bool are_of_video = true;
+    const auto see = [&](std::int64_t number) {
+      are_of_video = are_of_video && number >= first_ && (number - first_) % step_ == 0;
+      last = std::max(last, number);
+    };
+    for (const pugi::xml_node& image : top.children("image")) see(frame_of(image, "id"));
+    for (const pugi::xml_node& track : top.children("track"))
+      for (const pugi::xml_node& shape : track.children()) see(frame_of(shape, "frame"));
+    if (!are_of_video) {
+      last = std::max<std::int64_t>(*size, 1) - 1;
+      for (const pugi::xml_node& track : top.children("track"))
+        for (const pugi::xml_node& shape : track.children())
+          last = std::max(last, frame_of(shape, "frame"));
+      first_ = 0;
+      step_ = 1;
     }
-    std::int64_t track = 0;
-    for (const pugi::xml_node& box : image.children("box"))
-      put(label_of(xml_, box, box.attribute("label").value(), ++track), frame);
+    if (*size == 0 && !top.child("image") && !top.child("track")) return;
+    for (std::int64_t number = first_; number <= last; number += step_)
+      clip_.frames.push_back({number, std::nullopt, {}});
+  }
+
+  std::size_t place_of(std::int64_t number) const {
+    return static_cast<std::size_t>((number - first_) / step_);
   }
 
   void add(const pugi::xml_node& track) {
-    const auto id = whole_in(xml_.attribute(track, "id"), 0, 1'000'000'000);
+    const auto id = whole_in(xml_.attribute(track, "id"), 0, kMaxTracks);
     if (!id) xml_.fail(track, "has an id that is no whole number");
     std::optional<Label> last;
-    std::size_t last_frame = 0;
-    for (const pugi::xml_node& box : track.children("box")) {
-      const auto number = whole_in(xml_.attribute(box, "frame"), 0, kMaxFrames);
-      if (!number) xml_.fail(box, "has a frame that is no whole number from 0 on");
-      const auto frame = static_cast<std::size_t>(*number);
-      const Label label = label_of(xml_, box, track.attribute("label").value(), *id + 1);
-      if (last) {
-        const bool gone = xml_.attribute(box, "outside") != 0;
-        for (std::size_t i = last_frame + 1; i < frame; ++i)
+    std::size_t last_place = 0;
+    for (const pugi::xml_node& shape : track.children()) {
+      const std::size_t place = place_of(frame_of(shape, "frame"));
+      const auto box = box_of(xml_, shape);
+      if (!box) {
+        in_.left_out.add(kNoBox, file_.string() + ", <" + shape.name() + ">");
+        continue;
+      }
+      Label label = label_of(xml_, shape, track.attribute("label").value(), *id + 1);
+      label.box_px = *box;
+      const bool gone = shape.attribute("outside") && xml_.attribute(shape, "outside") != 0;
+      if (last)
+        for (std::size_t i = last_place + 1; i < place; ++i)
           put(gone ? *last
                    : between(*last,
                              label,
-                             static_cast<double>(i - last_frame) /
-                                 static_cast<double>(frame - last_frame)),
+                             static_cast<double>(i - last_place) /
+                                 static_cast<double>(place - last_place)),
               i);
-      }
       last.reset();
-      if (xml_.attribute(box, "outside") != 0) continue;
-      put(label, frame);
+      if (gone) continue;
+      put(label, place);
       last = label;
-      last_frame = frame;
+      last_place = place;
     }
     // The last box stays to the end.
     if (last)
-      for (std::size_t i = last_frame + 1; i < clip_.frames.size(); ++i) put(*last, i);
+      for (std::size_t i = last_place + 1; i < clip_.frames.size(); ++i) put(*last, i);
   }
 
-  void put(const Label& label, std::size_t frame) {
-    add_label(frame_at(clip_, frame), label, clip_, left_out_, file_.string());
+  void put(const Label& label, std::size_t place) {
+    add_label(clip_.frames.at(place), label, clip_, in_.left_out, file_.string());
+  }
+
+  // Pictures belong to frames by the <image> that names them, or else by the number in their names.
+  void join(const pugi::xml_node& top) {
+    const fs::path images = file_.parent_path() / "images";
+    if (pictures_in(images).empty()) return;
+    if (!top.child("image")) return join_by_number(clip_, images, 0, in_.warn);
+    for (const pugi::xml_node& image : top.children("image"))
+      clip_.frames.at(place_of(frame_of(image, "id"))).picture = image.attribute("name").value();
+    const auto is_missing = [&](const LabelledFrame& frame) {
+      return frame.picture.empty() || !fs::is_regular_file(images / frame.picture);
+    };
+    const auto missing = std::find_if(clip_.frames.begin(), clip_.frames.end(), is_missing);
+    if (missing == clip_.frames.end())
+      clip_.media = images;
+    else
+      warn(in_.warn,
+           fmt::format("{}: holds no picture of frame {} of {}; it is imported without pictures",
+                       images.string(),
+                       missing->frame,
+                       clip_.name));
   }
 
   fs::path file_;
-  XmlFile xml_;
-  LeftOut& left_out_;
+  const XmlFile& xml_;
+  const Reading& in_;
+  std::int64_t first_ = 0;
+  std::int64_t step_ = 1;
   Clip clip_;
 };
+
+// A file of "CVAT for images": pictures by name, each with its shapes.
+Clips read_images(const fs::path& file,
+                  const XmlFile& xml,
+                  const pugi::xml_node& top,
+                  const std::string& name,
+                  const Reading& in) {
+  const fs::path root = file.parent_path();
+  std::map<std::string, std::vector<LabelledPicture>> subsets;
+  for (const pugi::xml_node& image : top.children("image")) {
+    const std::string subset = image.attribute("subset").value();
+    const std::vector<fs::path> folders = {
+        root / "images" / subset, root / "images", root / subset, root};
+    LabelledPicture picture;
+    picture.name = image.attribute("name").value();
+    if (picture.name.empty()) xml.fail(image, "has no name");
+    picture.folder = folder_of_picture(folders, picture.name);
+    picture.width = side_of(number_in(image.attribute("width").value()));
+    picture.height = side_of(number_in(image.attribute("height").value()));
+    for (const pugi::xml_node& shape : image.children()) {
+      const auto box = box_of(xml, shape);
+      if (!box) {
+        in.left_out.add(kNoBox, file.string() + ", <" + shape.name() + ">");
+        continue;
+      }
+      Label label =
+          label_of(xml, shape, shape.attribute("label").value(), std::ssize(picture.labels) + 1);
+      label.box_px = *box;
+      if (is_in_picture(*box, picture.width, picture.height))
+        picture.labels.push_back(std::move(label));
+      else
+        in.left_out.add(kOutside, file.string());
+    }
+    subsets[subset].push_back(std::move(picture));
+  }
+  Clips clips;
+  for (auto& [subset, pictures] : subsets) {
+    Clips more =
+        clips_of_pictures(std::move(pictures), subset.empty() ? name : subset, file, in.warn);
+    std::move(more.begin(), more.end(), std::back_inserter(clips));
+  }
+  return clips;
+}
+
+Clips clips_of_file(const fs::path& file, const Reading& in) {
+  const XmlFile xml(file);
+  const pugi::xml_node top = xml.top("annotations");
+  const pugi::xml_node meta = top.child("meta");
+  // The element is <task>, or <job> in files of newer servers; a <project> holds several tasks.
+  pugi::xml_node task = meta.child("task");
+  if (!task) task = meta.child("job");
+  const pugi::xml_node project = meta.child("project");
+  std::string name = (task ? task : project).child_value("name");
+  if (name.empty() || name.find('/') != std::string::npos)
+    name = file.parent_path().filename().string();
+  if (!top.child("track") && top.child("image")) return read_images(file, xml, top, name, in);
+  if (project) xml.fail(project, "holds tracks of several tasks; expected an export of one task");
+  return {TrackReader(file, xml, in).read(top, task, name)};
+}
 
 }  // namespace
 
@@ -278,7 +440,10 @@ Clips read_cvat(const Reading& in) {
   }
   if (files.empty()) throw Error("holds no annotations.xml", {in.source.string()});
   Clips clips;
-  for (const fs::path& file : files) clips.push_back(CvatReader(file, in.left_out).read());
+  for (const fs::path& file : files) {
+    Clips more = clips_of_file(file, in);
+    std::move(more.begin(), more.end(), std::back_inserter(clips));
+  }
   return clips;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 
 #include <airtruth/labels.h>
@@ -196,13 +197,49 @@ std::string loss(Format format) {
   return text;
 }
 
+namespace {
+
+// Gives each label the class that its category states.
+void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& warn) {
+  std::map<std::string, std::int64_t> unknown, unused;
+  for (const auto& [category, object_class] : options.class_of) unused[category] = 0;
+  for (Clip& clip : clips)
+    for (LabelledFrame& frame : clip.frames)
+      for (Label& label : frame.labels) {
+        unused.erase(label.category);
+        const auto asked = options.class_of.find(label.category);
+        const auto stated = annotation::class_of_category(label.category);
+        if (asked != options.class_of.end())
+          label.object_class = asked->second;
+        else if (stated)
+          label.object_class = *stated;
+        else if (label.category != options.category)
+          ++unknown[label.category];
+      }
+  if (!unused.empty())
+    throw Error("no label has the category '" + unused.begin()->first +
+                "', for which a class is given");
+  std::vector<std::string> words;
+  for (const auto& [category, count] : unknown)
+    words.push_back(fmt::format("'{}' ({})", category, count));
+  if (!words.empty())
+    airtruth::warn(warn,
+                   fmt::format("{} categories state no class and count as aircraft: {}",
+                               words.size(),
+                               fmt::join(words, ", ")));
+}
+
+}  // namespace
+
 std::vector<Clip> read_clips(Format format,
                              const fs::path& source,
                              const ReadOptions& options,
                              const Warn& warn) {
   if (!fs::exists(source)) throw Error("does not exist", {source.string()});
   LeftOut left_out(warn);
-  return about(format).read({format, source, options, warn, left_out});
+  std::vector<Clip> clips = about(format).read({format, source, options, warn, left_out});
+  classify(clips, options, warn);
+  return clips;
 }
 
 namespace {

@@ -64,6 +64,8 @@ LabelledFrame frame_of(const JsonObject& json) {
   LabelledFrame frame;
   frame.frame = json.count("frame");
   frame.time_s = json.maybe_number("time_s");
+  frame.picture = json.maybe_text("picture").value_or("");
+  frame.image_id = json.maybe_integer("image_id");
   for (const JsonObject& label : json.objects("labels")) frame.labels.push_back(label_of(label));
   return frame;
 }
@@ -76,6 +78,9 @@ Clip clip_of(const JsonObject& json) {
   clip.width = side(json, "width");
   clip.height = side(json, "height");
   clip.frame_rate_hz = rate(json, "frame_rate_hz");
+  if (json.has("category_ids"))
+    for (const JsonObject& category : json.objects("category_ids"))
+      clip.category_ids[category.whole("id")] = category.text("name");
   return clip;
 }
 
@@ -91,10 +96,14 @@ std::string labels_jsonl(const Clip& clip) {
   if (clip.width > 0) head["width"] = clip.width;
   if (clip.height > 0) head["height"] = clip.height;
   put(head, "frame_rate_hz", clip.frame_rate_hz);
+  for (const auto& [id, name] : clip.category_ids)
+    head["category_ids"].push_back({{"id", id}, {"name", name}});
   std::string text = text_of(head);
   for (const LabelledFrame& frame : clip.frames) {
     Json json = {{"frame", frame.frame}};
     put(json, "time_s", frame.time_s);
+    if (!frame.picture.empty()) json["picture"] = frame.picture;
+    put(json, "image_id", frame.image_id);
     json["labels"] = Json::array();
     for (const Label& label : frame.labels) json["labels"].push_back(json_of(label));
     text += text_of(json);
@@ -117,6 +126,7 @@ Clip read_labels(const fs::path& file) {
     at = end + 1;
   }
   if (line == 0) throw Error("is empty; expected labels", {file.string()});
+  if (!clip.media.empty()) clip.media = file.parent_path() / clip.media;
   return clip;
 }
 

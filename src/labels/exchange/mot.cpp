@@ -11,6 +11,7 @@
 #include "foundation/base/files.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
 
 // MOTChallenge (Milan et al. 2016, "MOT16", table 4): one folder for each clip, with
@@ -135,8 +136,6 @@ class MotWriter : public FolderWriter {
   }
 };
 
-constexpr std::int64_t kMaxTracks = 1'000'000'000;
-
 // The folder of one sequence.
 class SequenceFolder {
  public:
@@ -151,10 +150,14 @@ class SequenceFolder {
     clip_.name = folder_.filename().string();
     if (fs::exists(folder_ / "seqinfo.ini")) about(folder_ / "seqinfo.ini");
     if (fs::exists(folder_ / "tracks.txt")) tracks(folder_ / "tracks.txt");
-    if (!entries(folder_ / "img1").empty()) clip_.media = folder_ / "img1";
     const fs::path file = folder_ / "gt" / "gt.txt";
+    std::vector<std::pair<std::vector<double>, Where>> rows;
     for (const Line& line : lines_of(file))
-      add(numbers_of(line, file), {file.string(), line.number});
+      rows.emplace_back(numbers_of(line, file), Where{file.string(), line.number});
+    for (const auto& [numbers, where] : rows) look_at_columns(numbers, where);
+    for (const auto& [numbers, where] : rows) add(numbers, where);
+    if (!pictures_in(folder_ / "img1").empty())
+      join_by_number(clip_, folder_ / "img1", 1, in_.warn);
     return clip_;
   }
 
@@ -188,13 +191,31 @@ class SequenceFolder {
     }
   }
 
-  void add(const std::vector<double>& n, const Where& where) {
+  // From MOT16 on the columns 8 and 9 are the class and the visibility. In MOT15 the columns 8 to
+  // 10 are the object's place in the world, which these files show by values that are none of
+  // those.
+  void look_at_columns(const std::vector<double>& n, const Where& where) {
+    const bool is_class = n.size() < 8 || whole_in(n[7], -1, kMaxTracks).has_value();
+    const bool is_visibility =
+        n.size() < 9 || n[8] == kUnknown || (n[8] >= 0 && n[8] <= 1) || std::isnan(n[8]);
+    if (is_class && is_visibility) return;
+    if (!has_world_columns_)
+      in_.left_out.add(
+          "files whose columns 8 to 10 are neither class nor visibility nor range; "
+          "these columns are not read",
+          to_string(where));
+    has_world_columns_ = true;
+  }
+
+  void add(std::vector<double> n, const Where& where) {
+    if (has_world_columns_ && n.size() > 7) n.resize(7);
     if (n.size() < 6) throw Error(fmt::format("has {} columns; expected 6 to 10", n.size()), where);
     const auto frame = whole_in(n[0], 1, kMaxFrames);
     if (!frame) throw Error("the frame is no whole number from 1 on", where);
     const auto track = whole_in(n[1], -1, kMaxTracks);
     if (!track) throw Error("the id is no whole number", where);
-    if (n.size() > 6 && n[6] == 0)
+    // In this program's own files tracks.txt says what is not to be considered.
+    if (n.size() > 6 && n[6] == 0 && !categories_.contains(*track))
       return in_.left_out.add("lines that are not to be considered (conf 0)", to_string(where));
     Label label;
     label.track = *track;
@@ -204,7 +225,12 @@ class SequenceFolder {
     if (n.size() > 9 && n[9] >= 0) label.range_m = n[9];
     if (!is_in_picture(label.box_px, clip_.width, clip_.height))
       return in_.left_out.add(kOutside, to_string(where));
-    frame_at(clip_, static_cast<std::size_t>(*frame) - 1).labels.push_back(label);
+    LabelledFrame& labelled = frame_at(clip_, static_cast<std::size_t>(*frame) - 1);
+    for (const Label& other : labelled.labels)
+      if (other.track == label.track && label.track >= 0)
+        throw Error(fmt::format("has the id {} a second time in frame {}", label.track, *frame),
+                    where);
+    labelled.labels.push_back(label);
   }
 
   std::string category_of(std::int64_t track, double number) const {
@@ -221,6 +247,7 @@ class SequenceFolder {
   const Reading& in_;
   std::map<std::int64_t, std::string> categories_;
   bool knows_visibility_ = true;
+  bool has_world_columns_ = false;
   Clip clip_;
 };
 

@@ -46,11 +46,4 @@ std::vector<fs::path> two_levels(const fs::path& folder) {
   return found;
 }
 
-fs::path numbered_media(const fs::path& pictures, const std::string& name) {
-  for (const char* extension : {".jpg", ".png"})
-    if (fs::exists(pictures / (name + "_000000" + extension)))
-      return pictures / (name + "_%06d" + extension);
-  return fs::is_directory(pictures) ? pictures : fs::path();
-}
-
 }  // namespace airtruth::exchange

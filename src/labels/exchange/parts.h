@@ -75,8 +75,4 @@ void add_label(LabelledFrame& frame,
 // The folder itself, what it holds, and what that holds, each folder before its content.
 std::vector<fs::path> two_levels(const fs::path& folder);
 
-// The numbered pictures NAME_%06d of a clip in a folder; the folder where there are none; empty
-// where there is no folder.
-fs::path numbered_media(const fs::path& pictures, const std::string& name);
-
 }  // namespace airtruth::exchange

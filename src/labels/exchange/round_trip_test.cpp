@@ -246,7 +246,12 @@ TEST(RoundTrip, LabelsOfOurOwnKeepEverything) {
   const Folder folder;
   for (unsigned seed = 0; seed < 40; ++seed) {
     Clip clip = Draw(seed).clip("x");
-    clip.media = "some/video.mp4";
+    clip.media = folder.path() / "some/video.mp4";
+    clip.category_ids = {{0, "plane"}, {7, "bird"}};
+    for (LabelledFrame& frame : clip.frames) {
+      frame.picture = fmt::format("part/{}.jpg", frame.frame);
+      frame.image_id = 100 - frame.frame;
+    }
     for (LabelledFrame& frame : clip.frames)
       for (Label& label : frame.labels)
         label.object_class = label.track % 3 == 0   ? "bird"
@@ -254,8 +259,13 @@ TEST(RoundTrip, LabelsOfOurOwnKeepEverything) {
                                                     : "aircraft";
     const Clip again = read_labels(folder.file("labels.jsonl", labels_jsonl(clip)));
     EXPECT_EQ(again.media, clip.media);
+    EXPECT_EQ(again.category_ids, clip.category_ids);
     expect_same(again, clip);
     EXPECT_EQ(again.frames, clip.frames);
+    // What is relative begins at the file's own folder.
+    clip.media = "pictures.txt";
+    EXPECT_EQ(read_labels(folder.file("labels.jsonl", labels_jsonl(clip))).media,
+              folder.path() / "pictures.txt");
   }
 }
 

@@ -9,6 +9,7 @@
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
 
 // Folders with one object each, and one line of x, y, width, height for each frame.
@@ -35,7 +36,20 @@ const char* boxes_in(Format format) {
   return format == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt";
 }
 
-fs::path pictures_in(Format format, const fs::path& folder) {
+// The files of a sequence's boxes. OTB has one for each target where there are several (Jogging,
+// Skating2): groundtruth_rect.1.txt and so on.
+std::vector<fs::path> files_of_boxes(Format format, const fs::path& folder) {
+  if (const fs::path file = folder / boxes_in(format); fs::exists(file)) return {file};
+  std::vector<fs::path> files;
+  if (format != Format::kOtb) return files;
+  for (int target = 1;; ++target) {
+    const fs::path file = folder / fmt::format("groundtruth_rect.{}.txt", target);
+    if (!fs::exists(file)) return files;
+    files.push_back(file);
+  }
+}
+
+fs::path pictures_of_sequence(Format format, const fs::path& folder) {
   return format == Format::kOtb   ? folder / "img"
          : format == Format::kVot ? folder / "color"
                                   : folder;
@@ -103,16 +117,16 @@ class SequenceReader {
     about();
     boxes();
     columns();
+    join_in_order(clip_, pictures_of_sequence(format_, folder_), in_.warn);
     return clip_;
   }
 
  private:
   void about() {
-    const fs::path pictures = pictures_in(format_, folder_);
+    const fs::path pictures = pictures_of_sequence(format_, folder_);
     const ReadOptions& options = in_.options;
     const auto size = options.size ? options.size : size_of_pictures(pictures, options);
     if (size) std::tie(clip_.width, clip_.height) = *size;
-    if (size && !options.size) clip_.media = pictures;
     if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
       const auto settings = settings_of(folder_ / "sequence");
       clip_.frame_rate_hz = number_in(settings, "fps");
@@ -152,10 +166,15 @@ class SequenceReader {
   }
 
   void boxes() {
-    const fs::path file = folder_ / boxes_in(format_);
+    std::int64_t track = 1;
+    for (const fs::path& file : files_of_boxes(format_, folder_)) boxes_of(file, track++);
+  }
+
+  void boxes_of(const fs::path& file, std::int64_t track) {
+    std::size_t frame_number = 0;
     const double from = format_ == Format::kVot ? 0 : 1;
     for (const Line& line : lines_of(file)) {
-      LabelledFrame& frame = frame_at(clip_, clip_.frames.size());
+      LabelledFrame& frame = frame_at(clip_, frame_number++);
       const auto box = format_ == Format::kVot && line.text.starts_with('m')
                            ? box_of_mask(line, file)
                            : box_of(numbers_of(line, file), from);
@@ -164,6 +183,7 @@ class SequenceReader {
       const bool is_stated = std::isfinite(box->x) && (box->width != 0 || box->height != 0);
       if (!is_stated) continue;
       Label label;
+      label.track = track;
       label.category = category_;
       label.box_px = *box;
       add_label(frame, label, clip_, in_.left_out, to_string(Where{file.string(), line.number}));
@@ -220,7 +240,7 @@ class SequenceReader {
 Clips read_single_object(const Reading& in) {
   Clips clips;
   for (const fs::path& folder : two_levels(in.source))
-    if (fs::exists(folder / boxes_in(in.format)))
+    if (!files_of_boxes(in.format, folder).empty())
       clips.push_back(SequenceReader(folder, in).read());
   if (clips.empty())
     throw Error(std::string("holds no sequence of ") + name(in.format), {in.source.string()});
@@ -266,7 +286,7 @@ class SingleObjectWriter : public FolderWriter {
     const int digits = format_ == Format::kOtb ? std::max(4, longest) : 8;
     const std::string name =
         padded(static_cast<std::int64_t>(i) + 1, digits) + options_.image_extension;
-    return pictures_in(format_, fs::path(part) / clip.name) / name;
+    return pictures_of_sequence(format_, fs::path(part) / clip.name) / name;
   }
 
   std::string line_of(const LabelledFrame& frame) const {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "labels/annotation/evision.h"
 #include "labels/exchange/parts.h"
 #include "labels/exchange/text.h"
@@ -68,6 +70,46 @@ Clips read_evision(const Reading& in) {
   return clips;
 }
 
+// Where the columns of a table stand, and what its third and fourth numbers of a box are.
+struct Columns {
+  std::size_t frame = 0, x = 1, y = 2, third = 3, fourth = 4;
+  // False: width and height. True: the right and the bottom edge.
+  bool are_corners = false;
+  std::string text = "frame,x,y,w,h";
+
+  std::size_t last() const { return std::max({frame, x, y, third, fourth}); }
+};
+
+Columns columns_of(const Line& header, const fs::path& file) {
+  const std::vector<std::string> cells = cells_of(header.text);
+  const auto find = [&](std::initializer_list<const char*> names) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (const char* name : names)
+        if (lower_case(cells[i]) == name) return std::optional(i);
+    return std::optional<std::size_t>();
+  };
+  const auto frame = find({"frame", "frame_id", "frame_number", "frame_index"});
+  const auto x = find({"x", "left", "xmin", "x_min", "x1", "xtl", "bb_left"});
+  const auto y = find({"y", "top", "ymin", "y_min", "y1", "ytl", "bb_top"});
+  const auto width = find({"w", "width", "bb_width"});
+  const auto height = find({"h", "height", "bb_height"});
+  const auto right = find({"right", "xmax", "x_max", "x2", "xbr"});
+  const auto bottom = find({"bottom", "ymax", "y_max", "y2", "ybr"});
+  const bool has_size = width && height;
+  if (!frame || !x || !y || (!has_size && !(right && bottom)))
+    throw Error(
+        "names columns that state no box of a frame; expected frame,x,y,w,h or "
+        "frame,xmin,ymin,xmax,ymax",
+        {file.string(), header.number});
+  return {*frame,
+          *x,
+          *y,
+          has_size ? *width : *right,
+          has_size ? *height : *bottom,
+          !has_size,
+          header.text};
+}
+
 Clips read_csv(const Reading& in) {
   Clips clips;
   for (const fs::path& file : files_of(in.source, ".csv")) {
@@ -76,20 +118,28 @@ Clips read_csv(const Reading& in) {
     clip.media = video_beside(file);
     if (in.options.size) std::tie(clip.width, clip.height) = *in.options.size;
     bool first = true;
+    Columns columns;
     for (const Line& line : lines_of(file)) {
       const bool is_header = first && line.text.find_first_of("0123456789") != 0;
       first = false;
+      if (is_header) columns = columns_of(line, file);
       if (is_header) continue;
       const Where where{file.string(), line.number};
       const std::vector<double> n = numbers_of(line, file);
-      if (n.size() < 5)
-        throw Error(fmt::format("has {} columns; expected frame,x,y,w,h", n.size()), where);
-      const auto i = whole_in(n[0], 0, kMaxFrames);
+      if (n.size() <= columns.last())
+        throw Error(fmt::format("has {} columns; expected {}", n.size(), columns.text), where);
+      const auto i = whole_in(n[columns.frame], 0, kMaxFrames);
       if (!i) throw Error("the frame is no whole number from 0 on", where);
       while (std::ssize(clip.frames) <= *i)
         clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
       LabelledFrame& frame = clip.frames[static_cast<std::size_t>(*i)];
-      const Box box{n[1] - in.options.origin_px, n[2] - in.options.origin_px, n[3], n[4]};
+      Box box{n[columns.x], n[columns.y], n[columns.third], n[columns.fourth]};
+      if (columns.are_corners) {
+        box.width -= box.x;
+        box.height -= box.y;
+      }
+      box.x -= in.options.origin_px;
+      box.y -= in.options.origin_px;
       // "0,0,0,0" and "nan" mean no box.
       if (!is_in_picture(box, clip.width, clip.height)) continue;
       Label label;

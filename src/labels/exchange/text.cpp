@@ -10,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/series.h"
 #include "foundation/base/text.h"
 
 namespace airtruth::exchange {
@@ -37,7 +38,9 @@ std::vector<Line> lines_of(const fs::path& file) {
   const std::string text = read_file(file);
   std::vector<Line> lines;
   int number = 0;
-  for (std::size_t at = 0; at < text.size();) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  for (std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+       at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     ++number;
     const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
@@ -134,11 +137,8 @@ void sort_frames(Clip& clip) {
 std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
                                                     const ReadOptions& options) {
   if (!options.size_of_picture) return std::nullopt;
-  for (const fs::path& file : entries(folder)) {
-    const std::string extension = file.extension().string();
-    if (extension != ".jpg" && extension != ".jpeg" && extension != ".png") continue;
-    return options.size_of_picture(file);
-  }
+  for (const fs::path& file : entries(folder))
+    if (is_picture_file(file)) return options.size_of_picture(file);
   return std::nullopt;
 }
 

@@ -43,6 +43,9 @@ std::optional<double> number_in(const std::map<std::string, std::string>& settin
 // in its file.
 constexpr std::int64_t kMaxFrames = 500'000;
 
+// Largest id of a track in a file.
+constexpr std::int64_t kMaxTracks = 1'000'000'000;
+
 // The number as an integer where it is whole and within [low, high]; else empty.
 std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high);
 // The side of a picture, in pixels; 0 (unknown) where the value is missing or invalid.

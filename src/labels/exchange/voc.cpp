@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <map>
+#include <span>
+#include <tuple>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
 #include "labels/exchange/xml_file.h"
 
@@ -95,18 +101,49 @@ std::optional<bool> flag(const pugi::xml_node& object, const char* name) {
   return value ? std::optional(*value != 0) : std::nullopt;
 }
 
-void read_picture(const fs::path& file, Clip& clip, LeftOut& left_out) {
+// The pictures of the folders by their names without ending: the folder and the name.
+using ByStem = std::map<std::string, std::pair<fs::path, std::string>>;
+
+ByStem by_stem(std::span<const fs::path> folders) {
+  ByStem found;
+  for (const fs::path& folder : folders)
+    for (const std::string& name : pictures_in(folder))
+      found.emplace(fs::path(name).stem().string(), std::pair(folder, name));
+  return found;
+}
+
+// The picture of an annotation: <filename>, or else the picture with the annotation's own name.
+LabelledPicture picture_of(const fs::path& file,
+                           const std::string& stated,
+                           std::span<const fs::path> folders,
+                           const ByStem& stems) {
+  LabelledPicture picture;
+  picture.name = stated;
+  picture.folder = stated.empty() ? fs::path() : folder_of_picture(folders, stated);
+  if (!picture.folder.empty()) return picture;
+  if (const auto found = stems.find(file.stem().string()); found != stems.end())
+    std::tie(picture.folder, picture.name) = found->second;
+  if (picture.name.empty()) picture.name = file.stem().string();
+  return picture;
+}
+
+LabelledPicture read_picture(const fs::path& file,
+                             std::span<const fs::path> folders,
+                             const ByStem& stems,
+                             const Reading& in) {
   const XmlFile xml(file);
   const pugi::xml_node top = xml.top("annotation");
-  const pugi::xml_node size = xml.child(top, "size");
-  clip.width = side_of(xml.number(size, "width"));
-  clip.height = side_of(xml.number(size, "height"));
-  const auto [name, number] = name_and_number(file.stem().string());
-  LabelledFrame frame;
-  frame.frame = number.value_or(static_cast<std::int64_t>(clip.frames.size()));
+  LabelledPicture picture = picture_of(file, top.child_value("filename"), folders, stems);
+  if (const pugi::xml_node size = top.child("size")) {
+    picture.width = side_of(xml.number(size, "width"));
+    picture.height = side_of(xml.number(size, "height"));
+  }
+  if (picture.width == 0 && !picture.folder.empty() && in.options.size_of_picture)
+    std::tie(picture.width, picture.height) =
+        in.options.size_of_picture(picture.folder / picture.name);
   for (const pugi::xml_node& object : top.children("object")) {
     Label label;
-    label.track = static_cast<std::int64_t>(frame.labels.size()) + 1;
+    label.track = std::ssize(picture.labels) + 1;
     label.category = xml.child(object, "name").child_value();
     label.truncated = flag(object, "truncated");
     label.occluded = flag(object, "occluded");
@@ -114,9 +151,23 @@ void read_picture(const fs::path& file, Clip& clip, LeftOut& left_out) {
     const double x = xml.number(box, "xmin") - 1;
     const double y = xml.number(box, "ymin") - 1;
     label.box_px = {x, y, xml.number(box, "xmax") - x, xml.number(box, "ymax") - y};
-    add_label(frame, label, clip, left_out, file.string());
+    if (is_in_picture(label.box_px, picture.width, picture.height))
+      picture.labels.push_back(std::move(label));
+    else
+      in.left_out.add(kOutside, file.string());
   }
-  clip.frames.push_back(std::move(frame));
+  return picture;
+}
+
+// Annotations/ beside JPEGImages/; or a folder with both, or one for each part, as Roboflow writes
+// them.
+std::vector<fs::path> folders_of_annotations(const fs::path& source) {
+  if (fs::is_directory(source / "Annotations")) return {source / "Annotations"};
+  if (!files_with(source, ".xml").empty()) return {source};
+  std::vector<fs::path> parts;
+  for (const fs::path& part : entries(source))
+    if (!files_with(part, ".xml").empty()) parts.push_back(part);
+  return parts;
 }
 
 }  // namespace
@@ -126,23 +177,18 @@ std::unique_ptr<Writer> voc_writer(Format, const fs::path& root, const WriteOpti
 }
 
 Clips read_voc(const Reading& in) {
-  const fs::path annotations = in.source / "Annotations";
-  std::map<std::string, Clip> clips;
-  for (const fs::path& file :
-       files_with(fs::is_directory(annotations) ? annotations : in.source, ".xml")) {
-    const std::string name = name_and_number(file.stem().string()).first;
-    Clip& clip = clips[name];
-    clip.name = name.empty() ? "images" : name;
-    clip.media = numbered_media(in.source / "JPEGImages", name);
-    read_picture(file, clip, in.left_out);
+  Clips clips;
+  for (const fs::path& annotations : folders_of_annotations(in.source)) {
+    const std::vector<fs::path> folders = {annotations.parent_path() / "JPEGImages", annotations};
+    const ByStem stems = by_stem(folders);
+    std::vector<LabelledPicture> pictures;
+    for (const fs::path& file : files_with(annotations, ".xml"))
+      pictures.push_back(read_picture(file, folders, stems, in));
+    Clips more = clips_of_pictures(std::move(pictures), "", annotations, in.warn);
+    std::move(more.begin(), more.end(), std::back_inserter(clips));
   }
   if (clips.empty()) throw Error("holds no Annotations/*.xml", {in.source.string()});
-  Clips result;
-  for (auto& [name, clip] : clips) {
-    sort_frames(clip);
-    result.push_back(std::move(clip));
-  }
-  return result;
+  return clips;
 }
 
 }  // namespace airtruth::exchange

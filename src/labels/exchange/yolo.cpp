@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
 
 // YOLO as Ultralytics reads it (docs.ultralytics.com, "Detection dataset format"):
@@ -83,10 +85,16 @@ class YoloWriter : public FolderWriter {
 // it.
 constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
 
-// The names of data.yaml by class: a list, or a map from the number to the name.
-std::map<std::size_t, std::string> names_of(const fs::path& file) {
+// The names of the classes: in data.yaml a list, or a map from the number to the name; in
+// darknet's obj.names or classes.txt one on each line.
+std::map<std::size_t, std::string> names_of(const fs::path& root) {
   std::map<std::size_t, std::string> names;
+  for (const char* list : {"obj.names", "classes.txt"})
+    if (fs::exists(root / list) && names.empty())
+      for (const Line& line : lines_of(root / list)) names[names.size()] = line.text;
+  const fs::path file = root / "data.yaml";
   if (!fs::exists(file)) return names;
+  names.clear();
   try {
     const YAML::Node listed = YAML::Load(read_file(file, kMaxYamlBytes))["names"];
     if (listed.IsSequence())
@@ -100,49 +108,91 @@ std::map<std::size_t, std::string> names_of(const fs::path& file) {
   return names;
 }
 
+// A folder of label files and the folder of their pictures.
+struct Folders {
+  fs::path labels;
+  fs::path pictures;
+};
+
+// The layouts that people have: labels/[PART/] beside images/[PART/] (Ultralytics); PART/labels/
+// beside PART/images/ (Roboflow); obj_train_data/ and the like, which hold both (CVAT's "YOLO 1.1"
+// and darknet).
+std::vector<Folders> folders_of(const fs::path& root) {
+  std::vector<Folders> all;
+  if (fs::is_directory(root / "labels")) {
+    all.push_back({root / "labels", root / "images"});
+    for (const fs::path& part : entries(root / "labels"))
+      if (fs::is_directory(part)) all.push_back({part, root / "images" / part.filename()});
+    return all;
+  }
+  for (const fs::path& part : entries(root)) {
+    if (fs::is_directory(part / "labels")) all.push_back({part / "labels", part / "images"});
+    const std::string name = part.filename().string();
+    if (name.starts_with("obj_") && name.ends_with("_data") && fs::is_directory(part))
+      all.push_back({part, part});
+  }
+  return all;
+}
+
 class YoloReader {
  public:
-  explicit YoloReader(const Reading& in)
-      : in_(in), root_(in.source), names_(names_of(root_ / "data.yaml")) {}
+  explicit YoloReader(const Reading& in) : in_(in), root_(in.source), names_(names_of(root_)) {}
 
   Clips read() {
-    const fs::path labels = root_ / "labels";
-    if (!fs::is_directory(labels)) throw Error("holds no labels/", {root_.string()});
-    folder(labels, "");
-    for (const fs::path& part : entries(labels))
-      if (fs::is_directory(part)) folder(part, part.filename());
+    const std::vector<Folders> folders = folders_of(root_);
+    if (folders.empty())
+      throw Error("holds no labels/, no PART/labels/ and no obj_train_data/", {root_.string()});
     Clips clips;
-    for (auto& [key, clip] : clips_) {
-      sort_frames(clip);
-      clips.push_back(std::move(clip));
+    for (const Folders& one : folders) {
+      Clips more = clips_of_pictures(pictures(one), "", one.labels, in_.warn);
+      std::move(more.begin(), more.end(), std::back_inserter(clips));
     }
+    if (clips.empty()) throw Error("holds no labels", {folders.front().labels.string()});
     return clips;
   }
 
  private:
-  void folder(const fs::path& where, const fs::path& part) {
-    const std::vector<fs::path> files = files_with(where, ".txt");
-    if (files.empty()) return;
-    const fs::path pictures = root_ / "images" / part;
-    const auto size = in_.options.size ? in_.options.size : size_of_pictures(pictures, in_.options);
-    if (!size)
-      throw Error("holds no pictures, of whose size YOLO's boxes are shares; expected --size WxH",
-                  {pictures.string()});
-    for (const fs::path& file : files) {
-      const auto [name, number] = name_and_number(file.stem().string());
-      Clip& clip = clips_[part.string() + "/" + name];
-      clip.name = name.empty() ? "images" : name;
-      clip.width = size->first;
-      clip.height = size->second;
-      if (clip.frames.empty()) clip.media = numbered_media(pictures, name);
-      LabelledFrame frame;
-      frame.frame = number.value_or(static_cast<std::int64_t>(clip.frames.size()));
-      for (const Line& line : lines_of(file)) add(line, file, clip, frame);
-      clip.frames.push_back(std::move(frame));
+  // The pictures of a folder, and the labels of each. A picture without a file is background.
+  std::vector<LabelledPicture> pictures(const Folders& folders) {
+    std::map<std::string, LabelledPicture> by_stem;
+    for (const std::string& name : pictures_in(folders.pictures)) {
+      LabelledPicture& picture = by_stem[fs::path(name).stem().string()];
+      if (!picture.name.empty())
+        throw Error("holds " + picture.name + " and " + name +
+                        ", which one file of labels would describe; expected one of them",
+                    {folders.pictures.string()});
+      picture.name = name;
+      picture.folder = folders.pictures;
     }
+    for (const fs::path& file : files_with(folders.labels, ".txt")) {
+      LabelledPicture& picture = by_stem[file.stem().string()];
+      // The name of a picture that is not there has no ending.
+      if (picture.name.empty()) picture.name = file.stem().string();
+    }
+    std::vector<LabelledPicture> pictures;
+    for (auto& [stem, picture] : by_stem) {
+      measure(picture, folders.pictures);
+      const fs::path file = folders.labels / (stem + ".txt");
+      if (fs::exists(file))
+        for (const Line& line : lines_of(file)) add(line, file, picture);
+      pictures.push_back(std::move(picture));
+    }
+    return pictures;
   }
 
-  void add(const Line& line, const fs::path& file, const Clip& clip, LabelledFrame& frame) {
+  void measure(LabelledPicture& picture, const fs::path& folder) const {
+    if (in_.options.size)
+      std::tie(picture.width, picture.height) = *in_.options.size;
+    else if (!picture.folder.empty() && in_.options.size_of_picture)
+      std::tie(picture.width, picture.height) =
+          in_.options.size_of_picture(picture.folder / picture.name);
+    else
+      throw Error("holds no picture " + picture.name +
+                      ", of whose size YOLO's boxes are shares; expected it, or --size WxH",
+                  {folder.string()});
+  }
+
+  void add(const Line& line, const fs::path& file, LabelledPicture& picture) {
     const std::vector<double> n = numbers_of(line, file);
     const auto whole = n.size() < 5 ? std::nullopt : whole_in(n[0], 0, 1'000'000);
     // With more numbers after the box the line is a polygon, as in segmentation: "class x y x y x
@@ -153,27 +203,29 @@ class YoloReader {
                   {file.string(), line.number});
     const auto category = static_cast<std::size_t>(*whole);
     Label label;
-    label.track = static_cast<std::int64_t>(frame.labels.size()) + 1;
+    label.track = std::ssize(picture.labels) + 1;
     const auto named = names_.find(category);
     label.category = named != names_.end() ? named->second : std::to_string(category);
     if (is_polygon) {
       BoxBounds bounds;
       for (std::size_t i = 1; i < n.size(); i += 2)
-        bounds.add({n[i] * clip.width, n[i + 1] * clip.height});
+        bounds.add({n[i] * picture.width, n[i + 1] * picture.height});
       label.box_px = *bounds.box();
     } else {
-      label.box_px = {(n[1] - n[3] / 2) * clip.width,
-                      (n[2] - n[4] / 2) * clip.height,
-                      n[3] * clip.width,
-                      n[4] * clip.height};
+      label.box_px = {(n[1] - n[3] / 2) * picture.width,
+                      (n[2] - n[4] / 2) * picture.height,
+                      n[3] * picture.width,
+                      n[4] * picture.height};
     }
-    add_label(frame, label, clip, in_.left_out, file.string() + ":" + std::to_string(line.number));
+    if (is_in_picture(label.box_px, picture.width, picture.height))
+      picture.labels.push_back(std::move(label));
+    else
+      in_.left_out.add(kOutside, file.string() + ":" + std::to_string(line.number));
   }
 
   const Reading& in_;
   fs::path root_;
   std::map<std::size_t, std::string> names_;
-  std::map<std::string, Clip> clips_;
 };
 
 }  // namespace

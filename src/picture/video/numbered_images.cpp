@@ -2,36 +2,26 @@
 #include "picture/video/numbered_images.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <map>
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "foundation/base/series.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::video {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kEndings = {
-    ".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".ppm", ".pgm", ".webp"};
+// Of a list of pictures: a million paths of 100 bytes.
+constexpr std::size_t kMaxListBytes = 100'000'000;
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-
-std::string_view without_zeros(std::string_view digits) {
-  return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
-}
-
-// Compares numbers of any length, such as 000000000139 or a time in nanoseconds: -1, 0 or 1.
-int compare_digits(std::string_view a, std::string_view b) {
-  a = without_zeros(a);
-  b = without_zeros(b);
-  if (a.size() != b.size()) return a.size() < b.size() ? -1 : 1;
-  const int order = a.compare(b);
-  return order < 0 ? -1 : order > 0 ? 1 : 0;
-}
 
 // True where `b` is the number after `a`.
 bool follows(std::string_view a, std::string_view b) {
@@ -41,88 +31,79 @@ bool follows(std::string_view a, std::string_view b) {
   std::size_t at = next.size() - 1;
   while (next[at] == '9') next[at--] = '0';
   ++next[at];
-  return compare_digits(next, b) == 0;
+  return !is_numbered_before(next, b) && !is_numbered_before(b, next);
 }
 
-// Compares names, with runs of digits as numbers.
-bool comes_before(std::string_view a, std::string_view b) {
-  const auto run = [](std::string_view text) {
-    const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
-    return text.substr(0, static_cast<std::size_t>(end - text.begin()));
-  };
-  while (!a.empty() && !b.empty()) {
-    const std::string_view digits_a = run(a);
-    const std::string_view digits_b = run(b);
-    if (!digits_a.empty() && !digits_b.empty()) {
-      if (const int order = compare_digits(digits_a, digits_b); order != 0) return order < 0;
-      a.remove_prefix(digits_a.size());
-      b.remove_prefix(digits_b.size());
-      continue;
-    }
-    if (a.front() != b.front()) return a.front() < b.front();
-    a.remove_prefix(1);
-    b.remove_prefix(1);
-  }
-  return a.empty() && !b.empty();
+// Where a name's last digits begin; its end where it does not end in one.
+std::size_t last_digits_of(const std::string& stem) {
+  return stem.find_last_not_of("0123456789") + 1;
 }
 
-struct Numbered {
-  std::string digits;
-  fs::path file;
-};
-
-NumberedImages in_order(std::vector<Numbered> images) {
-  std::sort(images.begin(), images.end(), [](const Numbered& a, const Numbered& b) {
-    const int order = compare_digits(a.digits, b.digits);
-    return order != 0 ? order < 0 : a.file < b.file;
-  });
-  NumberedImages result;
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (i > 0 && !follows(images[i - 1].digits, images[i].digits)) result.has_gaps = true;
-    result.files.push_back(images[i].file);
+// Files in the order of their frames. A gap is seen where all names end in the number that counts.
+NumberedImages in_order(std::vector<fs::path> files) {
+  NumberedImages result{std::move(files), false};
+  for (std::size_t i = 1; i < result.files.size() && !result.has_gaps; ++i) {
+    const std::string before = result.files[i - 1].stem().string();
+    const std::string stem = result.files[i].stem().string();
+    const std::size_t digits = last_digits_of(stem);
+    if (digits == stem.size() || before.substr(0, last_digits_of(before)) != stem.substr(0, digits))
+      return {std::move(result.files), false};
+    result.has_gaps = !follows(before.substr(digits), stem.substr(digits));
   }
   return result;
 }
 
-std::string ending_of(const fs::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) {
-    return std::tolower(c);
-  });
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() ? ending : "";
-}
-
-// The group with the most pictures; among equal ones the first by its key.
-template <typename Groups>
-auto largest(const Groups& groups) {
-  return std::max_element(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
-    return a.second.size() < b.second.size();
-  });
+// "vidA_000.jpg and 3 like it": what a folder holds beside other series.
+std::string words_of(const Series& series, const std::vector<std::string>& names) {
+  const std::string& first = names[series.front()];
+  return series.size() == 1 ? first : fmt::format("{} and {} like it", first, series.size() - 1);
 }
 
 std::optional<NumberedImages> in_folder(const fs::path& folder) {
-  std::map<std::pair<std::string, std::string>, std::vector<Numbered>> series;
-  std::map<std::string, std::vector<fs::path>> endings;
-  std::size_t count = 0;
+  std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path name = entry.path().filename();
-    const std::string ending = ending_of(name);
-    if (ending.empty() || name.string().starts_with(".")) continue;
-    ++count;
-    endings[ending].push_back(entry.path());
-    const std::string stem = name.stem().string();
-    const std::size_t digits = stem.find_last_not_of("0123456789") + 1;
-    if (digits < stem.size())
-      series[{stem.substr(0, digits), name.extension().string()}].push_back(
-          {stem.substr(digits), entry.path()});
+    const std::string name = entry.path().filename().string();
+    if (is_picture_file(name) && !name.starts_with(".")) names.push_back(name);
   }
-  if (count == 0) return std::nullopt;
-  if (const auto found = largest(series); found != series.end() && 2 * found->second.size() > count)
-    return in_order(found->second);
-  NumberedImages result{largest(endings)->second, false};
-  std::sort(result.files.begin(), result.files.end(), [](const fs::path& a, const fs::path& b) {
-    return comes_before(a.filename().string(), b.filename().string());
-  });
+  if (names.empty()) return std::nullopt;
+  std::sort(names.begin(), names.end());
+  const std::vector<Series> all = series_of(names, Stray::kApart);
+  if (all.size() > 1)
+    throw Error(
+        fmt::format("holds pictures of {} series ({}; {}{}); expected one; a pattern such as "
+                    "frames/%06d.png or a list of pictures (list.txt) states which",
+                    all.size(),
+                    words_of(all[0], names),
+                    words_of(all[1], names),
+                    all.size() > 2 ? "; ..." : ""),
+        {folder.string()});
+  std::vector<fs::path> files;
+  for (const std::size_t i : all.front()) files.push_back(folder / names[i]);
+  return in_order(std::move(files));
+}
+
+// A list of pictures: a path on each line, relative to the list's folder.
+NumberedImages in_list(const fs::path& list) {
+  NumberedImages result;
+  const std::string text = read_file(list, kMaxListBytes);
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
+    at = end + 1;
+    ++number;
+    if (line.empty() || line.front() == '#') continue;
+    const fs::path file = list.parent_path() / line;
+    const Where where{list.string(), number};
+    if (!is_picture_file(file))
+      throw Error(fmt::format("is '{}'; expected the path of a picture", line.substr(0, 200)),
+                  where);
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored))
+      throw Error(fmt::format("names {}, which does not exist", file.string()), where);
+    result.files.push_back(file);
+  }
+  if (result.files.empty()) throw Error("names no picture", {list.string()});
   return result;
 }
 
@@ -141,7 +122,7 @@ NumberedImages of_pattern(const fs::path& path, std::size_t begin, std::size_t e
   const std::string before = name.substr(0, begin);
   const std::string after = name.substr(end);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::vector<Numbered> images;
+  std::vector<fs::path> images;
   std::error_code ignored;
   if (fs::is_directory(folder, ignored))
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -150,10 +131,12 @@ NumberedImages of_pattern(const fs::path& path, std::size_t begin, std::size_t e
           !file.ends_with(after))
         continue;
       const std::string digits = file.substr(begin, file.size() - before.size() - after.size());
-      if (std::all_of(digits.begin(), digits.end(), is_digit))
-        images.push_back({digits, entry.path()});
+      if (std::all_of(digits.begin(), digits.end(), is_digit)) images.push_back(entry.path());
     }
   if (images.empty()) throw Error("matches no file; expected numbered images", {path.string()});
+  std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
+    return is_numbered_before(a.filename().string(), b.filename().string());
+  });
   return in_order(std::move(images));
 }
 
@@ -162,6 +145,7 @@ NumberedImages of_pattern(const fs::path& path, std::size_t begin, std::size_t e
 std::optional<NumberedImages> numbered_images(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return in_folder(path);
+  if (path.extension() == ".txt" && fs::exists(path, ignored)) return in_list(path);
   if (fs::exists(path, ignored)) return std::nullopt;
   const auto number = number_in_pattern(path.filename().string());
   if (!number) return std::nullopt;

@@ -15,12 +15,12 @@ struct NumberedImages {
   bool has_gaps = false;
 };
 
-// `path` is a folder of pictures, or a pattern of their names such as "frames/%06d.png"; the result
-// is empty for anything else. In a folder, pictures whose names differ only in their last number
-// (img_7.png, img_08.png, 000000000139.jpg) are taken in the order of that number where they are
-// more than half of the folder's pictures. Otherwise all pictures of one ending are taken in the
-// order of their names, with every run of digits compared as a number (Airborne Object Tracking's
-// TIMEFLIGHT.png). Throws Error for a pattern that matches no file.
+// `path` is a folder of pictures, a pattern of their names such as "frames/%06d.png", or a list of
+// pictures: a text file (.txt) with a path on each line, relative to its own folder, in the order
+// of the frames. The result is empty for anything else. The pictures of a folder are one series
+// (foundation/base/series.h) and are taken in the order of their names, with runs of digits as
+// numbers. Throws Error for a folder of several series, for a pattern that matches no file, and for
+// a line of a list that is no picture's path.
 std::optional<NumberedImages> numbered_images(const std::filesystem::path& path);
 
 }  // namespace airtruth::video

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/image/cuts.h"
@@ -43,6 +45,9 @@ image::Siting siting_of(AVChromaLocation location) {
 // with libx264's default of three reference frames, and 99 of 100 of those of cameras, which have
 // fewer.
 constexpr std::size_t kReferredFrames = 3;
+
+// Largest numerator and denominator of a stated frame rate: 30000/1001 is exact.
+constexpr int kMaxRateTerm = 100'000;
 
 // A frame whose picture may lie in memory to which the decoder still refers.
 struct Decoded {
@@ -138,6 +143,11 @@ void Reader::State::open_input() {
                          std::to_string(images->files.size()) +
                          " pictures; they are taken as consecutive frames");
     pictures = std::move(images->files);
+    info.is_rate_stated = options.picture_rate_hz.has_value();
+    if (options.picture_rate_hz) {
+      const AVRational rate = av_d2q(*options.picture_rate_hz, kMaxRateTerm);
+      av_dict_set(&settings, "framerate", fmt::format("{}/{}", rate.num, rate.den).c_str(), 0);
+    }
     format = av_find_input_format("image2");
     url = pictures.front().string();
   } else if (!std::filesystem::exists(path, ignored)) {

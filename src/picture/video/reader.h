@@ -43,6 +43,9 @@ struct StreamInfo {
   // Average rate, in frames a second.
   Rational frame_rate{30, 1};
   bool variable_frame_rate = false;
+  // False for numbered images whose rate ReaderOptions does not state: frame_rate is then libav's
+  // own 25, and times follow from it.
+  bool is_rate_stated = true;
   Rational sample_aspect{1, 1};
   // The rotation that the reader has applied, clockwise: 0, 90, 180 or 270 degrees.
   int rotation_deg = 0;
@@ -60,6 +63,8 @@ struct ReaderOptions {
   std::int64_t first_frame = 0;
   // Largest number of frames; empty: to the end.
   std::optional<std::int64_t> frame_count;
+  // Of numbered images, in frames a second.
+  std::optional<double> picture_rate_hz = {};
   // Number of decoder threads; 0: one for each core.
   int threads = 0;
   // True: the reader fills Frame::quantiser where the decoder exports it.

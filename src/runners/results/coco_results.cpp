@@ -36,51 +36,104 @@ struct SetImage {
   std::int64_t frame = 0;
 };
 
-// The images of a set by their number and by their name (ExpectedSequence states both).
+// The images of a set by their number and by their name (read_detections states both).
 class SetImages {
  public:
   // `set` must outlive the object.
   explicit SetImages(std::span<const ExpectedSequence> set);
-  // Both throw Error at `where` for an image that the set does not have.
+  // All throw Error at `where` for an image that the set does not have, and for one that it has
+  // twice.
   SetImage by_id(std::int64_t id, const Where& where) const;
-  // "images/all/NAME/000012.jpg" and "NAME/000012" alike.
+  SetImage by_number_in_name(std::int64_t number, const Where& where) const;
   SetImage by_name(const std::string& text, const Where& where) const;
+  bool has_id(std::int64_t id) const { return ids_.contains(id); }
+  bool has_number_in_name(std::int64_t number) const { return numbers_.contains(number); }
 
  private:
+  using Images = std::vector<SetImage>;
+
+  void add(std::size_t sequence, std::size_t frame, std::int64_t counted);
+  SetImage only(const Images& found, const std::string& what, const Where& where) const;
+
   std::span<const ExpectedSequence> set_;
-  std::vector<std::int64_t> first_ids_;
-  std::int64_t end_ = 1;
+  std::map<std::int64_t, Images> ids_;
+  std::map<std::int64_t, Images> numbers_;
+  // By the whole name, by the file name, and by either without its ending.
+  std::map<std::string, Images> pictures_;
   std::map<std::string, std::size_t> names_;
 };
 
+// The text as a whole number from 0 on; empty where it is not one.
+std::optional<std::int64_t> number_of(const std::string& text) {
+  std::int64_t number = -1;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_whole = failed == std::errc() && end == text.data() + text.size() && number >= 0;
+  return is_whole ? std::optional(number) : std::nullopt;
+}
+
 SetImages::SetImages(std::span<const ExpectedSequence> set) : set_(set) {
-  std::int64_t first = 1;
+  std::int64_t counted = 1;
   for (std::size_t i = 0; i < set.size(); ++i) {
-    first_ids_.push_back(first);
-    first += set[i].frames;
     names_.emplace(set[i].name, i);
+    for (std::int64_t frame = 0; frame < set[i].frames; ++frame)
+      add(i, static_cast<std::size_t>(frame), counted++);
   }
-  end_ = first;
+}
+
+void SetImages::add(std::size_t sequence, std::size_t frame, std::int64_t counted) {
+  const ExpectedSequence& of = set_[sequence];
+  const SetImage image{sequence, static_cast<std::int64_t>(frame)};
+  const auto stated = frame < of.image_ids.size() ? of.image_ids[frame] : std::nullopt;
+  ids_[stated.value_or(counted)].push_back(image);
+  if (frame >= of.pictures.size() || of.pictures[frame].empty()) return;
+  const fs::path picture = of.pictures[frame];
+  const std::string stem = picture.stem().string();
+  for (const std::string& name : std::set<std::string>{picture.string(),
+                                                       (picture.parent_path() / stem).string(),
+                                                       picture.filename().string(),
+                                                       stem})
+    pictures_[name].push_back(image);
+  if (const auto number = number_of(stem)) numbers_[*number].push_back(image);
+}
+
+SetImage SetImages::only(const Images& found, const std::string& what, const Where& where) const {
+  if (found.size() == 1) return found.front();
+  throw Error(fmt::format("{} is an image of '{}' and of '{}'; expected results that name pictures "
+                          "by their folder and file",
+                          what,
+                          set_[found[0].sequence].name,
+                          set_[found[1].sequence].name),
+              where);
 }
 
 SetImage SetImages::by_id(std::int64_t id, const Where& where) const {
-  if (id < 1 || id >= end_)
-    throw Error(fmt::format("image_id is {}; the set has the images 1 to {}", id, end_ - 1), where);
-  const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), id);
-  const auto i = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
-  return {i, id - first_ids_[i]};
+  const auto found = ids_.find(id);
+  if (found != ids_.end()) return only(found->second, fmt::format("image_id {}", id), where);
+  throw Error(fmt::format("image_id is {}; the set has {} images with ids from {} to {}",
+                          id,
+                          ids_.size(),
+                          ids_.empty() ? 0 : ids_.begin()->first,
+                          ids_.empty() ? 0 : ids_.rbegin()->first),
+              where);
+}
+
+SetImage SetImages::by_number_in_name(std::int64_t number, const Where& where) const {
+  return only(numbers_.at(number), fmt::format("image_id {}", number), where);
 }
 
 SetImage SetImages::by_name(const std::string& text, const Where& where) const {
-  fs::path path(text);
-  const std::string stem = path.stem().string();
-  std::int64_t frame = -1;
-  const auto [end, failed] = std::from_chars(stem.data(), stem.data() + stem.size(), frame);
+  const fs::path path(text);
+  for (const std::string& name : {text,
+                                  (path.parent_path() / path.stem()).string(),
+                                  path.filename().string(),
+                                  path.stem().string()})
+    if (const auto found = pictures_.find(name); found != pictures_.end())
+      return only(found->second, "'" + text.substr(0, 200) + "'", where);
   const std::string name = path.parent_path().filename().string();
   const auto found = names_.find(name);
-  const bool is_number = failed == std::errc() && end == stem.data() + stem.size() && frame >= 0;
-  if (found != names_.end() && is_number && frame < set_[found->second].frames)
-    return {found->second, frame};
+  const auto frame = number_of(path.stem().string());
+  if (found != names_.end() && frame && *frame < set_[found->second].frames)
+    return {found->second, *frame};
   std::string hint;
   if (found != names_.end()) {
     hint = fmt::format("; '{}' has the frames 0 to {}", name, set_[found->second].frames - 1);
@@ -91,7 +144,8 @@ SetImage SetImages::by_name(const std::string& text, const Where& where) const {
       hint = "; did you mean the sequence '" + *near + "'?";
   }
   throw Error("the set has no image '" + text.substr(0, 200) +
-                  "'; expected SEQUENCE/NUMBER.jpg, with frames from 0" + hint,
+                  "'; expected a picture's file name, or SEQUENCE/NUMBER.jpg with frames from 0" +
+                  hint,
               where);
 }
 
@@ -122,27 +176,48 @@ std::map<std::int64_t, std::string> texts_by_id(const std::optional<JsonPart>& l
   return texts;
 }
 
+// What the numbers of a file are: ids of its set, or the numbers that pictures are named.
+enum class Ids { kOfTheSet, kInNames };
+
 SetImage image_of(const JsonObject& object,
                   const std::optional<Names>& names,
                   const SetImages& images,
+                  Ids ids,
                   const Where& where) {
-  if (object.has("image_id")) {
-    if (object.value("image_id").is_string()) return images.by_name(object.text("image_id"), where);
-    const std::int64_t id = object.whole("image_id");
-    if (!names || names->image_files.empty()) return images.by_id(id, where);
+  for (const char* key : {"file_name", "image_name"})
+    if (const auto name = object.maybe_text(key)) return images.by_name(*name, where);
+  if (!object.has("image_id")) throw Error(std::string("has no image_id; ") + kExpected, where);
+  if (object.value("image_id").is_string()) return images.by_name(object.text("image_id"), where);
+  const std::int64_t id = object.whole("image_id");
+  if (names && !names->image_files.empty()) {
     const auto named = names->image_files.find(id);
     if (named == names->image_files.end())
       throw Error(fmt::format("image_id is {}, which the file's images do not have", id), where);
     return images.by_name(named->second, where);
   }
-  for (const char* key : {"image_name", "file_name"})
-    if (const auto name = object.maybe_text(key)) return images.by_name(*name, where);
-  throw Error(std::string("has no image_id; ") + kExpected, where);
+  return ids == Ids::kOfTheSet ? images.by_id(id, where) : images.by_number_in_name(id, where);
+}
+
+// Looks through a list of detections: its numbers are ids where all are, and else the numbers in
+// the names of pictures where all are those.
+Ids ids_in(const JsonPart& list, const fs::path& file, const char* what, const SetImages& images) {
+  bool are_ids = true;
+  bool are_in_names = true;
+  JsonElements elements(list, file, what);
+  while (const auto element = elements.next()) {
+    const JsonDocument object = parsed(*element, file);
+    if (!object.has("image_id") || !object.value("image_id").is_number_integer()) continue;
+    const std::int64_t id = object.whole("image_id");
+    are_ids = are_ids && images.has_id(id);
+    are_in_names = are_in_names && images.has_number_in_name(id);
+  }
+  return !are_ids && are_in_names ? Ids::kInNames : Ids::kOfTheSet;
 }
 
 // Category 1 is "aircraft" where nothing names it.
 std::string category_of(const JsonObject& object,
                         const std::optional<Names>& names,
+                        const ExpectedSequence& sequence,
                         const Where& where) {
   if (const auto category = object.maybe_text("category_name")) return *category;
   if (!object.has("category_id")) return Detection{}.category;
@@ -154,11 +229,14 @@ std::string category_of(const JsonObject& object,
                   where);
     return named->second;
   }
+  const auto in_set = sequence.category_ids.find(id);
+  if (in_set != sequence.category_ids.end()) return in_set->second;
   return id == 1 ? Detection{}.category : fmt::format("{}", id);
 }
 
 Detection detection_of(const JsonObject& object,
                        const std::optional<Names>& names,
+                       const ExpectedSequence& sequence,
                        const Where& where) {
   Detection detection;
   const std::vector<double> box = object.numbers("bbox", 4);
@@ -166,7 +244,7 @@ Detection detection_of(const JsonObject& object,
   if (names && !object.has("score"))
     throw Error(std::string("is an annotation without a score; ") + kExpected, where);
   detection.score = object.number("score");
-  detection.category = category_of(object, names, where);
+  detection.category = category_of(object, names, sequence, where);
   if (const auto track = object.maybe_integer("track_id"); track && *track >= 0)
     detection.track = *track;
   return detection;
@@ -200,12 +278,16 @@ std::vector<SequenceDetections> read_coco_results(const fs::path& file,
   for (const ExpectedSequence& sequence : set)
     lists.emplace_back(sequence.name, sequence.width, sequence.height, sequence.frames);
   const Found found = found_in(text, file);
-  JsonElements elements(found.list, file, found.names ? "annotations" : "detections");
+  const char* what = found.names ? "annotations" : "detections";
+  const bool are_named = found.names && !found.names->image_files.empty();
+  const Ids ids = are_named ? Ids::kOfTheSet : ids_in(found.list, file, what, images);
+  JsonElements elements(found.list, file, what);
   while (const auto element = elements.next()) {
     const Where where{file.string(), element->line};
     const JsonDocument object = parsed(*element, file);
-    const SetImage image = image_of(object, found.names, images, where);
-    lists[image.sequence].add(image.frame, detection_of(object, found.names, where), where);
+    const SetImage image = image_of(object, found.names, images, ids, where);
+    Detection detection = detection_of(object, found.names, set[image.sequence], where);
+    lists[image.sequence].add(image.frame, std::move(detection), where);
   }
   std::vector<SequenceDetections> all;
   for (FrameList& list : lists) all.push_back(list.take());

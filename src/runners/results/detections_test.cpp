@@ -147,7 +147,7 @@ TEST_F(Results, ThatAreNoneSayWhere) {
 TEST_F(Results, OfCocoThatAreNoneSayWhere) {
   const auto one = [&](const std::string& entry) { return fault("r.json", "[\n" + entry + "]"); };
   EXPECT_THAT(one(R"({"image_id": 6, "bbox": [1,1,1,1], "score": 1})"),
-              HasSubstr("r.json:2: image_id is 6; the set has the images 1 to 5"));
+              HasSubstr("r.json:2: image_id is 6; the set has 5 images with ids from 1 to 5"));
   EXPECT_THAT(one(R"({"image_id": "bb/000000.jpg", "bbox": [1,1,1,1], "score": 1})"),
               HasSubstr("r.json:2: the set has no image 'bb/000000.jpg'"));
   EXPECT_THAT(one(R"({"image_id": "b/000002.jpg", "bbox": [1,1,1,1], "score": 1})"),

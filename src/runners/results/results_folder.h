@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,14 +32,18 @@ bool is_results_name(std::string_view name);
 // Whether a name may hold this character.
 bool is_of_results_name(char c);
 
-// What a data set states about a sequence. Image ids of COCO results follow from a list of these:
-// the frames of all sequences are counted through in the order of the list, from 1, as `airtruth
-// dataset export --format coco` counts them; a frame's file name is NAME/000000.jpg and so on.
+// What a data set states about a sequence, and how results name its frames and categories.
 struct ExpectedSequence {
   std::string name;
   int width = 0;  // px; 0: unknown
   int height = 0;
   std::int64_t frames = 0;
+  // Of a sequence that was labelled elsewhere, for each frame: the picture's file name and its
+  // number in its set (COCO's image id); empty where it has none. Both lists may be empty.
+  std::vector<std::string> pictures = {};
+  std::vector<std::optional<std::int64_t>> image_ids = {};
+  // The categories by their numbers in that set.
+  std::map<std::int64_t, std::string> category_ids = {};
 };
 
 // Writes SEQUENCE.txt and SEQUENCE.json. Throws Error where a file cannot be written.
@@ -54,9 +60,15 @@ SequenceDetections read_sequence(const fs::path& folder, const std::string& name
 //   a folder as above;
 //   a folder of MOTChallenge results: SEQUENCE.txt, data/SEQUENCE.txt or SEQUENCE/det/det.txt;
 //   a COCO results file, or a folder with one JSON file alone: a list of {image_id, category_id,
-//     bbox, score, track_id}. image_id is a number, or a file's name (NAME/000000.jpg, with any
-//     ending or none); `image_name` or `file_name` may stand for it. A category is named
-//     `category_name`, else category_id 1 is "aircraft" and others are "2", "3", ...
+//     bbox, score, track_id}.
+// `file_name` or `image_name` of a COCO result, or an image_id that is a text, names the picture:
+// by the file name that its set gave it, with or without folders and ending, or as NAME/000000.jpg.
+// An image_id that is a number is the set's own id. Where the set states no ids, they follow from
+// `set`: the frames of all sequences are counted through in its order, from 1, as `airtruth dataset
+// export --format coco` counts them. Where the file has an id that no picture has, and every id of
+// it is the number that a picture is named (000012.jpg), as Ultralytics writes them, these numbers
+// name the pictures. A category is named `category_name`, else by the set's categories, else
+// category_id 1 is "aircraft" and others are "2", "3", ...
 // Throws Error with file and line for text that is no result, a sequence, image or frame that the
 // set does not have, a box outside its image or without area, a score or coordinate that is not
 // finite, a track that is twice in one frame, and a sequence that is there twice.

@@ -30,6 +30,7 @@ video::ReaderOptions reader_options(const DetectionClip& clip, bool with_motion)
   video::ReaderOptions options;
   options.first_frame = clip.first_frame;
   options.frame_count = clip.frame_count;
+  options.picture_rate_hz = clip.frame_rate_hz;
   options.threads = 1;
   options.with_cuts = with_motion;
   return options;
@@ -44,6 +45,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
     const exchange::Clip labelled = set.clip(name);
     if (labelled.media.empty()) throw Error("'" + name + "' has no video");
     clip.media = labelled.media;
+    clip.frame_rate_hz = labelled.frame_rate_hz;
     for (const exchange::LabelledFrame& frame : labelled.frames) clip.frames.push_back(frame.frame);
     return clip;
   }
@@ -86,6 +88,7 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
       clip.name += fmt::format("-{}", count);
     clip.own_aircraft = background.mask;
     clip.first_frame = background.first_frame;
+    clip.frame_rate_hz = background.frame_rate_hz;
     clip.frame_count = background.frame_count;
     clip.lens = annotation::lens_of(annotation::read_truth(set.folder(name) / "truth.jsonl").lens);
     clips.push_back(std::move(clip));
@@ -115,6 +118,11 @@ ClipFrames::ClipFrames(const DetectionClip& clip, bool with_motion, const Warn& 
           reader_.info().height,
           reader_.info().frame_rate.value(),
           clip.lens ? *clip.lens : guessed_lens(reader_.info().width, reader_.info().height)} {
+  if (!reader_.info().is_rate_stated)
+    throw Error(
+        "is of numbered pictures, which state no rate; expected --frame-rate, or a set that "
+        "was imported with it",
+        {clip.media.string()});
   const lens::ImageSize size = sequence_.lens.size();
   if (size != lens::ImageSize{sequence_.width, sequence_.height})
     throw Error("has pictures of another size than its lens states", {clip.media.string()});

@@ -27,6 +27,8 @@ struct DetectionClip {
   fs::path media;
   std::int64_t first_frame = 0;
   std::optional<std::int64_t> frame_count;
+  // Of pictures; empty: the video's own.
+  std::optional<double> frame_rate_hz;
   // Numbers of the frames in the video, ascending, counted from first_frame; empty: all frames.
   std::vector<std::int64_t> frames;
   // Empty where nothing states one.

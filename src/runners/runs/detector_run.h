@@ -32,6 +32,8 @@ struct DetectOptions {
   bool backgrounds = true;
   // Calibration file for clips that state no lens.
   std::optional<fs::path> lens;
+  // Frames a second of pictures that state none.
+  std::optional<double> frame_rate_hz;
   // Mask of the own aircraft for clips that state none.
   std::optional<fs::path> mask;
   // Masks are used: nothing is detected on the own aircraft, and the camera's motion is not

@@ -40,6 +40,8 @@ inline constexpr Limits kPinholeView{
 inline constexpr Limits kPosition{.expected = "metres from -1e9 to 1e9", .low = -1e9, .high = 1e9};
 inline constexpr Limits kTime{.expected = "seconds from -1e9 to 1e9", .low = -1e9, .high = 1e9};
 inline constexpr Limits kWeight{.expected = "a number from 1e-9 to 1e9", .low = 1e-9, .high = 1e9};
+inline constexpr Limits kFrameRate_hz{
+    .expected = "frames a second from 0.001 to 1e6", .low = 0.001, .high = 1e6};
 inline constexpr Limits kVelocity{
     .expected = "metres a second from -1e4 to 1e4", .low = -1e4, .high = 1e4};
 inline constexpr Limits kSpeed{

@@ -30,9 +30,11 @@ Background background_from(const TableReader& table) {
   if (!video)
     throw Error("[background] has no video; expected the path of a video file", table.where());
   background.video = *video;
+  background.name = table.text("name").value_or("");
   background.mask = table.path("mask");
   background.first_frame = table.whole("first_frame", 0, kMaxFrames).value_or(0);
   background.frame_count = table.whole("frame_count", 1, kMaxFrames);
+  background.frame_rate_hz = table.number("frame_rate_hz", kFrameRate_hz);
   return background;
 }
 
@@ -54,8 +56,8 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.name = name_of(root, file);
   scene.seed = static_cast<std::uint64_t>(root.whole("seed", 0, kLargestSeed).value_or(1));
   scene.weight = root.number("weight", kWeight);
-  scene.background =
-      background_from(root.table("background", {"video", "mask", "first_frame", "frame_count"}));
+  scene.background = background_from(root.table(
+      "background", {"video", "name", "mask", "first_frame", "frame_count", "frame_rate_hz"}));
   scene.lens = lens_in(root);
   scene.motion = motion_in(root);
   scene.camera = camera_in(root, scene.motion, scene.background.first_frame);

@@ -44,9 +44,13 @@ namespace fs = std::filesystem;
 // [background]: the onboard video and the range of its frames that is rendered.
 struct Background {
   fs::path video;
+  // What reports and breakdowns call it; empty: the name of its file.
+  std::string name;
   std::optional<fs::path> mask;
   std::int64_t first_frame = 0;
   std::optional<std::int64_t> frame_count;
+  // Of numbered pictures, which state none.
+  std::optional<double> frame_rate_hz;
   Where where;
 };
 

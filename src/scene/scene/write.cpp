@@ -265,9 +265,11 @@ std::string toml_from_scene(const Scene& scene) {
   text.add("weight", scene.weight);
   text.heading("[background]");
   text.add("video", scene.background.video);
+  if (!scene.background.name.empty()) text.add("name", scene.background.name);
   text.add("mask", scene.background.mask);
   text.add("first_frame", scene.background.first_frame);
   text.add("frame_count", scene.background.frame_count);
+  text.add("frame_rate_hz", scene.background.frame_rate_hz);
   add_lens(text, scene.lens);
   add_camera(text, scene.camera);
   text.heading("[motion]");

@@ -245,10 +245,17 @@ video::Reader open_background(const scene::Scene& scene, const Options& options)
   video::ReaderOptions reader_options;
   reader_options.first_frame = scene.background.first_frame;
   reader_options.frame_count = scene.background.frame_count;
+  reader_options.picture_rate_hz = scene.background.frame_rate_hz;
   reader_options.threads = options.threads;
   reader_options.with_cuts = true;
   reader_options.avoids_copies = true;
-  return video::Reader(scene.background.video, reader_options, options.warn);
+  video::Reader reader(scene.background.video, reader_options, options.warn);
+  if (!reader.info().is_rate_stated)
+    throw Error(
+        "the background is of numbered pictures, which state no rate; expected "
+        "frame_rate_hz, their frames a second, in [background]",
+        scene.background.where);
+  return reader;
 }
 
 // The frame of a known motion that a moment of [[intruder.seen]] is about.

@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: Apache-2.0
+"""People's own files are read right, or what was not read is said. strangers_test.py AIRTRUTH [CASE...]
+
+The files are those of AIRTRUTH_SHARED/strangers, a folder for each kind of fault with a README of what is right. Each case below
+runs the program on one of them. A case that is listed in OPEN is known to be wrong still; it must then fail, so that the list
+cannot go stale.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+SHARED = os.environ.get("AIRTRUTH_SHARED")
+# Cases whose fault is not mended.
+OPEN = set()
+
+
+class Case:
+    """What a case works with: the program, the folder of its files, and a scratch folder."""
+
+    def __init__(self, program, files, scratch):
+        self.program = program
+        self.files = files
+        self.scratch = scratch
+        self.count = 0
+
+    def path(self, *names):
+        return os.path.join(self.files, *names)
+
+    def run(self, *arguments, code=0):
+        process = subprocess.run([self.program, *arguments], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 env=dict(os.environ, XDG_CACHE_HOME=self.scratch), cwd=self.scratch)
+        assert process.returncode == code, f"{' '.join(arguments)}: code {process.returncode}\n{process.stdout}{process.stderr}"
+        return process.stdout + process.stderr
+
+    def imported(self, format, source, *options):
+        """Imports; returns what was said, and the clips by name: the first line of labels.jsonl and its frames."""
+        self.count += 1
+        out = os.path.join(self.scratch, f"set{self.count}")
+        said = self.run("dataset", "import", self.path(source), "--format", format, "--out", out, *options)
+        clips = {}
+        for folder in sorted(os.listdir(os.path.join(out, "sequences"))):
+            where = os.path.join(out, "sequences", folder)
+            if os.path.isdir(where):
+                with open(os.path.join(where, "labels.jsonl"), encoding="utf-8") as file:
+                    lines = [json.loads(line) for line in file]
+                clips[folder] = {"head": lines[0], "frames": lines[1:], "folder": where}
+        self.set = out
+        return said, clips
+
+
+def boxes(frame):
+    return [label["box_px"] for label in frame["labels"]]
+
+
+def pictures(clip):
+    with open(os.path.join(clip["folder"], "pictures.txt"), encoding="utf-8") as file:
+        return file.read().split("\n")[:-1]
+
+
+def grey_of(path):
+    raw = subprocess.run(["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "gray", "-"], stdout=subprocess.PIPE,
+                         check=True).stdout
+    return sum(raw) / len(raw)
+
+
+def expect_own_pictures(clips, frames):
+    """Grey level 10 i in a picture means that its box has x = i."""
+    seen = []
+    for clip in clips.values():
+        for frame, path in zip(clip["frames"], pictures(clip), strict=True):
+            i = round(grey_of(path) / 10)
+            assert [box[0] for box in boxes(frame)] == [i], (path, i, boxes(frame))
+            seen.append(i)
+    assert len(seen) == frames, (len(seen), frames)
+    return seen
+
+
+def own_pictures(format, source, clips=1):
+    def case(it):
+        _, read = it.imported(format, source)
+        assert len(read) == clips, list(read)
+        frames = sum(len(clip["frames"]) for clip in read.values())
+        seen = expect_own_pictures(read, frames)
+        return seen
+    return case
+
+
+def ordered(format, source):
+    def case(it):
+        seen = own_pictures(format, source)(it)
+        assert seen == sorted(seen), seen
+    return case
+
+
+def only(clips):
+    assert len(clips) == 1, list(clips)
+    return next(iter(clips.values()))
+
+
+def coco_ids(it):
+    it.imported("coco", "zero")
+    it.run("evaluate", it.set, it.path("zero_perfect.json"), "--detections", "-o", "e")
+    assert ap_of(it) == 1.0, ap_of(it)
+
+
+def ultralytics(it):
+    for results in ("ultra.json", "ultra_str.json"):
+        it.imported("coco", "gaps_coco")
+        it.run("evaluate", it.set, it.path(results), "--detections", "-o", "e" + results)
+        assert ap_of(it, "e" + results) == 1.0, ap_of(it, "e" + results)
+
+
+def ap_of(it, folder="e"):
+    with open(os.path.join(it.scratch, folder, "detection.json"), encoding="utf-8") as file:
+        return json.load(file)["detectors"][0]["average_precision"]["ap"]
+
+
+def rate_of_import(it):
+    _, clips = it.imported("mot", "mot_spaces")
+    assert only(clips)["head"]["frame_rate_hz"] == 10
+
+
+def track_of_cvat(it):
+    said, clips = it.imported("coco", "coco_nullseg")
+    label = only(clips)["frames"][0]["labels"][0]
+    assert label["track"] == 3 and label["occluded"] is True, label
+    assert "without a track" not in said, said
+
+
+def official_coco(it):
+    said, clips = it.imported("coco", "coco")
+    assert "captions" in said, said
+    assert clips
+
+
+def corners(it):
+    _, clips = it.imported("csv", "l_xyxy.csv")
+    assert boxes(only(clips)["frames"][0]) == [[1, 2, 2, 2]]
+
+
+def polygon_track(it):
+    _, clips = it.imported("cvat", "cvat_poly")
+    shown = {frame["frame"]: boxes(frame) for frame in only(clips)["frames"] if frame["labels"]}
+    assert shown == {2: [[10, 10, 10, 6]], 3: [[10, 10, 10, 6]]}, shown
+
+
+def project(it):
+    _, clips = it.imported("cvat", "export_project")
+    assert len(clips) == 3, list(clips)
+    for clip in clips.values():
+        assert [frame["picture"] for frame in clip["frames"]] == ["img0.jpg", "img1.jpg"], clip["frames"]
+        assert boxes(clip["frames"][0])[0] == [0, 2, 4, 2], clip["frames"]
+
+
+def rotation(it):
+    _, clips = it.imported("cvat", "cvat_rot")
+    shown = [boxes(frame) for frame in only(clips)["frames"] if frame["labels"]]
+    assert len(shown) == 1 and all(abs(a - b) < 1e-9 for a, b in zip(shown[0][0], [23, 7, 4, 30])), shown
+
+
+def byte_order_mark_of_mot(it):
+    _, clips = it.imported("mot", "mot_crlf_bom")
+    assert sum(len(frame["labels"]) for frame in only(clips)["frames"]) > 0
+
+
+def duplicate_id(it):
+    out = os.path.join(it.scratch, "set")
+    said = it.run("dataset", "import", it.path("mot_dupid"), "--format", "mot", "--out", out, code=2)
+    assert "gt.txt:2" in said, said
+
+
+def mot15(it):
+    said, clips = it.imported("mot", "mot15_3d")
+    for frame in only(clips)["frames"]:
+        for label in frame["labels"]:
+            assert "visible" not in label and "range_m" not in label, label
+    assert "columns 8 to 10" in said, said
+
+
+def two_targets(it):
+    _, clips = it.imported("otb", "otb_jog")
+    assert {label["track"] for frame in only(clips)["frames"] for label in frame["labels"]} == {1, 2}
+
+
+def yolo_of_cvat(it):
+    _, clips = it.imported("yolo", "cvat_yolo")
+    clip = only(clips)
+    assert len(clip["frames"]) == 3 and len(pictures(clip)) == 3
+    assert {label["category"] for frame in clip["frames"] for label in frame["labels"]} == {"plane"}
+
+
+def byte_order_mark_of_yolo(it):
+    _, clips = it.imported("yolo", "bomy")
+    assert sum(len(frame["labels"]) for clip in clips.values() for frame in clip["frames"]) > 0
+
+
+def missing_text(it):
+    _, clips = it.imported("yolo", "yolo_missing")
+    clip = only(clips)
+    assert len(clip["frames"]) == 5 and len(pictures(clip)) == 5
+    labels = [label for frame in clip["frames"] for label in frame["labels"]]
+    assert len(labels) == 2 and {label["category"] for label in labels} <= {"plane", "bird"}, labels
+
+
+def mixed_sizes(it):
+    said, clips = it.imported("yolo", "yolo_mixed")
+    frames = only(clips)["frames"]
+    assert boxes(frames[1]) == [[48, 36, 32, 24]], frames[1]
+    assert "differ in size" in said, said
+
+
+def roboflow(it):
+    _, clips = it.imported("yolo", "robo_yolo")
+    assert len(clips) == 2 and all(len(clip["frames"]) == len(pictures(clip)) == 3 for clip in clips.values()), clips
+
+
+def capital_ending(it):
+    _, clips = it.imported("yolo", "upper_yolo")
+    assert len(pictures(only(clips))) == len(only(clips)["frames"]) > 0
+
+
+def lens(name):
+    """Renders nothing: `motion` with the lens on a picture of its size reads the file as every command does."""
+    def read(it, size, code=0):
+        it.run("synth", "-o", "v.mp4", "--frames", "2", "--width", str(size[0]), "--height", str(size[1]))
+        return it.run("motion", "v.mp4", "--model", "rotation", "--lens", it.path(name), "-o", "m.csv", code=code)
+    return read
+
+
+def lens_said(name, size, words, code=2):
+    def case(it):
+        said = lens(name)(it, size, code)
+        assert words in said, said
+    return case
+
+
+def lens_read(name, size):
+    def case(it):
+        lens(name)(it, size)
+    return case
+
+
+def listed_size(it):
+    # On a picture of half the size the focal length is half as long.
+    it.run("lens", "crop", it.path("cv_size_seq.yml"), "--size", "640x360", "-o", "half.yml")
+    with open(os.path.join(it.scratch, "half.yml"), encoding="utf-8") as file:
+        text = file.read()
+    assert "data: [ 250.0, 0.0, 319.75" in text, text
+
+
+CASES = {
+    "det-rate-of-import-mot": rate_of_import,
+    "ev-coco-ids-from-0": coco_ids,
+    "ev-ultralytics-predictions": ultralytics,
+    "lab-coco-cvat-trackid": track_of_cvat,
+    "lab-coco-official-folder-real": official_coco,
+    "lab-coco-roboflow-names": ordered("coco", "roboflow_coco"),
+    "lab-coco-two-videos": own_pictures("coco", "two_videos_coco", clips=2),
+    "lab-coco-uuid-names": own_pictures("coco", "uuid_coco"),
+    "lab-coco-visdrone-names": own_pictures("coco", "visdrone_coco"),
+    "lab-csv-xyxy": corners,
+    "lab-cvat-images-left": ordered("cvat", "left_cvat"),
+    "lab-cvat-images-unpadded": ordered("cvat", "unpadded_cvat"),
+    "lab-cvat-polygon-track": polygon_track,
+    "lab-cvat-project-real": project,
+    "lab-cvat-rotation": rotation,
+    "lab-mot-bom": byte_order_mark_of_mot,
+    "lab-mot-duplicate-id": duplicate_id,
+    "lab-mot15-3d": mot15,
+    "lab-otb-two-targets": two_targets,
+    "lab-yolo-11-cvat": yolo_of_cvat,
+    "lab-yolo-bom": byte_order_mark_of_yolo,
+    "lab-yolo-missing-txt": missing_text,
+    "lab-yolo-mixed-sizes": mixed_sizes,
+    "lab-yolo-roboflow-layout": roboflow,
+    "lab-yolo-uppercase-jpg": capital_ending,
+    "lens-distortion-singular": lens_said("dc_key.yaml", (640, 480), "Distortion_Coefficient"),
+    "lens-fisheye-no-flag": lens_said("cv_fisheye_4x1_noflag.yml", (1280, 720), "holds four numbers"),
+    "lens-gyroflow-tele": lens_read("Blackmagic_Pocket Cinema Camera 6K Pro_Contax Zeiss 50mm f1.4__6k_16by9_6144x3456-24.00fps.json",
+                                    (1024, 576)),
+    "lens-image-size-list": listed_size,
+    "lens-kalibr": lens_read("kalibr_camchain.yaml", (752, 480)),
+    "lens-omni": lens_said("omni_matrix.yaml", (752, 480), "omni"),
+    "lens-unknown-distortion-key": lens_said("coeffs_key.yaml", (640, 480), "holds four numbers"),
+}
+
+
+def main():
+    program = os.path.abspath(sys.argv[1])
+    if not SHARED or not os.path.isdir(os.path.join(SHARED, "strangers")):
+        print("skipped: AIRTRUTH_SHARED/strangers is not there")
+        sys.exit(77)
+    wrong = []
+    for name in sys.argv[2:] or CASES:
+        with tempfile.TemporaryDirectory() as scratch:
+            try:
+                CASES[name](Case(program, os.path.join(os.path.abspath(SHARED), "strangers", name), scratch))
+                fault = None
+            except Exception as error:  # a missing file or key is a failed case as well
+                fault = f"{type(error).__name__}: {error}"
+        print(f"{name}: {'right' if fault is None else fault}", flush=True)
+        if (fault is None) == (name in OPEN):
+            wrong.append(name)
+    print(f"{len(CASES)} cases, {len(OPEN)} known to be wrong; unexpected: {wrong or 'none'}")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()
