@@ -108,7 +108,8 @@ camera_file::Options options_of(const CalibrateArguments& arguments,
                                 const lens::ImageSize& size,
                                 Context& context) {
   camera_file::Options options;
-  if (!arguments.lens.empty()) options.lens = lens::read_calibration(arguments.lens, size);
+  if (!arguments.lens.empty())
+    options.lens = lens::read_calibration(arguments.lens, size, context.console().warn());
   options.altitude_m = arguments.altitude_m;
   options.heading_deg = arguments.heading_deg;
   options.tone.gamma = arguments.gamma;

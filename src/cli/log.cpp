@@ -98,8 +98,8 @@ struct AlignArguments {
   std::int64_t first_frame = 0;
 };
 
-lens::Lens lens_of(const AlignArguments& arguments, lens::ImageSize size) {
-  if (!arguments.lens.empty()) return lens::read_calibration(arguments.lens, size);
+lens::Lens lens_of(const AlignArguments& arguments, lens::ImageSize size, const Warn& warn) {
+  if (!arguments.lens.empty()) return lens::read_calibration(arguments.lens, size, warn);
   if (arguments.fov_deg > 0) return lens::pinhole_from_vertical_fov(arguments.fov_deg, size);
   throw Error("--lens or --fov is missing; expected the camera's calibration or vertical view");
 }
@@ -116,7 +116,7 @@ std::vector<motion::FrameMotion> motion_of(const AlignArguments& arguments, Cont
   const std::int64_t total = reader.info().frame_count_estimate - arguments.first_frame;
   auto motion = setup::measure_motion(
       reader,
-      motion::Estimator(lens_of(arguments, size), {}, mask ? &*mask : nullptr),
+      motion::Estimator(lens_of(arguments, size, console.warn()), {}, mask ? &*mask : nullptr),
       context.stop,
       [&](std::int64_t done) { console.progress("measuring the motion", done, total); });
   console.end_progress();

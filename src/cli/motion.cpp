@@ -38,14 +38,16 @@ struct MotionArguments {
 };
 
 // The lens for the model "rotation"; empty for "homography".
-std::optional<lens::Lens> lens_of(const MotionArguments& arguments, const lens::ImageSize& size) {
+std::optional<lens::Lens> lens_of(const MotionArguments& arguments,
+                                  const lens::ImageSize& size,
+                                  const Warn& warn) {
   if (enum_named<scene::MotionModel>(arguments.model) == scene::MotionModel::kHomography) {
     if (!arguments.lens.empty())
       throw Error("--lens is for --model rotation; a homography knows no lens");
     return std::nullopt;
   }
   if (arguments.lens.empty()) throw Error("--model rotation needs --lens, a calibration file");
-  return lens::read_calibration(arguments.lens, size);
+  return lens::read_calibration(arguments.lens, size, warn);
 }
 
 void stabilise(const MotionArguments& arguments,
@@ -118,7 +120,7 @@ void measure(const MotionArguments& arguments, Context& context) {
   motion::Options options;
   options.smoothing_s = arguments.smoothing_s;
   const image::Mask* own_aircraft = mask ? &*mask : nullptr;
-  const auto lens = lens_of(arguments, {info.width, info.height});
+  const auto lens = lens_of(arguments, {info.width, info.height}, console.warn());
   motion::Estimator estimator =
       lens ? motion::Estimator(*lens, options, own_aircraft)
            : motion::Estimator(info.width, info.height, options, own_aircraft);

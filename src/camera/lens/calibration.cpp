@@ -6,13 +6,16 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <pugixml.hpp>
 #include <yaml-cpp/yaml.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
 #include "foundation/base/text.h"
 #include "foundation/json/json_object.h"
 
@@ -140,6 +143,22 @@ Value value_of(const YAML::Node& node, int line) {
   return value;
 }
 
+// The camera of a Kalibr camchain, whose top level has cam0, cam1 and so on; undefined for any
+// other file.
+YAML::Node only_camera(const YAML::Node& top, const std::string& file) {
+  YAML::Node camera(YAML::NodeType::Undefined);
+  for (const auto& entry : top) {
+    if (!entry.first.IsScalar() || !entry.second.IsMap()) continue;
+    const YAML::Node intrinsics = entry.second["intrinsics"];
+    if (!intrinsics.IsDefined()) continue;
+    if (camera.IsDefined())
+      throw Error("holds several cameras (cam0, cam1, ...); expected a file of the one that flew",
+                  {file, entry.first.Mark().line + 1});
+    camera.reset(entry.second);
+  }
+  return camera;
+}
+
 Values values_of_yaml(std::string_view text, const std::string& file) {
   if (text.size() > kLargestYaml_bytes)
     throw Error("is larger than 1 MiB; expected an OpenCV calibration", {file});
@@ -151,6 +170,7 @@ Values values_of_yaml(std::string_view text, const std::string& file) {
   }
   Values values;
   if (!top.IsMap()) return values;
+  if (const YAML::Node camera = only_camera(top, file); camera.IsMap()) top.reset(camera);
   for (const auto& entry : top) {
     const YAML::Node& name = entry.first;
     const YAML::Node& node = entry.second;
@@ -209,25 +229,174 @@ int whole(const Values& values, const std::vector<std::string>& keys, const std:
   return static_cast<int>(list[0]);
 }
 
-bool says_fisheye(const Values& values, const std::string& file) {
+const std::vector<std::string> kMatrix = {
+    "camera_matrix", "Camera_Matrix", "cameraMatrix", "CameraMatrix", "camera_mat", "K", "k"};
+const std::vector<std::string> kDistortion = {"distortion_coefficients",
+                                              "Distortion_Coefficients",
+                                              "distortion_coeffs",
+                                              "distCoeffs",
+                                              "dist_coeffs",
+                                              "dist_coeff",
+                                              "distortion",
+                                              "dist",
+                                              "D",
+                                              "d"};
+const std::vector<std::string> kWidth = {"image_width", "image_Width", "width"};
+const std::vector<std::string> kHeight = {"image_height", "image_Height", "height"};
+const std::vector<std::string> kBothSides = {
+    "image_size", "imageSize", "image_Size", "img_size", "resolution"};
+const std::vector<std::string> kFisheyeFlag = {"fisheye_model", "fisheye"};
+const std::vector<std::string> kModels = {"distortion_model", "camera_model", "model"};
+// Kalibr's.
+const std::vector<std::string> kIntrinsics = {"intrinsics"};
+
+// Keys that change no ray: who calibrated when and how well, and where the camera stands. ROS's
+// rectification and projection matrices are those of the rectified picture.
+const std::vector<std::string> kHarmless = {"calibration_time",
+                                            "calibration_date",
+                                            "nframes",
+                                            "nr_of_frames",
+                                            "board_width",
+                                            "board_height",
+                                            "square_size",
+                                            "marker_size",
+                                            "aspectRatio",
+                                            "aspect_ratio",
+                                            "fix_aspect_ratio",
+                                            "flags",
+                                            "flagValue",
+                                            "avg_reprojection_error",
+                                            "Avg_Reprojection_Error",
+                                            "rms",
+                                            "RMS",
+                                            "reprojection_error",
+                                            "per_view_reprojection_errors",
+                                            "Per_View_Reprojection_Errors",
+                                            "extrinsic_parameters",
+                                            "Extrinsic_Parameters",
+                                            "image_points",
+                                            "Image_points",
+                                            "grid_points",
+                                            "write_grid",
+                                            "camera_name",
+                                            "header",
+                                            "rectification_matrix",
+                                            "projection_matrix",
+                                            "R",
+                                            "P",
+                                            "r",
+                                            "p",
+                                            "cam_overlaps",
+                                            "rostopic",
+                                            "T_cam_imu",
+                                            "T_cn_cnm1",
+                                            "T_imu_cam",
+                                            "timeshift_cam_imu"};
+
+// Names of lens models, in any of kModels: true for a fisheye, false for a pinhole with or without
+// distortion. Throws Error for any other.
+bool is_fisheye_model(const std::string& key, const Value& value, const std::string& file) {
+  const auto is = [&](const char* word) { return value.text.find(word) != std::string::npos; };
+  if (is("fisheye") || is("equidistant") || is("kannala")) return true;
+  if (is("plumb_bob") || is("rational") || is("pinhole") || is("radtan") || is("brown") ||
+      is("opencv") || is("none") || is("OPENCV"))
+    return false;
+  throw Error(key + " is '" + value.text.substr(0, 40) +
+                  "', a lens model that cannot be honoured; expected pinhole, plumb_bob, radtan, "
+                  "rational_polynomial, fisheye or equidistant",
+              {file, value.line});
+}
+
+// Whether the file says that its lens is a fisheye; empty where it says nothing.
+std::optional<bool> says_fisheye(const Values& values, const std::string& file) {
   std::string key;
-  if (const Value* value = find(values, {"fisheye_model", "fisheye"}, &key)) {
+  if (const Value* value = find(values, kFisheyeFlag, &key)) {
     const std::string flag = trimmed(value->text);
     if (flag == "1" || flag == "true") return true;
     if (flag == "0" || flag == "false") return false;
     throw Error(key + " is '" + flag.substr(0, 40) + "'; expected 0 or 1", {file, value->line});
   }
-  const Value* model = find(values, {"distortion_model", "camera_model", "model"}, &key);
-  if (model == nullptr) return false;
-  const std::string& name = model->text;
-  const auto is = [&](const char* word) { return name.find(word) != std::string::npos; };
-  if (is("fisheye") || is("equidistant") || is("kannala")) return true;
-  if (is("plumb_bob") || is("rational") || is("pinhole") || is("radtan") || is("brown") ||
-      is("opencv"))
-    return false;
-  throw Error(
-      key + " is '" + name.substr(0, 40) + "'; expected plumb_bob, rational_polynomial or fisheye",
-      {file, model->line});
+  // Kalibr states two: the projection and the distortion. The second decides.
+  std::optional<bool> says;
+  for (const std::string& name : kModels)
+    if (const Value* model = find(values, {name}, &key)) {
+      const bool is_fisheye = is_fisheye_model(name, *model, file);
+      says = says.value_or(false) || is_fisheye;
+    }
+  return says;
+}
+
+// ROS's region of interest and binning: nothing where they are 0 or 1, as drivers write them.
+bool is_idle(const std::string& key, const Value& value, const std::string& file) {
+  if (key != "binning_x" && key != "binning_y") return false;
+  const std::vector<double> list = numbers(value, key, file);
+  return list.size() == 1 && (list[0] == 0 || list[0] == 1);
+}
+
+// Keys that are neither used nor harmless: an error where the name is one of a lens's, and a
+// warning else.
+void expect_known_keys(const Values& values, const std::string& file, Calibration& c) {
+  const auto is_among = [](const std::string& key, const std::vector<std::string>& keys) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  for (const auto& [name, value] : values) {
+    const std::string key = name.ends_with(".data") ? name.substr(0, name.size() - 5) : name;
+    bool is_known = is_among(key, kHarmless) || is_idle(key, value, file);
+    for (const auto& keys :
+         {kMatrix, kDistortion, kWidth, kHeight, kBothSides, kFisheyeFlag, kModels, kIntrinsics})
+      is_known = is_known || is_among(key, keys);
+    if (is_known) continue;
+    const std::string small = lower_case(key);
+    for (const char* word : {"dist", "coef", "fisheye", "matrix", "model"})
+      if (small.find(word) != std::string::npos)
+        throw Error("has '" + key.substr(0, 60) +
+                        "', which is no key that is known; expected camera_matrix, "
+                        "distortion_coefficients, distortion_model and the like",
+                    {file, value.line});
+    if (small == "xi")
+      throw Error("has xi, the parameter of a lens model that cannot be honoured",
+                  {file, value.line});
+    c.unread.push_back(fmt::format("{}:{}: '{}' is not read", file, value.line, key.substr(0, 60)));
+  }
+}
+
+// The sizes of a camera by one key with both sides, or by two.
+ImageSize size_in(const Values& values, const std::string& file) {
+  std::string key;
+  if (const Value* both = find(values, kBothSides, &key)) {
+    const auto list = numbers(*both, key, file);
+    for (const double side : list)
+      if (list.size() != 2 || side < 1 || side > 65536 || side != std::floor(side))
+        throw Error(key + " is '" + both->text.substr(0, 40) + "'; expected [width, height]",
+                    {file, both->line});
+    if (list.size() == 2) return {static_cast<int>(list[0]), static_cast<int>(list[1])};
+  }
+  const ImageSize size{whole(values, kWidth, file), whole(values, kHeight, file)};
+  if ((size.width == 0) != (size.height == 0))
+    throw Error("has only one of image_width and image_height; expected both or none", {file});
+  return size;
+}
+
+std::array<double, 9> matrix_in(const Values& values, const std::string& file) {
+  std::string key;
+  std::array<double, 9> matrix{};
+  if (const Value* value = find(values, kMatrix, &key)) {
+    const auto m = numbers(*value, key, file);
+    if (m.size() != 9)
+      throw Error(key + " holds " + std::to_string(m.size()) + " numbers; expected 9",
+                  {file, value->line});
+    std::copy(m.begin(), m.end(), matrix.begin());
+    return matrix;
+  }
+  const Value* intrinsics = find(values, kIntrinsics, &key);
+  if (intrinsics == nullptr)
+    throw Error("has no camera_matrix; expected an OpenCV calibration", {file});
+  const auto n = numbers(*intrinsics, key, file);
+  if (n.size() != 4)
+    throw Error(
+        "intrinsics holds " + std::to_string(n.size()) + " numbers; expected fx, fy, cx, cy",
+        {file, intrinsics->line});
+  return {n[0], 0, n[2], 0, n[1], n[3], 0, 0, 1};
 }
 
 }  // namespace
@@ -237,31 +406,22 @@ Calibration parse_opencv_calibration(std::string_view text, const std::filesyste
   const Values values =
       name.extension() == ".xml" ? values_of_xml(text, file) : values_of_yaml(text, file);
   Calibration c;
+  c.camera_matrix = matrix_in(values, file);
   std::string key;
-  const Value* matrix =
-      find(values, {"camera_matrix", "Camera_Matrix", "cameraMatrix", "CameraMatrix", "K"}, &key);
-  if (matrix == nullptr)
-    throw Error("has no camera_matrix; expected an OpenCV calibration", {file});
-  const auto m = numbers(*matrix, key, file);
-  if (m.size() != 9)
-    throw Error(key + " holds " + std::to_string(m.size()) + " numbers; expected 9",
-                {file, matrix->line});
-  std::copy(m.begin(), m.end(), c.camera_matrix.begin());
-  const Value* distortion = find(values,
-                                 {"distortion_coefficients",
-                                  "Distortion_Coefficients",
-                                  "distCoeffs",
-                                  "dist_coeffs",
-                                  "dist_coeff",
-                                  "distortion",
-                                  "D"},
-                                 &key);
+  const Value* distortion = find(values, kDistortion, &key);
   if (distortion != nullptr) c.distortion = numbers(*distortion, key, file);
-  c.size.width = whole(values, {"image_width", "image_Width", "width"}, file);
-  c.size.height = whole(values, {"image_height", "image_Height", "height"}, file);
-  if ((c.size.width == 0) != (c.size.height == 0))
-    throw Error("has only one of image_width and image_height; expected both or none", {file});
-  c.fisheye = says_fisheye(values, file);
+  c.size = size_in(values, file);
+  expect_known_keys(values, file, c);
+  const std::optional<bool> is_fisheye = says_fisheye(values, file);
+  // cv2.fisheye.calibrate gives four coefficients, and cv2.calibrateCamera may.
+  if (!is_fisheye && c.distortion.size() == 4 &&
+      std::any_of(c.distortion.begin(), c.distortion.end(), [](double k) { return k != 0; }))
+    throw Error(key +
+                    " holds four numbers, and nothing says of which model; expected "
+                    "`fisheye_model: 1` (cv2.fisheye) or `fisheye_model: 0` "
+                    "(cv2.calibrateCamera) beside them",
+                {file, distortion->line});
+  c.fisheye = is_fisheye.value_or(false);
   return c;
 }
 

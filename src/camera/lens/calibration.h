@@ -19,6 +19,8 @@ struct Calibration {
   ImageSize size;
   double max_angle_rad = kPi;  // where the file of a fisheye states it
   std::string camera;          // "GoPro Hero3+Black"; empty where the file names none
+  // Sentences about keys of the file that are neither used nor harmless.
+  std::vector<std::string> unread = {};
 };
 
 Calibration parse_gyroflow_profile(std::string_view text, const std::filesystem::path& name);

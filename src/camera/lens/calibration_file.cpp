@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "camera/lens/calibration.h"
+#include "camera/lens/photogrammetry.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
@@ -27,7 +28,6 @@ constexpr double kAspectTolerance = 0.01;
 // The limits of the keys of [lens] in a scene (scene/scene/limits.h).
 constexpr double kMinFocal_px = 1;
 constexpr double kFarthest_px = 1e6;
-constexpr double kLargestCoefficient = 1e6;
 
 std::string shown(double number) {
   char text[32];
@@ -54,9 +54,7 @@ void check_matrix(const Calibration& c, const std::string& file) {
       throw Error("the camera matrix has its centre at " + shown(m[i]) + "; expected it within 1e6",
                   {file});
   for (const double k : c.distortion)
-    if (!(std::abs(k) <= kLargestCoefficient))
-      throw Error("has a distortion coefficient of " + shown(k) + "; expected it within 1e6",
-                  {file});
+    if (!std::isfinite(k)) throw Error("has a distortion coefficient that is not finite", {file});
   if (m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
     throw Error("the camera matrix is not of the form [fx 0 cx; 0 fy cy; 0 0 1]", {file});
 }
@@ -97,13 +95,22 @@ Calibration parsed(std::string_view text, const std::filesystem::path& name) {
   std::string extension = name.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   Calibration c;
-  if (extension == ".json") {
+  if (extension == ".json" && text.find("calib_dimension") == std::string_view::npos &&
+      text.find("camera_matrix") != std::string_view::npos) {
+    c = parse_opencv_calibration(text, name);  // OpenCV's JSON is YAML too
+  } else if (extension == ".json") {
     c = parse_gyroflow_profile(text, name);
+  } else if (extension == ".xml" && text.find("<calibration>") != std::string_view::npos) {
+    c = parse_agisoft_calibration(text, name);
+  } else if (extension == ".txt") {
+    c = parse_colmap_cameras(text, name);
   } else if (extension == ".yml" || extension == ".yaml" || extension == ".xml") {
     c = parse_opencv_calibration(text, name);
   } else {
-    throw Error("is no calibration file: expected .json (Gyroflow) or .yml, .yaml, .xml (OpenCV)",
-                {name.string()});
+    throw Error(
+        "is no calibration file: expected .json (Gyroflow or OpenCV), .yml or .yaml (OpenCV, "
+        "ROS or Kalibr), .xml (OpenCV or Agisoft) or .txt (COLMAP)",
+        {name.string()});
   }
   check_matrix(c, name.string());
   return c;
@@ -136,7 +143,10 @@ std::string refusal(const Calibration& c, ImageSize size) {
          ", but the video is " + words(size) + ", another aspect ratio";
 }
 
-std::string how_to_crop(const std::filesystem::path& path, ImageSize size) {
+std::string how_to_crop(const std::filesystem::path& path, const Calibration& c, ImageSize size) {
+  if (same_aspect(c.size, {size.height, size.width}))
+    return "; the picture is turned by 90 degrees against the calibration: expected a calibration "
+           "of the turned picture, or a video that is not turned";
   return "; where the video is the middle of that picture, cut and not squeezed, `airtruth lens "
          "crop " +
          path.string() + " --size " + words(size) + " -o LENS.yml` writes its lens";
@@ -176,17 +186,22 @@ std::string profiles_that_fit(const std::filesystem::path& path,
 
 }  // namespace
 
-Lens parse_calibration(std::string_view text, const std::filesystem::path& name, ImageSize size) {
+Lens parse_calibration(std::string_view text,
+                       const std::filesystem::path& name,
+                       ImageSize size,
+                       const Warn& warn) {
   const Calibration c = parsed(text, name);
+  for (const std::string& unread : c.unread) airtruth::warn(warn, unread);
   if (has_size(c) && !same_aspect(c.size, size))
     throw Error(refusal(c, size) + "; expected the same aspect ratio", {name.string()});
   return lens_from(c, name.string(), size);
 }
 
-Lens read_calibration(const std::filesystem::path& path, ImageSize size) {
+Lens read_calibration(const std::filesystem::path& path, ImageSize size, const Warn& warn) {
   const Calibration c = parsed(read_file(path, kMaxBytes), path);
+  for (const std::string& unread : c.unread) airtruth::warn(warn, unread);
   if (has_size(c) && !same_aspect(c.size, size))
-    throw Error(refusal(c, size) + profiles_that_fit(path, c, size) + how_to_crop(path, size),
+    throw Error(refusal(c, size) + profiles_that_fit(path, c, size) + how_to_crop(path, c, size),
                 {path.string()});
   return lens_from(c, path.string(), size);
 }

@@ -203,6 +203,121 @@ TEST(OpenCv, HostileYamlFailsToLoad) {
               testing::HasSubstr("larger than 1 MiB"));
 }
 
+// The four lines of an OpenCV calibration, with keys of one's own beside them.
+std::string opencv(const std::string& more) {
+  return "camera_matrix: [900, 0, 639.5, 0, 905, 479.5, 0, 0, 1]\n" + more;
+}
+
+TEST(OpenCv, ReadsBothSidesFromOneKey) {
+  for (const char* size : {"image_size: [640, 480]",
+                           "image_size: {rows: 2, cols: 1, dt: i, data: [640, 480]}",
+                           "resolution: [640, 480]"}) {
+    const Lens lens = parse_calibration(opencv(size), "a.yml", kProfileSize);
+    EXPECT_EQ(std::get<Pinhole>(lens.model()).focal_px, Pixel(1800, 1810)) << size;
+  }
+  EXPECT_THAT(error_of(opencv("image_size: [640]"), "a.yml"), testing::HasSubstr("image_size is"));
+}
+
+TEST(OpenCv, ReadsItsJson) {
+  cv::FileStorage storage(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+  const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);
+  const cv::Mat distortion = (cv::Mat_<double>(1, 5) << -0.28, 0.09, 1e-3, -5e-4, 0.02);
+  storage << "camera_matrix" << matrix << "distortion_coefficients" << distortion;
+  const Lens lens = parse_calibration(storage.releaseAndGetString(), "a.json", kProfileSize);
+  EXPECT_EQ(std::get<BrownConrady>(lens.model()).focal_px, Pixel(900.25, 905));
+}
+
+// The same four numbers are two lenses that differ by many pixels.
+TEST(OpenCv, FourCoefficientsOfNoModelAreAQuestion) {
+  const std::string four = "distortion_coefficients: [0.05, 0.01, -0.003, 0.0005]\n";
+  EXPECT_THAT(error_of(opencv(four), "a.yml"),
+              testing::StartsWith("a.yml:2: distortion_coefficients holds four numbers"));
+  const auto model = [&](const std::string& more) {
+    return std::string(parse_calibration(opencv(four + more), "a.yml", kProfileSize).name());
+  };
+  EXPECT_EQ(model("fisheye_model: 1"), "fisheye");
+  EXPECT_EQ(model("fisheye_model: 0"), "brown_conrady");
+  EXPECT_EQ(model("distortion_model: plumb_bob"), "brown_conrady");
+}
+
+TEST(OpenCv, KeysThatAreNotKnownAreSaid) {
+  EXPECT_THAT(error_of(opencv("Distortion_Coefficient: [-0.3, 0.1, 0, 0, 0]"), "a.yml"),
+              testing::StartsWith("a.yml:2: has 'Distortion_Coefficient', which is no key"));
+  EXPECT_THAT(error_of(opencv("camera_model: omni\ndistortion_model: radtan\nxi: 0.8"), "a.yml"),
+              testing::HasSubstr("a lens model that cannot be honoured"));
+  std::vector<std::string> warnings;
+  parse_calibration(opencv("roi: [1, 2]\nframe: c\nR: [1]\ncalibration_time: now\n"),
+                    "a.yml",
+                    kProfileSize,
+                    [&](const std::string& text) { warnings.push_back(text); });
+  EXPECT_THAT(warnings,
+              testing::ElementsAre("a.yml:3: 'frame' is not read", "a.yml:2: 'roi' is not read"));
+}
+
+TEST(Kalibr, ReadsTheOneCamera) {
+  const std::string camera =
+      "  camera_model: pinhole\n  distortion_model: equidistant\n"
+      "  distortion_coeffs: [-0.00165, 0.02437, -0.03583, 0.01986]\n"
+      "  intrinsics: [461.487, 460.111, 356.391, 231.157]\n  resolution: [752, 480]\n"
+      "  rostopic: /cam0/image_raw\n";
+  const Lens lens = parse_calibration("cam0:\n" + camera, "a.yaml", {752, 480});
+  const auto& fisheye = std::get<Fisheye>(lens.model());
+  EXPECT_EQ(fisheye.focal_px, Pixel(461.487, 460.111));
+  EXPECT_EQ(fisheye.principal_point_px, Pixel(356.891, 231.657));
+  EXPECT_THAT(error_of("cam0:\n" + camera + "cam1:\n" + camera, "a.yaml", {752, 480}),
+              testing::HasSubstr("several cameras"));
+}
+
+// The models of colmap/src/colmap/sensor/models.h, whose first pixel has its centre at 0.5.
+TEST(Colmap, ReadsTheOneCamera) {
+  const auto model = [](const std::string& line) {
+    return parse_calibration("# Camera list\n" + line + "\n", "cameras.txt", kProfileSize).model();
+  };
+  EXPECT_EQ(std::get<Pinhole>(model("1 SIMPLE_PINHOLE 1280 960 900 640 480")).focal_px,
+            Pixel(900, 900));
+  EXPECT_EQ(std::get<Pinhole>(model("1 PINHOLE 1280 960 900 905 640 480")).principal_point_px,
+            Pixel(640, 480));
+  const auto opencv = std::get<BrownConrady>(
+      model("1 FULL_OPENCV 1280 960 900 905 640 480 -0.2 0.05 1e-3 2e-3 0.01 0.02 0.03 0.04"));
+  EXPECT_EQ(opencv.distortion,
+            (std::vector<double>{-0.2, 0.05, 1e-3, 2e-3, 0.01, 0.02, 0.03, 0.04}));
+  const auto fisheye =
+      std::get<Fisheye>(model("1 SIMPLE_RADIAL_FISHEYE 1280 960 560 640 480 0.05"));
+  EXPECT_EQ(fisheye.distortion, (std::vector<double>{0.05, 0, 0, 0}));
+  EXPECT_THAT(error_of("1 FOV 1280 960 900 905 640 480 0.9\n", "cameras.txt"),
+              testing::StartsWith("cameras.txt:1: has the model 'FOV'"));
+}
+
+// Metashape's manual, appendix D: x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + p1 (r^2 + 2 x^2) + 2 p2 x
+// y, y' likewise, u = w/2 + cx + x' f + x' b1, v = h/2 + cy + y' f.
+TEST(Agisoft, ProjectsAsItsManualStates) {
+  const std::string text =
+      "<?xml version=\"1.0\"?>\n<calibration><projection>frame</projection><width>1280</width>"
+      "<height>960</height><f>900</f><cx>3</cx><cy>-2</cy><b1>1.5</b1><k1>-0.2</k1><k2>0.05</k2>"
+      "<k3>-0.01</k3><p1>0.001</p1><p2>-0.002</p2><date>today</date></calibration>\n";
+  const Lens lens = parse_calibration(text, "a.xml", kProfileSize);
+  const double x = 0.31, y = -0.22, r2 = x * x + y * y;
+  const double radial = 1 - 0.2 * r2 + 0.05 * r2 * r2 - 0.01 * r2 * r2 * r2;
+  const double distorted_x = x * radial + 0.001 * (r2 + 2 * x * x) - 0.004 * x * y;
+  const double distorted_y = y * radial - 0.002 * (r2 + 2 * y * y) + 0.002 * x * y;
+  const Pixel expected(640 + 3 + distorted_x * (900 + 1.5), 480 - 2 + distorted_y * 900);
+  EXPECT_TRUE(lens.pixel_from_cam({x, y, 1})->isApprox(expected, 1e-12));
+}
+
+TEST(Calibration, ATurnedPictureIsNotToBeCropped) {
+  const std::string text = opencv("image_size: [1280, 960]");
+  EXPECT_THAT(error_of(text, "a.yml", {960, 1280}), testing::HasSubstr("another aspect ratio"));
+}
+
+// Long lenses have large coefficients of small angles.
+TEST(Gyroflow, LargeCoefficientsAreJudgedByTheirMap) {
+  std::string text = profile();
+  text.replace(text.find("[[560,0,639.5],[0,561,479.5]"), 28, "[[62702,0,639.5],[0,70821,479.5]");
+  text.replace(
+      text.find("[0.06, 0.01, -0.01, 0.004]"), 26, "[-8.1, 6379.9, -2604221.5, 482071933.4]");
+  EXPECT_STREQ(parse_calibration(text, "a.json", kProfileSize).name(), "fisheye");
+}
+
 TEST(OpenCv, RefusesSkewPrismAndGarbage) {
   const auto yml = [](const std::string& matrix, const std::string& distortion) {
     return "camera_matrix: [" + matrix + "]\ndistortion_coefficients: [" + distortion + "]\n";
@@ -220,7 +335,7 @@ TEST(OpenCv, RefusesSkewPrismAndGarbage) {
               testing::StartsWith("a.yml:3: fisheye_model is 'maybe'"));
   EXPECT_THAT(error_of("<a", "a.xml"), testing::HasSubstr("is not XML"));
   EXPECT_THAT(error_of("", "a.yml"), testing::HasSubstr("no camera_matrix"));
-  EXPECT_THAT(error_of("", "a.txt"), testing::HasSubstr("is no calibration file"));
+  EXPECT_THAT(error_of("", "a.csv"), testing::HasSubstr("is no calibration file"));
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ std::optional<LensWords> estimated_lens(const fs::path& video, const NewSceneOpt
 
 LensWords lens_for(const fs::path& video, lens::ImageSize size, const NewSceneOptions& options) {
   if (options.lens)
-    return {lens::read_calibration(*options.lens, size),
+    return {lens::read_calibration(*options.lens, size, options.warn),
             fmt::format("[lens]\nfile = \"{}\"\n", fs::absolute(*options.lens).string()),
             "the stated calibration"};
   if (auto found = lens_from_files(video, size)) return *found;

@@ -48,9 +48,9 @@ lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
 
 }  // namespace
 
-lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size) {
+lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& warn) {
   return at_place(lens.where, [&] {
-    return lens.file ? lens::read_calibration(*lens.file, size) : stated_lens(lens, size);
+    return lens.file ? lens::read_calibration(*lens.file, size, warn) : stated_lens(lens, size);
   });
 }
 

@@ -23,7 +23,7 @@ namespace airtruth::setup {
 
 // [lens]: read from its file, or built from the view or the focal lengths for a picture of `size`.
 // Error where a calibration cannot be read or is of another size.
-lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size);
+lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& warn = {});
 
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
 trajectory::Path camera_path(const scene::Camera& camera);

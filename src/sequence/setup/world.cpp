@@ -71,7 +71,7 @@ aircraft::Mesh mesh_of(const scene::Distractor& one) {
 }
 
 World without_actors(const scene::Scene& scene, lens::ImageSize size) {
-  return {lens_of(scene.lens, size),
+  return {lens_of(scene.lens, size, warn),
           at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
           {},
           shutter_of(scene.camera_model),
