@@ -15,7 +15,7 @@ constexpr float kDielectric = 0.04f;
 constexpr float kCoatRoughness = 0.1f;
 // GGX's alpha of rolled and handled sheet metal.
 constexpr float kMetalRoughness = 0.3f;
-// Albedo of a cabin behind its windows.
+// Albedo, a ratio, of a cabin behind its windows.
 constexpr float kCabin = 0.05f;
 
 }  // namespace
