@@ -10,7 +10,7 @@
 namespace airtruth::optics {
 namespace {
 
-// Half the width of the profile and the width of its bins, px.
+// Half the width of the profile, as straight_step.cpp samples it, and the width of its bins, px.
 constexpr double kProfileHalfWidthPx = 6, kProfileBinPx = 0.2;
 // Least number of samples of a bin that is shown.
 constexpr std::size_t kMinSamplesInBin = 5;
