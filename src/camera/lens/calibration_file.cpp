@@ -24,7 +24,7 @@ constexpr std::size_t kMaxBytes = 16u << 20;
 // The largest relative difference of two aspect ratios that count as one: sizes are rounded to
 // whole, often to even pixels. 4:3 and 16:9 differ by 33 %.
 constexpr double kAspectTolerance = 0.01;
-// The limits of the keys of [lens] in a scene (scene/scene/limits.h).
+// The limits, in px and without a unit, of the keys of [lens] in a scene (scene/scene/limits.h).
 constexpr double kMinFocal_px = 1;
 constexpr double kFarthest_px = 1e6;
 constexpr double kLargestCoefficient = 1e6;

@@ -116,6 +116,7 @@ Patch::Difference Patch::difference(const cv::Mat& grey, int x_16th, int y_16th)
     for (int i = 0; i < kPatchPx; ++i) {
       const auto sample = static_cast<std::uint16_t>(upper[i] * w00 + upper[i + 1] * w01 +
                                                      lower[i] * w10 + lower[i + 1] * w11);
+      // Bits by which a weighted sum is finer than Patch::luma_.
       constexpr int kShift = 5;
       static_assert(kWeightSum >> kShift == kLumaSteps);
       row_of_more[i] = static_cast<std::int16_t>((sample >> kShift) - luma[i]);
