@@ -51,17 +51,20 @@ LinearRgb Sky::haze(const Vector3& direction) const {
 
 namespace {
 
-// Cells along north and along east.
+// Numbers of cells along north and along east.
 constexpr int kCells = 512;
-// Levels upwards.
+// Number of levels upwards.
 constexpr int kLevels = 26;
+// Side of a cell, height of the base of the clouds, their depth, and that of a level: choices.
 constexpr float kCell_m = 40;
 constexpr float kBase_m = 1050;
 constexpr float kDepth_m = 1500;
 constexpr float kLevel_m = kDepth_m / kLevels;
-// Texels of the fine noise along each axis.
+// Number of texels of the fine noise along each axis, and the side of one.
 constexpr int kDetail = 64;
 constexpr float kDetailTexel_m = 15;
+// Extinction within a cloud, the end of rays, the distance from which haze leaves 1/e of the light
+// of clouds, and the height of the cirrus: choices.
 constexpr float kExtinction_per_m = 0.022F;
 constexpr float kFarthestCloud_m = 60000;
 constexpr float kHaze_m = 30000;
