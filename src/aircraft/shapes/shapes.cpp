@@ -93,7 +93,7 @@ constexpr float kGlideRaised = 0.12f;
 constexpr float kGlideWrist = -0.10f;
 constexpr float kStroke = 0.62f;
 constexpr float kWristStroke = 0.40f;
-// The hand follows the arm.
+// The hand follows the arm by this share of a stroke.
 constexpr float kWristLag = 0.18f;
 
 // A section of the wing in shares of the span; chords in shares of the mean chord.
@@ -176,6 +176,7 @@ void add_trunk(MeshBuilder& builder, float span, const Build& build, const Feath
   const std::uint32_t back = builder.add_material(feathers.back);
   const std::uint32_t beak = builder.add_material(feathers.beak);
   const std::uint32_t tail = builder.add_material(feathers.tail);
+  // Number of sides of the body.
   constexpr int kSides = 12;
   builder.begin_part({"body", {}});
   const std::array<Ring, 9> rings = {ring(0.175f, 0.008f, 0.008f, -0.004f),
@@ -211,6 +212,7 @@ void add_trunk(MeshBuilder& builder, float span, const Build& build, const Feath
 }  // namespace
 
 double usual_strokes_per_s(double span_m) {
+  // A herring gull in cruise (Pennycuick 1996).
   constexpr double kGullHz = 3.05;
   constexpr double kGullSpanM = 1.34;
   return kGullHz * std::sqrt(kGullSpanM / span_m);
@@ -388,6 +390,7 @@ struct Outline {
 };
 
 std::vector<Outline> outline() {
+  // Number of steps from the top to the neck.
   constexpr int kSteps = 14;
   // Of the sphere's middle; below it the radius shrinks to that of the neck.
   std::vector<Outline> result;
