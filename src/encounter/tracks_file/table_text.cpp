@@ -19,6 +19,7 @@ namespace airtruth::encounter {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
+// A name's largest length: it keeps messages and tables readable.
 constexpr std::size_t kMaxNameBytes = 60;
 
 }  // namespace
