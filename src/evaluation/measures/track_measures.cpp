@@ -213,7 +213,7 @@ Hota combined(std::span<const Hota> sequences) {
 
 namespace {
 
-// Above any sum of overlaps: keeping a pair of the frame before comes first.
+// A weight above any sum of overlaps: keeping a pair of the frame before comes first.
 constexpr double kKeptPair = 1000;
 constexpr Eigen::Index kNone = -1;
 
