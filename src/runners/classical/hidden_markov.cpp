@@ -26,7 +26,7 @@ constexpr int kBlockCells = 8;
 constexpr int kAround = 2;
 // A peak this near to a stronger one's box is of the same object.
 constexpr double kApartPx = 6;
-// Levels with a weaker response there do not bound it.
+// Levels with a weaker response there, in typical responses, do not bound it.
 constexpr double kLeastResponse = 2.5;
 constexpr std::size_t kMostPeaks = 150;  // of a bank and frame: bounds the time in rich clutter
 
@@ -78,6 +78,7 @@ std::optional<Box> box_at(const std::vector<Level>& levels, const Pixel& pixel, 
 
 // A square of the smallest size that the detector responds to.
 Box smallest_box(const Pixel& centre) {
+  // Side of the box, px.
   constexpr double kSide = kElement - 2;
   return {centre.x() - kSide / 2, centre.y() - kSide / 2, kSide, kSide};
 }

@@ -21,6 +21,7 @@ constexpr int kWindowPx = 9;    // of the optical flow: the side of a point's su
 // Share of the strongest texture in the object.
 constexpr double kMinTexture = 0.05;
 constexpr std::size_t kMinPoints = 20;  // for a median that holds
+// Number of pairs of points, for a median that holds.
 constexpr std::size_t kMinPairs = 50;
 constexpr double kMinApartPx = 5;  // of a pair, whose ratio is else mostly the flow's error
 constexpr float kMaxReturnPx = 1;  // from where a point began, forward and backward
