@@ -271,6 +271,7 @@ namespace {
 // Histograms of gradient orientations, weighted by the gradient, in the inner and in the outer half
 // of the patch. The patch is scaled to one size, so that the size of the aircraft has no effect.
 std::vector<float> orientations_of(const Patch& patch) {
+  // The side to which a patch is scaled, px, and the number of bins of half a turn.
   constexpr int kSide = 48;
   constexpr int kOrientations = 8;
   cv::Mat grey, gx, gy, size, angle;

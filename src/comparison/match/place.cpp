@@ -37,6 +37,7 @@ std::vector<Spot> spots_of(const RealBoxes& boxes) {
       spots.push_back({k, here + t * (there - here), std::max(box.width, box.height)});
     }
   }
+  // Number of frames to each side: a second's worth at 30 frames/s.
   constexpr int kReach = 15;
   std::vector<Spot> smooth = spots;
   for (std::size_t i = 0; i < spots.size(); ++i) {
@@ -153,6 +154,7 @@ Beside path_beside(const RealBoxes& boxes,
 }
 
 double camera_pitch_deg(const YawPitchRoll& attitude) {
+  // The steepest camera that is tried.
   constexpr int kSteepestDeg = 60;
   const Vector3 up = world_from_body(attitude) * Vector3(0, 0, -1);
   int best = 0;

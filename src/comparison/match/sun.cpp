@@ -19,7 +19,9 @@
 namespace airtruth::match {
 namespace {
 
+// Point spread of a camera that states none, as in pose.cpp.
 constexpr double kUnstatedSpreadPx = 0.8;
+// Elevation of the lowest sun that is tried.
 constexpr double kLowestSunDeg = 10;
 constexpr std::size_t kSunsClosedIn = 3;  // best of the coarse ones that are closed in on
 
