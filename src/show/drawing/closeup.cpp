@@ -67,6 +67,7 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
 
 namespace {
 
+// Gap between panels and around them: a display choice.
 constexpr int kPanelGapPx = 12;
 // Height of two lines of text.
 constexpr int kHeadingPx = 52;

@@ -19,6 +19,7 @@ namespace {
 
 // Side of the square, as a multiple of the box's longer side.
 constexpr double kSurroundings = 2.2;
+// Least side of the square, in pixels of the picture.
 constexpr int kSmallestPx = 24;
 
 }  // namespace
