@@ -14,7 +14,8 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Bounds for untrusted files, far above those of any aircraft.
+// Bounds for untrusted files, far above those of any aircraft: numbers of objects, of levels of
+// nested ones, and of corners.
 constexpr std::size_t kMaxAcObjects = 100'000;
 constexpr int kMaxKidsDepth = 64;
 constexpr std::uint32_t kMaxCornersOfSurface = 10'000;

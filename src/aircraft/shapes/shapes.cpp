@@ -82,13 +82,14 @@ Build build_of(Plumage plumage) {
   return {1, 1};
 }
 
-// Lengths below are shares of the span. Shoulder and wrist, out from the middle and forward.
+// Lengths below are shares of the span: choices. Shoulder and wrist, out from the middle and
+// forward.
 constexpr float kShoulderOut = 0.030f;
 constexpr float kWristOut = 0.205f;
 constexpr float kTipOut = 0.5f;
 constexpr float kShoulderAhead = 0.035f;
 constexpr float kHingesAbove = 0.012f;  // of the body's axis
-// Angles of the wings, in radians: raised in a glide, and the stroke about it.
+// Angles of the wings, in radians: raised in a glide, and the stroke about it. They are choices.
 constexpr float kGlideRaised = 0.12f;
 constexpr float kGlideWrist = -0.10f;
 constexpr float kStroke = 0.62f;
@@ -239,7 +240,7 @@ std::array<float, 3> floats(const std::array<double, 3>& rgb) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
-// Lengths below are shares of the size, the distance between opposite rotors.
+// Lengths below are shares of the size, the distance between opposite rotors: choices.
 constexpr float kArmAbove = 0.02f;  // height of the arms above the middle
 constexpr float kRotorAbove = 0.085f;
 constexpr float kSkidBelow = 0.20f;

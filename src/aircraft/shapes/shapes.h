@@ -53,7 +53,7 @@ struct MultirotorShape {
 // Arms, motors, a shell with a camera below, legs or landing skids, and two-bladed rotors whose
 // tips move at kRotorTipMps.
 Mesh multirotor(const MultirotorShape& shape);
-// A choice.
+// The speed of a rotor's tips: a choice.
 constexpr double kRotorTipMps = 60;
 
 struct BalloonShape {

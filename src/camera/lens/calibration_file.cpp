@@ -146,7 +146,8 @@ std::string how_to_crop(const std::filesystem::path& path, ImageSize size) {
 std::string profiles_that_fit(const std::filesystem::path& path,
                               const Calibration& c,
                               ImageSize size) {
-  // Chosen: reading more files would delay the message, and more names would not fit on its line.
+  // Numbers of files and of names. Chosen: reading more files would delay the message, and more
+  // names would not fit on its line.
   constexpr std::size_t kMaxFilesRead = 1000;
   constexpr std::size_t kMaxProfilesNamed = 3;
   if (c.camera.empty()) return "";

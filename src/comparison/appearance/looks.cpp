@@ -18,6 +18,8 @@
 namespace airtruth::appearance {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr double kReachPx = 4;            // of a profile to either side of the outline
 constexpr double kStepPx = 0.25;          // from sample to sample along it
 constexpr double kMinSlope = 3;           // code values a pixel: an edge that is clear

@@ -13,10 +13,12 @@
 namespace airtruth::comparison {
 namespace {
 
+// The sizes of this file are display choices.
+
 constexpr int kSmallPx = 44;    // of a crop at 1x, at most
 constexpr int kMinCropPx = 24;  // beyond it stands the other one of a pair
 constexpr int kLargePx = 352;   // of an enlarged crop
-// Gaps between pictures, and heights of a heading and of its letters: display choices.
+// Gaps between pictures, and heights of a heading and of its letters.
 constexpr int kGapPx = 10;
 constexpr int kHeadingPx = 34;
 constexpr double kTextPx = 14;

@@ -11,6 +11,8 @@
 namespace airtruth::match {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 // Share of the range that it moves from frame to frame at least: far below a pixel.
 constexpr double kStandsStill = 1e-7;
 constexpr double kAway = 1.15;  // patches from the real one's middle: the two do not overlap

@@ -16,6 +16,8 @@
 namespace airtruth::match {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr int kViewPx = 128;         // of a rendered view
 constexpr double kLengthPx = 80;     // of the aircraft's largest extent in it
 constexpr double kSpreadPx = 0.8;    // of the camera, in pixels of the real one's picture

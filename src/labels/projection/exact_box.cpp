@@ -74,7 +74,7 @@ class Sweep {
       at[k] = *pixel;
     }
     if (is_within(at, bounds)) return;
-    // Number of steps of the exposure.
+    // Number of steps of the exposure: a choice.
     constexpr int kSteps = 4;
     for (int step = 0; step <= kSteps; ++step) {
       const double into_exposure_s =

@@ -14,7 +14,7 @@
 namespace airtruth::render {
 namespace {
 
-// Number of rays of a pixel whose surfaces are shaded.
+// Number of rays of a pixel whose surfaces are shaded: it bounds the time.
 constexpr int kShaded = 64;
 
 // A surface along a ray.

@@ -35,6 +35,7 @@ constexpr std::array<std::size_t, 9> kOrder = {0, 1, 1, 1, 2, 2, 2, 2, 2};
 }  // namespace
 
 Environment Environment::of(const std::function<Rgb(const Vector3&)>& radiance) {
+  // Number of sectors of azimuth, and the solid angle of a cell.
   constexpr int kAround = 2 * kBands;
   constexpr double kCellSr = 4 * kPi / (kBands * kAround);
   std::array<std::array<double, 3>, 9> sums{};

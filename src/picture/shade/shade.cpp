@@ -227,7 +227,8 @@ Sunlit sunlit_at(const Placed& placed, const Surface& surface, const aircraft::M
 BodyRay to_sun_from(const Placed& placed,
                     const Eigen::Vector3f& point_in_body,
                     const Surface& surface) {
-  // Height of the start above the surface.
+  // Height of the start above the surface, so that rounding does not put the surface in its own
+  // shadow.
   constexpr float kStartM = 0.01f;
   return {point_in_body + kStartM * surface.face, placed.to_sun_in_body};
 }

@@ -135,6 +135,7 @@ class FrameDifference : public detector::Detector {
 
   // What joining added, but at the picture's border.
   static cv::Rect without_rim(const cv::Rect& cells, const cv::Size& size) {
+    // Number of cells that joining adds to each side.
     constexpr int kRim = kGapCells / 2;
     const int left = cells.x > 0 ? kRim : 0, top = cells.y > 0 ? kRim : 0;
     const int right = cells.br().x < size.width ? kRim : 0;

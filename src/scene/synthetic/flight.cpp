@@ -73,12 +73,14 @@ std::uint32_t stream(const FlightOptions& o, std::string_view name) {
   return static_cast<std::uint32_t>(Seed(o.seed).stream(name)());
 }
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
 // Number of texels of the panorama at the horizon for a pixel in the middle of the picture.
 constexpr double kPanoramaOversampling = 1.25;
 // Number of rows of a parallel task; even, since rows are exposed in pairs.
 constexpr int kRowsPerTask = 8;
 
-// The slow motions of the flight beside its vibration: choices.
+// The slow motions of the flight beside its vibration.
 constexpr double kRollPeriod_s = 8.5;
 constexpr double kPitchPeriod_s = 6.1;
 constexpr double kPitchAmplitude_deg = 0.7;

@@ -12,6 +12,8 @@
 namespace airtruth::synthetic {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
 // Beyond this distance the ground is flat.
 constexpr float kReliefEnd_m = 5000;
 // Distance at which the hills begin.
@@ -457,14 +459,14 @@ void Ground::house(float north_m,
 
 // Builds villages of tiled roofs around a few streets, and single barns.
 void Ground::build(std::uint32_t seed) {
-  // Numbers on the whole land: a choice.
+  // Numbers on the whole land.
   constexpr int kVillages = 6, kBarns = 40;
   for (int k = 0; k < kVillages; ++k) build_village(k, seed);
   for (int k = 0; k < kBarns; ++k) build_barn(hash(k, 2, seed));
 }
 
 void Ground::build_village(int k, std::uint32_t seed) {
-  // A village has a third of this number of houses to four thirds of it: a choice.
+  // A village has a third of this number of houses to four thirds of it.
   constexpr int kHouses = 90;
   const std::uint32_t village = hash(k, 1, seed);
   const float north = kLand_m * unit(village);

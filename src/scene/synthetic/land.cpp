@@ -10,6 +10,8 @@
 namespace airtruth::synthetic {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
 // Cells of the slowly varying map along each side.
 constexpr int kSlow = 512;
 // Number of texels of the mottling along each side, and the side of one.

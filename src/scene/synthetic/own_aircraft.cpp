@@ -21,6 +21,8 @@ struct NearestPart {
   Part part = Part::kWing;
 };
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
 // Half of the wing's span, the wing's distance ahead of the camera, and a distance beyond all
 // parts.
 constexpr float kHalfSpan_m = 2.45F;

@@ -67,7 +67,9 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
 
 namespace {
 
-// Gap between panels and around them: a display choice.
+// The sizes of this file are display choices.
+
+// Gap between panels and around them.
 constexpr int kPanelGapPx = 12;
 // Height of two lines of text.
 constexpr int kHeadingPx = 52;

@@ -17,7 +17,9 @@
 namespace airtruth::drawing {
 namespace {
 
-// Width of a tile, and number of tiles side by side: display choices.
+// The sizes of this file are display choices.
+
+// Width of a tile, and number of tiles side by side.
 constexpr int kTileWidthPx = 640;
 constexpr int kColumns = 3;
 // Height of the line of text below a tile's picture.

@@ -12,6 +12,8 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
 // OpenCV's sans-serif font.
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 // Height of a capital letter at scale 1, in pixels.

@@ -12,6 +12,8 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
 // Size of the text, and room for the numbers of an axis.
 constexpr double kTextPx = 12;
 constexpr int kMarginPx = 44;
