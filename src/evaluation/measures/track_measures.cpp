@@ -18,6 +18,7 @@ namespace {
 
 // Least overlap of a pair in CLEAR MOT and in the Identity measures, as TrackEval has it.
 constexpr double kLeastOverlap = 0.5;
+// The tolerance of comparisons.
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 struct TableFrame {

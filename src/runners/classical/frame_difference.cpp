@@ -28,6 +28,7 @@ const double kSigmaOfMean = std::sqrt(kPi / 2);
 constexpr int kGapCells = 3;
 // Any share of it makes an interpolated sample negative: shares are multiples of 1/32.
 constexpr int kUnseen = -30'000;
+// Least side of a picture, which has one value of the noise map, and largest side of a change.
 constexpr int kLeastSidePx = kCellPx * kNoiseStep;
 constexpr int kLargestCells = kLargestPx / kCellPx;
 // The rounding of both pictures to whole grey levels.

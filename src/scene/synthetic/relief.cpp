@@ -10,7 +10,8 @@ namespace {
 
 // Number of steps through the height field.
 constexpr int kMarch = 7;
-// Bisections of the step that meets the field, for near rays and for others.
+// The range of near rays, and bisections of the step that meets the field, for near rays and for
+// others.
 constexpr float kNear_m = 600;
 constexpr int kNearBisections = 4;
 constexpr int kFarBisections = 2;

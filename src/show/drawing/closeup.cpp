@@ -75,6 +75,7 @@ constexpr int kPanelGapPx = 12;
 constexpr int kHeadingPx = 52;
 // Width of the longest caption of a panel.
 constexpr int kMinSlotPx = 110;
+// Size of the text.
 constexpr double kCloseupTextPx = 12;
 
 // The legend of the boxes' colours: each word has its colour. Words beyond the width are omitted.
