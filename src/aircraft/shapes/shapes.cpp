@@ -213,7 +213,7 @@ void add_trunk(MeshBuilder& builder, float span, const Build& build, const Feath
 }  // namespace
 
 double usual_strokes_per_s(double span_m) {
-  // A herring gull in cruise (Pennycuick 1996).
+  // A herring gull in cruise (shapes.h).
   constexpr double kGullHz = 3.05;
   constexpr double kGullSpanM = 1.34;
   return kGullHz * std::sqrt(kGullSpanM / span_m);

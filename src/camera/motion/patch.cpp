@@ -9,6 +9,9 @@
 namespace airtruth::motion {
 namespace {
 
+// Where a constant of this file states no origin, it is chosen by judgement; docs/optimisations.md
+// has what was tried.
+
 constexpr int kLumaSteps = 8;  // of Patch::luma_ in a code value
 // Sampling positions are sixteenths of a sample, so that bilinear weights are integers that sum to
 // 256. The result is not rounded: a search linearises about such a position.

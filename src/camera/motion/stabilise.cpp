@@ -66,7 +66,7 @@ image::Picture stabilised(const image::Picture& picture,
                           const lens::Lens& lens,
                           const Quaternion& cam_from_reference) {
   // The position in the frame, in airtruth's pixels, of each pixel of the reference. Where the lens
-  // has no image, the position, px, is far outside the frame, so that the pixel becomes black.
+  // has no image, the position is far outside the frame, so that the pixel becomes black.
   constexpr float kNowhere = -1e4F;
   cv::Mat map(picture.height, picture.width, CV_32FC2);
   for (int y = 0; y < picture.height; ++y)

@@ -15,6 +15,9 @@
 namespace airtruth::shade {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/decisions/0019 compares the
+// result with a path tracer.
+
 // Rays for a whole model, which take under a second on two cores.
 constexpr std::size_t kMaxRays = 1'500'000;
 // Directions for each corner: one step is 1/64 of all light.

@@ -9,6 +9,9 @@
 namespace airtruth::shade {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/decisions/0019 compares the
+// result with a path tracer.
+
 // Mirrored share along the normal for a refractive index of 1.5: clear coat and glass.
 constexpr float kDielectric = 0.04f;
 // GGX's alpha of paint and panes: it blurs a reflection by a few degrees.

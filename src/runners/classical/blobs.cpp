@@ -10,6 +10,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // An object that reaches further from its strongest sample, in samples of its level, is part of
 // something else.
 constexpr int kReach = 2 * kElement;

@@ -12,6 +12,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 constexpr int kCellPx = 2;  // side of the cells that are compared
 // Cells between the values of the noise map.
 constexpr int kNoiseStep = 16;

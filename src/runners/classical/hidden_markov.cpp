@@ -15,6 +15,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // Sides of the cells of the banks: a target moves by up to a cell a frame. Smaller cells find
 // fainter targets, larger ones faster.
 constexpr std::array<int, 2> kCellsPx = {2, 8};

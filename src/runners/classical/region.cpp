@@ -8,6 +8,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // An object has at least a pixel.
 constexpr double kLeastBoxSidePx = 1;
 // Each halves the interval, which begins at an object's blurred side: to less than a hundredth.

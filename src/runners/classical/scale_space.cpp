@@ -10,6 +10,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // Least side of a level, in samples: some elements long.
 constexpr int kLeastSide = 3 * kElement;
 // The rounding to whole grey levels has a standard deviation of 1/sqrt(12) levels. In a smooth sky

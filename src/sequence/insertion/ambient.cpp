@@ -19,6 +19,8 @@ namespace {
 
 using image::Rgb;
 
+// Where a constant of this file states no origin, it is a choice (docs/decisions/0014).
+
 constexpr int kGrid = 48;  // blocks along the longer side
 // Weight of a new frame in the smoothed light; the time constant is about a third of a second at 30
 // frames/s.
@@ -224,7 +226,7 @@ float cast_of_grey(std::vector<float> casts) {
 // Blueness: 0 for grey (cloud), 1 for a clear sky.
 float blueness(float cast, float grey) {
   // Casts relative to grey, ratios: cloud up to the first, clear sky from the second on. The clear
-  // skies of decision 0014 have 0.4 and more.
+  // skies of docs/decisions/0014 have 0.4 and more.
   constexpr float kGrey = 0.12f;
   constexpr float kBlue = 0.35f;
   return smoothstep(kGrey, kBlue, 1 - (1 - cast) / (1 - grey));

@@ -24,6 +24,8 @@
 namespace airtruth::preview {
 namespace {
 
+// The sizes of this file are display choices.
+
 constexpr int kWidthPx = 1930;  // that of a contact sheet of three tiles
 // Widths of the picture at the left and of the plan and the heights at its right, 10 px apart.
 constexpr int kMainWidthPx = 1270;
