@@ -76,6 +76,7 @@ void draw_sheet(const std::string& filter,
                 bool overwrite,
                 Context& context) {
   video::check_still_output(out, overwrite);
+  // Number of tiles side by side: a display choice.
   constexpr int kColumns = 10;
   Console& console = context.console();
   aircraft::LoadOptions load;

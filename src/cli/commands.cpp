@@ -8,6 +8,7 @@
 namespace airtruth::cli {
 
 std::pair<int, int> size_from(const std::string& text) {
+  // Pixels: no video is larger.
   constexpr int kLargestSide = 65536;
   int width = 0;
   int height = 0;

@@ -23,6 +23,7 @@ namespace airtruth::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+// Intervals of progress: on a terminal, and in a log of JSON lines.
 constexpr auto kRedraw = std::chrono::milliseconds(200);
 constexpr auto kJsonEvery = std::chrono::seconds(2);
 

@@ -339,6 +339,7 @@ void plan(const DatasetArguments& arguments, Context& context) {
   const catalogue::Catalogue catalogue = build::with_videos(
       catalogue::read_catalogue(arguments.catalogue), videos_of(arguments.backgrounds));
   build::check_sources(catalogue);
+  // Number of sequences that are listed: a display choice.
   constexpr std::int64_t kMaxListed = 50;
   Console& console = context.console();
   const auto list = [&](const catalogue::Item& item) {

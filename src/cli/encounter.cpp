@@ -19,6 +19,7 @@ namespace airtruth::cli {
 namespace {
 
 constexpr const char* kGeometric = "geometric";
+// Largest number of encounters: a choice.
 constexpr std::int64_t kMaxCount = 100'000'000;
 // The length of a track where nothing states it.
 constexpr int kDuration_s = 60;
@@ -174,6 +175,7 @@ void add_cut_options(CLI::App& command, Sample& arguments) {
 
 // Options of encounters. Each takes one value, or the edges of bins.
 void add_pairing_options(CLI::App& command, Sample& arguments) {
+  // Largest number of edges of bins: a choice.
   constexpr int kMaxEdges = 100;
   const auto edges = [&](const char* name, std::vector<double>& values, const char* text) {
     command.add_option(name, values, text)->expected(1, kMaxEdges);

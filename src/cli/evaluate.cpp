@@ -51,6 +51,7 @@ std::string interval(const std::optional<evaluation::Interval>& found) {
 
 // A line of the table of detectors.
 std::string row(const std::array<std::string, 11>& cells) {
+  // Widths of the columns, in letters.
   constexpr std::array<int, 11> kWidths = {20, 9, 9, 15, 6, 6, 9, 6, 15, 9, 9};
   std::string line = fmt::format("{:<{}}", cells[0], kWidths[0]);
   for (std::size_t i = 1; i < cells.size(); ++i)

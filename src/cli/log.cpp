@@ -51,6 +51,7 @@ std::string flown(const FlightLog& log) {
   constexpr double kMinSpanS = 1;  // a path needs positions in two half seconds
   if (last_s - first_s < kMinSpanS) return "flown: the positions span less than a second";
   const auto path = flight_log::local_path(log, {first_s, Vector3::Zero()});
+  // Step at which the path is walked.
   constexpr double kStepS = 0.5;
   double distance_m = 0, top_mps = 0;
   for (double t = 0; t < last_s - first_s; t += kStepS) {

@@ -21,6 +21,7 @@ namespace {
 
 using namespace airtruth;  // the program's own top level
 
+// Exit codes (docs/reference/commands.md).
 constexpr int kOurFailure = 1;
 constexpr int kBadInput = 2;
 

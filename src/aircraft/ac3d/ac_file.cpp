@@ -14,7 +14,8 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Bounds for untrusted files, far above those of any aircraft.
+// Bounds for untrusted files, far above those of any aircraft: numbers of objects, of levels of
+// nested ones, and of corners.
 constexpr std::size_t kMaxAcObjects = 100'000;
 constexpr int kMaxKidsDepth = 64;
 constexpr std::uint32_t kMaxCornersOfSurface = 10'000;
@@ -23,6 +24,7 @@ constexpr std::uint32_t kMaxCornersOfSurface = 10'000;
 constexpr float kLargestCreaseDeg = 60;
 constexpr double kLargestUv = 1e5;       // texture coordinates, in repetitions of the texture
 constexpr std::uint32_t kLineKinds = 3;  // surface flags: a closed or an open line
+// Surface flags: smooth normals, and a surface with two sides.
 constexpr std::uint32_t kSmooth = 1u << 4;
 constexpr std::uint32_t kTwoSided = 1u << 5;
 constexpr std::uint64_t kAnyFlags = std::numeric_limits<std::uint32_t>::max();

@@ -12,6 +12,7 @@
 namespace airtruth::aircraft {
 namespace {
 
+// A bound for untrusted files, far above any name.
 constexpr std::size_t kMaxNameBytes = 4096;
 constexpr std::size_t kQuotedBytes = 40;  // the part of a faulty word that a message repeats
 

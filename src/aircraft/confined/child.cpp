@@ -15,9 +15,12 @@ namespace {
 
 constexpr sandbox::Program kReader{
     "airtruth-model-reader", "AIRTRUTH_MODEL_READER", "the reader of 3D models"};
+// Bounds on what a hostile file makes its reader ask for: bytes of a question, their number, and
+// bytes of the answers.
 constexpr std::size_t kMaxQuestionBytes = 65536;
 constexpr std::size_t kMaxQuestions = 200'000;
 constexpr std::size_t kMaxSentBytes = std::size_t{1} << 30;  // of all files together
+// A model at the limits of raw_model.h, and 64 MiB for the rest.
 constexpr std::size_t kMaxHandedBackBytes =
     32 * kMaxCorners + 16 * kMaxTriangles + 4 * kMaxPixels + (std::size_t{64} << 20);
 

@@ -6,6 +6,7 @@
 namespace airtruth::aircraft {
 namespace {
 
+// A bound for texts of untrusted files.
 constexpr std::size_t kMaxTextBytes = 65536;
 
 // Puts the fields of a record into bytes. Put and Get have the same functions, so that one

@@ -15,8 +15,8 @@
 namespace airtruth::aircraft {
 namespace {
 
-// Relative tolerances, chosen by judgement. The span differs between variants of a type, and models
-// are coarse.
+// Relative tolerances, as shares, chosen by judgement. The span differs between variants of a type,
+// and models are coarse.
 constexpr double kSpanTolerance = 0.03;
 // A smaller error of the length confirms no error of scale.
 constexpr double kLengthTolerance = 0.01;

@@ -87,6 +87,7 @@ double fastest_turn_per_s(const Part& part) {
 
 namespace {
 
+// One code value of 255: what is fainter counts as invisible.
 constexpr float kVisibleAlpha = 1.0f / 255.0f;
 // The largest number of steps along a triangle's side, one per texel below it. Chosen: 256 steps
 // and 7 bisections of a step resolve the side to 1/32768.

@@ -82,6 +82,7 @@ struct Beat {
   double glide = 0;
   bool operator==(const Beat&) const = default;
 };
+// Number of strokes: a choice.
 constexpr double kStrokesOfBout = 10;
 
 // Triangles that move together. Part 0 is the airframe. A part that spins (propeller, rotor) turns

@@ -10,7 +10,9 @@
 namespace airtruth::aircraft {
 namespace {
 
+// Largest deviation of a unit vector's length by rounding.
 constexpr float kUnitTolerance = 1e-3f;
+// Bounds for untrusted files; a texture coordinate is in repetitions of the texture.
 constexpr float kLargestModelUv = 1e6f;
 constexpr double kFastestSpin = 1000;  // revolutions a second
 

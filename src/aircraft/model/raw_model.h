@@ -30,7 +30,7 @@ constexpr std::size_t kMaxCorners = 6'000'000;                  // over all surf
 constexpr std::size_t kMaxTriangles = 2'000'000;                // over all surfaces of a model
 constexpr double kLargestCoordinate = 1e6;  // in units of the file, or in metres in body axes
 
-// Limits on the result of a reader and on an entry of the cache.
+// Bounds on the numbers in the result of a reader and in an entry of the cache.
 constexpr std::size_t kMaxParts = 1024;
 constexpr std::size_t kMaxMaterials = 4096;
 constexpr std::size_t kMaxPictures = 1024;

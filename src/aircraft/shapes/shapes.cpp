@@ -82,18 +82,19 @@ Build build_of(Plumage plumage) {
   return {1, 1};
 }
 
-// Lengths below are shares of the span. Shoulder and wrist, out from the middle and forward.
+// Lengths below are shares of the span: choices. Shoulder and wrist, out from the middle and
+// forward.
 constexpr float kShoulderOut = 0.030f;
 constexpr float kWristOut = 0.205f;
 constexpr float kTipOut = 0.5f;
 constexpr float kShoulderAhead = 0.035f;
 constexpr float kHingesAbove = 0.012f;  // of the body's axis
-// Angles of the wings, in radians: raised in a glide, and the stroke about it.
+// Angles of the wings, in radians: raised in a glide, and the stroke about it. They are choices.
 constexpr float kGlideRaised = 0.12f;
 constexpr float kGlideWrist = -0.10f;
 constexpr float kStroke = 0.62f;
 constexpr float kWristStroke = 0.40f;
-// The hand follows the arm.
+// The hand follows the arm by this share of a stroke.
 constexpr float kWristLag = 0.18f;
 
 // A section of the wing in shares of the span; chords in shares of the mean chord.
@@ -176,6 +177,7 @@ void add_trunk(MeshBuilder& builder, float span, const Build& build, const Feath
   const std::uint32_t back = builder.add_material(feathers.back);
   const std::uint32_t beak = builder.add_material(feathers.beak);
   const std::uint32_t tail = builder.add_material(feathers.tail);
+  // Number of sides of the body.
   constexpr int kSides = 12;
   builder.begin_part({"body", {}});
   const std::array<Ring, 9> rings = {ring(0.175f, 0.008f, 0.008f, -0.004f),
@@ -211,6 +213,7 @@ void add_trunk(MeshBuilder& builder, float span, const Build& build, const Feath
 }  // namespace
 
 double usual_strokes_per_s(double span_m) {
+  // A herring gull in cruise (shapes.h).
   constexpr double kGullHz = 3.05;
   constexpr double kGullSpanM = 1.34;
   return kGullHz * std::sqrt(kGullSpanM / span_m);
@@ -237,7 +240,7 @@ std::array<float, 3> floats(const std::array<double, 3>& rgb) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
-// Lengths below are shares of the size, the distance between opposite rotors.
+// Lengths below are shares of the size, the distance between opposite rotors: choices.
 constexpr float kArmAbove = 0.02f;  // height of the arms above the middle
 constexpr float kRotorAbove = 0.085f;
 constexpr float kSkidBelow = 0.20f;
@@ -388,6 +391,7 @@ struct Outline {
 };
 
 std::vector<Outline> outline() {
+  // Number of steps from the top to the neck.
   constexpr int kSteps = 14;
   // Of the sphere's middle; below it the radius shrinks to that of the neck.
   std::vector<Outline> result;

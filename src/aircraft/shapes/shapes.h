@@ -53,6 +53,7 @@ struct MultirotorShape {
 // Arms, motors, a shell with a camera below, legs or landing skids, and two-bladed rotors whose
 // tips move at kRotorTipMps.
 Mesh multirotor(const MultirotorShape& shape);
+// The speed of a rotor's tips: a choice.
 constexpr double kRotorTipMps = 60;
 
 struct BalloonShape {

@@ -11,6 +11,7 @@
 namespace airtruth::aircraft {
 namespace {
 
+// Length of the header.
 constexpr std::size_t kSgiHeaderBytes = 512;
 
 class SgiReader {

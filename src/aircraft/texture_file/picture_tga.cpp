@@ -12,6 +12,7 @@
 namespace airtruth::aircraft {
 namespace {
 
+// Length of the header.
 constexpr std::size_t kTgaHeaderBytes = 18;
 
 struct TgaHeader {

@@ -15,6 +15,7 @@
 namespace airtruth::aircraft {
 namespace {
 
+// A bound for untrusted files, as raw_model.h has it for a model.
 constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
 
 // A propeller at cruise transmits nine tenths of the light, because its blades cover a tenth of its

@@ -9,6 +9,7 @@
 namespace airtruth::aircraft {
 namespace {
 
+// Number of files: a bound for untrusted files, far above those of any aircraft.
 constexpr std::size_t kMaxModelReads = 2000;
 constexpr std::size_t kMaxPathBytes = 4096;  // PATH_MAX
 

@@ -10,6 +10,7 @@ namespace airtruth::aircraft {
 namespace {
 
 constexpr double kSeenFrom_m = 50;  // the viewing distance that selects the level of detail; chosen
+// Number of links: a bound for untrusted files.
 constexpr std::size_t kMaxLinks = 512;
 constexpr double kFastestPropellerRpm = 3000;  // wrappers state what flickers well in a game
 

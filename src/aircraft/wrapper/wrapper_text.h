@@ -17,7 +17,7 @@ namespace airtruth::aircraft {
 
 namespace fs = std::filesystem;
 
-// The largest wrapper of flightgear-data-ai has 87 KB.
+// A bound for untrusted files; the largest wrapper of flightgear-data-ai has 87 KB.
 constexpr std::size_t kMaxWrapperBytes = 8u << 20;
 
 // The state of the simulation for which conditions and values are evaluated: engines running, gear

@@ -9,13 +9,13 @@
 namespace airtruth::air {
 namespace {
 
-// The grid of pixels at which the sky is sampled: first pixel and spacing.
+// The grid of pixels at which the sky is sampled: first pixel and spacing, px. It bounds the time.
 constexpr int kFirstSky = 1, kSkyStep = 6;
 // Least elevation of the sky that is used for the sun; below it, haze is brighter than sky.
 constexpr double kMinSunSkyDeg = 2.5;
-// Elevations of the sky that are used if the true horizon is known.
+// Elevations of the sky, degrees, that are used if the true horizon is known.
 constexpr SkyReach kOverTrueHorizon{0.6, 6};
-// Every kSunStep-th sample of the sky is used for the sun.
+// Every kSunStep-th sample of the sky is used for the sun. It bounds the time.
 constexpr std::size_t kSunStep = 3;
 
 }  // namespace

@@ -114,7 +114,7 @@ cv::Mat evened(const cv::Mat& light, const cv::Mat& seen, double cell) {
       const float n = count.at<float>(y, x);
       const float mean = sum.at<float>(y, x) / n;
       const float variance = squares.at<float>(y, x) / n - mean * mean;
-      // Squared code values.
+      // Squared code values: even ground is raised to at most 2 standard deviations a code value.
       constexpr float kMinVariance = 0.25F;
       result.at<float>(y, x) = std::clamp(
           (light.at<float>(y, x) - mean) / std::sqrt(variance + kMinVariance), -3.0F, 3.0F);

@@ -36,6 +36,7 @@ Plot noise_plot(const std::vector<sensor::NoisePoint>& points) {
 
 // The profile of a sharp edge, measured and fitted. Heights beyond the axis are drawn at its end.
 Plot edge_plot(const optics::EdgeProfile& edge) {
+  // Ends of the axis, in heights of the step: room for what sharpening adds below 0 and above 1.
   constexpr double kLowest = -0.3, kHighest = 1.3;
   Plot plot{.title = "step across sharp edges",
             .x = {.label = "px", .min = -6, .max = 6},

@@ -13,16 +13,16 @@
 namespace airtruth::optics {
 namespace {
 
-// Bounds of the spread, px, and of the amount of the mask.
+// Bounds of the spread, px, and of the amount of the mask, a ratio. They end fits that diverge.
 constexpr double kMinSpreadPx = 0.05, kMaxSpreadPx = 5;
 constexpr double kMinAmount = -0.9, kMaxAmount = 3;
-// Half the width of the profile of an edge, px.
+// Half the width of the profile of an edge, px, as straight_step.cpp samples it.
 constexpr double kHalfWidthPx = 6;
 // Width of the bins in which samples are averaged, px.
 constexpr double kBinPx = 0.25;
 // Step of the numerical derivatives, in the logarithm of the spread and in the amount.
 constexpr double kDerivativeStep = 0.01;
-// Largest change of an unknown in one round.
+// Largest change of an unknown, in the units of kDerivativeStep, in one round: it damps the fit.
 constexpr double kMaxChange = 0.3;
 // The iteration ends when all changes are smaller than this.
 constexpr double kMinChange = 0.001;

@@ -10,9 +10,9 @@
 namespace airtruth::optics {
 namespace {
 
-// Half the width of the profile and the width of its bins, px.
+// Half the width of the profile, as straight_step.cpp samples it, and the width of its bins, px.
 constexpr double kProfileHalfWidthPx = 6, kProfileBinPx = 0.2;
-// Least number of samples of a bin that is shown.
+// Least number of samples of a bin that is shown: a median of fewer is noise.
 constexpr std::size_t kMinSamplesInBin = 5;
 // Largest spread of an edge that is shown, as a multiple of the camera's.
 constexpr double kMaxSpreadRatio = 1.1;

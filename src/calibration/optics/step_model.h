@@ -42,7 +42,7 @@ class StepModel {
 
  private:
   friend class UnsharpMask;
-  // Half the length of the table of heights, px.
+  // Half the length of the table of heights, px: places beyond it have the height of its ends.
   static constexpr double kHalf = 9;
   // The number of table entries per pixel.
   static constexpr int kPerPixel = 10;

@@ -244,6 +244,7 @@ double edge_spread_px(const StepResponse& response,
                       double high,
                       const image::ToneCurve& tone) {
   const StepModel model = model_of(response, low, high, tone);
+  // Half the way that is searched, as far as edges are sampled, and the spacing of the places.
   constexpr double kHalf = 6, kFine = 0.01;  // px
   double last_below = -kHalf, first_above = kHalf;
   for (double x = -kHalf; x < kHalf; x += kFine) {

@@ -17,7 +17,7 @@ constexpr std::array<std::size_t, 3> kPairDistances{1, 3, 7};
 constexpr double kMaxPairMotionShare = 0.25;
 // Bound of a difference, code values, so that a few strong edges do not decide a mean.
 constexpr double kMaxDifference = 40;
-// A pixel that never exceeds this value is black, code values.
+// A pixel that never exceeds this value is black, code values: a choice.
 constexpr float kBlack = 10;
 // Standard deviation of the blur of the mean differences, working pixels.
 constexpr double kDifferenceBlurPx = 1;

@@ -61,6 +61,7 @@ double miss_of(const Pair& pair, const lens::Lens& lens) {
     const auto b = lens.ray_from_pixel(m.after);
     if (a && b) bearings.push_back({*a, *b}), known.push_back(&m);
   }
+  // The squared residual at which a corner is cut off, px^2.
   constexpr double kCut = kOutlierPx * kOutlierPx;
   const auto fit =
       motion::fit_rotation(bearings, kOutlierPx / lens.focal_px(), kMinPairCorners / 2, 1);

@@ -21,6 +21,7 @@ struct GpmfElement {
 // Visits the elements of one level. Stops at the first element that does not fit into `bytes`.
 template <typename Visit>
 void each_gpmf_element(std::span<const std::uint8_t> bytes, const Visit& visit) {
+  // Bytes of an element's key (4), type, size (1 each) and count (2).
   constexpr std::size_t kHead = 8;
   while (bytes.size() >= kHead) {
     GpmfElement e;

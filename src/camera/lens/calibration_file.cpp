@@ -25,7 +25,7 @@ constexpr std::size_t kMaxBytes = 16u << 20;
 // The largest relative difference of two aspect ratios that count as one: sizes are rounded to
 // whole, often to even pixels. 4:3 and 16:9 differ by 33 %.
 constexpr double kAspectTolerance = 0.01;
-// The limits of the keys of [lens] in a scene (scene/scene/limits.h).
+// The limits, in px and without a unit, of the keys of [lens] in a scene (scene/scene/limits.h).
 constexpr double kMinFocal_px = 1;
 constexpr double kFarthest_px = 1e6;
 
@@ -156,7 +156,8 @@ std::string how_to_crop(const std::filesystem::path& path, const Calibration& c,
 std::string profiles_that_fit(const std::filesystem::path& path,
                               const Calibration& c,
                               ImageSize size) {
-  // Chosen: reading more files would delay the message, and more names would not fit on its line.
+  // Numbers of files and of names. Chosen: reading more files would delay the message, and more
+  // names would not fit on its line.
   constexpr std::size_t kMaxFilesRead = 1000;
   constexpr std::size_t kMaxProfilesNamed = 3;
   if (c.camera.empty()) return "";

@@ -161,7 +161,8 @@ Guess newton(const Coefficients& k, const Pixel& target, Pixel n, double limit, 
 
 // Follows the straight line from the axis to the target in the image, which stays within the field.
 Guess walk(const Coefficients& k, const Pixel& target, double limit) {
-  // Chosen by judgement; more parts take longer, and fewer leave Newton's method a longer way.
+  // The number of parts of the way. Chosen by judgement; more parts take longer, and fewer leave
+  // Newton's method a longer way.
   constexpr int kParts = 16;
   Guess guess{Pixel::Zero(), 0};
   for (int part = 1; part <= kParts; ++part)

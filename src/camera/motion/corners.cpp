@@ -190,7 +190,8 @@ std::vector<bool> follow(const Pyramid& from,
 
 namespace {
 
-// Both constants are chosen by judgement; docs/optimisations.md has what other methods cost.
+// The number of corners that coarse() follows. Both constants are chosen by judgement;
+// docs/optimisations.md has what other methods cost.
 constexpr std::size_t kFew = 64;
 // The longer side of the level on which a guess ends, in samples. A search there is good to a tenth
 // of a sample, and a search on the finest level reaches kPatchPx / 4 pixels.

@@ -49,7 +49,7 @@ struct Step {
   Pixel from, to;
 };
 
-// The number of corners that are followed from one frame to the next.
+// The number of corners that are followed from one frame to the next: it bounds the time.
 constexpr std::size_t kMaxSteps = 150;
 
 // The corners of one frame, to be found in the next. Where most of the picture moves as one, few

@@ -7,7 +7,8 @@
 namespace airtruth::motion {
 namespace {
 
-// All constants are chosen by judgement; docs/accuracy.md has the drift that results.
+// All constants are chosen by judgement; docs/accuracy.md has the drift that results. The first two
+// are numbers of key frames and of landmarks.
 constexpr std::size_t kMaxKeyFrames = 5;
 constexpr std::size_t kFromOlderKey = 160;  // landmarks of a key frame that is not the newest
 // A new key frame is made where a smaller share of the newest one's far points is found, or beyond

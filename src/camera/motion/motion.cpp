@@ -36,7 +36,7 @@ namespace {
 constexpr const char* kHeader =
     "frame,time_s,h11,h12,h13,h21,h22,h23,h31,h32,h33,inliers,rms_px,state";
 constexpr const char* kRotationHeader = "frame,time_s,qw,qx,qy,qz,inliers,rms_px,state";
-// The columns of the two.
+// The number of columns of the two.
 constexpr std::size_t kCells = 14;
 constexpr std::size_t kRotationCells = 9;
 

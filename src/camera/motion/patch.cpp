@@ -9,6 +9,9 @@
 namespace airtruth::motion {
 namespace {
 
+// Where a constant of this file states no origin, it is chosen by judgement; docs/optimisations.md
+// has what was tried.
+
 constexpr int kLumaSteps = 8;  // of Patch::luma_ in a code value
 // Sampling positions are sixteenths of a sample, so that bilinear weights are integers that sum to
 // 256. The result is not rounded: a search linearises about such a position.
@@ -24,7 +27,8 @@ constexpr std::array<std::int16_t, kPatchPx * kPatchPx> weights() {
 }
 constexpr std::array<std::int16_t, kPatchPx* kPatchPx> kWeight = weights();
 constexpr double kWeightOfAll = 52.0 * 52.0;  // the sum of kWeight
-// The least eigenvalue of the normal matrix, per sample, in squared code values per sample.
+// The least eigenvalue of the normal matrix, per sample, in squared code values per sample. At
+// 0.05, patches of coded blocks that stand still win (docs/optimisations.md).
 constexpr double kMinEigenvalue = 0.2;
 // The variance of the difference of two pictures by noise alone, in squared code values: that of a
 // cheap camera.
@@ -116,6 +120,7 @@ Patch::Difference Patch::difference(const cv::Mat& grey, int x_16th, int y_16th)
     for (int i = 0; i < kPatchPx; ++i) {
       const auto sample = static_cast<std::uint16_t>(upper[i] * w00 + upper[i + 1] * w01 +
                                                      lower[i] * w10 + lower[i + 1] * w11);
+      // Bits by which a weighted sum is finer than Patch::luma_.
       constexpr int kShift = 5;
       static_assert(kWeightSum >> kShift == kLumaSteps);
       row_of_more[i] = static_cast<std::int16_t>((sample >> kShift) - luma[i]);

@@ -41,6 +41,7 @@ class Patch {
   std::optional<Found> find(const cv::Mat& grey, double guess_x, double guess_y) const;
 
  private:
+  // The number of samples of a patch.
   static constexpr int kSamples = kPatchPx * kPatchPx;
   struct Difference;
   Difference difference(const cv::Mat& grey, int x_16th, int y_16th) const;

@@ -18,6 +18,8 @@
 namespace airtruth::appearance {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr double kReachPx = 4;            // of a profile to either side of the outline
 constexpr double kStepPx = 0.25;          // from sample to sample along it
 constexpr double kMinSlope = 3;           // code values a pixel: an edge that is clear
@@ -271,6 +273,7 @@ namespace {
 // Histograms of gradient orientations, weighted by the gradient, in the inner and in the outer half
 // of the patch. The patch is scaled to one size, so that the size of the aircraft has no effect.
 std::vector<float> orientations_of(const Patch& patch) {
+  // The side to which a patch is scaled, px, and the number of bins of half a turn.
   constexpr int kSide = 48;
   constexpr int kOrientations = 8;
   cv::Mat grey, gx, gy, size, angle;

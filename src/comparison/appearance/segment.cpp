@@ -14,6 +14,8 @@
 namespace airtruth::appearance {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr double kMinDifference = 8;  // code values that the aircraft differs by
 constexpr double kDeviations = 4;     // of the rim's spread that the aircraft differs by
 constexpr int kMinArea = 3;           // px of a silhouette

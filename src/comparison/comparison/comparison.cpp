@@ -36,6 +36,8 @@
 namespace airtruth::comparison {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr const char* kName = "sequence";
 constexpr std::size_t kPoseMasks = 5;      // that a pose is fitted to
 constexpr double kPoorOverlap = 0.5;       // of silhouettes: said in a warning below it

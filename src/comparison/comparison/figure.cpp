@@ -13,9 +13,12 @@
 namespace airtruth::comparison {
 namespace {
 
+// The sizes of this file are display choices.
+
 constexpr int kSmallPx = 44;    // of a crop at 1x, at most
 constexpr int kMinCropPx = 24;  // beyond it stands the other one of a pair
 constexpr int kLargePx = 352;   // of an enlarged crop
+// Gaps between pictures, and heights of a heading and of its letters.
 constexpr int kGapPx = 10;
 constexpr int kHeadingPx = 34;
 constexpr double kTextPx = 14;
@@ -47,6 +50,7 @@ FigureRow figure_row(const image::Picture& picture,
 }
 
 image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
+  // Width of a pair of crops, each in two sizes.
   constexpr int kPairPx = 4 * kGapPx + 2 * (kSmallPx + kLargePx);
   const int columns = rows.size() > 1 ? 2 : 1;
   const int lines = (static_cast<int>(rows.size()) + columns - 1) / columns;

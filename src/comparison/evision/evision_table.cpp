@@ -21,6 +21,7 @@
 namespace airtruth::evision {
 namespace {
 
+// The data set's virtual camera (evision_table.h): its size and focal length, px, and its rate.
 constexpr int kWidth = 1280;
 constexpr int kHeight = 960;
 constexpr double kFocalPx = 480;
@@ -326,6 +327,7 @@ using Parameters = Eigen::Vector4d;  // shift (px), roll (rad), drift
 
 // Standard error of a box's centre, px.
 constexpr double kCentrePx = 3;
+// Standard deviations of the priors of roll, rad, and of drift.
 constexpr double kPrior = 0.1;
 constexpr int kIterations = 15;  // of Gauss-Newton: chosen
 
@@ -364,6 +366,7 @@ Homography motion_from_sightings(const std::vector<Sighting>& sightings,
     const Eigen::VectorXd r = residual(p);
     Eigen::MatrixXd jacobian(rows + 2, 4);
     for (Eigen::Index k = 0; k < 4; ++k) {
+      // Step of the numerical derivatives, in the unit of each parameter.
       constexpr double kStep = 1e-5;
       Parameters moved = p;
       moved[k] += kStep;

@@ -24,6 +24,8 @@
 namespace airtruth::judge {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr int kDraws = 2000;           // of the bootstrap
 constexpr std::size_t kMinOfFold = 4;  // pairs
 
@@ -87,6 +89,7 @@ double area_of_judge(const std::vector<Patches>& train, const Patches& asked) {
   boost->setWeightTrimRate(0);
   boost->train(samples, cv::ml::ROW_SAMPLE, answers);
   cv::Mat raw;
+  // OpenCV's flags for the sum of the trees' answers.
   constexpr int kSumOfTrees = int{cv::ml::StatModel::RAW_OUTPUT} | int{cv::ml::DTrees::PREDICT_SUM};
   boost->predict(rows_of(asked), raw, kSumOfTrees);
   std::vector<double> scores;

@@ -11,6 +11,8 @@
 namespace airtruth::match {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 // Share of the range that it moves from frame to frame at least: far below a pixel.
 constexpr double kStandsStill = 1e-7;
 constexpr double kAway = 1.15;  // patches from the real one's middle: the two do not overlap
@@ -37,6 +39,7 @@ std::vector<Spot> spots_of(const RealBoxes& boxes) {
       spots.push_back({k, here + t * (there - here), std::max(box.width, box.height)});
     }
   }
+  // Number of frames to each side: a second's worth at 30 frames/s.
   constexpr int kReach = 15;
   std::vector<Spot> smooth = spots;
   for (std::size_t i = 0; i < spots.size(); ++i) {
@@ -153,6 +156,7 @@ Beside path_beside(const RealBoxes& boxes,
 }
 
 double camera_pitch_deg(const YawPitchRoll& attitude) {
+  // The steepest camera that is tried.
   constexpr int kSteepestDeg = 60;
   const Vector3 up = world_from_body(attitude) * Vector3(0, 0, -1);
   int best = 0;

@@ -16,6 +16,8 @@
 namespace airtruth::match {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr int kViewPx = 128;         // of a rendered view
 constexpr double kLengthPx = 80;     // of the aircraft's largest extent in it
 constexpr double kSpreadPx = 0.8;    // of the camera, in pixels of the real one's picture
@@ -25,6 +27,7 @@ constexpr double kMaxRollDeg = 60;   // of the aircraft's up in the picture
 constexpr double kAnyRollDeg = -45;  // of the eye's elevation, below which it may be turned anyhow
 constexpr double kUprightDeg = 90;   // turn at which a fit counts exp(-1/2)
 constexpr double kAspectWeight = 0.5;  // of the logarithm of the aspects' ratio
+// The grid of eye places that is searched first: elevations, and steps of azimuth and of turn.
 constexpr std::array kElevationsDeg = {0.0, -12.0, -25.0, -42.0, -62.0, -88.0};
 constexpr double kAzimuthStepDeg = 15;
 constexpr double kTurnStepDeg = 12;
@@ -105,6 +108,7 @@ cv::Mat mask_at(const cv::Mat& coverage, int larger_px) {
   const cv::Rect bounds = cv::boundingRect(covered);
   if (bounds.empty()) return {};
   const double scale = std::max(2.0, larger_px - kGrowthPx) / std::max(bounds.width, bounds.height);
+  // Border in pixels, into which the spread reaches with more than 3 standard deviations.
   constexpr int kMargin = 3;
   cv::Mat small, wide;
   cv::resize(coverage(bounds),

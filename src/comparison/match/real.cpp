@@ -20,6 +20,9 @@
 namespace airtruth::match {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
+// Least number of boxes in a shot.
 constexpr std::size_t kMinBoxes = 5;
 constexpr std::int64_t kNeighbours = 7;  // frames to either side whose sizes are looked at
 constexpr double kMaxStray = 0.25;       // of a size from the median of those around it

@@ -19,7 +19,11 @@
 namespace airtruth::match {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
+// Point spread of a camera that states none, as in pose.cpp.
 constexpr double kUnstatedSpreadPx = 0.8;
+// Elevation of the lowest sun that is tried.
 constexpr double kLowestSunDeg = 10;
 constexpr std::size_t kSunsClosedIn = 3;  // best of the coarse ones that are closed in on
 

@@ -134,6 +134,7 @@ class Planner {
 }  // namespace
 
 void Spread::add(double value) {
+  // Number of values that are kept for the median: it bounds memory.
   constexpr std::size_t kMaxKept = 65'536;
   low_ = count_ == 0 ? value : std::min(low_, value);
   high_ = count_ == 0 ? value : std::max(high_, value);

@@ -52,6 +52,7 @@ struct Plan {
   std::int64_t not_flyable = 0;
   // Descriptions of the first kMaxNamed of these: "NAME: why".
   std::vector<std::string> not_flyable_words;
+  // A number that a message can name: a choice.
   static constexpr std::size_t kMaxNamed = 5;
   // Estimated time on one core, in seconds, including calibration_s.
   double core_s = 0;

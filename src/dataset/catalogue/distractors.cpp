@@ -166,6 +166,7 @@ double usual_aspect_ratio(aircraft::Plumage plumage) {
 
 // True for a share of the sequences; rule by rule another irrational number turns.
 bool is_in_share(const DistractorRule& rule, std::size_t place, double turn, std::int64_t index) {
+  // Square roots of two primes have no rational ratio.
   constexpr std::array<double, 8> kPrimes = {2, 3, 7, 11, 13, 17, 19, 23};
   const double step = std::sqrt(kPrimes[place % kPrimes.size()]);
   const double turned = turn + static_cast<double>(index) * step;
@@ -183,6 +184,7 @@ scene::Intruder drawn_leader(const DistractorRule& rule, Random& random) {
   one.aspect_ratio = usual_aspect_ratio(one.plumage);
   one.glide = drawn(random, rule.glide);
   one.flap_phase = random.uniform(0, aircraft::kStrokesOfBout);
+  // Numbers of rotors, drawn with equal chances: a choice.
   constexpr std::array<int, 3> kRotors = {4, 4, 6};
   one.rotors = kRotors[static_cast<std::size_t>(random.uniform() * kRotors.size())];
   if (rule.kind != scene::DistractorKind::kBird) {

@@ -28,6 +28,7 @@ constexpr double kPastClip_s = 1;  // that a path goes on after the clip: chosen
 constexpr double kTurnStepDeg = 4;
 constexpr double kTurnStep_s = 0.5;
 constexpr int kTurnMargin = 8;
+// Number of steps: it bounds the time of a turn.
 constexpr int kMaxTurnSteps = 100'000;
 
 Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_from_camera_body) {

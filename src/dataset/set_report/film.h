@@ -23,6 +23,7 @@ struct Film {
     std::string jpeg;  // at most kStillWidth pixels wide
     std::vector<Marked> boxes;
   };
+  // Pixels: a display choice.
   static constexpr int kStillWidth = 400;
 
   std::vector<Still> stills;  // in frame order

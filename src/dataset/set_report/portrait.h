@@ -20,6 +20,7 @@ namespace airtruth::set_report {
 // The content of the report page for one sequence, read from its record, its truth and its video.
 // Series are thinned to at most kMaxPoints points.
 struct Portrait {
+  // Number of points of a series: a display choice.
   static constexpr std::size_t kMaxPoints = 120;
   // The grid of cells over the picture in which the centres of boxes are counted.
   static constexpr int kCellColumns = 32;

@@ -24,6 +24,7 @@ struct Histogram {
 
 // Counts over a whole data set, made from the thinned series of its portraits.
 struct Totals {
+  // Number of cells over the picture.
   static constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
 
   std::int64_t frames = 0;

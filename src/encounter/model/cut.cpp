@@ -11,6 +11,7 @@
 namespace airtruth::encounter {
 namespace {
 
+// Number of combinations that are summed: it bounds the time.
 constexpr std::size_t kMaxCombinations = 1'000'000;
 
 // What is kept of each bin of each initial variable: 1 for all, 0 for nothing.

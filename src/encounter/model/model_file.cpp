@@ -14,6 +14,7 @@
 namespace airtruth::encounter {
 namespace {
 
+// Largest file that is read: it bounds memory.
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 // The published models have 10 variables of up to 8 bins at most, and 146516 counts in a table.
 constexpr std::size_t kMaxVariables = 64;

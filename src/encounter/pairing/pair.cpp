@@ -11,6 +11,7 @@
 namespace airtruth::encounter {
 namespace {
 
+// Number of draws of an approach: it ends a search among tracks that circle.
 constexpr int kMaxDraws = 100;
 // Of courses: the acceptance is at least one in 1.6 where the speeds are equal.
 constexpr int kMaxCourses = 1000;

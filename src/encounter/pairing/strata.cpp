@@ -41,6 +41,7 @@ double Strata::at(std::uint64_t index, std::size_t dimension) const {
   const double within = Seed(seed_).stream("within the stratum", place).uniform();
   const double value =
       (static_cast<double>(stratum(index, dimension)) + within) / static_cast<double>(count_);
+  // The largest double below 1.
   constexpr double kLargestBelow1 = 1 - 0x1.0p-53;
   return std::min(value, kLargestBelow1);
 }

@@ -23,6 +23,7 @@ class Strata {
   std::uint64_t stratum(std::uint64_t index, std::size_t dimension) const;
 
  private:
+  // Number of rounds of the Feistel network: a choice.
   static constexpr std::size_t kRounds = 6;
 
   std::uint64_t seed_;

@@ -7,6 +7,7 @@
 namespace airtruth::encounter {
 namespace {
 
+// Number of steps of a span: at kStep_s, those of 67 minutes.
 constexpr int kMaxSteps = 200'000;
 constexpr int kHalvings = 50;  // of a step: far below a microsecond
 

@@ -22,6 +22,7 @@ struct Offset {
   double right_m = 0;
   double above_m = 0;
 };
+// Below it the direction of the velocity says little: a choice.
 constexpr double kCourseMps = 0.1;
 double course_rad(const trajectory::State& own);
 Offset offset_from(const trajectory::State& own, const Vector3& offset_ned_m);

@@ -27,6 +27,8 @@ trajectory::Path path_to_approach(const scene::Encounter& encounter,
                                   const trajectory::Path& own,
                                   const trajectory::AttitudeOverride& attitude = {});
 
+// The largest number that may follow, and the largest distance of three stated numbers from an
+// approach.
 constexpr double kFarthestMissM = 1e5;
 constexpr double kMissErrorM = 0.01;
 

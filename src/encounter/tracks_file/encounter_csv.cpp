@@ -41,6 +41,7 @@ const std::vector<std::string> kNames = {"encounter",
                                          "east_mps",
                                          "down_mps",
                                          "weight"};
+// The largest number of an encounter; a double holds every whole number up to it.
 constexpr double kMaxEncounters = 1e9;
 // Added to a number, it makes -0 a plain 0 and changes no other.
 constexpr double kPlainZero = 0;

@@ -204,6 +204,7 @@ class RowReader {
     if (sin_0 * sin_here + cos_0 * cos_here * cos_turn < 0.5)
       throw Error("the position is more than 60 degrees from the first; expected an encounter",
                   where_);
+    // The sphere on which a minute of arc is a nautical mile.
     constexpr double kEarthRadius_m = kMetresOfNauticalMile * 60 * 180 / kPi;
     position_m.x() = kEarthRadius_m * (cos_0 * sin_here - sin_0 * cos_here * cos_turn);
     position_m.y() = kEarthRadius_m * cos_here * sin_turn;

@@ -19,6 +19,7 @@ namespace airtruth::encounter {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
+// Largest length of an aircraft's name: a choice.
 constexpr std::size_t kMaxNameBytes = 60;
 
 }  // namespace

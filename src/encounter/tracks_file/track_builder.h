@@ -12,7 +12,7 @@
 // Rows of a file, one state of one aircraft each, put together to tracks.
 namespace airtruth::encounter {
 
-// The largest number of aircraft in one encounter.
+// The largest number of aircraft in one encounter: a bound for untrusted files.
 constexpr std::size_t kMaxAircraft = 1000;
 
 class TrackBuilder {

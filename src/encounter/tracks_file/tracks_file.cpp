@@ -23,6 +23,7 @@
 namespace airtruth::encounter {
 namespace {
 
+// Largest file that is read: it bounds memory.
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 
 }  // namespace
@@ -82,6 +83,7 @@ std::vector<Encounter> fitted(std::vector<Encounter> encounters,
 
 namespace {
 
+// The number of encounters is 32 bits wide in a waypoint file.
 constexpr std::size_t kMaxEncounters = 0xffffffff;
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace airtruth::encounter {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is copied byte by byte");
+// The number of updates is 16 bits wide in the file.
 constexpr std::size_t kMaxUpdates = 65535;
 
 // Reads values one after the other, and knows where it is.

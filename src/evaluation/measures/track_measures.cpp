@@ -18,6 +18,7 @@ namespace {
 
 // Least overlap of a pair in CLEAR MOT and in the Identity measures, as TrackEval has it.
 constexpr double kLeastOverlap = 0.5;
+// The tolerance of comparisons.
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 struct TableFrame {
@@ -213,7 +214,7 @@ Hota combined(std::span<const Hota> sequences) {
 
 namespace {
 
-// Above any sum of overlaps: keeping a pair of the frame before comes first.
+// A weight above any sum of overlaps: keeping a pair of the frame before comes first.
 constexpr double kKeptPair = 1000;
 constexpr Eigen::Index kNone = -1;
 

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Heights of figures for a width of 16: of one plot, of three below each other, and of a ranking.
+// Heights of figures, in units of which their width has 16: of one plot, of three below each other,
+// and of a ranking.
 constexpr double kPlotHeight = 9, kColumnHeight = 14;
 constexpr double kRankingHeight = 2.5, kRankingHeightOfOne = 0.7;
 

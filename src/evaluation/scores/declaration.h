@@ -31,6 +31,7 @@
 namespace airtruth::scores {
 
 constexpr double kKeep_s = 3;  // 30 frames at 10 Hz, AOT's rule
+// The share of the frames that show the aircraft: AOT's rule.
 constexpr double kKeepShare = 0.5;
 
 struct Declaration {

@@ -8,6 +8,7 @@ namespace airtruth::statistics {
 namespace {
 
 constexpr std::size_t kDraws = 1000;  // as Efron and Tibshirani (1993) ask for percentiles
+// Least number of draws, where each takes long: a choice.
 constexpr std::size_t kFewestDraws = 200;
 constexpr std::size_t kMostSteps = 400'000'000;  // of all draws: about 2 s on one core
 

@@ -302,7 +302,7 @@ std::vector<html::PageBlob> pictures_of(const Assessment& assessment) {
 
 // Truth on pictures is white with a dark rim.
 constexpr plot::Colour kTruthOnPictures = {255, 255, 255};
-// Pictures of a sequence, spread over it, and how many of them stand side by side.
+// Numbers of pictures of a sequence, spread over it, and of those that stand side by side.
 constexpr std::size_t kFilmPictures = 6;
 constexpr int kFilmColumns = 3;
 // Pictures of a sequence with the boxes of truth and trackers.

@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Number of hexadecimal digits of a SHA-256, the name of an entry and its first bytes.
 constexpr std::size_t kHashDigits = 64;
 // Chosen: a project that rests over a season keeps its entries.
 constexpr std::chrono::days kKeptUnused{90};

@@ -13,6 +13,7 @@
 namespace airtruth::image {
 namespace {
 
+// Numbers of cells over which a picture is averaged (cuts.h).
 constexpr int kCellColumns = 32;
 constexpr int kCellRows = 24;
 // The least difference of a frame that begins a shot: the mean over the cells, in code values.
@@ -32,6 +33,7 @@ constexpr int kMaxRowsInSums = 257;
 AIRTRUTH_FOR_VECTORS void add_row(const std::uint8_t* __restrict row,
                                   int width,
                                   std::uint16_t* __restrict column_sums) {
+  // Number of samples: 32 of 8 bits are a vector of 256 bits.
   constexpr int kBlock = 32;
   int x = 0;
   for (; x + kBlock <= width; x += kBlock)

@@ -109,6 +109,7 @@ void mark_light(const std::uint8_t* red,
 }
 
 Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int height) {
+  // The code value of grey in Cb and Cr.
   constexpr std::uint8_t kNoChroma = 128;
   Rgb8 result = make_rgb8(width, height);
   const ColourCode code(picture.colour);

@@ -10,6 +10,7 @@
 namespace airtruth::image {
 namespace {
 
+// Bytes of a line of the cache.
 constexpr std::align_val_t kAlignment{64};
 // Smaller blocks are malloc()'s business: it keeps and joins them well.
 constexpr std::size_t kMinKeptBytes = 64 << 10;

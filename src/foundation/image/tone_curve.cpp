@@ -9,6 +9,7 @@
 namespace airtruth::image {
 namespace {
 
+// The offset of sRGB's power (IEC 61966-2-1), in coded values from 0 to 1.
 constexpr double kOffset = 0.055;
 
 struct Toe {

@@ -18,6 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// The largest number of a signed integer of 64 bits.
 constexpr auto kLargestInteger =
     static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 // A message repeats at most this many bytes of a value. Chosen: it keeps a message on one line.

@@ -64,6 +64,7 @@ void add_jump(FilterCode& program,
   program.push_back({code, if_so, if_not, value});
 }
 
+// The filter's answer to a call that is not allowed: the call fails with EPERM.
 constexpr std::uint32_t kDeny = SECCOMP_RET_ERRNO | EPERM;
 
 constexpr std::uint32_t argument(std::uint32_t index) {  // its lower half; little-endian machines

@@ -230,6 +230,7 @@ std::optional<std::string> fault(const EncounterTruth& truth) {
   if (is_below_0(m.tcpa_s) || is_below_0(m.tau_mod_s) || is_below_0(m.tcoa_s))
     return "has an encounter with a time below 0";
   if (m.tcpa_s.has_value() != m.dcpa_m.has_value()) return "has half a closest approach";
+  // A factor above the rounding of numbers in a file.
   constexpr double kRounding = 1 + 1e-9;
   if (m.hmd_m > m.horizontal_m * kRounding || m.vmd_m > std::abs(m.above_m) * kRounding)
     return "has a miss distance above the distance of now";

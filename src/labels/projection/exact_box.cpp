@@ -74,7 +74,7 @@ class Sweep {
       at[k] = *pixel;
     }
     if (is_within(at, bounds)) return;
-    // Number of steps of the exposure.
+    // Number of steps of the exposure: a choice.
     constexpr int kSteps = 4;
     for (int step = 0; step <= kSteps; ++step) {
       const double into_exposure_s =
@@ -87,6 +87,7 @@ class Sweep {
   // True where the path, at any time of the exposure and of the readout, lies inside the bounds: it
   // does where the control points of its Bezier form do.
   static bool is_within(const std::array<Pixel, 3>& at, const BoxBounds& bounds) {
+    // Covers the rounding of control points.
     constexpr double kRoundingPx = 1e-6;
     const Pixel control = 2 * at[1] - 0.5 * (at[0] + at[2]);
     const Pixel low = at[0].cwiseMin(at[2]).cwiseMin(control) - Pixel::Constant(kRoundingPx);
@@ -106,6 +107,8 @@ class Sweep {
   Pixel seen(const std::array<Pixel, 3>& at, double into_exposure_s) const {
     Pixel pixel = along(at, into_exposure_s);
     if (shutter_.readout_s <= 0) return pixel;
+    // Number of rounds. Each multiplies the error by the share of the image that the point crosses
+    // during a readout.
     constexpr int kRounds = 6;
     for (int round = 0; round < kRounds; ++round) {
       const Pixel inside(std::clamp(pixel.x(), 0.0, double(size_.width)),

@@ -21,6 +21,7 @@ Box outline_about_centre(const image::Spot& spot) {
     const Pixel all = half.cwiseMax(wings);
     return {-all.x(), -all.y(), 2 * all.x(), 2 * all.y()};
   }
+  // Number of directions: one in half a degree.
   constexpr int kPoints = 720;
   BoxBounds bounds;
   for (int i = 0; i < kPoints; ++i) {
@@ -35,6 +36,8 @@ Box outline_about_centre(const image::Spot& spot) {
 double row_time_s(const image::Spot& spot, const Shutter& shutter, int width, int height) {
   if (shutter.readout_s <= 0) return 0;
   double dt_s = 0;
+  // Number of rounds. Each multiplies the error by the share of the image that the spot crosses
+  // during a readout.
   constexpr int kRounds = 6;
   for (int round = 0; round < kRounds; ++round) {
     const Pixel at = spot.centre + dt_s * spot.velocity_px_s;

@@ -8,6 +8,7 @@ Eigen::Affine3d affine(const Rigid& b_from_a) {
   return Eigen::Translation3d(b_from_a.translation) * Eigen::Affine3d(b_from_a.rotation);
 }
 
+// OpenGL's eye has y up and looks along -z; the camera has y down and looks along +z.
 const Vector3 kEyeFromCam{1, -1, -1};
 
 }  // namespace

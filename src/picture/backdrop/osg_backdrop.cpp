@@ -23,7 +23,7 @@ namespace {
 
 // Distance of the near plane, in metres; nearer parts are cut off.
 constexpr double kNearestM = 0.05;
-// Side of the tile that render_alpha draws at once, in pixels.
+// Side of the tile that render_alpha draws at once, in pixels: it bounds the memory of the target.
 constexpr int kTilePx = 1024;
 
 struct PinholeView {

@@ -7,6 +7,7 @@
 namespace airtruth::composite {
 namespace {
 
+// Side of a macroblock of H.264.
 constexpr int kMacroblockPx = 16;
 
 std::optional<PixelBox> bounds_of(const image::Layer& layer, const std::vector<float>& coverage) {

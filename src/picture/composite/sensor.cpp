@@ -26,6 +26,7 @@ float normal_at(std::uint64_t key, int x, int y) {
   int sum = 0;
   for (int i = 0; i < 8; ++i)
     sum += static_cast<int>(a >> (8 * i) & 255) + static_cast<int>(b >> (8 * i) & 255);
+  // Mean, and the inverse of the standard deviation, of the sum of 16 uniform bytes.
   constexpr float kMean = 16 * 127.5F;
   static const float kScale = static_cast<float>(1 / std::sqrt(16 * (256.0 * 256.0 - 1) / 12));
   return (static_cast<float>(sum) - kMean) * kScale;
@@ -41,6 +42,7 @@ int Sensor::halo_px() const {
 // an odd or an even pixel.
 int Sensor::chroma_px() const {
   if (!(chroma_spread_px > 0)) return 0;
+  // Side of a halved chroma sample, in pixels.
   constexpr int kSample = 2;
   return kSample * static_cast<int>(gaussian(chroma_spread_px / kSample).size() / 2) + 1;
 }
@@ -56,7 +58,8 @@ void sharpen(std::vector<float>& change, int width, int height, const Sensor& se
 float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor) {
   const float bounded = std::clamp(luma, 0.0F, 1.0F);
   const float light = sensor.tone.linear_from_coded_clamped(bounded);
-  // The slope of the coded value over light, by a finite difference.
+  // The slope of the coded value over light, by a finite difference over about one of 255 code
+  // values on each side, in units of their range.
   constexpr float kStep = 0.004F;
   const float low = sensor.tone.linear_from_coded_clamped(bounded - kStep);
   const float high = sensor.tone.linear_from_coded_clamped(bounded + kStep);

@@ -11,9 +11,9 @@
 namespace airtruth::composite {
 namespace {
 
-// Reach of the kernel, in standard deviations.
+// Reach of the kernel, in standard deviations; 0.3 % of a Gaussian lie beyond it.
 constexpr double kReach = 3;
-// Coverage below which no sample changes.
+// Coverage, as a share, below which no sample of 8 bits changes: 1/16 of a code value.
 constexpr float kNothing = 1.0F / 4096;
 
 int reach_of(double sigma_px) { return static_cast<int>(std::ceil(kReach * sigma_px)); }

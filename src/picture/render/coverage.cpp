@@ -12,6 +12,7 @@
 namespace airtruth::render {
 namespace {
 
+// Number of places of a line, and the mask in which all are covered.
 constexpr float kPlaces = PixelLines::kPlaces;
 constexpr std::uint32_t kFullMask = (1u << PixelLines::kPlaces) - 1;
 
@@ -123,7 +124,7 @@ void add_moving(const PixelFunctions& of, const LineBuffer& buffer) {
 
 // False where the three edges are not one or two below and as many above.
 bool find_cuts(const PixelFunctions& f, Cuts& cuts) {
-  // An edge along the lines cuts them far away: this much of its other terms is the least slope.
+  // An edge along the lines cuts them far away: this share of its other terms is the least slope.
   constexpr float kLeastSlope = 1e-6f;
   cuts[0] = cuts[1] = {-1, 0, 0};
   cuts[2] = cuts[3] = {kPlaces + 1, 0, 0};

@@ -19,10 +19,11 @@ namespace airtruth::render {
 // The lines of a pixel, the same for all pixels. `key` divides them evenly and in order: at an
 // instant by the place across, with an exposure by the time.
 struct PixelLines {
-  // 31: a mask of 32 bits holds them without a shift by 32.
+  // Number of places of a line: a mask of 32 bits holds 31 without a shift by 32.
   static constexpr int kPlaces = 31;
+  // Most lines: 64 blocks of 8, one bit each of CoverageMasks::full_blocks_.
   static constexpr int kMost = 512;
-  // Lines that are tested together.
+  // Number of lines that are tested together: 8 floats are a vector of 256 bits.
   static constexpr int kBlock = 8;
   int count = 0;
   // From the pixel's middle in units of its side.

@@ -36,6 +36,7 @@ PixelFunctions functions_over(const RayTriangle& triangle,
 }
 
 bool PixelFunctions::is_uniform() const {
+  // Largest shift of an edge by the terms of rotation and acceleration that are left out.
   constexpr float kLeftOutPx = 0.02f;
   const Eigen::Array4f left_out = 0.5f * (per_xt.abs() + per_yt.abs()) + 0.5f * per_tt.abs();
   const Eigen::Array4f slope = per_x.abs().max(per_y.abs());

@@ -18,6 +18,7 @@ constexpr double kTurnOfSpanRad = 0.25;
 // Most spans of a part: ten turns in a frame's time, where all that remains is a disc.
 constexpr int kMostSpans = 256;
 
+// A bound in pixels that contains every point.
 constexpr float kEverywhere = std::numeric_limits<float>::infinity();
 const ScreenBounds kWholeFrame{-kEverywhere, -kEverywhere, kEverywhere, kEverywhere};
 

@@ -14,7 +14,7 @@
 namespace airtruth::render {
 namespace {
 
-// Rays of a pixel whose surfaces are shaded.
+// Number of rays of a pixel whose surfaces are shaded: it bounds the time.
 constexpr int kShaded = 64;
 
 // A surface along a ray.
@@ -46,7 +46,8 @@ class Then {
                  double footprint_rad,
                  std::size_t index,
                  std::vector<Fragment>& fragments) const {
-    // A step beyond a translucent surface, in metres, and the most of those along one ray.
+    // A step beyond a translucent surface, in metres, and the greatest number of those along one
+    // ray.
     constexpr float kStepM = 1e-4f;
     constexpr int kMostLayers = 24;
     const Vector3 in_cam = ray_in_cam(view_, at);
@@ -123,6 +124,7 @@ void blend(std::vector<Fragment>& fragments,
            double footprint_rad,
            const shade::Light* light,
            TracedPixel& pixel) {
+  // Share of one sample in a pixel.
   constexpr double kShare = 1.0 / PixelSamples::kMost;
   std::stable_sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
     return a.distance_m < b.distance_m;

@@ -18,6 +18,7 @@ std::uint32_t hashed(std::uint32_t x, std::uint32_t y) {
 }
 
 using SobolPoint = std::array<std::uint32_t, 3>;
+// The dimensions of a point by which blocks divide them: place across and time.
 constexpr std::size_t kX = 0;
 constexpr std::size_t kT = 2;
 

@@ -11,6 +11,8 @@ namespace airtruth::render {
 // (x) or by time (t): block k of n holds those with that coordinate from k / n to (k + 1) / n of
 // its span.
 struct Samples {
+  // Most samples of a pixel, as counts_for gives them, and the number in a block: 8 floats are a
+  // vector of 256 bits.
   static constexpr int kMost = 2048;
   static constexpr int kBlock = 8;
   int count = 0;
@@ -26,7 +28,8 @@ struct Samples {
 // slope.
 class PixelSamples {
  public:
-  // Numbers of points: two blocks are the fewest that divide a dimension.
+  // Numbers of points: two blocks are the fewest that divide a dimension; the most are the
+  // reference's.
   static constexpr int kFewest = 2 * Samples::kBlock;
   static constexpr int kMost = 4096;
 

@@ -49,9 +49,10 @@ PixelShading::Point PixelShading::point_at(const Visibility& visibility,
 }
 
 bool PixelShading::Colours::mean_is_known() const {
-  // Below one code value of a video in the middle of its range.
+  // Standard error of a mean colour, as a share of it: below one code value of a video in the
+  // middle of its range.
   constexpr float kTolerance = 0.01f;
-  // Linear light below which the tolerance stays the same.
+  // Linear light, of which 1 is white, below which the tolerance stays the same.
   constexpr float kNearBlack = 0.03f;
   if (count < 4) return false;
   const Eigen::Array3f mean = sum / count;

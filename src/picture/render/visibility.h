@@ -69,6 +69,7 @@ class Visibility {
   }
 
  private:
+  // All instances, in place of the index of one.
   static constexpr std::uint32_t kAll = 0xffffffff;
   // A span of RayTriangles over a pixel's exposure.
   struct PixelSpan {

@@ -15,12 +15,15 @@
 namespace airtruth::shade {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/decisions/0019 compares the
+// result with a path tracer.
+
 // Rays for a whole model, which take under a second on two cores.
 constexpr std::size_t kMaxRays = 1'500'000;
 // Directions for each corner: one step is 1/64 of all light.
 constexpr std::size_t kMaxDirections = 64;
 constexpr std::size_t kMinDirections = 8;
-// Divisor of the number of directions for insides and for reflected light.
+// Ratio of that number to the number of directions for insides and for reflected light.
 constexpr std::size_t kFewer = 4;
 // A side with a smaller open share is probably the inside of a hull.
 constexpr float kInside = 0.1f;
@@ -28,7 +31,7 @@ constexpr float kInside = 0.1f;
 constexpr float kInset = 0.25f;
 // Start of a ray above the surface: model files draw markings a centimetre above hulls.
 constexpr float kStartM = 0.02f;
-// Albedo of the hiding parts: a light paint.
+// Albedo, a ratio, of the hiding parts: a light paint.
 constexpr float kOwnPaint = 0.6f;
 // Length of a ray, which exceeds half the length of any aircraft.
 constexpr float kRayM = 60.0f;

@@ -7,10 +7,10 @@
 namespace airtruth::shade {
 namespace {
 
-// Bands of elevation, of equal solid angle. There are twice as many sectors of azimuth.
+// Number of bands of elevation, of equal solid angle. There are twice as many sectors of azimuth.
 constexpr int kBands = 96;
 
-// Factors of the harmonics of order 2.
+// Factors of the harmonics of order 2 (Ramamoorthi and Hanrahan 2001, eq. 3).
 constexpr float kProduct = 1.092548f;
 constexpr float kZenith = 0.315392f;
 constexpr float kDifference = 0.546274f;
@@ -29,11 +29,13 @@ std::array<float, 9> harmonics(const Eigen::Vector3f& d) {
           kDifference * (x * x - y * y)};
 }
 
+// Order of each of the nine harmonics.
 constexpr std::array<std::size_t, 9> kOrder = {0, 1, 1, 1, 2, 2, 2, 2, 2};
 
 }  // namespace
 
 Environment Environment::of(const std::function<Rgb(const Vector3&)>& radiance) {
+  // Number of sectors of azimuth, and the solid angle of a cell.
   constexpr int kAround = 2 * kBands;
   constexpr double kCellSr = 4 * kPi / (kBands * kAround);
   std::array<std::array<double, 3>, 9> sums{};

@@ -82,6 +82,7 @@ float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
 }
 
 PartGeometry geometry_of(const aircraft::Mesh& mesh, const aircraft::Part& part) {
+  // In place of an index: a vertex that the part has not used yet.
   constexpr std::uint32_t kNone = 0xffffffff;
   PartGeometry geometry;
   std::vector<std::uint32_t> of_vertex(mesh.positions.size(), kNone);

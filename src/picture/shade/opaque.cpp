@@ -103,7 +103,7 @@ std::array<float, 2> alphas_within(const aircraft::Texture& texture,
 }
 
 Opacity opacity_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
-  // Opacities that differ by less are the same.
+  // Opacities, from 0 to 1, that differ by less are the same.
   constexpr float kEven = 0.01F;
   const aircraft::Material& material = mesh.materials[triangle.material];
   const auto& [a, b, c] = triangle.vertex;

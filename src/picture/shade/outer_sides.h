@@ -40,6 +40,7 @@ struct Side {
   std::int8_t direction;
 };
 
+// In place of the index of a surface.
 constexpr std::uint32_t kNoSurface = std::numeric_limits<std::uint32_t>::max();
 
 // The surfaces of a part.

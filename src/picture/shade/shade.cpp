@@ -9,13 +9,16 @@
 namespace airtruth::shade {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/decisions/0019 compares the
+// result with a path tracer.
+
 // Mirrored share along the normal for a refractive index of 1.5: clear coat and glass.
 constexpr float kDielectric = 0.04f;
 // GGX's alpha of paint and panes: it blurs a reflection by a few degrees.
 constexpr float kCoatRoughness = 0.1f;
 // GGX's alpha of rolled and handled sheet metal.
 constexpr float kMetalRoughness = 0.3f;
-// Albedo of a cabin behind its windows.
+// Albedo, a ratio, of a cabin behind its windows.
 constexpr float kCabin = 0.05f;
 
 }  // namespace
@@ -227,7 +230,8 @@ Sunlit sunlit_at(const Placed& placed, const Surface& surface, const aircraft::M
 BodyRay to_sun_from(const Placed& placed,
                     const Eigen::Vector3f& point_in_body,
                     const Surface& surface) {
-  // Height of the start above the surface.
+  // Height of the start above the surface, so that rounding does not put the surface in its own
+  // shadow.
   constexpr float kStartM = 0.01f;
   return {point_in_body + kStartM * surface.face, placed.to_sun_in_body};
 }

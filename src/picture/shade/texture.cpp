@@ -13,7 +13,7 @@ int wrapped(int i, int size, bool repeat) {
   return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
 }
 
-// Texture coordinates beyond this count as damaged.
+// Texture coordinates beyond this number of repeats count as damaged; an int holds their texels.
 constexpr float kFarthestRepeat = 1e5f;
 
 // A place between two texels: the first of them, and the share of the second.

@@ -8,6 +8,7 @@
 namespace airtruth::shade {
 namespace {
 
+// Number of rays in a packet of Embree (RTCRay8).
 constexpr std::size_t kLanes = 8;
 
 using Lanes = std::array<int, kLanes>;  // -1 for a lane with a ray, else 0

@@ -45,6 +45,7 @@ struct Sighting {
 
 class DirectionFilter {
  public:
+  // Number of errors of the state: direction and rate along two axes, and log size.
   static constexpr int kSize = 5;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Innovation = Eigen::Vector3d;  // of the direction along both axes, and of the log size

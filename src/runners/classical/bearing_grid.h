@@ -26,6 +26,7 @@ inline std::optional<Pixel> pixel_after_turn(const lens::Lens& lens,
 // anchor, the grid is anchored anew.
 class BearingGrid {
  public:
+  // A choice: maps bend little over such a turn, and anchoring anew resamples what is stored.
   static constexpr double kLargestTurnPx = 12;
 
   BearingGrid(const lens::Lens& lens, int cell_px);

@@ -10,15 +10,18 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // An object that reaches further from its strongest sample, in samples of its level, is part of
 // something else.
 constexpr int kReach = 2 * kElement;
-// Across, it may be as wide as the short element lets through, with what the smoothing adds.
+// Across, in samples, it may be as wide as the short element lets through, with what the smoothing
+// adds.
 constexpr int kMostAcross = kElement + 2;
 // What belongs to the object differs by this share of its contrast: low enough for wings thinner
 // than a sample, of which a third is left.
 constexpr double kBoxShare = 0.3;
-// What surely does.
+// What surely does, as a share of it.
 constexpr double kCoreShare = 0.5;
 // Where the noise allows it and the object stays bounded, by this share: a wing in shade has a
 // tenth of the contrast of a sunlit fuselage.

@@ -11,6 +11,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // Frames before the present one in which an object is looked for at the same bearing.
 constexpr std::size_t kFramesBefore = 2;
 // It may have moved by this many samples of its level a frame.

@@ -163,6 +163,7 @@ cv::Mat cells_of(const cv::Mat& rimmed) {
 constexpr float kBitsOfOne = 127 * (1 << 23);
 
 cv::v_float32x4 remembered(const cv::v_float32x4& x) {
+  // An exponent without a unit.
   constexpr float kPower = static_cast<float>(FilterBank::kRemembers);
   const cv::v_float32x4 bits = cv::v_cvt_f32(cv::v_reinterpret_as_s32(x));
   return cv::v_reinterpret_as_f32(

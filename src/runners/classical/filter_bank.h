@@ -37,6 +37,7 @@ Measurement coarser(const Measurement& measurement, int factor, const cv::Size& 
 // each octave. With the chance kHidden a target shows nothing.
 class LikelihoodRatio {
  public:
+  // The strengths are in typical responses, and the chance is that of a frame: choices.
   static constexpr double kMemoryFrames = 30;
   static constexpr double kWeakest = 2.5;
   static constexpr double kStrongest = 60;
@@ -73,6 +74,7 @@ class LikelihoodRatio {
 // kRemembers^k for k frames ago, and a constant ratio leads to ln ratio / (1 - kRemembers) at most.
 class FilterBank {
  public:
+  // The chance that a target is still there a frame later, and the exponent of forgetting: choices.
   static constexpr double kStays = 0.95;
   static constexpr double kRemembers = 0.9;
 

@@ -12,6 +12,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 constexpr int kCellPx = 2;  // side of the cells that are compared
 // Cells between the values of the noise map.
 constexpr int kNoiseStep = 16;
@@ -28,6 +30,7 @@ const double kSigmaOfMean = std::sqrt(kPi / 2);
 constexpr int kGapCells = 3;
 // Any share of it makes an interpolated sample negative: shares are multiples of 1/32.
 constexpr int kUnseen = -30'000;
+// Least side of a picture, which has one value of the noise map, and largest side of a change.
 constexpr int kLeastSidePx = kCellPx * kNoiseStep;
 constexpr int kLargestCells = kLargestPx / kCellPx;
 // The rounding of both pictures to whole grey levels.
@@ -135,6 +138,7 @@ class FrameDifference : public detector::Detector {
 
   // What joining added, but at the picture's border.
   static cv::Rect without_rim(const cv::Rect& cells, const cv::Size& size) {
+    // Number of cells that joining adds to each side.
     constexpr int kRim = kGapCells / 2;
     const int left = cells.x > 0 ? kRim : 0, top = cells.y > 0 ? kRim : 0;
     const int right = cells.br().x < size.width ? kRim : 0;

@@ -50,6 +50,7 @@ FreeView::FreeView(const image::Mask* own_aircraft) {
                      const_cast<unsigned char*>(own_aircraft->free.data()));
   cv::Mat hidden = free < 128;
   if (cv::countNonZero(hidden) == 0) return;
+  // Side of the element, px, which reaches kMarginPx to each side.
   constexpr int kSide = 2 * kMarginPx + 1;
   cv::dilate(hidden, hidden, cv::getStructuringElement(cv::MORPH_ELLIPSE, {kSide, kSide}));
   cv::Mat visible;

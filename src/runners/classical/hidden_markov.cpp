@@ -15,6 +15,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // Sides of the cells of the banks: a target moves by up to a cell a frame. Smaller cells find
 // fainter targets, larger ones faster.
 constexpr std::array<int, 2> kCellsPx = {2, 8};
@@ -26,7 +28,7 @@ constexpr int kBlockCells = 8;
 constexpr int kAround = 2;
 // A peak this near to a stronger one's box is of the same object.
 constexpr double kApartPx = 6;
-// Levels with a weaker response there do not bound it.
+// Levels with a weaker response there, in typical responses, do not bound it.
 constexpr double kLeastResponse = 2.5;
 constexpr std::size_t kMostPeaks = 150;  // of a bank and frame: bounds the time in rich clutter
 
@@ -78,6 +80,7 @@ std::optional<Box> box_at(const std::vector<Level>& levels, const Pixel& pixel, 
 
 // A square of the smallest size that the detector responds to.
 Box smallest_box(const Pixel& centre) {
+  // Side of the box, px.
   constexpr double kSide = kElement - 2;
   return {centre.x() - kSide / 2, centre.y() - kSide / 2, kSide, kSide};
 }

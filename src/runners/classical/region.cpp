@@ -8,6 +8,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // An object has at least a pixel.
 constexpr double kLeastBoxSidePx = 1;
 // Each halves the interval, which begins at an object's blurred side: to less than a hundredth.
@@ -195,6 +197,7 @@ constexpr double kSigmaOfMad = 1.4826;
 // Noise is taken from the median deviation and from this quantile of it, whichever is more: clutter
 // has long tails.
 constexpr double kTailQuantile = 0.9;
+// Standard deviation of normal noise over that quantile of its absolute deviation.
 constexpr double kSigmaOfTail = 1 / 1.6449;
 // The rounding to whole grey levels, which makes patches that smoothing does not remove.
 const double kLeastNoise = kGreyScale / std::sqrt(12.0);

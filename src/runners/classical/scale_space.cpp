@@ -10,6 +10,8 @@
 namespace airtruth::classical {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice; docs/detection.md has the result.
+
 // Least side of a level, in samples: some elements long.
 constexpr int kLeastSide = 3 * kElement;
 // The rounding to whole grey levels has a standard deviation of 1/sqrt(12) levels. In a smooth sky
@@ -49,6 +51,7 @@ cv::Mat extreme_of(cv::Mat samples, Along along, int length, Extreme extreme) {
 // Closing (first the most, then the least) or opening by a line along rows or columns. `padded` has
 // kLongElement - 1 more samples on every side than the result.
 cv::Mat filtered(const cv::Mat& padded, Along along, int length, Extreme first) {
+  // Samples beyond each side that the longest element reaches.
   constexpr int kMargin = kLongElement - 1;
   const int unused = kMargin - (length - 1);
   const cv::Size size(padded.cols - 2 * kMargin, padded.rows - 2 * kMargin);
@@ -84,6 +87,7 @@ cv::Mat without_objects(const cv::Mat& padded, Extreme first, bool with_long) {
 }
 
 cv::Mat close_minus_open(const cv::Mat& picture, bool with_long, cv::Mat& is_dark) {
+  // Samples beyond each side that the longest element reaches.
   constexpr int kMargin = kLongElement - 1;
   cv::Mat padded, dark, bright;
   cv::copyMakeBorder(picture, padded, kMargin, kMargin, kMargin, kMargin, cv::BORDER_REPLICATE);

@@ -12,6 +12,7 @@
 // is one line, a JSON object.
 namespace airtruth::detector {
 
+// The number of the protocol's version.
 inline constexpr int kProtocol = 1;
 // More in one frame are taken for an error of the program.
 inline constexpr std::size_t kMostInAnAnswer = 100'000;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char* kFormat = "airtruth detector model 1";
 constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // of the JSON; one takes a few hundred
+// Bounds for a stranger's description, far above what detectors have.
 constexpr std::size_t kMostClasses = 1000;
 constexpr int kMostPx = 8192;  // of an input's side
 

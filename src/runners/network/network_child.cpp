@@ -20,6 +20,7 @@ constexpr std::size_t kMostAnswerBytes = std::size_t{1} << 30;
 constexpr std::size_t kMostNameBytes = 1024;
 constexpr std::size_t kMostOutputs = 16;
 
+// Bounds for what the child hands back: numbers of tensors, dimensions and values.
 constexpr std::size_t kMostTensors = 16;
 constexpr std::size_t kMostDimensions = 8;
 constexpr std::size_t kMostValues = std::size_t{1} << 28;  // of a tensor: 1 GiB

@@ -26,9 +26,11 @@ namespace {
 using namespace airtruth;  // the program's own top level
 using namespace airtruth::network;
 
+// Bound of a message from the parent; the largest is a model (network_detector.cpp).
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
 // No more threads are started than there are processors.
 const int kMostThreads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+// Bound of the memory of a stranger's network, beside that of its threads.
 constexpr unsigned long kMemoryBytes = 4ul << 30;
 // A thread reserves addresses for its stack (8 MiB) and its heap (128 MiB).
 constexpr unsigned long kThreadBytes = 160ul << 20;

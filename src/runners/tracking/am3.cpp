@@ -14,6 +14,8 @@
 namespace airtruth::tracking {
 namespace {
 
+// The record leaves these constants open: they are choices (am3.h).
+
 // Smallest side of the object at the coarsest level, in that level's pixels.
 constexpr int kMinSidePx = 6;
 // A smaller object is tracked with some of its surroundings.

@@ -8,9 +8,11 @@
 namespace airtruth::tracking {
 namespace {
 
-// Of means of grey levels; below it a Gaussian is a spike that nothing fits.
+// Variance of means of grey levels, squared levels; below it a Gaussian is a spike that nothing
+// fits.
 constexpr float kMinVariance = 0.25f;
-// Larger log-ratios saturate every probability, and the learned values become arbitrary.
+// Natural logarithm: larger log-ratios saturate every probability, and the learned values become
+// arbitrary.
 constexpr float kMaxRatio = 11.5f;
 
 float sigmoid(float z) { return 1 / (1 + std::exp(-z)); }
@@ -37,6 +39,7 @@ class Ratio {
 
 // Eight sums run side by side, because a single sum would be added in order, one number at a time.
 float dot(std::span<const float> a, std::span<const float> b) {
+  // Number of sums: 8 floats are a vector of 256 bits.
   constexpr std::size_t kSums = 8;
   std::array<float, kSums> sums{};
   std::size_t i = 0;

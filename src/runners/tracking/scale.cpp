@@ -14,13 +14,16 @@
 namespace airtruth::tracking {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice.
+
 constexpr double kSidePx = 48;  // geometric mean of the object's sides in its patch
 constexpr int kColumns = 14;    // of points
 constexpr int kRows = 8;        // in the object's usual aspect
 constexpr int kWindowPx = 9;    // of the optical flow: the side of a point's surroundings
-// Share of the strongest texture in the object.
+// Points with less than this share of the strongest texture in the object are left out.
 constexpr double kMinTexture = 0.05;
 constexpr std::size_t kMinPoints = 20;  // for a median that holds
+// Number of pairs of points, for a median that holds.
 constexpr std::size_t kMinPairs = 50;
 constexpr double kMinApartPx = 5;  // of a pair, whose ratio is else mostly the flow's error
 constexpr float kMaxReturnPx = 1;  // from where a point began, forward and backward

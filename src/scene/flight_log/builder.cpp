@@ -78,6 +78,7 @@ FlightLog from_first_record(FlightLog log) {
 }
 
 std::string printable(std::string_view text) {
+  // A message repeats at most this much of a text, so that it stays on one line.
   constexpr std::size_t kMaxShownBytes = 40;
   std::string result(text.substr(0, kMaxShownBytes));
   for (char& c : result)

@@ -16,6 +16,7 @@
 namespace airtruth::flight_log {
 namespace {
 
+// The two bytes with which each message begins, the type of FMT, and the length of the head.
 constexpr char kHead1 = '\xa3', kHead2 = '\x95';
 constexpr std::uint8_t kFormatType = 128;
 constexpr std::size_t kHeadBytes = 3;

@@ -12,9 +12,11 @@ namespace {
 using gyro::big_endian;
 using gyro::GpmfElement;
 
+// The kind of fix of a position in three dimensions; 2 is one without an altitude (gpmf-parser).
 constexpr std::uint32_t kGpmfFix3d = 3;
 // GPS9 holds seven 32-bit numbers and two 16-bit ones, the last of which is the kind of fix.
 constexpr std::size_t kGps9Bytes = 32, kGps9FixAt = 30;
+// GPS5 holds five 32-bit numbers.
 constexpr std::size_t kGps5Bytes = 20;
 
 double signed_at(const GpmfElement& e, std::size_t at) {

@@ -118,6 +118,7 @@ class GpxReader {
 }  // namespace
 
 bool is_gpx(std::string_view content) {
+  // In which a file shows what it is.
   constexpr std::size_t kHeadBytes = 4096;
   return content.substr(0, kHeadBytes).find("<gpx") != std::string_view::npos;
 }

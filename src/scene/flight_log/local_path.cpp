@@ -57,6 +57,7 @@ void require_covered(const FlightLog& log, double offset_s) {
 // of 0.1 m of resolution in every frame, and a spline through each would shake. An acceleration of
 // 5 m/s2 moves the mean by 0.05 m.
 trajectory::Samples local_positions(const FlightLog& log, const Placement& placement) {
+  // Positions within this time count as one.
   constexpr double kBinS = 0.5;
   const Fix& first =
       log.fixes[std::min(after(log.fixes, placement.offset_s), log.fixes.size() - 1)];

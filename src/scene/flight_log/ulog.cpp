@@ -19,6 +19,7 @@ namespace airtruth::flight_log {
 namespace {
 
 constexpr std::string_view kMagic("ULog\x01\x12\x35", 7);
+// Lengths of the header of a file and of a message's.
 constexpr std::size_t kHeaderBytes = 16;
 constexpr std::size_t kMessageHeadBytes = 3;
 constexpr int kMaxNesting = 8;  // formats of PX4 nest once
@@ -195,6 +196,7 @@ class UlogReader {
   // Degrees and metres in the newer topics; 1e-7 degrees and millimetres in the older ones.
   void add_position(
       FlightLog& log, const Topic& topic, std::string_view body, double time_s, std::size_t at) {
+    // fix_type of a position in three dimensions.
     constexpr double kFix3d = 3;
     const auto fix_type = number(topic, body, "fix_type");
     if (fix_type && *fix_type < kFix3d) return void(++log.left_out);

@@ -10,6 +10,7 @@
 namespace airtruth::scene {
 namespace {
 
+// Ratio of a flock's height to its width: a choice.
 constexpr double kHeightShare = 1.0 / 3;
 // Standard deviations of size and stroke rate within a flock, as shares.
 constexpr double kSizeSpread = 0.04;
@@ -28,6 +29,7 @@ Vector3 free_place(Random& random,
                    double radius_m,
                    double apart_m,
                    const std::vector<Intruder>& taken) {
+  // Number of attempts: it bounds the time in a crowded flock.
   constexpr int kAttempts = 100;
   Vector3 place = Vector3::Zero();
   for (int attempt = 0; attempt < kAttempts; ++attempt) {

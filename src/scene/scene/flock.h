@@ -8,7 +8,7 @@
 
 namespace airtruth::scene {
 
-// Largest number of members of a flock.
+// Largest number of members of a flock: a choice.
 constexpr std::int64_t kMaxFlock = 200;
 
 // `count` intruders in place of one bird, multirotor or balloon. All fly the leader's path, each

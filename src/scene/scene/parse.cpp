@@ -12,7 +12,9 @@
 namespace airtruth::scene {
 namespace {
 
+// TOML's whole numbers are signed and have 64 bits.
 constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+// Largest number of a frame: a year at 30 frames/s.
 constexpr std::int64_t kMaxFrames = 1'000'000'000;
 
 std::string name_of(const TableReader& root, const fs::path& file) {

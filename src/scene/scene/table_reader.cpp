@@ -400,6 +400,7 @@ void KeyLog::note_whole(const std::string& path, std::int64_t low, std::int64_t 
 
 namespace {
 
+// Numbers of open brackets and of dots in a key: far above a scene's two levels (table_reader.h).
 constexpr int kDeepestBrackets = 32;
 constexpr int kMaxDots = 16;
 

@@ -73,12 +73,18 @@ std::uint32_t stream(const FlightOptions& o, std::string_view name) {
   return static_cast<std::uint32_t>(Seed(o.seed).stream(name)());
 }
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
+// Number of texels of the panorama at the horizon for a pixel in the middle of the picture.
 constexpr double kPanoramaOversampling = 1.25;
+// Number of rows of a parallel task; even, since rows are exposed in pairs.
 constexpr int kRowsPerTask = 8;
 
+// The slow motions of the flight beside its vibration.
 constexpr double kRollPeriod_s = 8.5;
 constexpr double kPitchPeriod_s = 6.1;
 constexpr double kPitchAmplitude_deg = 0.7;
+// Standard gravity (3rd CGPM, 1901).
 constexpr double kGravity_mps2 = 9.80665;
 
 // The pose of the camera and its shake. Both are closed forms of time, so that frames can be
@@ -95,6 +101,7 @@ class FlightPath {
     double phase_rad = 0;
     double amplitude_deg = 0;
   };
+  // Number of tones of a vibration.
   static constexpr int kTones = 7;
   using Tones = std::array<Tone, kTones>;
   static Tones vibration(Random random, double rms_deg);

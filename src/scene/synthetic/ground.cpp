@@ -12,11 +12,15 @@
 namespace airtruth::synthetic {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
 // Beyond this distance the ground is flat.
 constexpr float kReliefEnd_m = 5000;
 // Distance at which the hills begin.
 constexpr float kFarthest_m = 26000;
+// Side of the smallest cells of Ground::peaks_.
 constexpr float kPeakCell_m = 10;
+// Side of a cell of Ground::detail_.
 constexpr float kDetail_m = 0.4F;
 // Distance up to which the ground has detail that is finer than its texels.
 constexpr float kDetailEnd_m = 1200;
@@ -185,6 +189,7 @@ void Ground::colour(const Points& points, int count, Light& __restrict light) co
                                y * scale[level + 1] - 0.5F,
                                first[level + 1],
                                wrap[level + 1]);
+    // The weights of four texels sum to 256, and the largest root of a colour is 255.
     constexpr float kUnit = 1.0F / (256 * 255);
     light.red[i] = lerp(fine.red, coarse.red, points.level_part[i]) * kUnit;
     light.green[i] = lerp(fine.green, coarse.green, points.level_part[i]) * kUnit;
@@ -454,12 +459,14 @@ void Ground::house(float north_m,
 
 // Builds villages of tiled roofs around a few streets, and single barns.
 void Ground::build(std::uint32_t seed) {
+  // Numbers on the whole land.
   constexpr int kVillages = 6, kBarns = 40;
   for (int k = 0; k < kVillages; ++k) build_village(k, seed);
   for (int k = 0; k < kBarns; ++k) build_barn(hash(k, 2, seed));
 }
 
 void Ground::build_village(int k, std::uint32_t seed) {
+  // A village has a third of this number of houses to four thirds of it.
   constexpr int kHouses = 90;
   const std::uint32_t village = hash(k, 1, seed);
   const float north = kLand_m * unit(village);

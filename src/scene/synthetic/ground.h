@@ -34,6 +34,8 @@ class Ground {
   void seen(const Eye& eye, const Rays& rays, Light& light) const;
 
  private:
+  // Numbers of cells along each side of shadow_ and detail_, of sectors of haze_, and of levels of
+  // peaks_, whose cells have sides of 10 m to 1,280 m.
   static constexpr int kShadowCells = 512;
   static constexpr int kDetailCells = 256;
   static constexpr int kHazeSectors = 64;

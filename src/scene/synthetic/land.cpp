@@ -10,13 +10,15 @@
 namespace airtruth::synthetic {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
 // Cells of the slowly varying map along each side.
 constexpr int kSlow = 512;
-// Texels of the mottling along each side.
+// Number of texels of the mottling along each side, and the side of one.
 constexpr int kSoil = 1024;
 constexpr float kSoil_m = 1.25F;
 
-// Colours of a dry plateau in late summer.
+// Albedos of nine crops, ratios: the colours of a dry plateau in late summer.
 constexpr int kCrops = 9;
 constexpr float kCropRed[kCrops] = {0.46F, 0.52F, 0.40F, 0.27F, 0.33F, 0.12F, 0.20F, 0.36F, 0.30F};
 constexpr float kCropGreen[kCrops] = {
@@ -179,6 +181,7 @@ void Land::read_slow_map(const Places& places, Work& work) const {
 
 // Blocks of fields: the cells of a jittered grid (Worley 1996) with slightly bent borders.
 void Land::find_blocks(Places& places, Work& work) const {
+  // Side of a block.
   constexpr float kBlock_m = kLand_m / kBlocks;
   Nearest nearest;
   for (int k = 0; k < places.count; ++k) {

@@ -15,6 +15,7 @@ namespace airtruth::synthetic {
 // highest. Squares of 4 x 4 texels are stored together, so that neighbours in any direction are
 // mostly on the same line of the cache.
 struct MipMap {
+  // Number of levels of a tile of 2^16 texels a side, down to two.
   static constexpr int kMaxLevels = 16;
   std::vector<std::uint32_t> texels;
   // Texels along a side of level 0, a power of two.

@@ -21,6 +21,10 @@ struct NearestPart {
   Part part = Part::kWing;
 };
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
+// Half of the wing's span, the wing's distance ahead of the camera, and a distance beyond all
+// parts.
 constexpr float kHalfSpan_m = 2.45F;
 constexpr float kWingAhead_m = 2.35F;
 constexpr float kFarthestPart_m = 6;
@@ -187,6 +191,7 @@ bool may_touch(const Point& ray, float block_rad) {
   return false;
 }
 
+// Side of a block of pixels, for which one ray tests whether the aircraft may be there.
 constexpr int kBlock = 8;
 
 // Marks the pixels of the layer in the mask, and where each row begins and ends.

@@ -45,10 +45,11 @@ class Panorama {
   }
   // The same for the rays of a batch.
   void seen(const Rays& rays, Light& light) const;
-  // The component `up` of the lowest direction.
+  // The component `up` of the lowest direction: a sine, 1.1 degrees below the horizon.
   static constexpr float kLowest = -0.02F;
 
  private:
+  // Side of a part that want() marks, in texels.
   static constexpr int kBlock = 16;
   int size_ = 0;
   int blocks_ = 0;

@@ -6,9 +6,12 @@
 namespace airtruth::synthetic {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
 // Number of steps through the height field.
 constexpr int kMarch = 7;
-// Bisections of the step that meets the field, for near rays and for others.
+// The range of near rays, and bisections of the step that meets the field, for near rays and for
+// others.
 constexpr float kNear_m = 600;
 constexpr int kNearBisections = 4;
 constexpr int kFarBisections = 2;

@@ -37,6 +37,7 @@ class RayTable {
            std::vector<float>& fall_off) const;
 
  private:
+  // Pixels between two nodes.
   static constexpr int kPitch = 8;
   static void fill(float left, float step, float* pixels);
 

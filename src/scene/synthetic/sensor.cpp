@@ -12,9 +12,15 @@
 namespace airtruth::synthetic {
 namespace {
 
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
+// Number of steps of the tone curve.
 constexpr int kCurve = 8192;
+// Light at the end of the tone curve, where a linear sensor's white is 1.
 constexpr float kBrightest = 2.5F;
+// Pixels on each side of a tile of noise, a power of two.
 constexpr int kGrain = 256;
+// Amount of the unsharp mask, a ratio.
 constexpr float kSharpening = 0.22F;
 
 // Code values 0..255 by the square root of light, so that dark tones are resolved as finely as

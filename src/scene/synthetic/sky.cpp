@@ -51,17 +51,22 @@ LinearRgb Sky::haze(const Vector3& direction) const {
 
 namespace {
 
-// Cells along north and along east.
+// Where a constant of this file states no origin, it is a choice: the world is invented.
+
+// Numbers of cells along north and along east.
 constexpr int kCells = 512;
-// Levels upwards.
+// Number of levels upwards.
 constexpr int kLevels = 26;
+// Side of a cell, height of the base of the clouds, their depth, and that of a level.
 constexpr float kCell_m = 40;
 constexpr float kBase_m = 1050;
 constexpr float kDepth_m = 1500;
 constexpr float kLevel_m = kDepth_m / kLevels;
-// Texels of the fine noise along each axis.
+// Number of texels of the fine noise along each axis, and the side of one.
 constexpr int kDetail = 64;
 constexpr float kDetailTexel_m = 15;
+// Extinction within a cloud, the end of rays, the distance from which haze leaves 1/e of the light
+// of clouds, and the height of the cirrus.
 constexpr float kExtinction_per_m = 0.022F;
 constexpr float kFarthestCloud_m = 60000;
 constexpr float kHaze_m = 30000;
@@ -211,6 +216,7 @@ float Clouds::erosion(float north_m, float east_m, float height_m) const {
   const float fx = u - static_cast<float>(x);
   const float fy = v - static_cast<float>(y);
   const float fz = w - static_cast<float>(z);
+  // A mask that wraps the index of a texel.
   constexpr int kWrap = kDetail - 1;
   const auto row = [&](int j, int k) {
     const float* at = &detail_[static_cast<std::size_t>(

@@ -14,9 +14,11 @@
 namespace airtruth::trajectory {
 namespace {
 
+// Standard gravity (3rd CGPM, 1901).
 constexpr double kGravityMps2 = 9.80665;
 // Below this horizontal speed, in metres a second, the velocity defines no heading.
 constexpr double kHorizontalMps = 1e-6;
+// Points that are nearer to each other are the same.
 constexpr double kSamePointM = 1e-6;
 // Largest coordinate, in metres. It keeps squares and lengths far from overflow.
 constexpr double kFarthestM = 1e9;
@@ -40,6 +42,7 @@ bool has_heading(const Vector3& v) {
 // The heading to keep where the path goes straight up or down or the object stands still: the last
 // defined heading before u, else the first one after it.
 double heading_near_deg(const CubicSpline<Vector3>& spline, double u) {
+  // Number of parts of the path at whose ends a heading is looked for.
   constexpr int kSteps = 1024;
   const double step = (spline.end() - spline.begin()) / kSteps;
   const auto here = static_cast<int>((u - spline.begin()) / step);
@@ -117,6 +120,7 @@ class AtSpeed : public Path::Impl {
           double speed,
           const AttitudeOverride& stated)
       : spline_(std::move(knots), std::move(points)), speed_(speed), stated_(stated) {
+    // Number of equal parts of a span.
     constexpr int kParts = 64;
     u_.push_back(spline_.begin());
     length_.push_back(0);
@@ -148,6 +152,7 @@ class AtSpeed : public Path::Impl {
 
  private:
   double arc(double a, double b) const {
+    // Nodes and weights on [-1, 1], from the middle outwards.
     constexpr double kNode[] = {0.0, 0.5384693101056831, 0.9061798459386640};
     constexpr double kWeight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
     const double middle = 0.5 * (a + b);

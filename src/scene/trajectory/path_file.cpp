@@ -15,9 +15,11 @@
 namespace airtruth::trajectory {
 namespace {
 
+// Largest file that is read: it bounds memory.
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 const std::vector<std::string> kColumns = {
     "time_s", "north_m", "east_m", "down_m", "yaw_deg", "pitch_deg", "roll_deg"};
+// Number of columns, the first ones, that each file has.
 constexpr std::size_t kRequired = 4;
 // Largest number of a path file, in metres, seconds or degrees. Its square stays far from overflow.
 constexpr double kLargest = 1e9;

@@ -14,6 +14,7 @@
 namespace airtruth::demo {
 namespace {
 
+// Side of a tile of the sheet: room around an aircraft that is 380 px long.
 constexpr int kTilePx = 420;
 
 struct Pose {
@@ -92,6 +93,7 @@ image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft) {
 }
 
 image::Rgb8 aircraft_tile(const aircraft::Aircraft& aircraft) {
+  // Side of the tile: room around an aircraft that is 138 px long.
   constexpr int kSmallTilePx = 150;
   return tile(aircraft, shade::Model(aircraft.mesh), {"", -40, 18, 138}, kSmallTilePx);
 }

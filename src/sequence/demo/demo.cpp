@@ -57,6 +57,7 @@ video = "mp4"
 quality = 18
 )";
 
+// Vertical field of view of the demo's fisheye lens: a choice.
 constexpr double kVerticalFovDeg = 100;
 
 synthetic::FlightOptions flight_options(const DemoOptions& options) {

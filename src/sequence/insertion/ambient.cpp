@@ -19,6 +19,8 @@ namespace {
 
 using image::Rgb;
 
+// Where a constant of this file states no origin, it is a choice (docs/decisions/0014).
+
 constexpr int kGrid = 48;  // blocks along the longer side
 // Weight of a new frame in the smoothed light; the time constant is about a third of a second at 30
 // frames/s.
@@ -135,7 +137,7 @@ float overcast_seen(const Block& block, const Skies& skies, float share) {
   return static_cast<float>(skies.overcast_seen(*block.direction));
 }
 
-// A smaller change of the light comes from motion in the picture.
+// A smaller change of the light, as the logarithm of a ratio, comes from motion in the picture.
 constexpr float kJump = 0.04F;
 
 bool is_jump(float change) { return std::abs(std::log(change)) >= kJump; }
@@ -158,6 +160,7 @@ float jump_of(std::vector<float> ratios) {
 // The middle of what the blocks become, by channel; 1 where it is no jump, or where there are too
 // few that are neither dark nor near white.
 Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now) {
+  // Bounds of dark and near white, linear light, and the least number of blocks between them.
   constexpr float kDarkest = 0.02F;
   constexpr float kBrightest = 0.8F;
   constexpr std::size_t kFewest = 20;
@@ -201,6 +204,7 @@ float smoothstep(float low, float high, float value) {
 
 // How much less red than blue a block is; empty for clipped and dark ones, 0 for clipped white.
 std::optional<float> cast_of(const Rgb& rgb) {
+  // The linear light up to which blue is dark, and from which on it counts as clipped.
   constexpr float kDarkest = 0.02f;
   constexpr float kBrightest = 0.95f;
   if (!(rgb[2] > kDarkest)) return std::nullopt;
@@ -212,6 +216,7 @@ std::optional<float> cast_of(const Rgb& rgb) {
 // clear sky has no grey, so it is at most that of an overcast sky of 7500 K under a white balance
 // for 5500 K (CIE's daylight illuminants: linear R/B of 0.81 and 1.34 in sRGB, 1 - 0.81/1.34).
 float cast_of_grey(std::vector<float> casts) {
+  // 1 - R/B, a ratio: 1 - 0.81/1.34.
   constexpr float kBluestOvercast = 0.4f;
   const auto tenth = casts.begin() + static_cast<std::ptrdiff_t>(casts.size() / 10);
   std::nth_element(casts.begin(), tenth, casts.end());
@@ -220,6 +225,8 @@ float cast_of_grey(std::vector<float> casts) {
 
 // Blueness: 0 for grey (cloud), 1 for a clear sky.
 float blueness(float cast, float grey) {
+  // Casts relative to grey, ratios: cloud up to the first, clear sky from the second on. The clear
+  // skies of docs/decisions/0014 have 0.4 and more.
   constexpr float kGrey = 0.12f;
   constexpr float kBlue = 0.35f;
   return smoothstep(kGrey, kBlue, 1 - (1 - cast) / (1 - grey));
@@ -262,6 +269,7 @@ struct Seen {
 Seen seen_in(const std::vector<Block>& blocks, const Skies& skies) {
   // Brightness of ground relative to the sky; every cloud's base is brighter.
   constexpr float kGroundOverSky = 0.6f;
+  // Least number of blocks of sky for their upper tenth.
   constexpr std::size_t kFewest = 8;
   Seen seen;
   const float sky = brightness(mean(blocks, 0.5f, 1.01f));

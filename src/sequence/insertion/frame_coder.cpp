@@ -9,6 +9,7 @@ namespace airtruth::insertion {
 namespace {
 
 int quantiser_of(double codec_step) {
+  // H.264's quantiser step, in code values, at a QP of 0; it doubles with every 6.
   constexpr double kStepAtQp0 = 0.625;
   return static_cast<int>(std::clamp(std::lround(6 * std::log2(codec_step / kStepAtQp0)), 1L, 51L));
 }

@@ -11,6 +11,7 @@ namespace {
 using image::Rgb;
 using shade::Environment;
 
+// A lower sun counts as one at this elevation (sky.h): the illuminance divides by its sine.
 constexpr double kLowestSunDeg = 1;
 
 double sine(double elevation_deg) {
@@ -33,6 +34,7 @@ Environment grey(const std::function<double(const Vector3&)>& radiance) {
 // Irradiance over pi on a level surface.
 template <typename Luminance>
 double level_of(const Luminance& luminance) {
+  // Numbers of directions of the sum, upwards and around.
   constexpr int kElevations = 90;
   constexpr int kAzimuths = 180;
   std::array<Eigen::Vector2d, kAzimuths> headings;
@@ -50,6 +52,7 @@ double level_of(const Luminance& luminance) {
   return sum / (kElevations * kAzimuths);
 }
 
+// Bounds of the directions in which the models are used: 3 degrees and 20 degrees (sky.h).
 const double kLowestSeenSine = std::sin(radians(3));
 const double kNearestSunSeenCosine = std::cos(radians(20));
 

@@ -13,6 +13,7 @@ namespace {
 constexpr double kFilmDiagonalMm = 43.27;  // of 36 x 24 mm
 // Focal lengths of cameras on aircraft and phones for 35 mm film; others are a fault of the file.
 constexpr double kMinEquivalentMm = 5, kMaxEquivalentMm = 2000;
+// Diagonal fields of view of such cameras; others are a fault of the file too.
 constexpr double kMinViewDeg = 5, kMaxViewDeg = 200;
 
 std::optional<double> number_in(std::string_view text) {

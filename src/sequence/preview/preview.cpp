@@ -24,9 +24,13 @@
 namespace airtruth::preview {
 namespace {
 
+// The sizes of this file are display choices.
+
 constexpr int kWidthPx = 1930;  // that of a contact sheet of three tiles
+// Widths of the picture at the left and of the plan and the heights at its right, 10 px apart.
 constexpr int kMainWidthPx = 1270;
 constexpr int kSideWidthPx = kWidthPx - kMainWidthPx - 10;
+// Number of moments that are shown: the contact sheet has as many tiles in a row.
 constexpr std::size_t kTiles = 3;
 constexpr double kPathStepS = 0.05;  // between the points of a drawn path: chosen
 // A motion that is kept is found by the hash of the video, some 2 s for each GB; of a larger video
@@ -278,6 +282,7 @@ class Previewer {
   }
 
   cv::Mat title(const std::vector<std::string>& lines) const {
+    // Height of a line of the title, whose letters have 13 px.
     constexpr int kLinePx = 22;
     cv::Mat canvas(
         40 + kLinePx * static_cast<int>(lines.size()), kWidthPx, CV_8UC3, drawing::kDarkPaper);

@@ -25,9 +25,11 @@ double difference(const image::Picture& a, const image::Picture& b, const PixelB
   return static_cast<double>(sum) / (static_cast<double>(area.width) * area.height);
 }
 
-// A codec's error near the aircraft's edges is at most a few times its error in smooth sky.
+// A codec's error near the aircraft's edges is at most a few times its error in smooth sky, and a
+// few code values more.
 constexpr double kTimesElsewhere = 4;
 constexpr double kLevels = 4;
+// Border of a box: as far as the aircraft's edges change a codec's block of 8 x 8 pixels.
 constexpr int kAroundPx = 8;
 
 std::string picture_fault(const image::Picture& made,

@@ -16,6 +16,7 @@ namespace {
 
 // How long the path goes on beyond the first and the last moment.
 constexpr double kBeyond_s = 3600;
+// Farthest place of an intruder whose width is stated; beyond it nothing is visible.
 constexpr double kFarthestM = 1e6;
 
 // A moment with its frame and the ray of its pixel.
@@ -141,6 +142,7 @@ void settle_widths(const scene::Intruder& intruder,
                    const World& world,
                    const projection::SilhouettePoints& aircraft,
                    std::vector<Ray>& rays) {
+  // Largest number of rounds: it ends a search for a width that no range gives.
   constexpr int kMaxRounds = 200;
   // From this round on the steps are halved, for attitudes that answer to the ranges.
   constexpr int kDampedRound = 20;

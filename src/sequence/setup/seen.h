@@ -39,7 +39,9 @@ scene::Intruder placed_as_seen(const scene::Intruder& intruder,
                                const FrameNear& frame_near,
                                const projection::SilhouettePoints* aircraft);
 
+// Largest relative error of a width.
 constexpr double kWidthShare = 1e-4;
+// A choice, from which the ranges of widths are first guessed.
 constexpr double kUsualLengthM = 15;
 constexpr double kFastestMps = 1e4;  // as scene::kSpeed
 

@@ -10,6 +10,8 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
 // Thickness of the first box's line, in pixels.
 constexpr int kRimmedPx = 2;
 

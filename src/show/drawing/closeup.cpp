@@ -67,11 +67,15 @@ void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& 
 
 namespace {
 
+// The sizes of this file are display choices.
+
+// Gap between panels and around them.
 constexpr int kPanelGapPx = 12;
 // Height of two lines of text.
 constexpr int kHeadingPx = 52;
 // Width of the longest caption of a panel.
 constexpr int kMinSlotPx = 110;
+// Size of the text.
 constexpr double kCloseupTextPx = 12;
 
 // The legend of the boxes' colours: each word has its colour. Words beyond the width are omitted.

@@ -17,10 +17,14 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
+// Width of a tile, and number of tiles side by side.
 constexpr int kTileWidthPx = 640;
 constexpr int kColumns = 3;
 // Height of the line of text below a tile's picture.
 constexpr int kCaptionPx = 22;
+// Gap between insets, and size of their text.
 constexpr int kInsetGapPx = 6;
 constexpr double kTileTextPx = 12;
 
@@ -87,6 +91,7 @@ void draw_inset(cv::Mat& tile,
   view(large).copyTo(tile(cv::Rect(place.x, place.y, place.width, place.height)));
   cv::rectangle(
       tile, cv::Rect(place.x - 1, place.y - 1, place.width + 2, place.height + 2), colour, 1);
+  // Distance of the words from the inset's corner.
   constexpr int kInsetMarginPx = 4;
   const std::string range =
       intruder.range_m ? fmt::format(" {:.0f} m", *intruder.range_m) : std::string();
@@ -208,6 +213,7 @@ void ContactSheet::add(const image::Picture& picture, const annotation::Frame& t
 }
 
 image::Rgb8 ContactSheet::sheet() const {
+  // Gap between tiles, and height of the title above them.
   constexpr int kGapPx = 10;
   constexpr int kHeaderPx = 56;
   const Layout layout = layout_of(static_cast<int>(chosen_.size()));

@@ -12,11 +12,15 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
+// OpenCV's sans-serif font.
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 // Height of a capital letter at scale 1, in pixels.
 constexpr double kFontHeightPx = 22.0;
 // Reach of the dark rim and its antialiasing beyond the letters, in pixels.
 constexpr int kRimPx = 2;
+// Length of a dash and of the gap after it.
 constexpr int kDashPx = 6;
 
 void dashed_line(cv::Mat& canvas, cv::Point from, cv::Point to, const cv::Scalar& colour) {

@@ -12,6 +12,9 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
+// Size of the text, and room for the numbers of an axis.
 constexpr double kTextPx = 12;
 constexpr int kMarginPx = 44;
 constexpr int kShift = 4;  // cv::line takes sixteenths of a pixel
@@ -148,6 +151,7 @@ image::Rgb8 plan_view(const std::vector<FlightLine>& lines,
   cv::Mat canvas = paper(width, height);
   const auto north = [](const FlightLine& l, std::size_t i) { return l.positions_ned_m[i].x(); };
   const auto east = [](const FlightLine& l, std::size_t i) { return l.positions_ned_m[i].y(); };
+  // Least span of an axis, which gives a path that stands still a scale.
   constexpr double kLeastM = 20;
   Range x = range_of(lines, kLeastM, east), y = range_of(lines, kLeastM, north);
   const cv::Rect area(kMarginPx + 8, 24, width - kMarginPx - 24, height - 24 - kMarginPx);
@@ -181,6 +185,7 @@ image::Rgb8 height_view(const std::vector<FlightLine>& lines, int width, int hei
   cv::Mat canvas = paper(width, height);
   const auto time = [](const FlightLine& l, std::size_t i) { return l.times_s[i]; };
   const auto above = [](const FlightLine& l, std::size_t i) { return -l.positions_ned_m[i].z(); };
+  // Least spans of the axes, which give a path that stands still a scale.
   constexpr double kLeastS = 1, kLeastM = 20;
   Range y = range_of(lines, kLeastM, above);
   y = {y.low - 0.08 * y.span(), y.high + 0.08 * y.span()};
@@ -198,6 +203,7 @@ image::Rgb8 height_view(const std::vector<FlightLine>& lines, int width, int hei
 image::Rgb8 table_picture(const std::vector<std::string>& heading,
                           const std::vector<TableRow>& rows,
                           int width) {
+  // Height of a row, gap between columns, and room at the left.
   constexpr int kRowPx = 20, kGapPx = 26, kLeftPx = 12;
   std::vector<int> widths;
   for (std::size_t c = 0; c < heading.size(); ++c) {

@@ -66,12 +66,14 @@ void draw_leader(cv::Mat& canvas, const PixelBox& label, const PixelBox& box, co
                        box.y < label.y ? label.y : label.bottom() - 1);
   const cv::Point to(std::clamp(from.x, box.x, box.right() - 1),
                      std::clamp(from.y, box.y, box.bottom() - 1));
+  // A label that is this near to its box needs no line.
   constexpr double kNearPx = 6;
   if (cv::norm(from - to) > kNearPx) cv::line(canvas, from, to, one.colour, 1, cv::LINE_AA);
 }
 
 // Draws the frame's number in the corner where it covers the least area of the boxes.
 PixelBox caption_place(const Placing& placing, int width, int height) {
+  // Distance of the caption from the picture's border.
   constexpr int kMarginPx = 6;
   const int right = placing.frame.width - width - kMarginPx;
   const int bottom = placing.frame.height - height - kMarginPx;

@@ -9,6 +9,8 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
 // Distance between a box's outline and its label, in pixels.
 constexpr int kGapPx = 3;
 // Number of rings of candidate places; a label of 10 px reaches 2,000 px with them.

@@ -17,8 +17,11 @@
 namespace airtruth::drawing {
 namespace {
 
+// The sizes of this file are display choices.
+
 // Side of the square, as a multiple of the box's longer side.
 constexpr double kSurroundings = 2.2;
+// Least side of the square, in pixels of the picture.
 constexpr int kSmallestPx = 24;
 
 }  // namespace

@@ -7,6 +7,7 @@
 namespace airtruth::drawing {
 
 image::Rgb8 tiled(const std::string& title, std::vector<NamedPicture> pictures, int columns) {
+  // Gap between tiles, and height of the title above them: display choices.
   constexpr int kGapPx = 10;
   constexpr int kHeaderPx = 56;
   check(!pictures.empty() && columns > 0, "there is something to tile");

@@ -48,6 +48,7 @@ struct Limits {
 // span on either side where values lie there.
 Limits limits_of(const std::vector<Quantity>& quantities) {
   constexpr double kTailShare = 0.01;  // on each side
+  // Room beyond the values, as a share of the axis.
   constexpr double kMarginShare = 0.06;
   std::vector<double> values;
   for (const Quantity& q : quantities)

@@ -4,6 +4,7 @@
 namespace airtruth::plot {
 
 Style style_of(std::size_t index) {
+  // Number of the colours that everyone can distinguish (kColours).
   constexpr std::size_t kColoursOfOneDash = 6;
   const std::size_t dash = index / kColoursOfOneDash;
   return {kColours[index % kColours.size()],
