@@ -9,7 +9,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 namespace {
 
 constexpr std::size_t kMaxNameBytes = 4096;
@@ -127,4 +127,4 @@ void AcTokens::skip_bytes(std::size_t bytes) {
   at_ = end;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

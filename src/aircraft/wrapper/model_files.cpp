@@ -6,7 +6,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
 constexpr std::size_t kMaxModelReads = 2000;
@@ -128,4 +128,4 @@ fs::path find_texture(ModelFiles& files,
   return {};
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper
