@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "encounter/model/sampler.h"
+#include "encounter/encounter_model/sampler.h"
 
 namespace {
 
@@ -27,7 +27,7 @@ struct Result {
   std::int64_t draws = 0;
 };
 
-void measure(const encounter::Sampler& sampler, Result& result) {
+void measure(const encounter_model::Sampler& sampler, Result& result) {
   const double begin_s = processor_s();
   result.draws = 0;
   for (std::uint64_t i = 0; i < kTracks; ++i) result.draws += sampler.sample(i).draws;
@@ -37,9 +37,9 @@ void measure(const encounter::Sampler& sampler, Result& result) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<encounter::Sampler> samplers;
+  std::vector<encounter_model::Sampler> samplers;
   for (int i = 1; i < argc; ++i)
-    samplers.emplace_back(encounter::read_model(argv[i]), encounter::SampleOptions{});
+    samplers.emplace_back(encounter_model::read_model(argv[i]), encounter_model::SampleOptions{});
   std::vector<Result> results(samplers.size());
   for (int round = 0; round < kRounds; ++round)
     for (std::size_t i = 0; i < samplers.size(); ++i) measure(samplers[i], results[i]);

@@ -49,15 +49,15 @@ struct Scene {
 };
 
 struct Subject {
-  std::shared_ptr<const aircraft::Mesh> mesh;
+  std::shared_ptr<const model::Mesh> mesh;
   shade::Model model;
   projection::SilhouettePoints silhouette;
   double size_m;
 
   explicit Subject(const std::string& name)
-      : mesh(std::make_shared<aircraft::Mesh>(aircraft::load_aircraft(name).mesh)),
+      : mesh(std::make_shared<model::Mesh>(fleet::load_aircraft(name).mesh)),
         model(mesh),
-        silhouette{mesh.get(), aircraft::silhouette_points(*mesh)},
+        silhouette{mesh.get(), model::silhouette_points(*mesh)},
         size_m(longest_m()) {}
 
  private:

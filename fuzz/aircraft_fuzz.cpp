@@ -10,7 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    (void)airtruth::aircraft::parse_wrapper(text, "a.xml");
+    (void)airtruth::wrapper::parse_wrapper(text, "a.xml");
   } catch (const airtruth::Error&) {
   }
   return 0;

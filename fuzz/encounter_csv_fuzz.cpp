@@ -10,26 +10,27 @@
 
 namespace {
 
-std::string written(const std::vector<airtruth::encounter::Encounter>& encounters) {
-  std::string text = airtruth::encounter::encounter_csv_head();
+std::string written(const std::vector<airtruth::track::Encounter>& encounters) {
+  std::string text = airtruth::tracks_file::encounter_csv_head();
   for (std::size_t i = 0; i < encounters.size(); ++i)
-    text += airtruth::encounter::encounter_csv_rows(encounters[i], i + 1);
+    text += airtruth::tracks_file::encounter_csv_rows(encounters[i], i + 1);
   return text;
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace airtruth::encounter;
-  std::vector<Encounter> encounters;
+  using namespace airtruth;
+  std::vector<track::Encounter> encounters;
   try {
-    encounters = parse_encounter_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    encounters =
+        tracks_file::parse_encounter_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
   } catch (const airtruth::Error&) {
     return 0;
   }
   const std::string text = written(encounters);
   try {
-    if (written(parse_encounter_csv(text, "again.csv")) != text) std::abort();
+    if (written(tracks_file::parse_encounter_csv(text, "again.csv")) != text) std::abort();
   } catch (const airtruth::Error&) {
     // Velocities that follow from the positions may exceed the limit of a number.
   }

@@ -5,16 +5,16 @@
 #include <string_view>
 #include <utility>
 
-#include "encounter/model/sampler.h"
+#include "encounter/encounter_model/sampler.h"
 #include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace airtruth::encounter;
+  using namespace airtruth;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    SampleOptions options;
+    encounter_model::SampleOptions options;
     options.duration_s = 5;
-    const Sampler sampler(parse_model(text, "fuzz.txt"), options);
+    const encounter_model::Sampler sampler(encounter_model::parse_model(text, "fuzz.txt"), options);
     for (std::uint64_t i = 0; i < 2; ++i)
       for (const airtruth::Vector3& position : sampler.sample(i).track.positions_ned_m)
         if (!position.allFinite()) std::abort();

@@ -10,18 +10,18 @@
 #include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace airtruth::aircraft;
+  using namespace airtruth;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
-    const AcFile file = parse_ac(text, "a.ac");
+    const ac3d::AcFile file = ac3d::parse_ac(text, "a.ac");
     for (std::size_t i = 0; i < file.objects.size(); ++i) {
-      (void)names_of(file, i);
-      (void)batches_of(file, file.objects[i]);
+      (void)ac3d::names_of(file, i);
+      (void)ac3d::batches_of(file, file.objects[i]);
     }
   } catch (const airtruth::Error&) {
   }
   try {
-    check_model(model_from_bytes(text));
+    model::check_model(confined::model_from_bytes(text));
   } catch (const airtruth::Error&) {
   }
   return 0;

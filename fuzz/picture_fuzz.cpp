@@ -10,7 +10,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   try {
-    (void)airtruth::aircraft::read_picture(bytes, {.side_px = 1024, .pixels = 1 << 18});
+    (void)airtruth::texture_file::read_picture(bytes, {.side_px = 1024, .pixels = 1 << 18});
   } catch (const airtruth::Error&) {
   }
   return 0;

@@ -10,10 +10,10 @@
 
 namespace {
 
-using namespace airtruth::encounter;
+using namespace airtruth;
 
-void check_tracks(const Encounter& encounter) {
-  for (const Track& track : encounter.aircraft)
+void check_tracks(const track::Encounter& encounter) {
+  for (const track::Track& track : encounter.aircraft)
     for (std::size_t i = 0; i < track.size(); ++i)
       if (!track.positions_ned_m[i].allFinite() || !track.velocities_ned_mps[i].allFinite())
         std::abort();
@@ -23,17 +23,18 @@ void check_tracks(const Encounter& encounter) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  Encounter encounter;
+  track::Encounter encounter;
   try {
-    encounter = parse_state_table(text, "fuzz.daa");
+    encounter = tracks_file::parse_state_table(text, "fuzz.daa");
   } catch (const airtruth::Error&) {
     return 0;
   }
   check_tracks(encounter);
   for (const bool is_daa : {true, false}) {
     try {
-      const Encounter again =
-          parse_state_table(is_daa ? daa_of(encounter) : state_table_of(encounter), "again");
+      const track::Encounter again = tracks_file::parse_state_table(
+          is_daa ? tracks_file::daa_of(encounter) : tracks_file::state_table_of(encounter),
+          "again");
       if (again.aircraft.size() != encounter.aircraft.size()) std::abort();
     } catch (const airtruth::Error&) {
       // Numbers near the limit exceed it in another unit.

@@ -8,7 +8,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    airtruth::encounter::parse_track_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
+    airtruth::tracks_file::parse_track_csv({reinterpret_cast<const char*>(data), size}, "fuzz.csv");
   } catch (const airtruth::Error&) {
   }
   return 0;

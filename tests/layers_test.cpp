@@ -170,19 +170,21 @@ TEST(Modules, HaveAtMost25Files) {
   for (const auto& [module, count] : files) EXPECT_LE(count, 25) << module;
 }
 
-// What everything speaks in, and what implements the public library, is in `airtruth` itself. The
-// modules of `aircraft` and `encounter` still have the namespace of their wing.
+// Two modules of one name would share a namespace.
+TEST(Modules, HaveNamesOfTheirOwn) {
+  std::set<std::string> names;
+  for (const Layer& layer : layers())
+    EXPECT_TRUE(names.insert(layer.module).second) << layer.module;
+}
+
+// What everything speaks in, and what implements the public library, is in `airtruth` itself.
 std::string expected_namespace(const std::string& module) {
   const std::set<std::string> in_airtruth = {"foundation/base",
                                              "foundation/geometry",
                                              "foundation/json",
                                              "library/pictures",
                                              "library/records"};
-  const std::size_t slash = module.find('/');
-  const std::string wing = module.substr(0, slash);
-  if (in_airtruth.contains(module)) return "";
-  if (module != "aircraft/model_reader" && (wing == "aircraft" || wing == "encounter")) return wing;
-  return module.substr(slash + 1);
+  return in_airtruth.contains(module) ? "" : module.substr(module.find('/') + 1);
 }
 
 // A file may add to a namespace of a public header, or to that of a template that it specialises.

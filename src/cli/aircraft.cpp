@@ -18,7 +18,7 @@ namespace {
 
 // The type's published size, without reading the model.
 std::string published_words(const std::string& name) {
-  const aircraft::PublishedSize* size = aircraft::published_size(name);
+  const fleet::PublishedSize* size = fleet::published_size(name);
   if (size == nullptr) return "no published size is known: its scale is not checked";
   if (!size->is_known()) return size->type;
   return fmt::format(
@@ -28,15 +28,15 @@ std::string published_words(const std::string& name) {
 std::string nothing_like(const std::string& filter) {
   return fmt::format(
       "no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft list` shows all",
-      aircraft::list_aircraft().size(),
+      fleet::list_aircraft().size(),
       is_pattern(filter) ? "fits" : "contains",
       filter,
-      fmt::join(aircraft::nearest_aircraft(filter, 3), ", "));
+      fmt::join(fleet::nearest_aircraft(filter, 3), ", "));
 }
 
 void list_left_out(const std::string& filter, Context& context) {
   int count = 0;
-  for (const auto& [name, reason] : aircraft::left_out()) {
+  for (const auto& [name, reason] : fleet::left_out()) {
     if (!is_named_like(name, filter)) continue;
     context.console().print(fmt::format("{:<40} {}\n", name, reason));
     ++count;
@@ -47,11 +47,11 @@ void list_left_out(const std::string& filter, Context& context) {
                     "shows all {}",
                     is_pattern(filter) ? "fits" : "contains",
                     filter,
-                    aircraft::left_out().size()));
+                    fleet::left_out().size()));
 }
 
 void list_names(const std::string& filter, bool sizes, Context& context) {
-  const std::vector<std::string> names = aircraft::aircraft_named_like(filter);
+  const std::vector<std::string> names = fleet::aircraft_named_like(filter);
   for (const std::string& name : names)
     if (sizes)
       context.console().print(fmt::format("{:<40} {}\n", name, published_words(name)));
@@ -79,14 +79,14 @@ void draw_sheet(const std::string& filter,
   // Number of tiles side by side: a display choice.
   constexpr int kColumns = 10;
   Console& console = context.console();
-  aircraft::LoadOptions load;
+  model::LoadOptions load;
   load.stop = context.stop;
   std::vector<drawing::NamedPicture> tiles;
-  const std::vector<std::string> names = one_of_each_type(aircraft::aircraft_named_like(filter));
+  const std::vector<std::string> names = one_of_each_type(fleet::aircraft_named_like(filter));
   if (names.empty()) throw Error(nothing_like(filter));
   for (const std::string& name : names) {
     if (context.stop.stop_requested()) throw Interrupted();
-    tiles.push_back({type_of(name), demo::aircraft_tile(aircraft::load_aircraft(name, load, {}))});
+    tiles.push_back({type_of(name), demo::aircraft_tile(fleet::load_aircraft(name, load, {}))});
   }
   video::write_still(
       out, drawing::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
@@ -119,11 +119,11 @@ struct ShowArguments {
   bool overwrite = false;
 };
 
-aircraft::LoadOptions load_options(const ShowArguments& arguments, const Context& context) {
-  aircraft::LoadOptions options;
+model::LoadOptions load_options(const ShowArguments& arguments, const Context& context) {
+  model::LoadOptions options;
   options.stop = context.stop;
   if (arguments.forward.empty() && arguments.up.empty() && arguments.scale == 0) return options;
-  aircraft::ModelAxes axes;
+  model::ModelAxes axes;
   if (!arguments.forward.empty()) axes.forward = arguments.forward;
   if (!arguments.up.empty()) axes.up = arguments.up;
   if (arguments.scale != 0) axes.scale = arguments.scale;
@@ -134,10 +134,10 @@ aircraft::LoadOptions load_options(const ShowArguments& arguments, const Context
 void show(const ShowArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, arguments.overwrite);
   Console& console = context.console();
-  const aircraft::Aircraft loaded =
-      aircraft::load_aircraft(arguments.name, load_options(arguments, context), console.warn());
-  const aircraft::Extents size = aircraft::extents(loaded.mesh);
-  const auto liveries = aircraft::liveries(arguments.name);
+  const fleet::Aircraft loaded =
+      fleet::load_aircraft(arguments.name, load_options(arguments, context), console.warn());
+  const model::Extents size = model::extents(loaded.mesh);
+  const auto liveries = fleet::liveries(arguments.name);
   console.result(fmt::format(
       "{}\n  length {:.2f} m, span {:.2f} m, height {:.2f} m\n  {} triangles, {} textures, {}",
       loaded.name,
@@ -148,9 +148,8 @@ void show(const ShowArguments& arguments, Context& context) {
       loaded.mesh.textures.size(),
       loaded.file.string()));
   if (loaded.file != arguments.name)
-    console.result("  " + aircraft::size_words(size,
-                                               loaded.catalogue_scale,
-                                               aircraft::published_size(arguments.name)));
+    console.result("  " + fleet::size_words(
+                              size, loaded.catalogue_scale, fleet::published_size(arguments.name)));
   if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));
   for (const std::string& livery : liveries) console.result("    " + livery);
   if (arguments.out.empty()) return;

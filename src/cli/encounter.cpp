@@ -42,60 +42,60 @@ struct Sample {
   bool is_geometric() const { return model == kGeometric; }
 };
 
-encounter::Track own_track(const std::string& file) {
-  encounter::Track own = encounter::read_encounters(file).front().aircraft.front();
+track::Track own_track(const std::string& file) {
+  track::Track own = tracks_file::read_encounters(file).front().aircraft.front();
   if (own.size() < 2)
     throw Error("the own aircraft has one sample; expected a track of two or more", {file});
   return own;
 }
 
 // Whole seconds that the intruder flies: stated, or those of the own track.
-int duration_of(const Sample& arguments, const std::optional<encounter::Track>& own) {
+int duration_of(const Sample& arguments, const std::optional<track::Track>& own) {
   if (arguments.duration_s > 0) return arguments.duration_s;
   if (!own) return kDuration_s;
   const double length_s = std::ceil(own->times_s.back() - own->times_s.front());
-  if (length_s > encounter::kMaxDuration_s)
+  if (length_s > encounter_model::kMaxDuration_s)
     throw Error(fmt::format("the own track is {} s long; expected up to {} s, or --duration",
                             length_s,
-                            encounter::kMaxDuration_s),
+                            encounter_model::kMaxDuration_s),
                 {arguments.own});
   return static_cast<int>(length_s);
 }
 
-double cpa_time_of(const Sample& arguments, const encounter::Track& own) {
+double cpa_time_of(const Sample& arguments, const track::Track& own) {
   return arguments.cpa_time_s.value_or((own.times_s.front() + own.times_s.back()) / 2);
 }
 
-encounter::DrawEncounter geometric(const Sample& arguments, const encounter::Track& own) {
-  const encounter::GeometricOptions options{
-      .course_deg = encounter::Distribution(arguments.course_deg, {}, "--course-deg"),
-      .speed_mps = encounter::Distribution(arguments.speed_mps, {}, "--speed-mps"),
-      .hmd_m = encounter::Distribution(arguments.hmd_m, arguments.hmd_shares, "--hmd-m"),
-      .vmd_m = encounter::Distribution(arguments.vmd_m, arguments.vmd_shares, "--vmd-m"),
-      .climb_mps = encounter::Distribution(arguments.climb_mps, {}, "--climb-mps"),
-      .turn_rate_dps = encounter::Distribution(arguments.turn_rate_dps, {}, "--turn-rate-dps"),
-      .cpa_time_s = encounter::Distribution({cpa_time_of(arguments, own)}, {}, "--cpa-time")};
-  return encounter::geometric_pairs(
-      encounter::GeometricSampler(
+sets::DrawEncounter geometric(const Sample& arguments, const track::Track& own) {
+  const pairing::GeometricOptions options{
+      .course_deg = pairing::Distribution(arguments.course_deg, {}, "--course-deg"),
+      .speed_mps = pairing::Distribution(arguments.speed_mps, {}, "--speed-mps"),
+      .hmd_m = pairing::Distribution(arguments.hmd_m, arguments.hmd_shares, "--hmd-m"),
+      .vmd_m = pairing::Distribution(arguments.vmd_m, arguments.vmd_shares, "--vmd-m"),
+      .climb_mps = pairing::Distribution(arguments.climb_mps, {}, "--climb-mps"),
+      .turn_rate_dps = pairing::Distribution(arguments.turn_rate_dps, {}, "--turn-rate-dps"),
+      .cpa_time_s = pairing::Distribution({cpa_time_of(arguments, own)}, {}, "--cpa-time")};
+  return sets::geometric_pairs(
+      pairing::GeometricSampler(
           options, arguments.seed, static_cast<std::uint64_t>(arguments.count)),
       own);
 }
 
-std::shared_ptr<const encounter::Sampler> sampler_of(const Sample& arguments,
-                                                     const std::optional<encounter::Track>& own) {
-  encounter::SampleOptions options{
+std::shared_ptr<const encounter_model::Sampler> sampler_of(const Sample& arguments,
+                                                           const std::optional<track::Track>& own) {
+  encounter_model::SampleOptions options{
       arguments.seed, duration_of(arguments, own), {arguments.domains, arguments.airspaces, {}}};
   if (!arguments.altitude_ft.empty())
     options.cut.altitude_ft = {arguments.altitude_ft[0], arguments.altitude_ft[1]};
-  return std::make_shared<const encounter::Sampler>(encounter::read_model(arguments.model),
-                                                    options);
+  return std::make_shared<const encounter_model::Sampler>(
+      encounter_model::read_model(arguments.model), options);
 }
 
-encounter::PairingOptions pairing_of(const Sample& arguments, const encounter::Track& own) {
-  encounter::PairingOptions options;
+pairing::PairingOptions pairing_of(const Sample& arguments, const track::Track& own) {
+  pairing::PairingOptions options;
   options.cpa_time_s = cpa_time_of(arguments, own);
-  options.hmd_m = encounter::Distribution(arguments.hmd_m, arguments.hmd_shares, "--hmd-m");
-  options.vmd_m = encounter::Distribution(arguments.vmd_m, arguments.vmd_shares, "--vmd-m");
+  options.hmd_m = pairing::Distribution(arguments.hmd_m, arguments.hmd_shares, "--hmd-m");
+  options.vmd_m = pairing::Distribution(arguments.vmd_m, arguments.vmd_shares, "--vmd-m");
   return options;
 }
 
@@ -116,7 +116,7 @@ void refuse_unused(const CLI::App& command, const Sample& arguments) {
            "belongs to encounters; expected --own, the track to pair with");
 }
 
-std::string words_of(const Sample& arguments, const encounter::SetSummary& summary, double share) {
+std::string words_of(const Sample& arguments, const sets::SetSummary& summary, double share) {
   std::string words = fmt::format("{}: {} {}, seed {}",
                                   arguments.out,
                                   summary.encounters,
@@ -136,28 +136,28 @@ std::string words_of(const Sample& arguments, const encounter::SetSummary& summa
 
 void sample(const Sample& arguments, Context& context) {
   check_output_file(arguments.out, arguments.overwrite);
-  const encounter::TracksFormat format = encounter::tracks_format_of(arguments.out);
+  const tracks_file::TracksFormat format = tracks_file::tracks_format_of(arguments.out);
   if (arguments.is_geometric() && arguments.own.empty())
     throw Error("--own is missing; geometric encounters are placed about an own track");
   Console& console = context.console();
-  std::optional<encounter::Track> own;
+  std::optional<track::Track> own;
   if (!arguments.own.empty()) own = own_track(arguments.own);
-  encounter::DrawEncounter draw;
+  sets::DrawEncounter draw;
   double share = 1;
   if (arguments.is_geometric()) {
     draw = geometric(arguments, *own);
   } else {
     const auto sampler = sampler_of(arguments, own);
     share = sampler->share();
-    draw = own ? encounter::model_pairs(sampler, *own, pairing_of(arguments, *own), arguments.seed)
-               : encounter::model_tracks(sampler);
+    draw = own ? sets::model_pairs(sampler, *own, pairing_of(arguments, *own), arguments.seed)
+               : sets::model_tracks(sampler);
   }
-  encounter::SetOptions options;
+  sets::SetOptions options;
   options.count = static_cast<std::uint64_t>(arguments.count);
   options.jobs = arguments.jobs;
   follow(options, context, "drawing", "encounters");
-  const encounter::SetSummary summary = encounter::write_set(arguments.out, draw, options);
-  if (own && !arguments.is_geometric() && format != encounter::TracksFormat::kCsv)
+  const sets::SetSummary summary = sets::write_set(arguments.out, draw, options);
+  if (own && !arguments.is_geometric() && format != tracks_file::TracksFormat::kCsv)
     console.warning(arguments.out + ": a file of this format holds no weights; .csv does");
   console.result(words_of(arguments, summary, share));
 }
@@ -229,7 +229,7 @@ void add_sample(CLI::App& group, Context& context) {
       ->add_option("--duration",
                    arguments->duration_s,
                    "Length of a track in s (default: that of the own track, else 60)")
-      ->check(CLI::Range(1, encounter::kMaxDuration_s));
+      ->check(CLI::Range(1, encounter_model::kMaxDuration_s));
   add_cut_options(*command, *arguments);
   add_pairing_options(*command, *arguments);
   add_jobs(*command, arguments->jobs, "Threads (default: one per core)");
@@ -248,12 +248,12 @@ struct Convert {
 };
 
 // Files of waypoints hold neither weights nor velocities; other formats than CSV no weights.
-void warn_of_losses(const std::vector<encounter::Encounter>& encounters,
-                    encounter::TracksFormat format,
+void warn_of_losses(const std::vector<track::Encounter>& encounters,
+                    tracks_file::TracksFormat format,
                     const std::string& out,
                     Console& console) {
-  if (format == encounter::TracksFormat::kCsv) return;
-  for (const encounter::Encounter& each : encounters)
+  if (format == tracks_file::TracksFormat::kCsv) return;
+  for (const track::Encounter& each : encounters)
     if (each.weight != 1) {
       console.warning(out + ": a file of this format holds no weights; .csv does");
       return;
@@ -262,9 +262,9 @@ void warn_of_losses(const std::vector<encounter::Encounter>& encounters,
 
 void convert(const Convert& arguments, Context& context) {
   check_output_file(arguments.out, arguments.overwrite);
-  const encounter::TracksFormat format = encounter::tracks_format_of(arguments.out);
+  const tracks_file::TracksFormat format = tracks_file::tracks_format_of(arguments.out);
   Console& console = context.console();
-  std::vector<encounter::Encounter> encounters = encounter::read_encounters(arguments.in);
+  std::vector<track::Encounter> encounters = tracks_file::read_encounters(arguments.in);
   if (arguments.number > encounters.size())
     throw Error(fmt::format("holds {} encounters; expected --encounter of 1 to {}",
                             encounters.size(),
@@ -273,9 +273,9 @@ void convert(const Convert& arguments, Context& context) {
   if (arguments.number > 0) encounters = {encounters[arguments.number - 1]};
   if (context.stop.stop_requested()) throw Interrupted();
   const std::size_t count = encounters.size();
-  encounters = encounter::fitted(std::move(encounters), format, arguments.out);
+  encounters = tracks_file::fitted(std::move(encounters), format, arguments.out);
   warn_of_losses(encounters, format, arguments.out, console);
-  encounter::write_encounters(arguments.out, encounters);
+  tracks_file::write_encounters(arguments.out, encounters);
   console.result(
       fmt::format("{}: {} {}", arguments.out, count, count == 1 ? "encounter" : "encounters"));
 }

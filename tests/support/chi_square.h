@@ -6,7 +6,7 @@
 #include <vector>
 
 // Pearson's test of counts against probabilities, for tests of what is drawn.
-namespace airtruth::encounter {
+namespace airtruth::test_support {
 
 // Statistics of independent tables add up, and so do their degrees of freedom.
 struct ChiSquare {
@@ -50,4 +50,4 @@ struct ChiSquare {
 // The deviate that a correct sampler exceeds once in a thousand tests.
 constexpr double kLevel0001 = 3.09;
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::test_support

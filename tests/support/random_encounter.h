@@ -7,11 +7,11 @@
 #include "foundation/base/seed.h"
 
 // Random pairs of aircraft for the tests of measures and violations.
-namespace airtruth::encounter {
+namespace airtruth::test_support {
 
 struct Pair {
-  Mover own;
-  Mover intruder;
+  separation::Mover own;
+  separation::Mover intruder;
 };
 
 // Pair `index`. Every eighth pair is each of: any two velocities; equal velocities (the separation
@@ -35,7 +35,7 @@ inline Pair random_pair(std::uint64_t index) {
                                                      range_m * std::sin(bearing),
                                                      random.uniform(-1500, 1500)),
                    velocity()};
-  Mover& other = pair.intruder;
+  separation::Mover& other = pair.intruder;
   const Vector3 offset = other.position_ned_m - pair.own.position_ned_m;
   switch (index % 8) {
     case 1:
@@ -67,4 +67,4 @@ inline Pair random_pair(std::uint64_t index) {
   return pair;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::test_support

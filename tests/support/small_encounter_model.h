@@ -5,7 +5,7 @@
 // speed depend on each other; the acceleration has no parents; the new vertical rate depends on
 // the new turn rate, so that a column must be found anew in each second; the column of the turn
 // rate for turning right (bin 3) in the upper layer has no counts.
-namespace airtruth::encounter {
+namespace airtruth::test_support {
 
 constexpr const char* kSmallModel = R"model(# labels_initial
 "G", "L", "v", "\dot v", "\dot h", "\dot \psi"
@@ -51,4 +51,4 @@ constexpr const char* kSmallModel = R"model(# labels_initial
 0 0 0.05 0.1 0.2 0.3
 )model";
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::test_support

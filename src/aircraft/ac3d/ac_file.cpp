@@ -11,7 +11,7 @@
 #include "aircraft/model/raw_model.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 namespace {
 
 // Bounds for untrusted files, far above those of any aircraft: numbers of objects, of levels of
@@ -133,13 +133,13 @@ class AcParser {
         value = tokens_.number("a texture's repetition or offset", kLargestUv);
     } else if (word == "crease") {
       object(index).crease_deg =
-          std::min(tokens_.number("crease", kLargestCoordinate), kLargestCreaseDeg);
+          std::min(tokens_.number("crease", model::kLargestCoordinate), kLargestCreaseDeg);
     } else if (word == "rot") {
       for (int i = 0; i < 9; ++i)
-        state.outer_from_own.turn(i / 3, i % 3) = tokens_.number("rot", kLargestCoordinate);
+        state.outer_from_own.turn(i / 3, i % 3) = tokens_.number("rot", model::kLargestCoordinate);
     } else if (word == "loc") {
       for (double& value : state.outer_from_own.shift)
-        value = tokens_.number("loc", kLargestCoordinate);
+        value = tokens_.number("loc", model::kLargestCoordinate);
     } else if (word == "data") {
       skip_data();
     } else if (word == "numvert") {
@@ -152,23 +152,24 @@ class AcParser {
   }
 
   void read_material() {
-    if (file_.materials.size() >= kMaxMaterials)
-      tokens_.fail(fmt::format("holds more than {} materials", kMaxMaterials));
-    Material material;
+    if (file_.materials.size() >= model::kMaxMaterials)
+      tokens_.fail(fmt::format("holds more than {} materials", model::kMaxMaterials));
+    model::Material material;
     std::array<float, 3> ambient{};
-    material.finish = finish_named(tokens_.string());
+    material.finish = model::finish_named(tokens_.string());
     const auto colour = [&](const char* what, std::array<float, 3>& value) {
       tokens_.expect(what);
-      for (float& channel : value) channel = tokens_.number(what, kLargestCoordinate);
+      for (float& channel : value) channel = tokens_.number(what, model::kLargestCoordinate);
     };
     colour("rgb", material.diffuse);
     colour("amb", ambient);
     colour("emis", material.emission);
     colour("spec", material.specular);
     tokens_.expect("shi");
-    material.shininess = std::clamp(tokens_.number("shi", kLargestCoordinate), 0.0f, 128.0f);
+    material.shininess = std::clamp(tokens_.number("shi", model::kLargestCoordinate), 0.0f, 128.0f);
     tokens_.expect("trans");
-    material.opacity = 1 - std::clamp(tokens_.number("trans", kLargestCoordinate), 0.0f, 1.0f);
+    material.opacity =
+        1 - std::clamp(tokens_.number("trans", model::kLargestCoordinate), 0.0f, 1.0f);
     file_.materials.push_back(material);
   }
 
@@ -189,23 +190,23 @@ class AcParser {
   }
 
   void read_vertices(const Placement& file_from_own, AcObject& target) {
-    const std::uint32_t count = count_of("numvert", kBytesOfVertex, kMaxCorners);
+    const std::uint32_t count = count_of("numvert", kBytesOfVertex, model::kMaxCorners);
     target.vertices.reserve(target.vertices.size() + count);
     for (std::uint32_t i = 0; i < count; ++i) {
       Vector3 own;
-      for (double& value : own) value = tokens_.number("a coordinate", kLargestCoordinate);
+      for (double& value : own) value = tokens_.number("a coordinate", model::kLargestCoordinate);
       const Vector3 vertex = file_from_own.placed(own);
       for (const double value : vertex)
-        if (!(std::abs(value) <= kLargestCoordinate))
+        if (!(std::abs(value) <= model::kLargestCoordinate))
           tokens_.fail(fmt::format("rot and loc put a vertex at {:g}; expected at most {:g}",
                                    value,
-                                   kLargestCoordinate));
+                                   model::kLargestCoordinate));
       target.vertices.push_back(vertex.cast<float>());
     }
   }
 
   void read_surfaces(const State& state, AcObject& target) {
-    const std::uint32_t count = count_of("numsurf", kBytesOfSurface, kMaxTriangles);
+    const std::uint32_t count = count_of("numsurf", kBytesOfSurface, model::kMaxTriangles);
     target.texture = state.texture.name;
     target.texture_line = state.texture.line;
     target.surfaces.reserve(target.surfaces.size() + count);
@@ -216,7 +217,7 @@ class AcParser {
     tokens_.expect("SURF");
     const std::uint32_t flags = tokens_.count("SURF", kAnyFlags);
     tokens_.expect("mat");
-    const std::uint32_t material = tokens_.count("mat", kMaxMaterials);
+    const std::uint32_t material = tokens_.count("mat", model::kMaxMaterials);
     if (material >= file_.materials.size())
       tokens_.fail(fmt::format(
           "mat is {}, but the file has {} materials", material, file_.materials.size()));
@@ -225,15 +226,15 @@ class AcParser {
     const auto first = static_cast<std::uint32_t>(target.corners.size());
     for (std::uint32_t i = 0; i < count; ++i) target.corners.push_back(corner(state, target));
     corners_ += count;
-    if (corners_ > kMaxCorners)
-      tokens_.fail(fmt::format("holds surfaces of more than {} corners", kMaxCorners));
+    if (corners_ > model::kMaxCorners)
+      tokens_.fail(fmt::format("holds surfaces of more than {} corners", model::kMaxCorners));
     if ((flags & kLineKinds) != 0 || count < 3) {
       target.corners.resize(first);
       return;
     }
     triangles_ += count - 2;
-    if (triangles_ > kMaxTriangles)
-      tokens_.fail(fmt::format("holds more than {} triangles", kMaxTriangles));
+    if (triangles_ > model::kMaxTriangles)
+      tokens_.fail(fmt::format("holds more than {} triangles", model::kMaxTriangles));
     target.surfaces.push_back(
         {(flags & kSmooth) != 0, (flags & kTwoSided) != 0, material, first, count});
   }
@@ -282,4 +283,4 @@ std::vector<std::string> names_of(const AcFile& file, std::size_t object) {
   return names;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

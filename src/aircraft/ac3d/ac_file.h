@@ -11,7 +11,7 @@
 
 // The content of an AC3D text file (.ac) after checks, without interpretation. The format:
 // https://www.inivis.com/ac3d/man/ac3dfileformat.html
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 
 namespace fs = std::filesystem;
 
@@ -43,7 +43,7 @@ struct AcObject {
 
 // Objects in the order of the file: one comes before what it holds.
 struct AcFile {
-  std::vector<Material> materials;  // colours in sRGB, without textures
+  std::vector<model::Material> materials;  // colours in sRGB, without textures
   std::vector<AcObject> objects;
 };
 
@@ -56,4 +56,4 @@ AcFile parse_ac(std::string_view text, const fs::path& name);
 // The outermost is called World, as FlightGear's animations expect.
 std::vector<std::string> names_of(const AcFile& file, std::size_t object);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

@@ -26,7 +26,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 namespace {
 
 constexpr const char* kMaterialLine =
@@ -240,7 +240,7 @@ class AcOracle : public testing::TestWithParam<const char*> {};
 // Models whose crease angles are at most 60 degrees, which OpenSceneGraph does not lower. All but
 // the triangles of concave polygons, whose diagonals are another's choice.
 TEST_P(AcOracle, TrianglesNormalsAndTexturesAreOpenSceneGraphs) {
-  const fs::path path = fs::path(kDebianAircraft) / GetParam();
+  const fs::path path = fs::path(fleet::kDebianAircraft) / GetParam();
   if (!fs::is_regular_file(path)) GTEST_SKIP() << path << " is not installed";
   osg::setNotifyLevel(osg::ALWAYS);
   const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
@@ -295,4 +295,4 @@ INSTANTIATE_TEST_SUITE_P(Debian,
                                          "JA37/Models/JA-37-lowpoly.ac"));
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

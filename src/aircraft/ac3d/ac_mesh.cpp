@@ -11,7 +11,7 @@
 #include "aircraft/ac3d/polygon.h"
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 namespace {
 
 float length_of(const Eigen::Vector3f& v) { return std::sqrt(dot_product(v, v)); }
@@ -134,7 +134,7 @@ class BatchBuilder {
                const std::vector<Eigen::Vector3f>& normals)
       : object_(object), facets_(facets), normals_(normals) {}
 
-  void begin(const Material& material) {
+  void begin(const model::Material& material) {
     batch_ = {};
     index_.clear();
     batch_.srgb = material;
@@ -226,4 +226,4 @@ std::vector<Batch> batches_of(const AcFile& file, const AcObject& object) {
   return result;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

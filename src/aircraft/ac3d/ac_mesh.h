@@ -10,7 +10,7 @@
 
 #include "aircraft/ac3d/ac_file.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 
 // Triangles of a model file that share one material, in the file's own frame, whatever its format.
 struct Batch {
@@ -18,9 +18,10 @@ struct Batch {
   std::vector<Eigen::Vector3f> normals;  // one a position; of any length
   std::vector<Eigen::Vector2f> uvs;      // one a position; v up from the picture's bottom
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  Material srgb{.diffuse = {0.8f, 0.8f, 0.8f}};  // colours in sRGB; its texture does not count
-  std::string texture;                           // the file's name for it; empty: none
-  int texture_line = 0;                          // where the file names it; 0: unknown
+  model::Material srgb{
+      .diffuse = {0.8f, 0.8f, 0.8f}};  // colours in sRGB; its texture does not count
+  std::string texture;                 // the file's name for it; empty: none
+  int texture_line = 0;                // where the file names it; 0: unknown
   int picture = -1;  // index into RawModel::pictures, in place of `texture`: inside the file
   bool repeat_u = true;
   bool repeat_v = true;
@@ -33,4 +34,4 @@ struct Batch {
 // models are made.
 std::vector<Batch> batches_of(const AcFile& file, const AcObject& object);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

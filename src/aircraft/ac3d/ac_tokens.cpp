@@ -9,7 +9,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 namespace {
 
 // A bound for untrusted files, far above any name.
@@ -128,4 +128,4 @@ void AcTokens::skip_bytes(std::size_t bytes) {
   at_ = end;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

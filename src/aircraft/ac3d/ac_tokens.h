@@ -7,7 +7,7 @@
 #include <string_view>
 
 // For ac_file.cpp alone: words and numbers of a text, with the line where they stand.
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 
 class AcTokens {
  public:
@@ -40,4 +40,4 @@ class AcTokens {
   int line_ = 1;
 };
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 namespace {
 
 using Planar = std::array<double, 2>;
@@ -124,4 +124,4 @@ std::vector<std::array<std::uint32_t, 3>> ear_clipped(std::span<const Eigen::Vec
   return EarClipper(projected(corners, normal)).clip();
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

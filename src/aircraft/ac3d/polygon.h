@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace airtruth::aircraft {
+namespace airtruth::ac3d {
 
 // The scalar product, written out so that every compiler adds in the same order and the result is
 // the same.
@@ -27,4 +27,4 @@ bool is_concave(std::span<const Eigen::Vector3f> corners);
 std::vector<std::array<std::uint32_t, 3>> ear_clipped(std::span<const Eigen::Vector3f> corners,
                                                       const Eigen::Vector3f& normal);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::ac3d

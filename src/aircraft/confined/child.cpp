@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/sandbox/sandbox.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::confined {
 namespace {
 
 constexpr sandbox::Program kReader{
@@ -21,16 +21,16 @@ constexpr std::size_t kMaxQuestionBytes = 65536;
 constexpr std::size_t kMaxQuestions = 200'000;
 constexpr std::size_t kMaxSentBytes = std::size_t{1} << 30;  // of all files together
 // A model at the limits of raw_model.h, and 64 MiB for the rest.
-constexpr std::size_t kMaxHandedBackBytes =
-    32 * kMaxCorners + 16 * kMaxTriangles + 4 * kMaxPixels + (std::size_t{64} << 20);
+constexpr std::size_t kMaxHandedBackBytes = 32 * model::kMaxCorners + 16 * model::kMaxTriangles +
+                                            4 * model::kMaxPixels + (std::size_t{64} << 20);
 
-void answer_kind(sandbox::Process& reader, DiskFiles& files, const std::string& path) {
+void answer_kind(sandbox::Process& reader, wrapper::DiskFiles& files, const std::string& path) {
   const char kind = static_cast<char>(files.kind(path));
   reader.send(Message::kKind, std::string_view(&kind, 1));
 }
 
 void answer_file(sandbox::Process& reader,
-                 DiskFiles& files,
+                 wrapper::DiskFiles& files,
                  std::string_view question,
                  std::size_t& sent) {
   WireReader in(question);
@@ -46,7 +46,7 @@ void answer_file(sandbox::Process& reader,
   }
 }
 
-RawModel serve(sandbox::Process& reader, DiskFiles& files) {
+model::RawModel serve(sandbox::Process& reader, wrapper::DiskFiles& files) {
   std::size_t sent = 0;
   for (std::size_t questions = 0; questions < kMaxQuestions; ++questions) {
     const Channel::Received received = reader.receive(kMaxHandedBackBytes);
@@ -74,7 +74,9 @@ RawModel serve(sandbox::Process& reader, DiskFiles& files) {
 
 fs::path model_reader_program() { return sandbox::path_of(kReader); }
 
-RawModel read_in_child(DiskFiles& files, const fs::path& file, const LoadOptions& options) {
+model::RawModel read_in_child(wrapper::DiskFiles& files,
+                              const fs::path& file,
+                              const model::LoadOptions& options) {
   try {
     sandbox::Process reader(kReader, options.stop);
     reader.set_deadline(
@@ -92,4 +94,4 @@ RawModel read_in_child(DiskFiles& files, const fs::path& file, const LoadOptions
   }
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::confined

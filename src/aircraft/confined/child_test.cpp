@@ -21,8 +21,10 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::confined {
 namespace {
+
+using model::RawModel;
 
 const std::string kPlainAc =
     "AC3Db\nMATERIAL \"m\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 trans 0\n"
@@ -53,10 +55,10 @@ class Strangers : public testing::Test {
   }
 
   // The message of the Error; the number of triangles where loading succeeds.
-  std::string said(const std::string& file, const LoadOptions& options = {}) const {
+  std::string said(const std::string& file, const model::LoadOptions& options = {}) const {
     try {
       return std::to_string(
-          load_aircraft((folder_ / file).string(), options).mesh.triangle_count());
+          fleet::load_aircraft((folder_ / file).string(), options).mesh.triangle_count());
     } catch (const Interrupted&) {
       return "interrupted";
     } catch (const Error& error) {
@@ -132,7 +134,7 @@ TEST_F(Strangers, AReaderThatBreaksLiesOrHangsIsOneLine) {
   EXPECT_THAT(said("a.ac"), testing::HasSubstr("AIRTRUTH_MODEL_READER"));
   with_reader("exec sleep 60");
   std::stop_source stop;
-  LoadOptions options;
+  model::LoadOptions options;
   options.stop = stop.get_token();
   std::jthread later([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -155,7 +157,7 @@ TEST_F(Strangers, AModelIsReadOnceAndAgainWhenAnyFileChanges) {
   EXPECT_EQ(said("w.xml"), "1");
   write_file(broken, "");
   EXPECT_EQ(said("w.xml"), "1");  // from the cache: no reader is started
-  EXPECT_EQ(load_aircraft((folder_ / "w.xml").string()).sources.size(), 2u);
+  EXPECT_EQ(fleet::load_aircraft((folder_ / "w.xml").string()).sources.size(), 2u);
   EXPECT_THAT(said("w.xml", {.airspeed_kt = 100}), testing::HasSubstr("code 3"));
   // A file that the model includes has changed, and a texture that was missing now exists.
   write_file(folder_ / "below/b.ac", kPlainAc + "\n");
@@ -228,7 +230,7 @@ TEST(ModelWire, AnyBytesAreAnErrorOrAModel) {
   int refused = 0;
   const auto try_bytes = [&](const std::string& given) {
     try {
-      check_model(model_from_bytes(given));
+      model::check_model(model_from_bytes(given));
     } catch (const Error&) {
       ++refused;
     }
@@ -245,4 +247,4 @@ TEST(ModelWire, AnyBytesAreAnErrorOrAModel) {
 }
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::confined

@@ -7,8 +7,10 @@
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::confined {
 namespace {
+
+using wrapper::DiskFiles;
 
 // Bounds on what is kept of a model.
 constexpr std::size_t kMaxQuestionsKept = 10'000;  // files; a model asks for some tens
@@ -40,7 +42,7 @@ bool still_answered(DiskFiles& files, const std::vector<DiskFiles::Asked>& asked
   for (const DiskFiles::Asked& question : asked) {
     const bool by_content = question.answer.size() == kShaDigits;
     if (by_content) {
-      (void)files.read(question.path, kMaxModelBytes);
+      (void)files.read(question.path, model::kMaxModelBytes);
     } else {
       (void)files.kind(question.path);
     }
@@ -55,21 +57,21 @@ disk_cache::Cache models() { return disk_cache::Cache(disk_cache::user_folder() 
 
 std::optional<disk_cache::Key> model_key(DiskFiles& files,
                                          const fs::path& file,
-                                         const LoadOptions& options) {
+                                         const model::LoadOptions& options) {
   try {
     const ReaderJob job{
         file.string(), files.shown_folder().string(), files.in_data_root().string(), options};
     // The reader is another program than this one, whose build is in every key.
     const FileStamp reader = file_stamp(model_reader_program());
     disk_cache::Key key("model");
-    key.add(sha256_of(files.read(file, kMaxModelBytes))).add(bytes_of(job));
+    key.add(sha256_of(files.read(file, model::kMaxModelBytes))).add(bytes_of(job));
     return key.add(reader.inode).add(reader.bytes).add(reader.changed_ns);
   } catch (const Error&) {  // the reader reports the fault
     return std::nullopt;
   }
 }
 
-std::optional<RawModel> cached_model(const disk_cache::Key& key, DiskFiles& files) {
+std::optional<model::RawModel> cached_model(const disk_cache::Key& key, DiskFiles& files) {
   return models().find(key, [&](const std::string& body) {
     WireReader in(body);
     if (!still_answered(files, asked_from(in))) throw Error("a file has changed");
@@ -77,9 +79,9 @@ std::optional<RawModel> cached_model(const disk_cache::Key& key, DiskFiles& file
   });
 }
 
-void keep_model(const disk_cache::Key& key, const DiskFiles& files, const RawModel& model) {
+void keep_model(const disk_cache::Key& key, const DiskFiles& files, const model::RawModel& model) {
   if (files.asked().size() <= kMaxQuestionsKept)
     models().keep(key, bytes_of_asked(files.asked()) + bytes_of(model));
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::confined

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-namespace airtruth::aircraft {
+namespace airtruth::confined {
 namespace {
 
 // A bound for texts of untrusted files.
@@ -51,7 +51,7 @@ struct Get {
 };
 
 static_assert(sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Vector2f) == 8);
-static_assert(sizeof(Triangle) == 16 && sizeof(Finish) == 1);
+static_assert(sizeof(model::Triangle) == 16 && sizeof(model::Finish) == 1);
 
 void material_fields(auto& wire, auto& material) {
   for (auto* colour : {&material.diffuse, &material.emission, &material.specular})
@@ -62,7 +62,7 @@ void material_fields(auto& wire, auto& material) {
   auto finish = static_cast<std::uint8_t>(material.finish);
   wire.number(finish);
   if constexpr (std::is_same_v<std::remove_reference_t<decltype(wire)>, Get>)
-    material.finish = static_cast<Finish>(finish);
+    material.finish = static_cast<model::Finish>(finish);
 }
 
 void part_fields(auto& wire, auto& part) {
@@ -71,7 +71,7 @@ void part_fields(auto& wire, auto& part) {
   for (auto* vector : {&part.axis_in_body, &part.centre_in_body})
     for (auto& value : *vector) wire.number(value);
   wire.number(part.revolutions_per_s);
-  wire.raw(part.triangles, kMaxTriangles);
+  wire.raw(part.triangles, model::kMaxTriangles);
 }
 
 void picture_fields(auto& wire, auto& raw) {
@@ -79,17 +79,17 @@ void picture_fields(auto& wire, auto& raw) {
   wire.number(raw.picture.height);
   wire.flag(raw.repeat_u);
   wire.flag(raw.repeat_v);
-  wire.raw(raw.picture.rgba, 4 * kMaxPixels);
+  wire.raw(raw.picture.rgba, 4 * model::kMaxPixels);
 }
 
 void model_fields(auto& wire, auto& model) {
-  wire.raw(model.mesh.positions, kMaxCorners);
-  wire.raw(model.mesh.normals, kMaxCorners);
-  wire.raw(model.mesh.uvs, kMaxCorners);
-  wire.list(model.mesh.materials, kMaxMaterials, [&](auto& m) { material_fields(wire, m); });
-  wire.list(model.mesh.parts, kMaxParts, [&](auto& part) { part_fields(wire, part); });
-  wire.list(model.pictures, kMaxPictures, [&](auto& raw) { picture_fields(wire, raw); });
-  wire.list(model.warnings, kMaxWarnings, [&](auto& warning) { wire.text(warning); });
+  wire.raw(model.mesh.positions, model::kMaxCorners);
+  wire.raw(model.mesh.normals, model::kMaxCorners);
+  wire.raw(model.mesh.uvs, model::kMaxCorners);
+  wire.list(model.mesh.materials, model::kMaxMaterials, [&](auto& m) { material_fields(wire, m); });
+  wire.list(model.mesh.parts, model::kMaxParts, [&](auto& part) { part_fields(wire, part); });
+  wire.list(model.pictures, model::kMaxPictures, [&](auto& raw) { picture_fields(wire, raw); });
+  wire.list(model.warnings, model::kMaxWarnings, [&](auto& warning) { wire.text(warning); });
 }
 
 void job_fields(auto& wire, auto& job, auto& axes) {
@@ -105,25 +105,25 @@ void job_fields(auto& wire, auto& job, auto& axes) {
 
 }  // namespace
 
-std::string bytes_of(const RawModel& model) {
+std::string bytes_of(const model::RawModel& model) {
   Put put;
   model_fields(put, model);
   return put.out.take();
 }
 
-RawModel model_from_bytes(std::string_view bytes) {
+model::RawModel model_from_bytes(std::string_view bytes) {
   Get get{WireReader(bytes)};
-  RawModel model;
+  model::RawModel model;
   model_fields(get, model);
   get.in.expect_end();
-  check_model(model);
+  model::check_model(model);
   return model;
 }
 
 std::string bytes_of(const ReaderJob& job) {
   Put put;
   put.flag(job.options.axes.has_value());
-  const ModelAxes axes = job.options.axes.value_or(ModelAxes{});
+  const model::ModelAxes axes = job.options.axes.value_or(model::ModelAxes{});
   job_fields(put, job, axes);
   return put.out.take();
 }
@@ -131,7 +131,7 @@ std::string bytes_of(const ReaderJob& job) {
 ReaderJob job_from_bytes(std::string_view bytes) {
   Get get{WireReader(bytes)};
   ReaderJob job;
-  ModelAxes axes;
+  model::ModelAxes axes;
   bool has_axes = false;
   get.flag(has_axes);
   job_fields(get, job, axes);
@@ -140,4 +140,4 @@ ReaderJob job_from_bytes(std::string_view bytes) {
   return job;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::confined

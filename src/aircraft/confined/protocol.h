@@ -12,7 +12,7 @@
 // The protocol between the program and airtruth-model-reader over one socket. A message has a kind,
 // a length and bytes. The reader requests each file by name and receives its bytes; it never opens
 // a file.
-namespace airtruth::aircraft {
+namespace airtruth::confined {
 
 using sandbox::bytes_of;
 using sandbox::Channel;
@@ -34,16 +34,16 @@ struct ReaderJob {
   std::string file;          // below the folder
   std::string shown_folder;  // for messages
   std::string in_data_root;  // ModelFiles::in_data_root
-  LoadOptions options;
+  model::LoadOptions options;
 };
 
 std::string bytes_of(const ReaderJob& job);
 ReaderJob job_from_bytes(std::string_view bytes);
 
 // A RawModel as bytes, for the socket and for the cache.
-std::string bytes_of(const RawModel& model);
+std::string bytes_of(const model::RawModel& model);
 
 // Throws Error where the bytes are not exactly one model that passes check_model.
-RawModel model_from_bytes(std::string_view bytes);
+model::RawModel model_from_bytes(std::string_view bytes);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::confined

@@ -11,7 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 namespace {
 
 class Models : public testing::Test {
@@ -24,7 +24,7 @@ class Models : public testing::Test {
   fs::path folder_;
 };
 
-std::string error_of(const std::string& name, const LoadOptions& options = {}) {
+std::string error_of(const std::string& name, const model::LoadOptions& options = {}) {
   try {
     load_aircraft(name, options);
   } catch (const Error& error) {
@@ -50,7 +50,7 @@ std::string asymmetric_ac() {
 
 TEST_F(Models, NoseUpAndRightWingPointWhereTheyShould) {
   write_file(folder_ / "a.ac", asymmetric_ac());
-  const Extents size = extents(load_aircraft((folder_ / "a.ac").string()).mesh);
+  const model::Extents size = model::extents(load_aircraft((folder_ / "a.ac").string()).mesh);
   EXPECT_TRUE(size.high_in_body.isApprox(Vector3(10, 2, 0))) << size.high_in_body.transpose();
   EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, 0, -4))) << size.low_in_body.transpose();
 }
@@ -62,19 +62,21 @@ TEST_F(Models, TheWrapperLiesAsTheBareFileAndIsShifted) {
              "<PropertyList><path>a.ac</path><offsets><x-m>1</x-m><y-m>2</"
              "y-m><z-m>3</z-m></"
              "offsets></PropertyList>");
-  const Extents size = extents(load_aircraft((folder_ / "AI/Aircraft/t/a.xml").string()).mesh);
+  const model::Extents size =
+      model::extents(load_aircraft((folder_ / "AI/Aircraft/t/a.xml").string()).mesh);
   EXPECT_TRUE(size.high_in_body.isApprox(Vector3(9, 4, -3))) << size.high_in_body.transpose();
 }
 
 TEST_F(Models, AnObjFileTakesStatedAxesAndScale) {
   write_file(folder_ / "a.obj", "v 0 0 0\nv 0 5 0\nv 0 0 1\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
-  LoadOptions options;
-  options.axes = ModelAxes{"y", "z", 2};
-  const Extents size = extents(load_aircraft((folder_ / "a.obj").string(), options).mesh);
+  model::LoadOptions options;
+  options.axes = model::ModelAxes{"y", "z", 2};
+  const model::Extents size =
+      model::extents(load_aircraft((folder_ / "a.obj").string(), options).mesh);
   EXPECT_NEAR(size.high_in_body.x(), 10, 1e-5);  // y is the nose
   EXPECT_NEAR(size.high_in_body.y(), 4, 1e-5);   // x is right
   EXPECT_NEAR(size.low_in_body.z(), -2, 1e-5);   // z is up
-  options.axes = ModelAxes{"y", "-y", 1};
+  options.axes = model::ModelAxes{"y", "-y", 1};
   EXPECT_THAT(error_of((folder_ / "a.obj").string(), options), testing::HasSubstr("the same axis"));
 }
 
@@ -118,7 +120,7 @@ TEST_F(Models, SelectRotateAndSpinAreHonoured) {
       "object-name><property>engines/engine[0]/rpm</"
       "property>"
       "<center><x-m>-10</x-m></center><axis><x>1</x></axis></animation>";
-  const Mesh mesh = load_aircraft(with(spin)).mesh;
+  const model::Mesh mesh = load_aircraft(with(spin)).mesh;
   ASSERT_EQ(mesh.parts.size(), 2u);
   EXPECT_TRUE(mesh.parts[1].spins);
   EXPECT_TRUE(mesh.parts[1].centre_in_body.isApprox(Eigen::Vector3f(10, 0, 0)));
@@ -129,7 +131,7 @@ TEST_F(Models, SelectRotateAndSpinAreHonoured) {
       "offset-deg><axis><z>1</z></axis></animation>";
   // A quarter turn about up, right-handed: the nose goes from forward to the
   // right (x back, y right, z up).
-  EXPECT_NEAR(extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10, 1e-4);
+  EXPECT_NEAR(model::extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10, 1e-4);
 }
 
 TEST_F(Models, SaysWhatIsWrong) {
@@ -151,8 +153,8 @@ TEST_F(Models, SaysWhatIsWrong) {
 }
 
 TEST(Texture, DecodesPremultipliesAndAverages) {
-  const Texture texture =
-      texture_from_picture({2, 1, {255, 255, 255, 255, 128, 128, 128, 128}}, true, true);
+  const model::Texture texture =
+      model::texture_from_picture({2, 1, {255, 255, 255, 255, 128, 128, 128, 128}}, true, true);
   constexpr float kAlpha = 128.0f / 255;
   EXPECT_TRUE(texture.has_translucency);
   EXPECT_NEAR(texture.levels[0].texels[1][0], kAlpha * 0.2158605f, 1e-5f);  // 128 decoded
@@ -164,7 +166,7 @@ TEST(Texture, DecodesPremultipliesAndAverages) {
 // span, 12.5 m high on its wheels.
 TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
   const Aircraft aircraft = load_aircraft("738/738-Ryanair", {.airspeed_kt = 270});
-  const Extents size = extents(aircraft.mesh);
+  const model::Extents size = model::extents(aircraft.mesh);
   EXPECT_NEAR(size.length_m(), 39.5, 0.8);
   EXPECT_NEAR(size.span_m(), 35.8, 1.2);
   EXPECT_GT(size.height_m(), 9);
@@ -173,7 +175,7 @@ TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
   // The fin is aft and high: the highest point of all lies in the last fifth.
   double fin_x = 0;
   double top = 1e9;
-  for (const auto& part : silhouette_points(aircraft.mesh))
+  for (const auto& part : model::silhouette_points(aircraft.mesh))
     for (const auto& p : part)
       if (p.z() < top) top = p.z(), fin_x = p.x();
   EXPECT_LT(fin_x, size.low_in_body.x() + 0.25 * size.length_m());
@@ -183,10 +185,10 @@ TEST(Catalogue, TheRyanair737HasABoeing737sSize) {
 // handbook states 11.00 m.
 TEST(Catalogue, TheCessnaIsBroughtToItsPublishedSpan) {
   const Aircraft as_it_is = load_aircraft("c172/news", {.airspeed_kt = 110, .catalogue_scale = 1});
-  EXPECT_NEAR(extents(as_it_is.mesh).length_m(), 8.2, 0.6);
-  EXPECT_NEAR(extents(as_it_is.mesh).span_m(), 9.63, 0.02);
+  EXPECT_NEAR(model::extents(as_it_is.mesh).length_m(), 8.2, 0.6);
+  EXPECT_NEAR(model::extents(as_it_is.mesh).span_m(), 9.63, 0.02);
   const Aircraft scaled = load_aircraft("c172/news", {.airspeed_kt = 110});
-  EXPECT_NEAR(extents(scaled.mesh).span_m(), 11.00, 1e-3);
+  EXPECT_NEAR(model::extents(scaled.mesh).span_m(), 11.00, 1e-3);
   EXPECT_NEAR(scaled.catalogue_scale, 11.00 / 9.63, 0.003);
   EXPECT_THAT(error_of("a.ac", {.catalogue_scale = 2}), testing::HasSubstr("a.ac"));
 }
@@ -216,4 +218,4 @@ TEST(AircraftFile, AModelFileIsItselfAndAnythingElseIsACatalogueName) {
 }
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

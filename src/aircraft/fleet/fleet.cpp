@@ -24,7 +24,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 namespace {
 
 std::map<std::string, std::string> read_rows(std::string_view text) {
@@ -68,18 +68,22 @@ struct Sketch {
 using Sketches = std::map<fs::path, Sketch>;
 
 // The result is empty for a file that is no wrapper, since these folders hold other XML too.
-std::optional<Sketch> sketch_of(const fs::path& file, ModelFiles& files, const fs::path& root) {
+std::optional<Sketch> sketch_of(const fs::path& file,
+                                wrapper::ModelFiles& files,
+                                const fs::path& root) {
   const std::string name = file.filename().string();
-  if (is_effect_path(name)) return std::nullopt;
+  if (wrapper::is_effect_path(name)) return std::nullopt;
   try {
-    const Wrapper text = parse_wrapper(read_file(file, kMaxWrapperBytes), file);
+    const wrapper::Wrapper text =
+        wrapper::parse_wrapper(read_file(file, wrapper::kMaxWrapperBytes), file);
     Sketch sketch;
     sketch.file = file;
     const fs::path folder = file.parent_path();
     if (!text.include.empty()) sketch.includes = (folder / text.include).lexically_normal();
-    for (const Wrapper& nested : text.nested) {
-      if (is_effect_path(nested.path)) continue;
-      const fs::path found = find_named_file(files, nested.path, folder.lexically_relative(root));
+    for (const wrapper::Wrapper& nested : text.nested) {
+      if (wrapper::is_effect_path(nested.path)) continue;
+      const fs::path found =
+          wrapper::find_named_file(files, nested.path, folder.lexically_relative(root));
       if (!found.empty()) sketch.nests.push_back((root / found).lexically_normal());
     }
     sketch.path = text.path;
@@ -94,7 +98,7 @@ std::optional<Sketch> sketch_of(const fs::path& file, ModelFiles& files, const f
 Sketches sketches_in(const fs::path& folder) {
   Sketches sketches;
   const fs::path root = data_root_of(folder.parent_path());
-  DiskFiles files(root, {});
+  wrapper::DiskFiles files(root, {});
   const auto add = [&](const fs::path& file, bool deep) {
     if (file.extension() != ".xml") return;
     if (auto sketch = sketch_of(file, files, root)) {
@@ -104,7 +108,8 @@ Sketches sketches_in(const fs::path& folder) {
   };
   for (const auto& at : fs::directory_iterator(folder)) {
     add(at.path(), false);
-    if (!at.is_directory() || is_effect_path(at.path().filename().string() + "/")) continue;
+    if (!at.is_directory() || wrapper::is_effect_path(at.path().filename().string() + "/"))
+      continue;
     for (const auto& below : fs::directory_iterator(at.path())) add(below.path(), true);
   }
   return sketches;
@@ -205,7 +210,7 @@ Entry find_aircraft(const std::string& name) {
 }
 
 fs::path aircraft_file(const std::string& name) {
-  if (!is_model_file(name)) return find_aircraft(name).file;
+  if (!wrapper::is_model_file(name)) return find_aircraft(name).file;
   if (!fs::exists(name)) throw Error("model file '" + name + "' does not exist");
   return name;
 }
@@ -244,7 +249,7 @@ fs::path data_root_of(const fs::path& catalogue_folder) {
 
 std::vector<std::string> liveries(const std::string& name) {
   std::vector<std::string> result;
-  if (is_model_file(name)) return result;
+  if (wrapper::is_model_file(name)) return result;
   for (const fs::path& root : folders()) {
     const fs::path own = (root / (name + ".xml")).lexically_normal();
     const auto slash = name.find('/');
@@ -292,7 +297,7 @@ Source source_of(const fs::path& file, const fs::path& folder, const fs::path& i
 
 Source source_of_path(const fs::path& file) {
   const fs::path folder = file.parent_path();
-  Source source = source_of(file, folder, place_in_data_root(folder));
+  Source source = source_of(file, folder, wrapper::place_in_data_root(folder));
   if (!source.from_debian) source.file = file.filename();
   return source;
 }
@@ -303,43 +308,47 @@ Source source_of_entry(const Entry& entry) {
 }
 
 // The model, and every file that it was read from.
-RawModel read_source(const Source& source,
-                     const LoadOptions& options,
-                     std::vector<fs::path>& sources) {
+model::RawModel read_source(const Source& source,
+                            const model::LoadOptions& options,
+                            std::vector<fs::path>& sources) {
   if (source.from_debian) {
-    DiskFiles files(source.folder, source.in_data_root);
-    RawModel model = read_model(files, source.file, options);
+    wrapper::DiskFiles files(source.folder, source.in_data_root);
+    model::RawModel model = wrapper::read_model(files, source.file, options);
     sources = files.sources();
     return model;
   }
-  DiskFiles before(source.folder, source.in_data_root, true);
-  const auto key = model_key(before, source.file, options);
-  if (auto kept = key ? cached_model(*key, before) : std::nullopt) {
+  wrapper::DiskFiles before(source.folder, source.in_data_root, true);
+  const auto key = confined::model_key(before, source.file, options);
+  if (auto kept = key ? confined::cached_model(*key, before) : std::nullopt) {
     sources = before.sources();
     return std::move(*kept);
   }
-  DiskFiles files(source.folder, source.in_data_root, true);
-  RawModel model = read_in_child(files, source.file, options);
-  if (key) keep_model(*key, files, model);
+  wrapper::DiskFiles files(source.folder, source.in_data_root, true);
+  model::RawModel model = confined::read_in_child(files, source.file, options);
+  if (key) confined::keep_model(*key, files, model);
   sources = files.sources();
   return model;
 }
 
 // A model file states its own unit. A catalogue model is scaled to the published size of its type.
-double scale_of(const std::string& name, const LoadOptions& options, const Mesh& mesh) {
+double scale_of(const std::string& name,
+                const model::LoadOptions& options,
+                const model::Mesh& mesh) {
   if (options.catalogue_scale) return *options.catalogue_scale;
-  const PublishedSize* published = is_model_file(name) ? nullptr : published_size(name);
+  const PublishedSize* published = wrapper::is_model_file(name) ? nullptr : published_size(name);
   if (published == nullptr || !published->is_known()) return 1;
-  return scale_to_published(extents(mesh), *published);
+  return scale_to_published(model::extents(mesh), *published);
 }
 
 }  // namespace
 
-Aircraft load_aircraft(const std::string& name, const LoadOptions& options, const Warn& warn_to) {
+Aircraft load_aircraft(const std::string& name,
+                       const model::LoadOptions& options,
+                       const Warn& warn_to) {
   Aircraft aircraft;
   aircraft.name = name;
   Source source;
-  if (is_model_file(name)) {
+  if (wrapper::is_model_file(name)) {
     if (options.catalogue_scale)
       throw Error(
           "catalogue_scale is for names of `airtruth aircraft list`; expected model_scale "
@@ -355,9 +364,9 @@ Aircraft load_aircraft(const std::string& name, const LoadOptions& options, cons
     aircraft.file = entry.file;
     source = source_of_entry(entry);
   }
-  RawModel model = read_source(source, options, aircraft.sources);
+  model::RawModel model = read_source(source, options, aircraft.sources);
   for (const std::string& warning : model.warnings) warn(warn_to, name + ": " + warning);
-  aircraft.mesh = mesh_of(std::move(model));
+  aircraft.mesh = model::mesh_of(std::move(model));
   aircraft.catalogue_scale = scale_of(name, options, aircraft.mesh);
   if (aircraft.catalogue_scale != 1) scale_mesh(aircraft.mesh, aircraft.catalogue_scale);
   std::sort(aircraft.sources.begin(), aircraft.sources.end());
@@ -370,42 +379,42 @@ namespace {
 
 // All that a wrapper derives from the state at cruise, as text: whether each condition holds, and
 // the value of each animation. Two states with the same outcomes give the same model.
-std::string outcomes_of(const Wrapper& wrapper) {
+std::string outcomes_of(const wrapper::Wrapper& wrapper) {
   // Every bit of a number counts.
   const auto outcome = [](const std::optional<bool>& condition) {
     return condition ? int{*condition} : -1;
   };
   std::string text = fmt::format("({}", outcome(wrapper.condition));
-  for (const Animation& animation : wrapper.animations)
+  for (const wrapper::Animation& animation : wrapper.animations)
     text += fmt::format("|{},{:a},{:a},{:a},{:a}",
                         outcome(animation.condition),
                         animation.value,
                         animation.scale.x(),
                         animation.scale.y(),
                         animation.scale.z());
-  for (const Wrapper& nested : wrapper.nested) text += outcomes_of(nested);
+  for (const wrapper::Wrapper& nested : wrapper.nested) text += outcomes_of(nested);
   return text + ")";
 }
 
 }  // namespace
 
-std::string configuration_of(const std::string& name, const LoadOptions& options) {
-  if (is_model_file(name) && ending_of(name) != ".xml") return {};
+std::string configuration_of(const std::string& name, const model::LoadOptions& options) {
+  if (wrapper::is_model_file(name) && wrapper::ending_of(name) != ".xml") return {};
   const std::string state = fmt::format("{:a} {:a}", options.airspeed_kt, options.altitude_agl_ft);
-  if (is_model_file(name)) return state;
+  if (wrapper::is_model_file(name)) return state;
   try {
     const Entry entry = find_aircraft(name);
     if (entry.catalogue_folder != fs::path(kDebianAircraft)) return state;
     const fs::path root = data_root_of(entry.catalogue_folder);
-    DiskFiles files(root, {});
+    wrapper::DiskFiles files(root, {});
     std::set<std::string> missing;
-    return outcomes_of(read_wrapper(files,
-                                    fs::absolute(entry.file).lexically_relative(root),
-                                    {options.airspeed_kt, options.altitude_agl_ft},
-                                    missing));
+    return outcomes_of(wrapper::read_wrapper(files,
+                                             fs::absolute(entry.file).lexically_relative(root),
+                                             {options.airspeed_kt, options.altitude_agl_ft},
+                                             missing));
   } catch (const Error&) {
     return state;  // load_aircraft() reports it
   }
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

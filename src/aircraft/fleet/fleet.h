@@ -20,7 +20,7 @@
 // that this wrapper names. load_aircraft("models/drone.obj") reads that file. A catalogue model
 // whose wings span 9.63 m, where 11.00 m is published for its type, gets a catalogue_scale of
 // 11.00 / 9.63 = 1.142 if its length is too short as well (scale.h).
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 
 namespace fs = std::filesystem;
 
@@ -69,7 +69,7 @@ std::filesystem::path aircraft_file(const std::string& name);
 struct Aircraft {
   std::string name;
   std::filesystem::path file;
-  Mesh mesh;
+  model::Mesh mesh;
   // The factor by which the catalogue's model was scaled.
   double catalogue_scale = 1;
   // Every file that was read, for checksums.
@@ -84,7 +84,7 @@ struct Aircraft {
 // triangles, or a missing texture. Throws Interrupted where options.stop is requested. One warning
 // names the animations and properties that are not supported.
 Aircraft load_aircraft(const std::string& name,
-                       const LoadOptions& options = {},
+                       const model::LoadOptions& options = {},
                        const Warn& warn = {});
 
 // The other liveries in the same model folder: the names that differ in the livery alone.
@@ -96,7 +96,7 @@ std::vector<std::string> liveries(const std::string& name);
 // speeds: their gear follows a limit, and their flaps are up above it. The text is empty for a bare
 // model file. Of wrappers that are read in a confined process it states the airspeed and the height
 // themselves.
-std::string configuration_of(const std::string& name, const LoadOptions& options);
+std::string configuration_of(const std::string& name, const model::LoadOptions& options);
 
 // Names of Debian's catalogue that cannot be drawn, or are no aircraft, with the reason
 // (data/aircraft-left-out/README.md). They are not offered.
@@ -105,4 +105,4 @@ const std::map<std::string, std::string>& left_out();
 // reason, a line each, below one heading.
 std::string_view left_out_table();
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

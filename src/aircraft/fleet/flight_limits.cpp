@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 namespace {
 
 // Folders of flightgear-data-ai, by class. SR-71, SpaceShuttle, balloon, bluebird and Ferry fit
@@ -60,4 +60,4 @@ const FlightLimits* flight_limits(const std::string& aircraft) {
   return nullptr;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

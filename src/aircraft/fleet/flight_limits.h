@@ -8,7 +8,7 @@
 // The speeds, climb rates and bank angles of aircraft classes. They bound the paths that are drawn
 // for a type, and they reveal a path that the type cannot fly. docs/flight-limits.md has the table
 // with its sources. Speeds are true airspeeds in still air.
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 
 inline constexpr double kStandardGravityMps2 = 9.80665;  // 3rd CGPM, 1901
 
@@ -37,4 +37,4 @@ const std::vector<FlightLimits>& flight_classes();
 // nullptr where the type has no class here: model files, balloons, ships, the Space Shuttle.
 const FlightLimits* flight_limits(const std::string& aircraft);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

@@ -6,7 +6,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 namespace {
 
 TEST(LeftOut, WhatIsNotOfferedIsInThePackageAndCannotBeDrawn) {
@@ -29,4 +29,4 @@ TEST(LeftOut, ItIsNeitherListedNorDrawnNorSuggested) {
 }
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

@@ -12,7 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 namespace {
 
 // Relative tolerances, as shares, chosen by judgement. The span differs between variants of a type,
@@ -76,26 +76,26 @@ const PublishedSize* published_size(const std::string& catalogue_name) {
   return nullptr;
 }
 
-SizeError size_error(const Extents& model, const PublishedSize& published) {
+SizeError size_error(const model::Extents& model, const PublishedSize& published) {
   check(published.is_known(), "a published size");
   return {model.span_m() / published.span_m - 1, model.length_m() / published.length_m - 1};
 }
 
-double scale_to_published(const Extents& model, const PublishedSize& published) {
+double scale_to_published(const model::Extents& model, const PublishedSize& published) {
   const SizeError error = size_error(model, published);
   const bool is_off = std::abs(error.span) > kSpanTolerance &&
                       std::abs(error.length) > kLengthTolerance && error.span * error.length > 0;
   return is_off ? published.span_m / model.span_m() : 1;
 }
 
-void scale_mesh(Mesh& mesh, double factor) {
+void scale_mesh(model::Mesh& mesh, double factor) {
   check(std::isfinite(factor) && factor > 0, "a scale is above 0");
   const auto scale = static_cast<float>(factor);
   for (Eigen::Vector3f& position : mesh.positions) position *= scale;
-  for (Part& part : mesh.parts) part.centre_in_body *= scale;
+  for (model::Part& part : mesh.parts) part.centre_in_body *= scale;
 }
 
-std::string size_words(const Extents& loaded, double scale, const PublishedSize* published) {
+std::string size_words(const model::Extents& loaded, double scale, const PublishedSize* published) {
   if (published == nullptr) return "no published size is known: its scale is not checked";
   if (!published->is_known()) return published->type;
   const SizeError error = size_error(loaded, *published);
@@ -115,4 +115,4 @@ std::string size_words(const Extents& loaded, double scale, const PublishedSize*
                      off);
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

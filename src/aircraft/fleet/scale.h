@@ -11,7 +11,7 @@
 
 // The sizes of real aircraft, and the scale that brings a catalogue's model to them
 // (data/aircraft-sizes/README.md).
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 
 struct PublishedSize {
   std::vector<std::string> names;  // patterns over catalogue names
@@ -35,25 +35,25 @@ struct SizeError {
   double span = 0;
   double length = 0;
 };
-SizeError size_error(const Extents& model, const PublishedSize& published);
+SizeError size_error(const model::Extents& model, const PublishedSize& published);
 
 // The factor from a model's span to the published span where the scale of the model is wrong, else
 // 1. The scale counts as wrong where span and length err in the same direction, the span by more
 // than 3 % and the length by more than 1 %.
-double scale_to_published(const Extents& model, const PublishedSize& published);
+double scale_to_published(const model::Extents& model, const PublishedSize& published);
 
 // Scales a mesh by one factor about the origin of the body: its positions and the centres of its
 // spinning parts. Normals, directions and textures do not change.
-void scale_mesh(Mesh& mesh, double factor);
+void scale_mesh(model::Mesh& mesh, double factor);
 
 // One line about a loaded catalogue model and the factor by which it was scaled, for example
 // "Cessna 172P: scaled by 1.142 to the published span of 11.00 m; the length is +7.2 % off (8.28
 // m)".
-std::string size_words(const Extents& loaded, double scale, const PublishedSize* published);
+std::string size_words(const model::Extents& loaded, double scale, const PublishedSize* published);
 
 // The content of data/aircraft-sizes/sizes.csv, which the build embeds in the program.
 // published_sizes() parses it; data/aircraft-sizes/README.md describes the columns and
 // the sources.
 std::string_view size_table();
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

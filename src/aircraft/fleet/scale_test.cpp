@@ -11,11 +11,11 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::fleet {
 namespace {
 
-Extents extents_of(double span_m, double length_m) {
-  Extents extents;
+model::Extents extents_of(double span_m, double length_m) {
+  model::Extents extents;
   extents.high_in_body = {length_m / 2, span_m / 2, 1};
   extents.low_in_body = {-length_m / 2, -span_m / 2, 0};
   return extents;
@@ -35,13 +35,13 @@ TEST(Scale, IsCorrectedWhereSpanAndLengthAgreeThatItIsOff) {
 }
 
 TEST(Scale, MovesPropellersWithTheirAircraft) {
-  Mesh mesh;
+  model::Mesh mesh;
   mesh.positions = {{1, 2, 3}, {-1, 0, 4}};
   mesh.normals = {{0, 0, 1}, {0, 1, 0}};
-  Part propeller;
+  model::Part propeller;
   propeller.centre_in_body = {2, 0, -1};
   propeller.axis_in_body = {1, 0, 0};
-  mesh.parts = {Part{}, propeller};
+  mesh.parts = {model::Part{}, propeller};
   scale_mesh(mesh, 1.5);
   EXPECT_EQ(mesh.positions[0], Eigen::Vector3f(1.5F, 3, 4.5F));
   EXPECT_EQ(mesh.normals[1], Eigen::Vector3f(0, 1, 0));
@@ -81,7 +81,7 @@ TEST(Scale, EveryInstalledTypeIsAsLargeAsPublishedOrSaysWhyNot) {
   for (const auto& [size, name] : one_of) {
     try {
       const Aircraft aircraft = load_aircraft(name);
-      const Extents extents = aircraft::extents(aircraft.mesh);
+      const model::Extents extents = model::extents(aircraft.mesh);
       const SizeError error = size_error(extents, *size);
       ++loaded;
       if (aircraft.catalogue_scale != 1) {
@@ -103,4 +103,4 @@ TEST(Scale, EveryInstalledTypeIsAsLargeAsPublishedOrSaysWhyNot) {
 }
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::fleet

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace airtruth::aircraft {
+namespace airtruth::model {
 namespace {
 
 // In English, and in the other languages that models of the catalogue use; blanks around each word.
@@ -35,4 +35,4 @@ Finish finish_named(std::string_view material) {
   return finish;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace airtruth::aircraft {
+namespace airtruth::model {
 
 // How a surface reflects light, apart from its colour.
 enum class Finish : std::uint8_t {
@@ -20,4 +20,4 @@ constexpr std::uint8_t kFinishes = 4;
 // any case. docs/aircraft.md lists the words for glass and metal. Other names are paint.
 Finish finish_named(std::string_view material);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

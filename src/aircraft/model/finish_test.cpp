@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace airtruth::aircraft {
+namespace airtruth::model {
 namespace {
 
 // Names that occur in the catalogue.
@@ -26,4 +26,4 @@ TEST(Finish, IsToldByWholeWords) {
 }
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

@@ -7,7 +7,7 @@
 
 // How a model is read: the state of the aircraft that its animations show, and the axes of a file
 // that states none.
-namespace airtruth::aircraft {
+namespace airtruth::model {
 
 // The axes of a model file without a wrapper, relative to those of the body, and its unit.
 struct ModelAxes {
@@ -27,4 +27,4 @@ struct LoadOptions {
   std::stop_token stop;           // ends the reading of a model file
 };
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

@@ -6,7 +6,7 @@
 
 #include "aircraft/model/texture.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::model {
 namespace {
 
 // 0 below 0, 1 above 1, with a continuous slope.
@@ -272,4 +272,4 @@ Extents extents(const Mesh& mesh) {
   return result;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

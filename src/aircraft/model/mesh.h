@@ -17,7 +17,7 @@
 // (-6, -5.5, -1) and (2.28, 5.5, 1) has extents of length_m() = 8.28, span_m() = 11 and
 // height_m() = 2. A propeller part with 10 revolutions per second has turned by a third of a
 // revolution, 120 degrees, at time_s = 1/30.
-namespace airtruth::aircraft {
+namespace airtruth::model {
 
 // A texture in linear light with premultiplied alpha. Its sRGB samples are decoded and
 // premultiplied before the mip chain is built. Level 0 has the full size; each further level has
@@ -141,4 +141,4 @@ struct Extents {
 };
 Extents extents(const Mesh& mesh);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

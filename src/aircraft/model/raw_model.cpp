@@ -7,7 +7,7 @@
 #include "aircraft/model/texture.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::model {
 namespace {
 
 // Largest deviation of a unit vector's length by rounding.
@@ -82,8 +82,8 @@ void check_pictures(const std::vector<RawPicture>& pictures) {
   std::size_t pixels = 0;
   for (const RawPicture& raw : pictures) {
     expect_sound(raw.picture.width > 0 && raw.picture.height > 0 &&
-                     raw.picture.width <= PictureLimits{}.side_px &&
-                     raw.picture.height <= PictureLimits{}.side_px,
+                     raw.picture.width <= texture_file::PictureLimits{}.side_px &&
+                     raw.picture.height <= texture_file::PictureLimits{}.side_px,
                  "a texture of a wrong size");
     const std::size_t count =
         static_cast<std::size_t>(raw.picture.width) * static_cast<std::size_t>(raw.picture.height);
@@ -113,4 +113,4 @@ Mesh mesh_of(RawModel model) {
   return mesh;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

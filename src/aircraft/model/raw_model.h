@@ -7,11 +7,11 @@
 #include "aircraft/model/mesh.h"
 #include "aircraft/texture_file/picture.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::model {
 
 // A model as its reader returns it: plain arrays, with textures as sRGB pictures.
 struct RawPicture {
-  Picture picture;
+  texture_file::Picture picture;
   bool repeat_u = true;
   bool repeat_v = true;
 };
@@ -45,4 +45,4 @@ void check_model(const RawModel& model);
 // The mesh with its textures decoded to linear light, and their mip chains.
 Mesh mesh_of(RawModel model);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

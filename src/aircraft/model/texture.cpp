@@ -6,7 +6,7 @@
 
 #include "foundation/base/huge_pages.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::model {
 namespace {
 
 using Texel = std::array<float, 4>;
@@ -57,7 +57,7 @@ float linear_channel(float srgb) {
   return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
 }
 
-Texture texture_from_picture(const Picture& picture, bool repeat_u, bool repeat_v) {
+Texture texture_from_picture(const texture_file::Picture& picture, bool repeat_u, bool repeat_v) {
   Texture texture;
   texture.repeat_u = repeat_u;
   texture.repeat_v = repeat_v;
@@ -107,4 +107,4 @@ float alpha_at(const Texture& texture, float u, float v) {
          fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::model

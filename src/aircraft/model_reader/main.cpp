@@ -3,6 +3,7 @@
 // arrays. Its standard input is a socket, through which it requests files by name and receives
 // them.
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -18,61 +19,61 @@
 namespace {
 
 using namespace airtruth;  // the program's own top level
-using namespace airtruth::aircraft;
+namespace fs = std::filesystem;
 
 // The largest message from the parent: the limit of all files of a model together.
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
 
 // The parent's files, requested by name.
-class AskedFiles : public ModelFiles {
+class AskedFiles : public wrapper::ModelFiles {
  public:
-  AskedFiles(Channel& parent, const ReaderJob& job)
+  AskedFiles(sandbox::Channel& parent, const confined::ReaderJob& job)
       : ModelFiles(job.shown_folder, job.in_data_root), parent_(parent) {}
 
  protected:
   Kind kind_below(const fs::path& path) override {
-    parent_.send(Message::kAskKind, path.string());
-    const std::string answer = answered(Message::kKind);
+    parent_.send(confined::Message::kAskKind, path.string());
+    const std::string answer = answered(confined::Message::kKind);
     return answer.size() == 1 ? static_cast<Kind>(answer[0]) : Kind::kNone;
   }
   std::string read_below(const fs::path& path, std::size_t max_bytes) override {
-    WireWriter question;
+    sandbox::WireWriter question;
     question.put(static_cast<std::uint64_t>(max_bytes));
     question.put_text(path.string());
-    parent_.send(Message::kAskFile, question.take());
-    return answered(Message::kFile);
+    parent_.send(confined::Message::kAskFile, question.take());
+    return answered(confined::Message::kFile);
   }
 
  private:
-  std::string answered(Message wanted) {
-    Channel::Received received = parent_.receive(kMaxMessageBytes);
+  std::string answered(confined::Message wanted) {
+    sandbox::Channel::Received received = parent_.receive(kMaxMessageBytes);
     if (received.closed) ::_exit(0);
-    if (received.is(Message::kError)) throw error_from_bytes(received.bytes);
+    if (received.is(confined::Message::kError)) throw sandbox::error_from_bytes(received.bytes);
     if (!received.is(wanted)) throw Error("gets an answer that it did not ask for");
     return std::move(received.bytes);
   }
 
-  Channel& parent_;
+  sandbox::Channel& parent_;
 };
 
-void read_for(Channel& parent) {
+void read_for(sandbox::Channel& parent) {
   sandbox::confine({});
-  const Channel::Received received = parent.receive(kMaxMessageBytes);
-  if (received.closed || !received.is(Message::kJob)) return;
-  const ReaderJob job = job_from_bytes(received.bytes);
+  const sandbox::Channel::Received received = parent.receive(kMaxMessageBytes);
+  if (received.closed || !received.is(confined::Message::kJob)) return;
+  const confined::ReaderJob job = confined::job_from_bytes(received.bytes);
   AskedFiles files(parent, job);
-  parent.send(
-      Message::kModel,
-      bytes_of(read_model(files, job.file, job.options, model_reader::append_other_format)));
+  parent.send(confined::Message::kModel,
+              confined::bytes_of(wrapper::read_model(
+                  files, job.file, job.options, model_reader::append_other_format)));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  constexpr sandbox::Faults kFaults{static_cast<std::uint8_t>(Message::kError),
+  constexpr sandbox::Faults kFaults{static_cast<std::uint8_t>(confined::Message::kError),
                                     "needs more memory than a model may take",
                                     "cannot be read as a 3D model: "};
-  return sandbox::child_main(argc, argv, 0, [&](Channel& parent, std::span<char*>) {
+  return sandbox::child_main(argc, argv, 0, [&](sandbox::Channel& parent, std::span<char*>) {
     sandbox::told(parent, kFaults, [&] { read_for(parent); });
   });
 }

@@ -21,13 +21,13 @@ class Formats : public testing::Test {
   }
   ~Formats() override { fs::remove_all(folder_); }
 
-  aircraft::Aircraft load(const std::string& name, const std::string& bytes) {
+  fleet::Aircraft load(const std::string& name, const std::string& bytes) {
     write_file(folder_ / name, bytes);
-    aircraft::LoadOptions options;
-    options.axes = aircraft::ModelAxes{"x", "z", 1};
-    return aircraft::load_aircraft((folder_ / name).string(),
-                                   options,
-                                   [&](const std::string& warning) { warnings_ += warning; });
+    model::LoadOptions options;
+    options.axes = model::ModelAxes{"x", "z", 1};
+    return fleet::load_aircraft((folder_ / name).string(),
+                                options,
+                                [&](const std::string& warning) { warnings_ += warning; });
   }
   std::string fault(const std::string& name, const std::string& bytes) {
     try {
@@ -42,8 +42,8 @@ class Formats : public testing::Test {
 };
 
 // x forward 3, y left 2, z up 1: the body's y is right and its z down.
-void expect_size(const aircraft::Aircraft& loaded) {
-  const aircraft::Extents size = aircraft::extents(loaded.mesh);
+void expect_size(const fleet::Aircraft& loaded) {
+  const model::Extents size = model::extents(loaded.mesh);
   EXPECT_TRUE(size.high_in_body.isApprox(Vector3(3, 0, 0))) << size.high_in_body.transpose();
   EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, -2, -1))) << size.low_in_body.transpose();
 }
@@ -51,7 +51,7 @@ void expect_size(const aircraft::Aircraft& loaded) {
 TEST_F(Formats, AnObjWithItsMaterialIsReadAndAMissingOneIsNamed) {
   write_file(folder_ / "a.mtl", "newmtl m\nKd 1 0 0\nd 0.5\n");
   const std::string shape = "v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nusemtl m\nf 1 2 3\nf 1 3 4\n";
-  const aircraft::Aircraft loaded = load("a.obj", "mtllib a.mtl\n" + shape);
+  const fleet::Aircraft loaded = load("a.obj", "mtllib a.mtl\n" + shape);
   expect_size(loaded);
   EXPECT_EQ(loaded.mesh.materials.at(0).diffuse, (std::array<float, 3>{1, 0, 0}));
   EXPECT_FLOAT_EQ(loaded.mesh.materials.at(0).opacity, 0.5f);

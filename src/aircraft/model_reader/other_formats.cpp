@@ -24,7 +24,6 @@ namespace airtruth::model_reader {
 namespace {
 
 namespace fs = std::filesystem;
-using namespace aircraft;  // what a model is made of
 
 constexpr float kSmoothBelowDeg = 60;   // the crease angle where a file states no normals; chosen
 constexpr int kMaxNodeDepth = 256;      // bounds the recursion over a hostile file
@@ -71,14 +70,14 @@ fs::path plain_path(const char* path) {
 // the requested files that do not exist.
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  explicit AssimpFiles(ModelFiles& files) : files_(files) {}
+  explicit AssimpFiles(wrapper::ModelFiles& files) : files_(files) {}
   bool Exists(const char* path) const override {
-    return files_.kind(plain_path(path)) == ModelFiles::Kind::kFile;
+    return files_.kind(plain_path(path)) == wrapper::ModelFiles::Kind::kFile;
   }
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
-    if (Exists(path)) return new MemoryStream(files_.read(plain_path(path), kMaxModelBytes));
+    if (Exists(path)) return new MemoryStream(files_.read(plain_path(path), model::kMaxModelBytes));
     missing_.insert(plain_path(path).string());
     return nullptr;
   }
@@ -86,7 +85,7 @@ class AssimpFiles : public Assimp::IOSystem {
   const std::set<std::string>& missing() const { return missing_; }
 
  private:
-  ModelFiles& files_;
+  wrapper::ModelFiles& files_;
   std::set<std::string> missing_;
 };
 
@@ -107,8 +106,8 @@ std::array<float, 3> colour_of(const aiColor3D& c, bool is_linear) {
 
 class SceneReader {
  public:
-  SceneReader(const aiScene& scene, Assembly& assembly, const ModelFile& file)
-      : scene_(scene), assembly_(assembly), file_(file), ending_(ending_of(file.path)) {}
+  SceneReader(const aiScene& scene, wrapper::Assembly& assembly, const wrapper::ModelFile& file)
+      : scene_(scene), assembly_(assembly), file_(file), ending_(wrapper::ending_of(file.path)) {}
 
   void read() {
     // assimp turns 3D Studio's axes here; model_forward and model_up speak of the file's own.
@@ -121,7 +120,8 @@ class SceneReader {
     if (depth > kMaxNodeDepth) throw Error("nests objects too deep");
     const bool named = node.mName.length > 0;
     if (named) names_.emplace_back(node.mName.C_Str());
-    const PartChoice choice = node.mNumMeshes > 0 ? file_.choose(names_) : PartChoice{};
+    const wrapper::PartChoice choice =
+        node.mNumMeshes > 0 ? file_.choose(names_) : wrapper::PartChoice{};
     for (unsigned i = 0; i < node.mNumMeshes && !choice.hidden; ++i)
       assembly_.add(batch_of(*scene_.mMeshes[node.mMeshes[i]], file_from_node), choice, file_);
     for (unsigned i = 0; i < node.mNumChildren; ++i)
@@ -129,8 +129,8 @@ class SceneReader {
     if (named) names_.pop_back();
   }
 
-  Batch batch_of(const aiMesh& mesh, const aiMatrix4x4& file_from_node) {
-    Batch batch;
+  ac3d::Batch batch_of(const aiMesh& mesh, const aiMatrix4x4& file_from_node) {
+    ac3d::Batch batch;
     unsigned uv_channel = 0;
     read_material(*scene_.mMaterials[mesh.mMaterialIndex], batch, uv_channel);
     if (uv_channel >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !mesh.HasTextureCoords(uv_channel))
@@ -157,7 +157,7 @@ class SceneReader {
     return batch;
   }
 
-  void read_material(const aiMaterial& material, Batch& batch, unsigned& uv_channel) {
+  void read_material(const aiMaterial& material, ac3d::Batch& batch, unsigned& uv_channel) {
     const bool is_linear = ending_ == ".gltf" || ending_ == ".glb";
     aiColor3D colour;
     if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
@@ -168,7 +168,7 @@ class SceneReader {
       batch.srgb.specular = colour_of(colour, is_linear);
     aiString name;
     if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS)
-      batch.srgb.finish = finish_named(name.C_Str());
+      batch.srgb.finish = model::finish_named(name.C_Str());
     float value = 0;
     if (material.Get(AI_MATKEY_OPACITY, value) == aiReturn_SUCCESS && value >= 0)
       batch.srgb.opacity = std::min(value, 1.0f);
@@ -178,7 +178,7 @@ class SceneReader {
     read_texture(material, batch, uv_channel);
   }
 
-  void read_texture(const aiMaterial& material, Batch& batch, unsigned& uv_channel) {
+  void read_texture(const aiMaterial& material, ac3d::Batch& batch, unsigned& uv_channel) {
     aiString path;
     aiTextureMapMode modes[3] = {
         aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
@@ -204,15 +204,15 @@ class SceneReader {
     const std::string_view bytes(reinterpret_cast<const char*>(texture.pcData), texture.mWidth);
     if (texture.mHeight != 0)
       throw Error("has a texture inside that is no file; expected PNG or JPEG");
-    const int index =
-        assembly_.add_picture(read_picture(bytes, assembly_.picture_limits()), repeat_u, repeat_v);
+    const int index = assembly_.add_picture(
+        texture_file::read_picture(bytes, assembly_.picture_limits()), repeat_u, repeat_v);
     picture_of_texture_[key] = index;
     return index;
   }
 
   const aiScene& scene_;
-  Assembly& assembly_;
-  const ModelFile& file_;
+  wrapper::Assembly& assembly_;
+  const wrapper::ModelFile& file_;
   std::string ending_;
   std::vector<std::string> names_;
   std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
@@ -229,13 +229,13 @@ void keep_importers_of(Assimp::Importer& importer, const std::string& ending) {
   }
 }
 
-void warn_of_missing(Assembly& assembly, const AssimpFiles& files) {
+void warn_of_missing(wrapper::Assembly& assembly, const AssimpFiles& files) {
   if (files.missing().empty()) return;
   std::string names;
   std::size_t shown = 0;
   for (const std::string& name : files.missing())
     if (++shown <= kNamedFiles) names += (shown == 1 ? "" : ", ") + name;
-  if (assembly.model().warnings.size() < kMaxWarnings)
+  if (assembly.model().warnings.size() < model::kMaxWarnings)
     assembly.model().warnings.push_back("files that are not in its folder and are left out: " +
                                         names + (shown > kNamedFiles ? ", ..." : ""));
 }
@@ -248,14 +248,14 @@ std::string one_sentence(const char* message) {
 
 }  // namespace
 
-void append_other_format(Assembly& assembly, const ModelFile& file) {
+void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& file) {
   const std::string shown = assembly.files().shown(file.path).string();
-  if (assembly.files().kind(file.path) != ModelFiles::Kind::kFile)
+  if (assembly.files().kind(file.path) != wrapper::ModelFiles::Kind::kFile)
     throw Error("does not exist; expected a 3D model", {shown});
   auto* files = new AssimpFiles(assembly.files());
   Assimp::Importer importer;
   importer.SetIOHandler(files);  // the importer deletes it
-  keep_importers_of(importer, ending_of(file.path));
+  keep_importers_of(importer, wrapper::ending_of(file.path));
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);

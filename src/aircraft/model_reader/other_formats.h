@@ -13,6 +13,6 @@ namespace airtruth::model_reader {
 // runs. Files that the model names come from assembly.files(). Coordinates are those of the file;
 // PartChoice::body_from_file converts them. Throws Error where the file is unreadable, has no
 // triangles or exceeds a limit.
-void append_other_format(aircraft::Assembly& assembly, const aircraft::ModelFile& file);
+void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& file);
 
 }  // namespace airtruth::model_reader

@@ -6,7 +6,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::shapes {
 namespace {
 
 // Height of the surface of a lens-shaped section along its chord, as a share of its thickness.
@@ -19,9 +19,9 @@ constexpr std::array<ChordPoint, 4> kSection = {{{0, 0}, {0.15f, 0.42f}, {0.45f,
 }  // namespace
 
 std::uint32_t MeshBuilder::add_material(const std::array<float, 3>& linear_rgb,
-                                        Finish finish,
+                                        model::Finish finish,
                                         float opacity) {
-  Material material;
+  model::Material material;
   material.diffuse = linear_rgb;
   material.finish = finish;
   material.opacity = opacity;
@@ -29,7 +29,7 @@ std::uint32_t MeshBuilder::add_material(const std::array<float, 3>& linear_rgb,
   return static_cast<std::uint32_t>(mesh_.materials.size() - 1);
 }
 
-void MeshBuilder::begin_part(Part part) { mesh_.parts.push_back(std::move(part)); }
+void MeshBuilder::begin_part(model::Part part) { mesh_.parts.push_back(std::move(part)); }
 
 void MeshBuilder::add_body(std::span<const Ring> rings,
                            const Eigen::Vector3f& across,
@@ -131,10 +131,10 @@ void MeshBuilder::add_wing(std::span<const Rib> ribs, std::uint32_t upper, std::
   }
 }
 
-Mesh MeshBuilder::take() {
+model::Mesh MeshBuilder::take() {
   mesh_.normals.assign(mesh_.positions.size(), Eigen::Vector3f::Zero());
-  for (const Part& part : mesh_.parts)
-    for (const Triangle& triangle : part.triangles) {
+  for (const model::Part& part : mesh_.parts)
+    for (const model::Triangle& triangle : part.triangles) {
       const auto& [a, b, c] = triangle.vertex;
       // Its length is twice the triangle's area: large triangles weigh more.
       const Eigen::Vector3f face =
@@ -169,4 +169,4 @@ void MeshBuilder::add_quad(
   add_triangle(a, c, d, material);
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::shapes

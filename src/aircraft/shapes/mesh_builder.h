@@ -11,7 +11,7 @@
 
 // Builds a mesh out of tubes, bodies of revolution and sheets, in body coordinates (x forward, y
 // right, z down; metres). Normals are averaged over the triangles that share a vertex.
-namespace airtruth::aircraft {
+namespace airtruth::shapes {
 
 // A ring of an elongated body: an ellipse across the body's axis.
 struct Ring {
@@ -31,10 +31,10 @@ class MeshBuilder {
  public:
   // Returns the index of the material.
   std::uint32_t add_material(const std::array<float, 3>& linear_rgb,
-                             Finish finish = Finish::kMat,
+                             model::Finish finish = model::Finish::kMat,
                              float opacity = 1);
   // What is added next belongs to this part.
-  void begin_part(Part part);
+  void begin_part(model::Part part);
 
   // A closed skin around rings of `sides` corners whose plane is spanned by `across` and `along`.
   void add_body(std::span<const Ring> rings,
@@ -54,7 +54,7 @@ class MeshBuilder {
   void add_wing(std::span<const Rib> ribs, std::uint32_t upper, std::uint32_t lower);
 
   // The mesh with its normals. The builder is used up.
-  Mesh take();
+  model::Mesh take();
 
  private:
   std::uint32_t add_vertex(const Eigen::Vector3f& position);
@@ -62,7 +62,7 @@ class MeshBuilder {
   void add_quad(
       std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d, std::uint32_t material);
 
-  Mesh mesh_;
+  model::Mesh mesh_;
 };
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::shapes

@@ -9,7 +9,7 @@
 #include "aircraft/shapes/mesh_builder.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::shapes {
 namespace {
 
 using Colour = std::array<float, 3>;
@@ -122,7 +122,7 @@ std::vector<Rib> ribs_of(std::span<const Section> sections, float span, float ch
 }
 
 // A positive turn about x lowers the right wing and raises the left one.
-Hinge hinge_at(const V& centre, float side, float rest_rad, float amplitude_rad, float lag) {
+model::Hinge hinge_at(const V& centre, float side, float rest_rad, float amplitude_rad, float lag) {
   return {V(1, 0, 0), centre, -side * rest_rad, -side * amplitude_rad, lag};
 }
 
@@ -136,19 +136,19 @@ void add_wing(MeshBuilder& builder,
               const WingMaterials& material) {
   const auto span = static_cast<float>(shape.span_m);
   const float chord = span / static_cast<float>(shape.aspect_ratio);
-  const Hinge shoulder =
+  const model::Hinge shoulder =
       hinge_at(V(kShoulderAhead * span, side * kShoulderOut * span, -kHingesAbove * span),
                side,
                kGlideRaised,
                kStroke,
                0);
-  const Hinge wrist =
+  const model::Hinge wrist =
       hinge_at(V(kShoulderAhead * span, side * kWristOut * span, -kHingesAbove * span),
                side,
                kGlideWrist,
                kWristStroke,
                kWristLag);
-  Part part;
+  model::Part part;
   part.name = side > 0 ? "right arm" : "left arm";
   part.centre_in_body = shoulder.centre_in_body;
   part.beat = {shape.strokes_per_s, shape.phase_strokes, shape.glide};
@@ -219,7 +219,7 @@ double usual_strokes_per_s(double span_m) {
   return kGullHz * std::sqrt(kGullSpanM / span_m);
 }
 
-Mesh bird(const BirdShape& shape) {
+model::Mesh bird(const BirdShape& shape) {
   check(shape.span_m > 0 && shape.aspect_ratio > 0, "a bird has a span and wings");
   const Feathers feathers = feathers_of(shape.plumage);
   MeshBuilder builder;
@@ -334,11 +334,11 @@ void add_rotor(MeshBuilder& builder, const V& hub, float radius, std::uint32_t d
 
 }  // namespace
 
-Mesh multirotor(const MultirotorShape& shape) {
+model::Mesh multirotor(const MultirotorShape& shape) {
   check(shape.size_m > 0 && shape.rotors >= 3, "a multirotor has a size and rotors");
   const auto size = static_cast<float>(shape.size_m);
   MeshBuilder builder;
-  const std::uint32_t shell = builder.add_material(floats(shape.colour), Finish::kPaint);
+  const std::uint32_t shell = builder.add_material(floats(shape.colour), model::Finish::kPaint);
   const std::uint32_t dark = builder.add_material({0.02f, 0.02f, 0.022f});
   const std::uint32_t blade = builder.add_material({0.03f, 0.03f, 0.032f});
   builder.begin_part({"airframe", {}});
@@ -366,7 +366,7 @@ Mesh multirotor(const MultirotorShape& shape) {
   }
   for (std::size_t k = 0; k < rotors.size(); ++k) {
     const V hub = 0.5f * size * rotors[k] - V(0, 0, kRotorAbove * size);
-    Part part;
+    model::Part part;
     part.name = "rotor " + std::to_string(k + 1);
     part.spins = true;
     part.axis_in_body = V(0, 0, 1);
@@ -409,14 +409,14 @@ std::vector<Outline> outline() {
 
 }  // namespace
 
-Mesh balloon(const BalloonShape& shape) {
+model::Mesh balloon(const BalloonShape& shape) {
   check(shape.size_m > 0, "a balloon has a size");
   const auto size = static_cast<float>(shape.size_m);
   MeshBuilder builder;
   const std::uint32_t latex = builder.add_material({static_cast<float>(shape.colour[0]),
                                                     static_cast<float>(shape.colour[1]),
                                                     static_cast<float>(shape.colour[2])},
-                                                   Finish::kPaint);
+                                                   model::Finish::kPaint);
   builder.begin_part({"envelope", {}});
   std::vector<Ring> rings;
   for (const auto& [above, radius] : outline())
@@ -425,4 +425,4 @@ Mesh balloon(const BalloonShape& shape) {
   return builder.take();
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::shapes

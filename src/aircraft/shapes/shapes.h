@@ -12,7 +12,7 @@
 // Example: bird({.span_m = 1.34}) is a herring gull: 0.58 m long, 3.05 strokes a second. Its wings
 // are parts with hinges at the shoulder and at the wrist, so that any moment of a stroke has its
 // own exact pose (body_from_part).
-namespace airtruth::aircraft {
+namespace airtruth::shapes {
 
 enum class Plumage { kGull, kDark, kBrown, kGrey };
 
@@ -35,7 +35,7 @@ struct BirdShape {
   double glide = 0.3;
   bool operator==(const BirdShape&) const = default;
 };
-Mesh bird(const BirdShape& shape);
+model::Mesh bird(const BirdShape& shape);
 
 // The stroke rate of a bird of this span: 3.05 Hz at 1.34 m, a herring gull in cruise, and with
 // span^-1/2 for birds of one shape (Pennycuick 1996, "Wingbeat frequency of birds in steady
@@ -52,7 +52,7 @@ struct MultirotorShape {
 };
 // Arms, motors, a shell with a camera below, legs or landing skids, and two-bladed rotors whose
 // tips move at kRotorTipMps.
-Mesh multirotor(const MultirotorShape& shape);
+model::Mesh multirotor(const MultirotorShape& shape);
 // The speed of a rotor's tips: a choice.
 constexpr double kRotorTipMps = 60;
 
@@ -62,6 +62,6 @@ struct BalloonShape {
   std::array<double, 3> colour = {0.5, 0.02, 0.02};  // linear RGB
   bool operator==(const BalloonShape&) const = default;
 };
-Mesh balloon(const BalloonShape& shape);
+model::Mesh balloon(const BalloonShape& shape);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::shapes

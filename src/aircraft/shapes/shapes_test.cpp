@@ -7,14 +7,17 @@
 
 #include <gtest/gtest.h>
 
-namespace airtruth::aircraft {
+namespace airtruth::shapes {
 namespace {
+
+using model::Mesh;
+using model::Part;
 
 // Volume that the triangles of a part enclose (divergence theorem); positive where its corners turn
 // counter-clockwise seen from outside.
 double volume_m3(const Mesh& mesh, const Part& part) {
   double six = 0;
-  for (const Triangle& t : part.triangles) {
+  for (const model::Triangle& t : part.triangles) {
     const auto at = [&](std::size_t k) -> Eigen::Vector3d {
       return mesh.positions[t.vertex[k]].cast<double>();
     };
@@ -26,8 +29,8 @@ double volume_m3(const Mesh& mesh, const Part& part) {
 // The vertices of a part at a time, in body.
 template <typename Visit>
 void each_point(const Mesh& mesh, const Part& part, double time_s, const Visit& visit) {
-  const Eigen::Affine3f pose = body_from_part(part, time_s);
-  for (const Triangle& t : part.triangles)
+  const Eigen::Affine3f pose = model::body_from_part(part, time_s);
+  for (const model::Triangle& t : part.triangles)
     for (const std::uint32_t v : t.vertex) visit(pose * mesh.positions[v]);
 }
 
@@ -44,7 +47,7 @@ float span_at(const Mesh& mesh, double time_s) {
 TEST(Shapes, ABirdHasItsSpanWithStretchedWings) {
   for (const double span_m : {0.6, 1.34, 2.2}) {
     const Mesh mesh = bird({.span_m = span_m, .strokes_per_s = 3, .glide = 1});
-    const Extents size = extents(mesh);
+    const model::Extents size = model::extents(mesh);
     EXPECT_NEAR(size.span_m(), span_m, 1e-6 * span_m);
     // A herring gull is 0.55 to 0.67 m long at spans of 1.25 to 1.55 m (Cramp and Simmons 1983).
     EXPECT_NEAR(size.length_m() / span_m, 0.44, 0.01);
@@ -84,7 +87,7 @@ TEST(Shapes, WingsOfABirdHaveTheStatedAspectRatio) {
   double area_m2 = 0;
   for (const Part& part : mesh.parts) {
     if (part.hinges.empty()) continue;
-    for (const Triangle& t : part.triangles) {
+    for (const model::Triangle& t : part.triangles) {
       const Eigen::Vector3f n =
           (mesh.positions[t.vertex[1]] - mesh.positions[t.vertex[0]])
               .cross(mesh.positions[t.vertex[2]] - mesh.positions[t.vertex[0]]);
@@ -103,13 +106,13 @@ TEST(Shapes, WingsBeatAtTheirRateAndRestInAGlide) {
   EXPECT_NEAR(span_at(mesh, 0.25 / 4), span_at(mesh, 3.25 / 4), 1e-4);
   const Mesh gliding = bird({.span_m = 1.34, .strokes_per_s = 4, .glide = 1});
   for (const double time_s : {0.1, 0.33, 1.7})
-    EXPECT_EQ(body_from_part(gliding.parts[1], time_s).matrix(),
-              body_from_part(gliding.parts[1], 0).matrix());
+    EXPECT_EQ(model::body_from_part(gliding.parts[1], time_s).matrix(),
+              model::body_from_part(gliding.parts[1], 0).matrix());
   // With glides of half the time, half of ten strokes are beaten.
   const Mesh both = bird({.span_m = 1.34, .strokes_per_s = 1, .glide = 0.5});
   int still = 0;
   for (int i = 0; i < 1000; ++i) {
-    const double time_s = i * kStrokesOfBout / 1000;
+    const double time_s = i * model::kStrokesOfBout / 1000;
     const float before = span_at(both, time_s), after = span_at(both, time_s + 1e-3);
     still += std::abs(after - before) < 1e-7f ? 1 : 0;
   }
@@ -137,8 +140,10 @@ TEST(Shapes, AHandStaysAtItsWrist) {
   const Eigen::Vector3f wrist = hand.hinges[1].centre_in_body;
   for (int i = 0; i < 20; ++i) {
     const double time_s = 0.05 * i;
-    EXPECT_LT((body_from_part(arm, time_s) * wrist - body_from_part(hand, time_s) * wrist).norm(),
-              1e-6f);
+    EXPECT_LT(
+        (model::body_from_part(arm, time_s) * wrist - model::body_from_part(hand, time_s) * wrist)
+            .norm(),
+        1e-6f);
   }
 }
 
@@ -146,17 +151,17 @@ TEST(Shapes, APartStaysWithinItsReachAndTurnsNoFasterThanItsBound) {
   for (const Mesh& mesh : {bird({.glide = 0.4}), multirotor({})})
     for (const Part& part : mesh.parts) {
       if (!part.moves()) continue;
-      const float reach = reach_m(mesh, part) * 1.0001f;
+      const float reach = model::reach_m(mesh, part) * 1.0001f;
       for (int i = 0; i < 200; ++i) {
         const double time_s = 0.017 * i;
         each_point(mesh, part, time_s, [&](const Eigen::Vector3f& p) {
           EXPECT_LE((p - part.centre_in_body).norm(), reach);
         });
         const double step_s = 1e-4;
-        const Eigen::Matrix3f turn = body_from_part(part, time_s + step_s).linear() *
-                                     body_from_part(part, time_s).linear().transpose();
+        const Eigen::Matrix3f turn = model::body_from_part(part, time_s + step_s).linear() *
+                                     model::body_from_part(part, time_s).linear().transpose();
         const double turned_rad = double(Eigen::AngleAxisf(turn).angle());
-        EXPECT_LE(turned_rad / (2 * kPi) / step_s, fastest_turn_per_s(part) * 1.01 + 0.01);
+        EXPECT_LE(turned_rad / (2 * kPi) / step_s, model::fastest_turn_per_s(part) * 1.01 + 0.01);
       }
     }
 }
@@ -176,11 +181,11 @@ TEST(Shapes, AMultirotorHasItsSizeAndItsRotors) {
     const auto& opposite = mesh.parts[1 + static_cast<std::size_t>(rotors) / 2];
     EXPECT_NEAR((first.centre_in_body - opposite.centre_in_body).norm(), 0.8, 1e-5);
     const double tip_mps =
-        2 * kPi * double(reach_m(mesh, first)) * std::abs(first.revolutions_per_s);
+        2 * kPi * double(model::reach_m(mesh, first)) * std::abs(first.revolutions_per_s);
     EXPECT_NEAR(tip_mps, kRotorTipMps, 0.05 * kRotorTipMps);
     // Neighbours do not touch.
     EXPECT_GT((first.centre_in_body - mesh.parts[2].centre_in_body).norm(),
-              reach_m(mesh, first) + reach_m(mesh, mesh.parts[2]));
+              model::reach_m(mesh, first) + model::reach_m(mesh, mesh.parts[2]));
   }
 }
 
@@ -202,7 +207,7 @@ TEST(Shapes, ASmallMultirotorStandsOnLegsAndALargeOneOnSkids) {
 }
 
 TEST(Shapes, ABalloonHasItsDiameter) {
-  const Extents size = extents(balloon({.size_m = 0.3}));
+  const model::Extents size = model::extents(balloon({.size_m = 0.3}));
   EXPECT_NEAR(size.length_m(), 0.3, 1e-3);
   EXPECT_NEAR(size.span_m(), 0.3, 1e-3);
   EXPECT_NEAR(size.height_m(), 1.25 * 0.3, 1e-3);
@@ -217,4 +222,4 @@ TEST(Shapes, BirdsOfOneShapeBeatSlowerTheLargerTheyAre) {
 }
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::shapes

@@ -12,7 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/huge_pages.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::texture_file {
 namespace {
 
 // libpng's own state, freed however the reading ends.
@@ -102,4 +102,4 @@ Picture read_picture(std::string_view bytes, const PictureLimits& limits) {
   throw Error("is no picture that can be read; expected PNG, JPEG, SGI or TGA");
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::texture_file

@@ -8,7 +8,7 @@
 
 // Texture files as plain pixels. The first bytes of a file determine its format; its name does not
 // matter. The functions open no file, and they check each size that the bytes state.
-namespace airtruth::aircraft {
+namespace airtruth::texture_file {
 
 // sRGB with straight alpha: 4 bytes per pixel (R, G, B, A), rows from the bottom up as in OpenGL.
 // rgba has 4 * width * height bytes.
@@ -32,4 +32,4 @@ Picture read_picture(std::string_view bytes, const PictureLimits& limits = {});
 // A black picture of that size. Throws Error, which names the exceeded limit, for a larger one.
 Picture blank_picture(std::uint64_t width, std::uint64_t height, const PictureLimits& limits);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::texture_file

@@ -8,7 +8,7 @@
 
 // The SGI Image File Format 0.97 (Paul Haeberli): big-endian, channels one after another, rows from
 // the bottom up.
-namespace airtruth::aircraft {
+namespace airtruth::texture_file {
 namespace {
 
 // Length of the header.
@@ -116,4 +116,4 @@ Picture read_sgi(std::string_view bytes, const PictureLimits& limits) {
   return SgiReader(bytes, limits).read();
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::texture_file

@@ -15,7 +15,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::texture_file {
 namespace {
 
 using Pixel = std::array<int, 4>;
@@ -195,4 +195,4 @@ TEST(Pictures, RefusesWhatIsNoneOrTooLarge) {
 }
 
 }  // namespace
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::texture_file

@@ -9,7 +9,7 @@
 #include "foundation/base/error.h"
 
 // Truevision TGA File Format Specification 2.0: little-endian.
-namespace airtruth::aircraft {
+namespace airtruth::texture_file {
 namespace {
 
 // Length of the header.
@@ -150,4 +150,4 @@ std::optional<Picture> read_tga(std::string_view bytes, const PictureLimits& lim
   return header ? std::optional(TgaReader(bytes, *header, limits).read()) : std::nullopt;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::texture_file

@@ -7,10 +7,10 @@
 #include "aircraft/texture_file/picture.h"
 
 // Truevision TGA File Format 2.0.
-namespace airtruth::aircraft {
+namespace airtruth::texture_file {
 
 // Empty where the header contradicts itself, since the format has no signature. Throws Error
 // without a place.
 std::optional<Picture> read_tga(std::string_view bytes, const PictureLimits& limits);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::texture_file

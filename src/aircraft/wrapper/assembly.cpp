@@ -12,7 +12,7 @@
 #include "aircraft/model/texture.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
 // A bound for untrusted files, as raw_model.h has it for a model.
@@ -24,7 +24,7 @@ constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
 constexpr float kDiscOpacity = 0.1f;
 constexpr float kBladeAlbedo = 0.06f;  // linear; black or grey paint, behind tips of any colour
 
-void make_propeller_disc(Material& material, const Picture* picture) {
+void make_propeller_disc(model::Material& material, const texture_file::Picture* picture) {
   float cover = 1;  // the mean opacity of the texels that are not transparent
   if (picture != nullptr) {
     constexpr int kMinAlphaCodes = 8;  // of 255; chosen: fainter texels are rounding of the file
@@ -39,7 +39,7 @@ void make_propeller_disc(Material& material, const Picture* picture) {
   material.emission = {};
   material.specular = {};
   material.shininess = 0;
-  material.finish = Finish::kMat;
+  material.finish = model::Finish::kMat;
 }
 
 }  // namespace
@@ -48,16 +48,16 @@ Assembly::Assembly(ModelFiles& files) : files_(files) {
   model_.mesh.parts.push_back({.name = "airframe"});
 }
 
-PictureLimits Assembly::picture_limits() const {
-  PictureLimits limits;
-  limits.pixels = kMaxPixels - pixels_;
+texture_file::PictureLimits Assembly::picture_limits() const {
+  texture_file::PictureLimits limits;
+  limits.pixels = model::kMaxPixels - pixels_;
   return limits;
 }
 
-int Assembly::add_picture(Picture picture, bool repeat_u, bool repeat_v) {
+int Assembly::add_picture(texture_file::Picture picture, bool repeat_u, bool repeat_v) {
   pixels_ += picture.rgba.size() / 4;
-  if (model_.pictures.size() >= kMaxPictures)
-    throw Error("has more than " + std::to_string(kMaxPictures) + " textures");
+  if (model_.pictures.size() >= model::kMaxPictures)
+    throw Error("has more than " + std::to_string(model::kMaxPictures) + " textures");
   model_.pictures.push_back({std::move(picture), repeat_u, repeat_v});
   return static_cast<int>(model_.pictures.size()) - 1;
 }
@@ -66,13 +66,17 @@ int Assembly::read_texture(const fs::path& path, bool repeat_u, bool repeat_v) {
   const std::string key = path.string() + (repeat_u ? "|u" : "|") + (repeat_v ? "v" : "");
   const auto known = picture_of_file_.find(key);
   if (known != picture_of_file_.end()) return known->second;
-  const int index = add_picture(
-      read_picture(files_.read(path, kMaxPictureBytes), picture_limits()), repeat_u, repeat_v);
+  const int index =
+      add_picture(texture_file::read_picture(files_.read(path, kMaxPictureBytes), picture_limits()),
+                  repeat_u,
+                  repeat_v);
   picture_of_file_[key] = index;
   return index;
 }
 
-int Assembly::texture_of(const Batch& batch, const PartChoice& choice, const ModelFile& file) {
+int Assembly::texture_of(const ac3d::Batch& batch,
+                         const PartChoice& choice,
+                         const ModelFile& file) {
   const bool replaced = !choice.texture.empty();
   if (!replaced && batch.picture >= 0) return batch.picture;
   if (!replaced && batch.texture.empty()) return -1;
@@ -96,10 +100,12 @@ int Assembly::texture_of(const Batch& batch, const PartChoice& choice, const Mod
   }
 }
 
-std::uint32_t Assembly::material_of(const Batch& batch, const PartChoice& choice, int texture) {
-  Material material = batch.srgb;
+std::uint32_t Assembly::material_of(const ac3d::Batch& batch,
+                                    const PartChoice& choice,
+                                    int texture) {
+  model::Material material = batch.srgb;
   for (std::array<float, 3>* colour : {&material.diffuse, &material.emission, &material.specular})
-    for (float& channel : *colour) channel = linear_channel(channel);
+    for (float& channel : *colour) channel = model::linear_channel(channel);
   material.shininess = std::clamp(material.shininess, 0.0f, 128.0f);
   material.opacity = choice.opacity * std::clamp(material.opacity, 0.0f, 1.0f);
   material.texture = texture;
@@ -111,18 +117,18 @@ std::uint32_t Assembly::material_of(const Batch& batch, const PartChoice& choice
   const auto same = std::find(materials.begin(), materials.end(), material);
   const auto index = static_cast<std::uint32_t>(same - materials.begin());
   if (same != materials.end()) return index;
-  if (materials.size() >= kMaxMaterials)
-    throw Error("has more than " + std::to_string(kMaxMaterials) + " materials");
+  if (materials.size() >= model::kMaxMaterials)
+    throw Error("has more than " + std::to_string(model::kMaxMaterials) + " materials");
   materials.push_back(material);
   return index;
 }
 
-void Assembly::add_vertices(const Batch& batch, const Eigen::Affine3d& body_from_file) {
-  Mesh& mesh = model_.mesh;
+void Assembly::add_vertices(const ac3d::Batch& batch, const Eigen::Affine3d& body_from_file) {
+  model::Mesh& mesh = model_.mesh;
   const Eigen::Matrix3d normal_map = body_from_file.linear().inverse().transpose();
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
     const Vector3 position = body_from_file * batch.positions[i].cast<double>();
-    if (!(position.cwiseAbs().maxCoeff() <= kLargestCoordinate))
+    if (!(position.cwiseAbs().maxCoeff() <= model::kLargestCoordinate))
       throw Error("has a vertex farther than 1,000 km from the model's origin, once it is placed");
     mesh.positions.push_back(position.cast<float>());
     Vector3 normal = normal_map * batch.normals[i].cast<double>();
@@ -132,13 +138,14 @@ void Assembly::add_vertices(const Batch& batch, const Eigen::Affine3d& body_from
   }
 }
 
-void Assembly::add(const Batch& batch, const PartChoice& choice, const ModelFile& file) {
+void Assembly::add(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file) {
   if (batch.triangles.empty()) return;
-  Mesh& mesh = model_.mesh;
+  model::Mesh& mesh = model_.mesh;
   triangles_ += batch.triangles.size();
-  if (triangles_ > kMaxTriangles || mesh.positions.size() + batch.positions.size() > kMaxCorners)
-    throw Error("makes an aircraft of more than " + std::to_string(kMaxTriangles) +
-                    " triangles or " + std::to_string(kMaxCorners) + " vertices",
+  if (triangles_ > model::kMaxTriangles ||
+      mesh.positions.size() + batch.positions.size() > model::kMaxCorners)
+    throw Error("makes an aircraft of more than " + std::to_string(model::kMaxTriangles) +
+                    " triangles or " + std::to_string(model::kMaxCorners) + " vertices",
                 {files_.shown(file.path).string()});
   const std::uint32_t material = material_of(batch, choice, texture_of(batch, choice, file));
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
@@ -147,20 +154,22 @@ void Assembly::add(const Batch& batch, const PartChoice& choice, const ModelFile
   } catch (const Error& error) {
     throw Error(error.message(), {files_.shown(file.path).string()});
   }
-  Part& part = mesh.parts[static_cast<std::size_t>(choice.part)];
+  model::Part& part = mesh.parts[static_cast<std::size_t>(choice.part)];
   for (const auto& [a, b, c] : batch.triangles)
     part.triangles.push_back({{base + a, base + b, base + c}, material});
 }
 
 void append_ac(Assembly& assembly, const ModelFile& file) {
   ModelFiles& files = assembly.files();
-  const AcFile ac = parse_ac(files.read(file.path, kMaxModelBytes), files.shown(file.path));
+  const ac3d::AcFile ac =
+      ac3d::parse_ac(files.read(file.path, model::kMaxModelBytes), files.shown(file.path));
   for (std::size_t i = 0; i < ac.objects.size(); ++i) {
     if (ac.objects[i].surfaces.empty()) continue;
-    const PartChoice choice = file.choose(names_of(ac, i));
+    const PartChoice choice = file.choose(ac3d::names_of(ac, i));
     if (choice.hidden) continue;
-    for (const Batch& batch : batches_of(ac, ac.objects[i])) assembly.add(batch, choice, file);
+    for (const ac3d::Batch& batch : ac3d::batches_of(ac, ac.objects[i]))
+      assembly.add(batch, choice, file);
   }
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -11,7 +11,7 @@
 #include "aircraft/wrapper/model_files.h"
 
 // Builds one aircraft from the triangles of its model files.
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 
 // What to do with the triangles below a chain of named nodes (outermost first).
 struct PartChoice {
@@ -35,26 +35,26 @@ class Assembly {
   explicit Assembly(ModelFiles& files);
 
   ModelFiles& files() { return files_; }
-  RawModel& model() { return model_; }
+  model::RawModel& model() { return model_; }
 
   // Appends triangles of a file. Throws Error, with the file and the line that names the texture,
   // where a texture is missing or unreadable, and where triangles, vertices or pixels exceed a
   // limit.
-  void add(const Batch& batch, const PartChoice& choice, const ModelFile& file);
+  void add(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
 
   // Adds a picture from inside a model file and returns its index for Batch::picture.
-  int add_picture(Picture picture, bool repeat_u, bool repeat_v);
+  int add_picture(texture_file::Picture picture, bool repeat_u, bool repeat_v);
   // The number of pixels that the limit still allows.
-  PictureLimits picture_limits() const;
+  texture_file::PictureLimits picture_limits() const;
 
  private:
-  int texture_of(const Batch& batch, const PartChoice& choice, const ModelFile& file);
+  int texture_of(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
   int read_texture(const fs::path& path, bool repeat_u, bool repeat_v);
-  std::uint32_t material_of(const Batch& batch, const PartChoice& choice, int texture);
-  void add_vertices(const Batch& batch, const Eigen::Affine3d& body_from_file);
+  std::uint32_t material_of(const ac3d::Batch& batch, const PartChoice& choice, int texture);
+  void add_vertices(const ac3d::Batch& batch, const Eigen::Affine3d& body_from_file);
 
   ModelFiles& files_;
-  RawModel model_;
+  model::RawModel model_;
   std::map<std::string, int> picture_of_file_;  // with its way of repeating
   std::size_t pixels_ = 0;
   std::size_t triangles_ = 0;
@@ -63,4 +63,4 @@ class Assembly {
 // Appends an AC3D file's triangles.
 void append_ac(Assembly& assembly, const ModelFile& file);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -6,7 +6,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
 // Number of files: a bound for untrusted files, far above those of any aircraft.
@@ -129,4 +129,4 @@ fs::path find_texture(ModelFiles& files,
   return {};
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 
 namespace fs = std::filesystem;
 
@@ -84,4 +84,4 @@ fs::path find_texture(ModelFiles& files,
                       const std::string& name,
                       const std::vector<fs::path>& folders);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -7,7 +7,7 @@
 
 #include "foundation/base/names.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
 bool contains_any(const std::string& text, std::initializer_list<const char*> words) {
@@ -64,4 +64,4 @@ bool is_wheel(const std::string& object) {
   return contains_any(lower_case(object), {"wheel", "tire", "tyre", "roue", "gear"});
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

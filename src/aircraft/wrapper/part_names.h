@@ -6,7 +6,7 @@
 
 // What FlightGear's models tell by names alone: lamps and other effects of the game, propellers
 // that turn too fast to be seen, and wheels. Letter case matters only where it is said.
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 
 // Whether the path is that of a lamp, smoke, rain or a sound.
 bool is_effect_path(const std::string& path);
@@ -21,4 +21,4 @@ bool is_propeller_disc(const std::vector<std::string>& names);
 
 bool is_wheel(const std::string& object);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -15,13 +15,13 @@
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
-void drop_doubles(Mesh& mesh) {
-  for (Part& part : mesh.parts) {
+void drop_doubles(model::Mesh& mesh) {
+  for (model::Part& part : mesh.parts) {
     std::set<std::array<std::array<float, 3>, 3>> seen;
-    std::erase_if(part.triangles, [&](const Triangle& triangle) {
+    std::erase_if(part.triangles, [&](const model::Triangle& triangle) {
       std::array<std::array<float, 3>, 3> key;
       for (std::size_t i = 0; i < 3; ++i) {
         const Eigen::Vector3f& p = mesh.positions[triangle.vertex[i]];
@@ -39,12 +39,12 @@ void drop_doubles(Mesh& mesh) {
 }
 
 // Removes vertices that no triangle uses.
-void drop_unused(Mesh& mesh) {
+void drop_unused(model::Mesh& mesh) {
   constexpr std::uint32_t kUnused = ~std::uint32_t{0};
   std::vector<std::uint32_t> new_from_old(mesh.positions.size(), kUnused);
-  Mesh kept;
-  for (Part& part : mesh.parts) {
-    for (Triangle& triangle : part.triangles) {
+  model::Mesh kept;
+  for (model::Part& part : mesh.parts) {
+    for (model::Triangle& triangle : part.triangles) {
       for (std::uint32_t& vertex : triangle.vertex) {
         std::uint32_t& moved = new_from_old[vertex];
         if (moved == kUnused) {
@@ -65,13 +65,13 @@ void drop_unused(Mesh& mesh) {
 // Removes triangles without area, which have no normal; the second of two triangles in the same
 // place with opposite sides, since a translucent surface would be drawn twice; and the vertices and
 // parts that are then unused.
-void tidy(Mesh& mesh) {
+void tidy(model::Mesh& mesh) {
   drop_doubles(mesh);
   drop_unused(mesh);
   if (mesh.parts.size() > 1)
     mesh.parts.erase(std::remove_if(mesh.parts.begin() + 1,
                                     mesh.parts.end(),
-                                    [](const Part& part) { return part.triangles.empty(); }),
+                                    [](const model::Part& part) { return part.triangles.empty(); }),
                      mesh.parts.end());
 }
 
@@ -104,7 +104,7 @@ Vector3 axis_vector(const std::string& text, const char* what) {
   return (negative ? -1.0 : 1.0) * Vector3::Unit(letter[0] - 'x');
 }
 
-Eigen::Affine3d body_from_axes(const ModelAxes& axes) {
+Eigen::Affine3d body_from_axes(const model::ModelAxes& axes) {
   const Vector3 forward = axis_vector(axes.forward, "model_forward");
   const Vector3 up = axis_vector(axes.up, "model_up");
   if (std::abs(forward.dot(up)) > 0.5)
@@ -199,8 +199,8 @@ class Loader {
           parts[i].axis_in_body == spin.axis_in_body &&
           parts[i].revolutions_per_s == spin.revolutions_per_s)
         return static_cast<int>(i);
-    if (parts.size() >= kMaxParts)
-      throw Error("turns more than " + std::to_string(kMaxParts) + " parts by themselves");
+    if (parts.size() >= model::kMaxParts)
+      throw Error("turns more than " + std::to_string(model::kMaxParts) + " parts by themselves");
     parts.push_back(
         {spin.name, {}, true, spin.axis_in_body, spin.centre_in_body, spin.revolutions_per_s});
     return static_cast<int>(parts.size() - 1);
@@ -220,7 +220,7 @@ class Loader {
 };
 
 void read_wrapped(const fs::path& file,
-                  const LoadOptions& options,
+                  const model::LoadOptions& options,
                   const AppendOther& append,
                   Assembly& assembly) {
   if (options.axes)
@@ -243,10 +243,10 @@ void read_wrapped(const fs::path& file,
 }
 
 void read_bare(const fs::path& file,
-               const LoadOptions& options,
+               const model::LoadOptions& options,
                const AppendOther& append,
                Assembly& assembly) {
-  const Eigen::Affine3d body_from_file = body_from_axes(options.axes.value_or(ModelAxes{}));
+  const Eigen::Affine3d body_from_file = body_from_axes(options.axes.value_or(model::ModelAxes{}));
   const auto choose = [&](const std::vector<std::string>& names) {
     PartChoice choice = choice_by_names(names);
     choice.body_from_file = body_from_file;
@@ -265,22 +265,22 @@ bool is_model_file(const std::string& name) {
          kScenes.contains(ending);
 }
 
-RawModel read_model(ModelFiles& files,
-                    const fs::path& file,
-                    const LoadOptions& options,
-                    const AppendOther& append_other) {
+model::RawModel read_model(ModelFiles& files,
+                           const fs::path& file,
+                           const model::LoadOptions& options,
+                           const AppendOther& append_other) {
   Assembly assembly(files);
   if (ending_of(file) == ".xml") {
     read_wrapped(file, options, append_other, assembly);
   } else {
     read_bare(file, options, append_other, assembly);
   }
-  RawModel model = std::move(assembly.model());
+  model::RawModel model = std::move(assembly.model());
   tidy(model.mesh);
   if (model.mesh.triangle_count() == 0)
     throw Error("holds no triangles; expected a 3D model", {files.shown(file).string()});
-  check_model(model);
+  model::check_model(model);
   return model;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -14,7 +14,7 @@
 // Example: for the folder AI/Aircraft/738, read_model(files, "738-Ryanair.xml", options) reads the
 // wrapper, the .ac file that it names and its textures. Its result has a mesh in body axes (x
 // forward, y right, z down; metres) and one sRGB picture per texture.
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 
 // The reader of other formats than .ac (.obj, .3ds and others), which only airtruth-model-reader
 // has. Where it is empty, such files are an Error.
@@ -22,10 +22,10 @@ using AppendOther = std::function<void(Assembly& assembly, const ModelFile& file
 
 // `file` is a path below the folder of `files`: a wrapper .xml, an .ac, or another model file.
 // Throws Error as load_aircraft does. The result passes check_model.
-RawModel read_model(ModelFiles& files,
-                    const fs::path& file,
-                    const LoadOptions& options,
-                    const AppendOther& append_other = {});
+model::RawModel read_model(ModelFiles& files,
+                           const fs::path& file,
+                           const model::LoadOptions& options,
+                           const AppendOther& append_other = {});
 
 // The ending of a file's name in lower case, with its dot.
 std::string ending_of(const fs::path& file);
@@ -34,4 +34,4 @@ std::string ending_of(const fs::path& file);
 // are recognised and refused (.osgt, .osgb, .ive and others).
 bool is_model_file(const std::string& name);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -6,7 +6,7 @@
 
 #include "aircraft/wrapper/part_names.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
 constexpr double kSeenFrom_m = 50;  // the viewing distance that selects the level of detail; chosen
@@ -106,4 +106,4 @@ Animated Scope::animated(const std::vector<std::string>& names) const {
   return result;
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

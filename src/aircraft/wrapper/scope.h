@@ -9,7 +9,7 @@
 #include "aircraft/wrapper/wrapper.h"
 
 // The combined effect of the animations of a wrapper, and of the wrappers around it, on one object.
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 
 struct Spin {
   std::string name;
@@ -56,4 +56,4 @@ class Scope {
   std::vector<Level> levels_;
 };
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

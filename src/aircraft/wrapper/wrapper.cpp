@@ -7,7 +7,7 @@
 #include "aircraft/wrapper/part_names.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
 // Of files that include or nest each other; bounds the recursion over a hostile file.
@@ -110,4 +110,4 @@ Wrapper read_wrapper(ModelFiles& files,
   return WrapperReader(files, cruise, missing).read(file, 0);
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

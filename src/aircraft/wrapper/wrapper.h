@@ -7,7 +7,7 @@
 #include "aircraft/wrapper/model_files.h"
 #include "aircraft/wrapper/wrapper_text.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 
 // Reads a FlightGear wrapper XML of a 3D model, what it includes and what it nests. A property of
 // the file itself overrides one that it includes. Paths are below the folder of `files`. A nested
@@ -24,4 +24,4 @@ Wrapper read_wrapper(ModelFiles& files,
 // Returns an empty path where it is in none of them or not below the folder of `files`.
 fs::path find_named_file(ModelFiles& files, const std::string& path, const fs::path& folder);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/text.h"
 
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 namespace {
 
 using Node = pugi::xml_node;
@@ -237,4 +237,4 @@ Table parse_table(std::string_view text, const fs::path& name) {
   return table_of(load(document, text, name));
 }
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -13,7 +13,7 @@
 
 // The content of one FlightGear PropertyList, before the files that it names are searched.
 // Coordinates are FlightGear's: x back, y right, z up, metres; rotations are right-handed.
-namespace airtruth::aircraft {
+namespace airtruth::wrapper {
 
 namespace fs = std::filesystem;
 
@@ -79,4 +79,4 @@ Wrapper parse_wrapper(std::string_view text,
 // The <entry> children of a file that an <interpolation> includes.
 Table parse_table(std::string_view text, const fs::path& name);
 
-}  // namespace airtruth::aircraft
+}  // namespace airtruth::wrapper

@@ -135,9 +135,9 @@ class Comparing {
     lens_ = setup::lens_of(given.lens, {info.width, info.height});
     rate_hz_ = info.frame_rate.value();
     const scene::Intruder& intruder = given.intruders[0];
-    aircraft::LoadOptions load;
+    model::LoadOptions load;
     load.stop = options_.stop;
-    aircraft_ = aircraft::load_aircraft(intruder.aircraft, load, options_.warn);
+    aircraft_ = fleet::load_aircraft(intruder.aircraft, load, options_.warn);
     attitude_ = {intruder.yaw_deg.value_or(90),
                  intruder.pitch_deg.value_or(0),
                  intruder.roll_deg.value_or(0)};
@@ -267,7 +267,7 @@ class Comparing {
   std::vector<std::string> paints_of(const std::string& type) const {
     std::vector<std::string> paints = {type};
     if (!options_.types.empty()) return paints;
-    const std::vector<std::string> others = aircraft::liveries(type);
+    const std::vector<std::string> others = fleet::liveries(type);
     const std::size_t count = std::min(kMaxPaints - 1, others.size());
     for (std::size_t i = 0; i < count; ++i) paints.push_back(others[i * others.size() / count]);
     return paints;
@@ -372,7 +372,7 @@ class Comparing {
   pipeline::StagedFolder staged_;
   std::optional<lens::Lens> lens_;
   double rate_hz_ = 0;
-  aircraft::Aircraft aircraft_;
+  fleet::Aircraft aircraft_;
   YawPitchRoll attitude_;
   std::optional<Comparison::Pose> pose_;
   std::vector<Compared> all_;

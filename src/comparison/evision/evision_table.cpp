@@ -79,7 +79,7 @@ trajectory::Path path_through(const std::vector<Position>& positions, bool bank)
 
 // An aircraft, ready to be projected and to be rendered.
 struct Model {
-  aircraft::Aircraft aircraft;
+  fleet::Aircraft aircraft;
   projection::SilhouettePoints silhouette;
   shade::Model rays;
 
@@ -88,12 +88,12 @@ struct Model {
   Model(const Model&) = delete;
 
  private:
-  explicit Model(aircraft::Aircraft loaded)
+  explicit Model(fleet::Aircraft loaded)
       : aircraft(std::move(loaded)),
-        silhouette{&aircraft.mesh, aircraft::silhouette_points(aircraft.mesh)},
+        silhouette{&aircraft.mesh, model::silhouette_points(aircraft.mesh)},
         rays(aircraft.mesh) {}
-  static aircraft::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
-    aircraft::Aircraft loaded = aircraft::load_aircraft(name, {.catalogue_scale = 1}, warn);
+  static fleet::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
+    fleet::Aircraft loaded = fleet::load_aircraft(name, {.catalogue_scale = 1}, warn);
     for (Eigen::Vector3f& p : loaded.mesh.positions) p *= static_cast<float>(scale);
     return loaded;
   }

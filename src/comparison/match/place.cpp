@@ -121,7 +121,7 @@ Vector3 direction_beside(const Spot& spot, const Pixel& side, const lens::Lens& 
 }  // namespace
 
 Beside path_beside(const RealBoxes& boxes,
-                   const aircraft::Mesh& mesh,
+                   const model::Mesh& mesh,
                    const YawPitchRoll& attitude,
                    const lens::Lens& lens,
                    double frame_rate_hz,
@@ -130,11 +130,11 @@ Beside path_beside(const RealBoxes& boxes,
   const Pixel side = side_of(spots, lens.size());
   if (side.isZero())
     throw Error("there is no room in the picture beside the real aircraft at its own size");
-  const projection::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
+  const projection::SilhouettePoints silhouette{&mesh, model::silhouette_points(mesh)};
   const Quaternion turned = world_from_body(attitude);
   const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
   const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
-  const aircraft::Extents extents = aircraft::extents(mesh);
+  const model::Extents extents = model::extents(mesh);
   Beside path;
   double range_m = 0;
   for (const Spot& spot : spots) {

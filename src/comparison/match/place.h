@@ -17,7 +17,7 @@ struct Beside {
   std::vector<double> times_s;
 };
 Beside path_beside(const RealBoxes& boxes,
-                   const aircraft::Mesh& mesh,
+                   const model::Mesh& mesh,
                    const YawPitchRoll& attitude,
                    const lens::Lens& lens,
                    double frame_rate_hz,

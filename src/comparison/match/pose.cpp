@@ -57,10 +57,10 @@ YawPitchRoll attitude_of(const EyePlace& eye) {
 // Coverage of the aircraft, kViewPx square, from far off.
 class Views {
  public:
-  explicit Views(const aircraft::Mesh& mesh)
+  explicit Views(const model::Mesh& mesh)
       : model_(mesh),
-        silhouette_{&mesh, aircraft::silhouette_points(mesh)},
-        extents_(aircraft::extents(mesh)) {}
+        silhouette_{&mesh, model::silhouette_points(mesh)},
+        extents_(model::extents(mesh)) {}
 
   cv::Mat coverage(double azimuth_deg, double elevation_deg) const {
     const double largest_m =
@@ -88,7 +88,7 @@ class Views {
  private:
   shade::Model model_;
   projection::SilhouettePoints silhouette_;
-  aircraft::Extents extents_;
+  model::Extents extents_;
 };
 
 // A view turned in its picture.
@@ -269,7 +269,7 @@ bool is_unlike(const TypeFit& fit, const std::vector<TypeFit>& others) {
 // A type with the best attitudes of the coarse grid.
 struct Contender {
   std::string name;
-  aircraft::Aircraft aircraft;
+  fleet::Aircraft aircraft;
   std::vector<Candidate> coarse;
 };
 
@@ -278,12 +278,12 @@ std::vector<Contender> contenders_among(const std::vector<std::string>& types,
                                         const cv::Mat& mask,
                                         const Warn& warn_to,
                                         const std::stop_token& stop) {
-  aircraft::LoadOptions load;
+  model::LoadOptions load;
   load.stop = stop;
   std::vector<Contender> contenders;
   for (const std::string& type : types) {
     try {
-      contenders.push_back({type, aircraft::load_aircraft(type, load, {}), {}});
+      contenders.push_back({type, fleet::load_aircraft(type, load, {}), {}});
     } catch (const Error& error) {
       warn(warn_to, type + " is not compared with the real aircraft: " + error.what());
       continue;
@@ -302,7 +302,7 @@ std::vector<Contender> contenders_among(const std::vector<std::string>& types,
 }  // namespace
 
 PoseFit fit_pose(const std::vector<cv::Mat>& masks,
-                 const aircraft::Mesh& mesh,
+                 const model::Mesh& mesh,
                  const std::stop_token& stop) {
   check(!masks.empty(), "a pose is fitted to masks");
   const Views views(mesh);

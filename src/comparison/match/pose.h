@@ -33,7 +33,7 @@ struct PoseFit {
 // `masks`: one or more tightly bounded masks, 8-bit, 255 for the aircraft. Throws Interrupted on
 // stop.
 PoseFit fit_pose(const std::vector<cv::Mat>& masks,
-                 const aircraft::Mesh& mesh,
+                 const model::Mesh& mesh,
                  const std::stop_token& stop = {});
 
 // Types of distinct appearance, one of each kind, in mostly white paint like most civil aircraft.

@@ -17,9 +17,9 @@ namespace airtruth::match {
 namespace {
 
 // The aircraft in a plain sky, straight ahead of a camera that looks north, as large as `size_px`.
-cv::Mat mask_in_the_sky(const aircraft::Mesh& mesh, const YawPitchRoll& attitude, double size_px) {
+cv::Mat mask_in_the_sky(const model::Mesh& mesh, const YawPitchRoll& attitude, double size_px) {
   constexpr int kWidth = 200, kHeight = 160;
-  const aircraft::Extents extents = aircraft::extents(mesh);
+  const model::Extents extents = model::extents(mesh);
   const double length_m = std::max(extents.length_m(), extents.span_m());
   const double focal_px = 900, range_m = focal_px * length_m / size_px;
   const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {kWidth / 2.0, kHeight / 2.0}},
@@ -27,7 +27,7 @@ cv::Mat mask_in_the_sky(const aircraft::Mesh& mesh, const YawPitchRoll& attitude
   const Rigid world_from_cam{cam_from_body().conjugate(), Vector3::Zero()};
   const Rigid world_from_aircraft{world_from_body(attitude), Vector3(range_m, 0, 0)};
   const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
-  const projection::SilhouettePoints points{&mesh, aircraft::silhouette_points(mesh)};
+  const projection::SilhouettePoints points{&mesh, model::silhouette_points(mesh)};
   const auto box = projection::exact_box(sight, points, world_from_aircraft, 0).box;
   const shade::Model model(mesh);
   shade::Light light;
@@ -53,7 +53,7 @@ double angle_deg(const YawPitchRoll& a, const YawPitchRoll& b) {
 }
 
 TEST(Pose, AnAircraftOfKnownAttitudeIsFoundAgainInItsPicture) {
-  const aircraft::Aircraft aircraft = aircraft::load_aircraft("738/738-Delta");
+  const fleet::Aircraft aircraft = fleet::load_aircraft("738/738-Delta");
   // Seen from below: coming nearer nose up, or going away nose down.
   for (const YawPitchRoll& truth : {YawPitchRoll{-60, -12, 5}, YawPitchRoll{160, 20, 15}}) {
     const cv::Mat mask = mask_in_the_sky(aircraft.mesh, truth, 45);
@@ -68,7 +68,7 @@ TEST(Pose, AnAircraftOfKnownAttitudeIsFoundAgainInItsPicture) {
 }
 
 TEST(Pose, TheTypeIsFoundAmongOthers) {
-  const aircraft::Aircraft aircraft = aircraft::load_aircraft("c172/news");
+  const fleet::Aircraft aircraft = fleet::load_aircraft("c172/news");
   const cv::Mat mask = mask_in_the_sky(aircraft.mesh, {100, 20, 10}, 40);
   ASSERT_FALSE(mask.empty());
   std::string said;

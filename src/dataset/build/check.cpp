@@ -17,7 +17,7 @@ namespace {
 
 void check_aircraft(const catalogue::Aircraft& aircraft) {
   try {
-    aircraft::aircraft_file(aircraft.aircraft);
+    fleet::aircraft_file(aircraft.aircraft);
   } catch (const Error& error) {
     throw Error(error.message(), aircraft.where);
   }

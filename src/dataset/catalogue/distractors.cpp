@@ -47,10 +47,10 @@ const TableReader::Keys kLensKeys = {"spot_px", "opacity", "speed_px_s"};
 DistractorRule usual_rule(DistractorKind kind) {
   DistractorRule rule;
   rule.kind = kind;
-  rule.plumages = {aircraft::Plumage::kGull,
-                   aircraft::Plumage::kDark,
-                   aircraft::Plumage::kBrown,
-                   aircraft::Plumage::kGrey};
+  rule.plumages = {shapes::Plumage::kGull,
+                   shapes::Plumage::kDark,
+                   shapes::Plumage::kBrown,
+                   shapes::Plumage::kGrey};
   switch (kind) {
     case DistractorKind::kBird:
       rule.size_m = {0.6, 2.2};
@@ -100,7 +100,7 @@ void read_air(const TableReader& table, DistractorRule& rule) {
   if (!words) return;
   rule.plumages.clear();
   for (std::size_t i = 0; i < words->size(); ++i) {
-    const auto plumage = enum_named<aircraft::Plumage>((*words)[i]);
+    const auto plumage = enum_named<shapes::Plumage>((*words)[i]);
     if (!plumage)
       throw Error(fmt::format("plumage[{}] is '{}'; expected gull, dark, brown or grey",
                               i,
@@ -150,15 +150,15 @@ namespace {
 
 // Spans squared over wing areas (Pennycuick 1996, table 1): gulls, crows, buzzards and eagles,
 // pigeons.
-double usual_aspect_ratio(aircraft::Plumage plumage) {
+double usual_aspect_ratio(shapes::Plumage plumage) {
   switch (plumage) {
-    case aircraft::Plumage::kGull:
+    case shapes::Plumage::kGull:
       return 9.6;
-    case aircraft::Plumage::kDark:
+    case shapes::Plumage::kDark:
       return 6.5;
-    case aircraft::Plumage::kBrown:
+    case shapes::Plumage::kBrown:
       return 6.3;
-    case aircraft::Plumage::kGrey:
+    case shapes::Plumage::kGrey:
       break;
   }
   return 7.2;
@@ -183,7 +183,7 @@ scene::Intruder drawn_leader(const DistractorRule& rule, Random& random) {
   one.plumage = one_of(random, rule.plumages);
   one.aspect_ratio = usual_aspect_ratio(one.plumage);
   one.glide = drawn(random, rule.glide);
-  one.flap_phase = random.uniform(0, aircraft::kStrokesOfBout);
+  one.flap_phase = random.uniform(0, model::kStrokesOfBout);
   // Numbers of rotors, drawn with equal chances: a choice.
   constexpr std::array<int, 3> kRotors = {4, 4, 6};
   one.rotors = kRotors[static_cast<std::size_t>(random.uniform() * kRotors.size())];

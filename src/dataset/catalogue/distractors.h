@@ -40,7 +40,7 @@ struct DistractorRule {
   WholeRange flock;
   Range spread_m{3, 15};
   // Birds.
-  std::vector<aircraft::Plumage> plumages;
+  std::vector<shapes::Plumage> plumages;
   Range glide{0, 0.7};
   // On the lens; diameter (evenly in the logarithm), alpha, and the speed of insects.
   Range spot_px;

@@ -83,7 +83,7 @@ TEST(DistractorRules, AFlockIsPlacedWhereTheRuleSays) {
     const Vector3 own = camera.at(meets_s)->position_in_world;
     for (std::size_t k = 1; k < planned; ++k) {
       const scene::Intruder& bird = item.scene.intruders[k];
-      EXPECT_EQ(bird.distractor->plumage, aircraft::Plumage::kDark);
+      EXPECT_EQ(bird.distractor->plumage, shapes::Plumage::kDark);
       const Vector3 at = setup::path_of(bird, camera).at(meets_s)->position_in_world;
       EXPECT_NEAR((at - own).norm(), 60, 3.2);
     }

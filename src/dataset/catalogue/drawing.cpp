@@ -27,13 +27,13 @@ const std::string& drawn_aircraft(Random& random, const std::vector<AircraftType
                            static_cast<std::size_t>(rest * static_cast<double>(liveries.size())))];
 }
 
-Range speed_range(const Drawn& rule, const aircraft::FlightLimits* limits) {
+Range speed_range(const Drawn& rule, const fleet::FlightLimits* limits) {
   if (rule.speed_mps) return *rule.speed_mps;
   return limits != nullptr ? Range{limits->usual_low_mps, limits->usual_high_mps} : kAnySpeedMps;
 }
 
 // Limits the slope to the type's climb and descent at that speed.
-Range climb_range(const Drawn& rule, const aircraft::FlightLimits* limits, double speed_mps) {
+Range climb_range(const Drawn& rule, const fleet::FlightLimits* limits, double speed_mps) {
   if (rule.climb_deg) return *rule.climb_deg;
   Range range{-kUsualClimbDeg, kUsualClimbDeg};
   if (limits == nullptr) return range;
@@ -45,7 +45,7 @@ Range climb_range(const Drawn& rule, const aircraft::FlightLimits* limits, doubl
   return range;
 }
 
-double drawn_bank_deg(Random random, const Drawn& rule, const aircraft::FlightLimits* limits) {
+double drawn_bank_deg(Random random, const Drawn& rule, const fleet::FlightLimits* limits) {
   if (rule.bank_deg) return drawn(random, *rule.bank_deg);
   if (!rule.bank_suits_type) return 0;
   const double most_deg = limits != nullptr ? limits->usual_bank_deg : kAnyBankDeg;
@@ -72,7 +72,7 @@ bool draw_stated_path(const Drawn& rule, Random of_path, Encounter& encounter) {
 Encounter drawn_encounter(Random& random, const Streams& streams, const Drawn& rule) {
   Encounter encounter;
   encounter.aircraft = drawn_aircraft(random, rule.types);
-  const aircraft::FlightLimits* limits = aircraft::flight_limits(encounter.aircraft);
+  const fleet::FlightLimits* limits = fleet::flight_limits(encounter.aircraft);
   encounter.speed_mps = drawn(random, speed_range(rule, limits));
   encounter.meeting_share = random.uniform(0.2, 0.8);
   if (draw_stated_path(rule, streams.path, encounter)) return encounter;
@@ -87,7 +87,7 @@ SunPosition drawn_sun(Random random, const DaytimeRange& daytime, const std::str
   Range hours = kAnyHours;
   if (daytime.hours)
     hours = *daytime.hours;
-  else if (const auto* limits = aircraft::flight_limits(aircraft))
+  else if (const auto* limits = fleet::flight_limits(aircraft))
     hours = {limits->first_hour, limits->last_hour};
   const Range light =
       daylight_hours(daytime.latitude_deg, daytime.day_of_year).value_or(Range{12, 12});

@@ -128,7 +128,7 @@ TEST(Drawing, WhatSuitsTheTypeIsFlyable) {
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     const Item item = expansion.at(i);
     const scene::Intruder& intruder = item.scene.intruders[0];
-    const aircraft::FlightLimits& limits = *aircraft::flight_limits(intruder.aircraft);
+    const fleet::FlightLimits& limits = *fleet::flight_limits(intruder.aircraft);
     EXPECT_GE(*intruder.speed_mps, limits.usual_low_mps);
     EXPECT_LE(*intruder.speed_mps, limits.usual_high_mps);
     EXPECT_EQ(setup::words_beyond_limits(intruder.aircraft, path_of_first(item.scene), 0, 3), "")

@@ -33,12 +33,12 @@ std::optional<Range> range_or_type(const TableReader& table,
 std::string no_aircraft_fits(const std::string& pattern) {
   const std::string text = "no aircraft fits '" + pattern + "'";
   const std::string wider = "*" + pattern + "*";
-  const std::vector<std::string> names = aircraft::aircraft_fitting(wider);
+  const std::vector<std::string> names = fleet::aircraft_fitting(wider);
   if (!names.empty())
     return text + "; '" + wider + "' fits " + std::to_string(names.size()) + ", the first '" +
            names.front() + "'";
   std::string nearest;
-  for (const std::string& name : aircraft::nearest_aircraft(pattern, 1))
+  for (const std::string& name : fleet::nearest_aircraft(pattern, 1))
     nearest = "; the nearest name is '" + name + "'";
   return text + nearest + "; see `airtruth aircraft list`";
 }
@@ -254,7 +254,7 @@ std::vector<AircraftType> types_in(const TableReader& table) {
                 table.where());
   std::map<std::string, AircraftType> types;
   for (std::size_t i = 0; i < patterns->size(); ++i) {
-    const std::vector<std::string> names = aircraft::aircraft_fitting((*patterns)[i]);
+    const std::vector<std::string> names = fleet::aircraft_fitting((*patterns)[i]);
     for (const std::string& name : names) {
       const std::string type = name.substr(0, name.find('/'));
       types[type].name = type;

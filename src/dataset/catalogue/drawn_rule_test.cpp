@@ -54,7 +54,7 @@ TEST(DrawnPath, AnApproachIsDrawnFromRangesAndLists) {
     // The meeting moment, of a clip of 3 s, and a speed that suits the type.
     EXPECT_GE(drawn.cpa_time_s, 0.2 * 3);
     EXPECT_LE(drawn.cpa_time_s, 0.8 * 3);
-    const aircraft::FlightLimits& limits = *aircraft::flight_limits(intruder.aircraft);
+    const fleet::FlightLimits& limits = *fleet::flight_limits(intruder.aircraft);
     EXPECT_GE(drawn.speed_mps, limits.usual_low_mps);
     EXPECT_LE(drawn.speed_mps, limits.usual_high_mps);
     ++courses[drawn.course_deg];

@@ -15,7 +15,7 @@
 #include "dataset/catalogue/drawn_rule.h"
 #include "dataset/catalogue/folder.h"
 #include "dataset/catalogue/meeting.h"
-#include "encounter/model/sampler.h"
+#include "encounter/encounter_model/sampler.h"
 #include "encounter/sets/draw_encounter.h"
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
@@ -43,11 +43,11 @@ constexpr Limits kTurnRate{.expected = "degrees a second from -90 to 90", .low =
 constexpr Limits kShareOfBin{.expected = "a share from 0 to 1e9", .low = 0, .high = 1e9};
 
 // A number, or the edges of bins; with the shares of the bins at `shares_key`, if that is not "".
-encounter::Distribution distribution_in(const TableReader& table,
-                                        const char* key,
-                                        const char* shares_key,
-                                        const Limits& limits,
-                                        const encounter::Distribution& otherwise) {
+pairing::Distribution distribution_in(const TableReader& table,
+                                      const char* key,
+                                      const char* shares_key,
+                                      const Limits& limits,
+                                      const pairing::Distribution& otherwise) {
   std::vector<double> shares;
   if (*shares_key != '\0' && table.has(shares_key)) {
     if (!table.has(key))
@@ -61,7 +61,7 @@ encounter::Distribution distribution_in(const TableReader& table,
   else
     edges = {*table.number(key, limits)};
   try {
-    return encounter::Distribution(edges, shares, key);
+    return pairing::Distribution(edges, shares, key);
   } catch (const Error& error) {
     table.fail(key, error.message());
   }
@@ -78,8 +78,8 @@ std::vector<std::size_t> bins_in(const TableReader& table, const char* key) {
   return bins;
 }
 
-encounter::Cut cut_in(const TableReader& table) {
-  encounter::Cut cut{bins_in(table, "domains"), bins_in(table, "airspaces"), {}};
+encounter_model::Cut cut_in(const TableReader& table) {
+  encounter_model::Cut cut{bins_in(table, "domains"), bins_in(table, "airspaces"), {}};
   const Limits altitude{.expected = "feet from 0 to 1e5", .low = 0, .high = 1e5};
   if (const auto range = table.tuple("altitude_ft", {altitude, altitude}))
     cut.altitude_ft = {(*range)[0], (*range)[1]};
@@ -87,10 +87,10 @@ encounter::Cut cut_in(const TableReader& table) {
 }
 
 void read_geometry(const TableReader& table, EncounterRule& rule) {
-  encounter::GeometricOptions& geometry = rule.geometry;
+  pairing::GeometricOptions& geometry = rule.geometry;
   const double clip_s = static_cast<double>(rule.frame_count) / kUsualRateHz;
   geometry.cpa_time_s = distribution_in(
-      table, "cpa_time_s", "", scene::kTime, encounter::Distribution({0.2 * clip_s, 0.8 * clip_s}));
+      table, "cpa_time_s", "", scene::kTime, pairing::Distribution({0.2 * clip_s, 0.8 * clip_s}));
   if (geometry.cpa_time_s.low() < 0 || geometry.cpa_time_s.high() > rule.length_s)
     table.fail("cpa_time_s",
                fmt::format("cpa_time_s is outside of the clip; expected 0 to {} s", rule.length_s));
@@ -116,10 +116,10 @@ void read_model(const TableReader& table, const Catalogue& catalogue, EncounterR
   const fs::path folder = catalogue.file.parent_path();
   const bool is_copy = fs::is_directory(Folder{folder}.sequences());
   const fs::path kept = kept_model(folder, *file);
-  encounter::SampleOptions options{rule.seed, rule.length_s, cut_in(table)};
+  encounter_model::SampleOptions options{rule.seed, rule.length_s, cut_in(table)};
   try {
-    rule.tracks = std::make_shared<const encounter::Sampler>(
-        encounter::read_model(is_copy && fs::exists(kept) ? kept : *file), options);
+    rule.tracks = std::make_shared<const encounter_model::Sampler>(
+        encounter_model::read_model(is_copy && fs::exists(kept) ? kept : *file), options);
   } catch (const Error& error) {
     throw Error(error.what(), table.where("model"));
   }
@@ -200,7 +200,7 @@ struct Demands {
   double climb_mps = 0, descent_mps = 0, bank_deg = 0;
 };
 
-Demands demands_of(const encounter::Track& track) {
+Demands demands_of(const track::Track& track) {
   Demands demands;
   for (std::size_t i = 0; i < track.size(); ++i) {
     const Vector3& velocity = track.velocities_ned_mps[i];
@@ -216,14 +216,14 @@ Demands demands_of(const encounter::Track& track) {
                                      before.head<2>().dot(velocity.head<2>()));
     const double rate = std::abs(turned) / (track.times_s[i] - track.times_s[i - 1]);
     // A coordinated turn.
-    demands.bank_deg = std::max(demands.bank_deg,
-                                degrees(std::atan(speed * rate / aircraft::kStandardGravityMps2)));
+    demands.bank_deg =
+        std::max(demands.bank_deg, degrees(std::atan(speed * rate / fleet::kStandardGravityMps2)));
   }
   return demands;
 }
 
 // The largest ratio of what is asked to what the class can; up to 1 where it flies the track.
-double strain(const aircraft::FlightLimits& limits, const Demands& demands) {
+double strain(const fleet::FlightLimits& limits, const Demands& demands) {
   const double slowness =
       limits.slowest_mps > 0 ? limits.slowest_mps / std::max(demands.slowest_mps, 1e-9) : 0;
   return std::max({slowness,
@@ -243,7 +243,7 @@ Fitting fitting_types(const EncounterRule& rule, const Demands& demands) {
   std::vector<const AircraftType*> usual, able, nearest;
   double least = HUGE_VAL;
   for (const AircraftType& type : rule.types) {
-    const auto* limits = aircraft::flight_limits(type.name);
+    const auto* limits = fleet::flight_limits(type.name);
     const double asked = limits == nullptr ? 0 : strain(*limits, demands);
     if (asked < least) nearest.clear();
     least = std::min(least, asked);
@@ -258,9 +258,9 @@ Fitting fitting_types(const EncounterRule& rule, const Demands& demands) {
   return {usual.empty() ? able : usual, true};
 }
 
-encounter::Track own_track(const scene::Scene& scene, const EncounterRule& rule) {
+track::Track own_track(const scene::Scene& scene, const EncounterRule& rule) {
   const trajectory::Path path = setup::camera_path(scene.camera);
-  encounter::Track own{"own", {}, {}, {}};
+  track::Track own{"own", {}, {}, {}};
   for (int i = 0; i * kOwnStep_s <= rule.length_s; ++i) {
     const auto state = path.at(i * kOwnStep_s);
     if (!state) continue;
@@ -277,29 +277,29 @@ encounter::Track own_track(const scene::Scene& scene, const EncounterRule& rule)
   return own;
 }
 
-bool is_high_enough(const encounter::Track& track, const encounter::Track& own, double cpa_s) {
-  if (encounter::state_at(own, cpa_s).position_ned_m.z() > -kLowestFlightM) return true;
+bool is_high_enough(const track::Track& track, const track::Track& own, double cpa_s) {
+  if (track::state_at(own, cpa_s).position_ned_m.z() > -kLowestFlightM) return true;
   return std::all_of(track.positions_ned_m.begin(),
                      track.positions_ned_m.end(),
                      [](const Vector3& p) { return p.z() <= -kLowestFlightM; });
 }
 
 struct Passage {
-  encounter::Track track;
+  track::Track track;
   double weight = 1;
 };
 
 // An intruder from the model. `number` counts sequences and intruders.
-Passage from_model(const EncounterRule& rule, const encounter::Track& own, std::uint64_t number) {
+Passage from_model(const EncounterRule& rule, const track::Track& own, std::uint64_t number) {
   Random random = Seed(rule.seed).stream("closest approach", number);
-  encounter::PairingOptions options;
+  pairing::PairingOptions options;
   options.cpa_time_s = std::clamp(
       std::round(rule.geometry.cpa_time_s.quantile(random.uniform())), 0.0, own.times_s.back());
   options.hmd_m = rule.geometry.hmd_m;
   options.vmd_m = rule.geometry.vmd_m;
-  const auto draw = encounter::model_pairs(rule.tracks, own, options, rule.seed);
+  const auto draw = sets::model_pairs(rule.tracks, own, options, rule.seed);
   for (std::uint64_t attempt = 0; attempt < kMaxTracks; ++attempt) {
-    encounter::DrawnEncounter drawn = draw(number + attempt * kNextAttempt);
+    sets::DrawnEncounter drawn = draw(number + attempt * kNextAttempt);
     Passage passage{std::move(drawn.encounter.aircraft[1]), drawn.encounter.weight};
     if (!is_high_enough(passage.track, own, options.cpa_time_s)) continue;
     if (fitting_types(rule, demands_of(passage.track)).can_fly) return passage;
@@ -313,14 +313,14 @@ Passage from_model(const EncounterRule& rule, const encounter::Track& own, std::
 }
 
 Passage from_geometry(const EncounterRule& rule,
-                      const encounter::Track& own,
+                      const track::Track& own,
                       std::uint64_t index,
                       std::uint64_t intruder) {
   const std::uint64_t seed = Seed(rule.seed).stream("geometry of intruder", intruder)();
-  const encounter::GeometricSampler sampler(
+  const pairing::GeometricSampler sampler(
       rule.geometry, seed, static_cast<std::uint64_t>(rule.count));
-  const encounter::Geometry geometry = sampler.draw(index);
-  Passage passage{encounter::geometric_track(own, geometry, -kMargin_s, rule.length_s + kMargin_s),
+  const pairing::Geometry geometry = sampler.draw(index);
+  Passage passage{pairing::geometric_track(own, geometry, -kMargin_s, rule.length_s + kMargin_s),
                   1};
   if (is_high_enough(passage.track, own, geometry.approach.time_s)) return passage;
   throw Error(
@@ -352,7 +352,7 @@ std::size_t background_of(const EncounterRule& rule, std::int64_t index) {
 void add_encounter(scene::Scene& scene, const EncounterRule& rule, std::int64_t index) {
   if (is_chosen("negatives", rule.negatives, rule.seed, index)) return;
   const bool has_two = has_second(rule, index);
-  const encounter::Track own = own_track(scene, rule);
+  const track::Track own = own_track(scene, rule);
   double weight = 1;
   for (std::uint64_t k = 0; k < (has_two ? 2 : 1); ++k) {
     const std::uint64_t number = static_cast<std::uint64_t>(index) + k * kNextIntruder;

@@ -15,7 +15,7 @@
 
 // The tables [[encounter_model]] of a catalogue and their encounters. Each encounter depends on the
 // rule and its index alone.
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 class Sampler;
 }
 
@@ -38,10 +38,10 @@ struct EncounterRule {
   // The seed of all that is drawn; it follows from the catalogue's and the rule's name.
   std::uint64_t seed = 1;
   // The tracks of `kind = "bayes"` and their file; empty: the geometry below is drawn.
-  std::shared_ptr<const encounter::Sampler> tracks;
+  std::shared_ptr<const encounter_model::Sampler> tracks;
   fs::path model_file;
   // Times are those of the clip. Tracks of a model use only the time and the miss distances.
-  encounter::GeometricOptions geometry;
+  pairing::GeometricOptions geometry;
   // How long the tracks are, in seconds of the clip.
   int length_s = 0;
   // Shares of the sequences, from 0 to 1: without an intruder, and of the others with two.

@@ -36,7 +36,7 @@ aircraft = ["c172/*", "738/738-Ryanair", "Cub/*"]
 
 class EncounterModel : public testing::Test {
  protected:
-  void SetUp() override { write_file(folder_ / "small.txt", encounter::kSmallModel); }
+  void SetUp() override { write_file(folder_ / "small.txt", test_support::kSmallModel); }
 
   Catalogue with(const std::string& keys) const {
     return parse_catalogue(kBackground + keys, folder_ / "c.toml");
@@ -154,13 +154,13 @@ TEST_F(EncounterModel, ADataSetKeepsItsModel) {
   const Catalogue catalogue = with(std::string(kBayes) + "count = 3\n");
   const fs::path root = folder_ / "set";
   open_folder(catalogue, root);
-  EXPECT_EQ(read_file(root / "models" / "small.txt"), encounter::kSmallModel);
+  EXPECT_EQ(read_file(root / "models" / "small.txt"), test_support::kSmallModel);
   fs::remove(folder_ / "small.txt");
   const Catalogue copy = read_catalogue(root / "catalogue.toml");
   EXPECT_EQ(Expansion(copy).at(2).scene.intruders.at(0).waypoints_ned_m,
             Expansion(catalogue).at(2).scene.intruders.at(0).waypoints_ned_m);
   open_folder(copy, root);
-  write_file(folder_ / "small.txt", std::string(encounter::kSmallModel) + "\n");
+  write_file(folder_ / "small.txt", std::string(test_support::kSmallModel) + "\n");
   EXPECT_THROW(open_folder(catalogue, root), Error);
 }
 

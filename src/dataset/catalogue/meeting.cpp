@@ -73,7 +73,7 @@ void lay_turn(scene::Intruder& intruder,
               double clip_s) {
   const double over_ground_mps = encounter.speed_mps * std::cos(radians(encounter.climb_deg));
   const double turn_rate =
-      aircraft::kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
+      fleet::kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
   const double step_s = std::min(kTurnStep_s, radians(kTurnStepDeg) / std::abs(turn_rate));
   const double begin_s = -kTurnMargin * step_s;
   const double span_s = clip_s + kPastClip_s - begin_s;

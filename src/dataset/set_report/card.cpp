@@ -87,7 +87,7 @@ std::string aircraft_text(const Scenes& scenes) {
   for (const Scene& s : scenes)
     for (const scene::Intruder& intruder : s.intruders)
       if (is_aircraft(intruder))
-        (aircraft::is_model_file(intruder.aircraft) ? any_file : any_of_flightgear) = true;
+        (wrapper::is_model_file(intruder.aircraft) ? any_file : any_of_flightgear) = true;
   std::vector<std::string> parts;
   if (any_of_flightgear)
     parts.emplace_back(

@@ -82,7 +82,7 @@ std::string first_seen_text(const Records& records) {
   std::string text = "first seen at " + spread(ranges_m, "m");
   if (!ahead_s.empty()) text += ", " + spread(ahead_s, "s") + " before the closest approach";
   text += ", then against the horizon: " +
-          counts_of<encounter::AgainstHorizon>(
+          counts_of<passage::AgainstHorizon>(
               records,
               [](const EncounterRecord& r) { return r.horizon_when_first_seen; },
               "never seen");
@@ -118,11 +118,11 @@ std::string encounters_text(const Records& records, const std::vector<std::strin
   std::vector<std::string> parts = {
       fmt::format("{}, seen from the own aircraft: {}",
                   records.size(),
-                  counts_of<encounter::Meeting>(
+                  counts_of<passage::Meeting>(
                       records,
                       [](const EncounterRecord& r) { return r.meeting; },
                       "of no course (one of the two hovers, or both fly alike)")),
-      counts_of<encounter::VerticalMotion>(
+      counts_of<passage::VerticalMotion>(
           records, [](const EncounterRecord& r) { return r.vertical_motion; }, "of no height")};
   const auto distances_m = values_of(records, [](const EncounterRecord& r) {
     return r.closest ? std::optional(r.closest->distance_m) : std::nullopt;

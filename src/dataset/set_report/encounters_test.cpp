@@ -24,7 +24,7 @@ replay::Finished passing() {
   pipeline::EncounterRecord record;
   record.id = "one";
   // 50 m/s of closure over 100 m.
-  record.closest = encounter::Approach{1.97, 40.34, 40.03, {1.5, 40, -5}};
+  record.closest = passage::Approach{1.97, 40.34, 40.03, {1.5, 40, -5}};
   finished.encounters = {record};
   return finished;
 }
@@ -52,11 +52,11 @@ TEST(Encounters, AfterTheClipItHasNoPlace) {
 
 TEST(Encounters, TheCardCountsThem) {
   pipeline::EncounterRecord near;
-  near.closest = encounter::Approach{5, 20, 20, {}};
-  near.meeting = encounter::Meeting::kHeadOn;
-  near.vertical_motion = encounter::VerticalMotion::kLevel;
+  near.closest = passage::Approach{5, 20, 20, {}};
+  near.meeting = passage::Meeting::kHeadOn;
+  near.vertical_motion = passage::VerticalMotion::kLevel;
   near.first_seen = pipeline::FirstSeen{0, 1, 300, {}};
-  near.horizon_when_first_seen = encounter::AgainstHorizon::kAbove;
+  near.horizon_when_first_seen = passage::AgainstHorizon::kAbove;
   near.violations = {{"nmac", {4, 6}}, {"nmac", {7, 8}}};
   pipeline::EncounterRecord far = near;
   far.closest->distance_m = 80;

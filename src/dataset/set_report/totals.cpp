@@ -113,12 +113,12 @@ std::vector<OverviewPlot> overview_plots(const Totals& totals) {
             {totals.by_state.begin(), totals.by_state.end()})}};
   if (totals.encounters == 0) return plots;
   plots.push_back({"to_closest_s", bars(totals.to_closest_s)});
-  plots.push_back({"meetings", bars<encounter::Meeting>(totals.meetings, kNoMeeting)});
+  plots.push_back({"meetings", bars<passage::Meeting>(totals.meetings, kNoMeeting)});
   plots.push_back({"closest_m", bars(totals.closest_m)});
   plots.push_back({"first_seen_m", bars(totals.first_seen_m)});
   plots.push_back({"first_seen_s", bars(totals.first_seen_s)});
   plots.push_back(
-      {"horizon", bars<encounter::AgainstHorizon>(totals.horizons_when_first_seen, kNeverSeen)});
+      {"horizon", bars<passage::AgainstHorizon>(totals.horizons_when_first_seen, kNeverSeen)});
   return plots;
 }
 

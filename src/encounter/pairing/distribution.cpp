@@ -11,7 +11,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 
 Distribution::Distribution(std::vector<double> edges,
                            std::vector<double> shares,
@@ -64,4 +64,4 @@ double Distribution::density(double value) const {
   return (sums_[bin] - before) / (edges_[bin + 1] - edges_[bin]);
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

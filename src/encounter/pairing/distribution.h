@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 
 // A distribution that is uniform within each of some bins.
 //
@@ -32,4 +32,4 @@ class Distribution {
   std::vector<double> sums_;
 };
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

@@ -7,7 +7,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 namespace {
 
 enum Dimension { kCourse, kSpeed, kHmd, kVmd, kClimb, kTurn, kTime, kDimensions };
@@ -43,12 +43,15 @@ Geometry GeometricSampler::draw(std::uint64_t index) const {
           .turn_rate_dps = value(options_.turn_rate_dps, kTurn)};
 }
 
-Track geometric_track(const Track& own, const Geometry& geometry, double begin_s, double end_s) {
+track::Track geometric_track(const track::Track& own,
+                             const Geometry& geometry,
+                             double begin_s,
+                             double end_s) {
   const double cpa_s = geometry.approach.time_s;
   if (!(begin_s <= cpa_s && cpa_s <= end_s && begin_s < end_s))
     throw Error(fmt::format(
         "the closest approach at {} s is outside of {} to {} s", cpa_s, begin_s, end_s));
-  Track track{"intruder", {}, {}, {}};
+  track::Track track{"intruder", {}, {}, {}};
   const auto add = [&](double time_s) {
     // North at the closest approach; place() turns the whole track.
     const double t = time_s - cpa_s;
@@ -67,4 +70,4 @@ Track geometric_track(const Track& own, const Geometry& geometry, double begin_s
   return track;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

@@ -10,7 +10,7 @@
 #include "encounter/track/track.h"
 
 // Encounters from stated distributions of their geometry, stratified so that few of them cover all.
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 
 // An intruder that flies at constant airspeed, climb and turn rate.
 struct Geometry {
@@ -49,6 +49,9 @@ class GeometricSampler {
 // The track of the intruder from `begin_s` to `end_s`, one sample each second and one at the end.
 // It is exact at the samples: straight lines and circles. The own track must have velocities and
 // contain the time of the closest approach; otherwise Error.
-Track geometric_track(const Track& own, const Geometry& geometry, double begin_s, double end_s);
+track::Track geometric_track(const track::Track& own,
+                             const Geometry& geometry,
+                             double begin_s,
+                             double end_s);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

@@ -9,11 +9,11 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 namespace {
 
-Track own_track() {
-  Track own{"own", {}, {}, {}};
+track::Track own_track() {
+  track::Track own{"own", {}, {}, {}};
   for (int i = 0; i <= 60; ++i) {
     own.times_s.push_back(i);
     own.positions_ned_m.emplace_back(0, 50.0 * i, -500);
@@ -50,13 +50,14 @@ TEST(Geometric, EveryPartOfEveryDistributionIsDrawnOnce) {
 }
 
 TEST(Geometric, TheTrackPassesAsDrawn) {
-  const Track own = own_track();
+  const track::Track own = own_track();
   for (const double turn_dps : {0.0, 3.0, -6.0}) {
     const Geometry geometry{{20.25, 135, 120, -30}, 70, 2, turn_dps};
-    const Track track = geometric_track(own, geometry, 0, 45.5);
+    const track::Track track = geometric_track(own, geometry, 0, 45.5);
     EXPECT_EQ(track.size(), 47u);
     EXPECT_EQ(track.times_s.back(), 45.5);
-    const TrackState at = state_at(track, 20.25), own_at = state_at(own, 20.25);
+    const track::TrackState at = track::state_at(track, 20.25),
+                            own_at = track::state_at(own, 20.25);
     const Vector3 offset = at.position_ned_m - own_at.position_ned_m;
     EXPECT_NEAR(offset.head<2>().norm(), 120, 0.01);
     EXPECT_NEAR(offset.z(), 30, 1e-9);
@@ -95,4 +96,4 @@ TEST(Geometric, WhatCannotBeIsAnError) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

@@ -8,8 +8,10 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 namespace {
+
+using track::Track;
 
 // Number of draws of an approach: it ends a search among tracks that circle.
 constexpr int kMaxDraws = 100;
@@ -25,7 +27,7 @@ double course_rad(const Vector3& velocity_ned) {
   return std::atan2(velocity_ned.y(), velocity_ned.x());
 }
 
-TrackState state_of(const Track& track, double time_s) {
+track::TrackState state_of(const Track& track, double time_s) {
   if (track.size() < 2)
     throw Error(fmt::format("the track '{}' has one sample; expected two or more", track.name));
   if (time_s < track.times_s.front() || time_s > track.times_s.back())
@@ -34,7 +36,7 @@ TrackState state_of(const Track& track, double time_s) {
                             track.name,
                             track.times_s.front(),
                             track.times_s.back()));
-  return state_at(track, time_s);
+  return track::state_at(track, time_s);
 }
 
 // Both ends of a segment on which both tracks are straight.
@@ -78,8 +80,8 @@ double density_ratio(const Distribution& drawn, double distance_m) {
 }  // namespace
 
 void place(Track& intruder, const Track& own, const ClosestApproach& approach) {
-  const TrackState a = state_of(own, approach.time_s);
-  const TrackState b = state_of(intruder, approach.time_s);
+  const track::TrackState a = state_of(own, approach.time_s);
+  const track::TrackState b = state_of(intruder, approach.time_s);
   const double own_course = course_rad(a.velocity_ned_mps);
   const double course = own_course + radians(approach.course_deg);
   const Vector2 velocity =
@@ -89,7 +91,7 @@ void place(Track& intruder, const Track& own, const ClosestApproach& approach) {
     relative = -Vector2(std::cos(own_course), std::sin(own_course));
   const Vector2 offset = approach.hmd_m * Vector2(relative.y(), -relative.x()).normalized();
   const Vector3 to = a.position_ned_m + Vector3(offset.x(), offset.y(), -approach.vmd_m);
-  turn_and_move(
+  track::turn_and_move(
       intruder, course - course_rad(b.velocity_ned_mps), b.position_ned_m, to - b.position_ned_m);
 }
 
@@ -153,4 +155,4 @@ std::optional<Pairing> pair(const Track& own,
   return std::nullopt;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

@@ -11,7 +11,7 @@
 // and moved so that it passes the own aircraft at a stated time and distance. The method is that of
 // MIT-LL's em-pairing-uncor-importancesampling (Kochenderfer, Espindle, Kuchar and Griffith 2010,
 // "Airspace encounter models for estimating collision risk", section on encounter generation).
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 
 // Where an intruder is at the closest approach.
 struct ClosestApproach {
@@ -30,11 +30,11 @@ struct ClosestApproach {
 // time of the closest approach. Both tracks must have velocities and samples before and after that
 // time; otherwise Error. Where both fly with the same horizontal velocity, hmd_m is to the right of
 // the own course.
-void place(Track& intruder, const Track& own, const ClosestApproach& approach);
+void place(track::Track& intruder, const track::Track& own, const ClosestApproach& approach);
 
 // The least horizontal distance of the two tracks while both fly, on straight lines between their
 // samples.
-double least_distance_m(const Track& own, const Track& intruder);
+double least_distance_m(const track::Track& own, const track::Track& intruder);
 
 // The mean of |v_a - v_b| over all courses of b, in m/s: horizontal speeds a and b, and the
 // difference of the climbs. With A^2 = (a + b)^2 + climb^2 it is (2 A / pi) E(k), where E is the
@@ -66,9 +66,9 @@ struct Pairing {
 // The weights sum to what they should: the mean of weight / mean relative speed is the share
 // (high - low) / (2 max(|low|, |high|)) of hmd_m, times that of vmd_m - 1 for symmetric ranges -
 // whatever the shares of the bins are; but for encounters that are drawn again.
-std::optional<Pairing> pair(const Track& own,
-                            Track& intruder,
+std::optional<Pairing> pair(const track::Track& own,
+                            track::Track& intruder,
                             const PairingOptions& options,
                             Random& random);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

@@ -9,8 +9,10 @@
 #include "foundation/base/error.h"
 #include "support/chi_square.h"
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 namespace {
+
+using track::Track;
 
 // A minute of flight with samples each second, at a steady turn rate.
 Track flown(double speed_mps, double climb_mps, double turn_dps, double course_deg = 0) {
@@ -79,7 +81,8 @@ TEST(Pair, TheDistanceOfTurningTracksIsStationary) {
   Track intruder = flown(40, 0, -4);
   place(intruder, own, {20, 130, 150, 0});
   const auto distance = [&](double time_s) {
-    return (state_at(own, time_s).position_ned_m - state_at(intruder, time_s).position_ned_m)
+    return (track::state_at(own, time_s).position_ned_m -
+            track::state_at(intruder, time_s).position_ned_m)
         .head<2>()
         .norm();
   };
@@ -194,10 +197,10 @@ TEST(Pair, CoursesAreAsFrequentAsTheirRelativeSpeed) {
     for (int i = 0; i < 100; ++i)
       probabilities[static_cast<std::size_t>(k)] +=
           relative_mps(-180 + 10 * k + 0.1 * (i + 0.5)) / drawn.mean_mps / (36 * 100);
-  ChiSquare chi;
+  test_support::ChiSquare chi;
   chi.add(counts, probabilities);
   EXPECT_EQ(chi.degrees, 35);
-  EXPECT_LT(chi.normal_deviate(), kLevel0001);
+  EXPECT_LT(chi.normal_deviate(), test_support::kLevel0001);
   // Undoing the acceptance gives uniform courses back.
   EXPECT_NEAR(inverse / static_cast<double>(drawn.pairings.size()), 1, 0.02);
 }
@@ -209,10 +212,10 @@ TEST(Pair, DistancesFollowTheirBins) {
     ++hmd[pairing.approach.hmd_m < -200 ? 0 : pairing.approach.hmd_m < 200 ? 1 : 2];
     ++vmd[pairing.approach.vmd_m < -50 ? 0 : pairing.approach.vmd_m < 50 ? 1 : 2];
   }
-  ChiSquare chi;
+  test_support::ChiSquare chi;
   chi.add(hmd, {0.1, 0.8, 0.1});
   chi.add(vmd, {0.25, 0.5, 0.25});
-  EXPECT_LT(chi.normal_deviate(), kLevel0001);
+  EXPECT_LT(chi.normal_deviate(), test_support::kLevel0001);
 }
 
 TEST(Pair, NoEncounterComesCloserThanItsDistance) {
@@ -275,4 +278,4 @@ TEST(Distribution, BadEdgesAndSharesAreErrors) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

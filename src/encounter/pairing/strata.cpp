@@ -6,7 +6,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 
 Strata::Strata(std::uint64_t seed, std::uint64_t count, std::size_t dimensions)
     : seed_(seed), count_(count) {
@@ -46,4 +46,4 @@ double Strata::at(std::uint64_t index, std::size_t dimension) const {
   return std::min(value, kLargestBelow1);
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

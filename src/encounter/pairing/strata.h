@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 
 // A Latin hypercube (McKay, Beckman and Conover 1979): `count` points in a unit cube. In each
 // dimension, each of `count` strata of equal width holds exactly one point. A point follows from
@@ -32,4 +32,4 @@ class Strata {
   std::vector<std::array<std::uint64_t, kRounds>> keys_;
 };
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

@@ -8,7 +8,7 @@
 
 #include "support/chi_square.h"
 
-namespace airtruth::encounter {
+namespace airtruth::pairing {
 namespace {
 
 TEST(Strata, EachStratumOfEachDimensionHoldsOnePoint) {
@@ -40,11 +40,11 @@ TEST(Strata, DimensionsAreIndependent) {
         correlation += 12 * (x - 0.5) * (y - 0.5) / kCount;
       }
       EXPECT_LT(std::abs(correlation), 4 / std::sqrt(double(kCount))) << a << " " << b;
-      ChiSquare chi;
+      test_support::ChiSquare chi;
       chi.add(cells, even);
       // The rows and columns are exact, so that 81 of the 99 degrees are free.
       chi.degrees = 81;
-      EXPECT_LT(chi.normal_deviate(), kLevel0001) << a << " " << b;
+      EXPECT_LT(chi.normal_deviate(), test_support::kLevel0001) << a << " " << b;
     }
 }
 
@@ -65,4 +65,4 @@ TEST(Strata, SeedsDiffer) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::pairing

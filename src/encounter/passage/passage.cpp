@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace airtruth::encounter {
+namespace airtruth::passage {
 namespace {
 
 // Number of steps of a span: at kStep_s, those of 67 minutes.
@@ -15,7 +15,9 @@ struct Both {
   trajectory::State own;
   trajectory::State intruder;
 
-  Relative between() const { return relative(mover_of(own), mover_of(intruder)); }
+  separation::Relative between() const {
+    return separation::relative(mover_of(own), mover_of(intruder));
+  }
 };
 
 std::optional<Both> both_at(const trajectory::Path& own,
@@ -56,7 +58,7 @@ double turning_point(double before_s, double after_s, const Condition& is_before
 
 }  // namespace
 
-Mover mover_of(const trajectory::State& state) {
+separation::Mover mover_of(const trajectory::State& state) {
   return {state.position_in_world, state.velocity_in_world_mps};
 }
 
@@ -96,7 +98,7 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
   const double time_s = turning_point(before_s, after_s, [&](double t) {
     const auto both = both_at(own, intruder, t);
     if (!both) return false;
-    const Relative between = both->between();
+    const separation::Relative between = both->between();
     return between.offset_ned_m.dot(between.velocity_ned_mps) < 0;
   });
   const auto both = both_at(own, intruder, time_s);
@@ -106,20 +108,20 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
       time_s, offset.norm(), std::hypot(offset.x(), offset.y()), offset_from(both->own, offset)};
 }
 
-std::vector<Interval> violations(const Volume& volume,
-                                 const trajectory::Path& own,
-                                 const trajectory::Path& intruder,
-                                 double begin_s,
-                                 double end_s) {
+std::vector<separation::Interval> violations(const separation::Volume& volume,
+                                             const trajectory::Path& own,
+                                             const trajectory::Path& intruder,
+                                             double begin_s,
+                                             double end_s) {
   std::vector<double> times_s = walked_times(own, intruder, begin_s, end_s);
   if (const auto nearest = closest_approach(own, intruder, begin_s, end_s))
     times_s.insert(std::upper_bound(times_s.begin(), times_s.end(), nearest->time_s),
                    nearest->time_s);
   const auto inside = [&](double time_s) {
     const auto both = both_at(own, intruder, time_s);
-    return both && is_inside(volume, mover_of(both->own), mover_of(both->intruder));
+    return both && separation::is_inside(volume, mover_of(both->own), mover_of(both->intruder));
   };
-  std::vector<Interval> result;
+  std::vector<separation::Interval> result;
   bool was_inside = false;
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const bool is_now = inside(times_s[i]);
@@ -142,7 +144,7 @@ constexpr double kEarthRadiusM = 6'371'008.8;  // mean radius R1 of the WGS 84 e
 
 }  // namespace
 
-std::optional<Meeting> meeting_of(const Mover& own, const Mover& intruder) {
+std::optional<Meeting> meeting_of(const separation::Mover& own, const separation::Mover& intruder) {
   const Eigen::Vector2d a = own.velocity_ned_mps.head<2>();
   const Eigen::Vector2d b = intruder.velocity_ned_mps.head<2>();
   if (a.norm() < kCourseMps || b.norm() < kCourseMps) return std::nullopt;
@@ -151,11 +153,11 @@ std::optional<Meeting> meeting_of(const Mover& own, const Mover& intruder) {
   if (std::abs(right_deg) >= kOvertakingDeg)
     return right_deg > 0 ? Meeting::kCrossingFromLeft : Meeting::kCrossingFromRight;
   const double faster_mps = a.norm() - b.dot(a.normalized());
-  if (std::abs(faster_mps) < kStillMps) return std::nullopt;
+  if (std::abs(faster_mps) < separation::kStillMps) return std::nullopt;
   return faster_mps > 0 ? Meeting::kOvertaking : Meeting::kOvertaken;
 }
 
-VerticalMotion vertical_motion_of(const Mover& intruder) {
+VerticalMotion vertical_motion_of(const separation::Mover& intruder) {
   const double climb_mps = -intruder.velocity_ned_mps.z();
   if (climb_mps >= kClimbingMps) return VerticalMotion::kClimbing;
   return climb_mps <= -kClimbingMps ? VerticalMotion::kDescending : VerticalMotion::kLevel;
@@ -165,7 +167,9 @@ double horizon_dip_deg(double height_m) {
   return degrees(std::acos(kEarthRadiusM / (kEarthRadiusM + std::max(0.0, height_m))));
 }
 
-AgainstHorizon against_horizon(const Mover& own, const Mover& intruder, double half_height_deg) {
+AgainstHorizon against_horizon(const separation::Mover& own,
+                               const separation::Mover& intruder,
+                               double half_height_deg) {
   const Vector3 r = intruder.position_ned_m - own.position_ned_m;
   const double elevation_deg = degrees(std::atan2(-r.z(), std::hypot(r.x(), r.y())));
   const double above_deg = elevation_deg + horizon_dip_deg(-own.position_ned_m.z());
@@ -173,4 +177,4 @@ AgainstHorizon against_horizon(const Mover& own, const Mover& intruder, double h
   return above_deg > 0 ? AgainstHorizon::kAbove : AgainstHorizon::kBelow;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::passage

@@ -10,9 +10,9 @@
 #include "scene/trajectory/path.h"
 
 // The encounter of two whole paths, between frames too. Times are on the clock of the paths.
-namespace airtruth::encounter {
+namespace airtruth::passage {
 
-Mover mover_of(const trajectory::State& state);
+separation::Mover mover_of(const trajectory::State& state);
 
 // Where an offset lies as the own aircraft's crew would say it: along the own course, right of it
 // (both level) and above. The course is that of the velocity over the ground, or the heading of the
@@ -44,11 +44,11 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
 // The intervals between begin_s and end_s in which the states of the paths violate the volume
 // (is_inside), in order. A violation that is shorter than kStep_s, or a pause in one, may be
 // missed, unless it holds the closest approach.
-std::vector<Interval> violations(const Volume& volume,
-                                 const trajectory::Path& own,
-                                 const trajectory::Path& intruder,
-                                 double begin_s,
-                                 double end_s);
+std::vector<separation::Interval> violations(const separation::Volume& volume,
+                                             const trajectory::Path& own,
+                                             const trajectory::Path& intruder,
+                                             double begin_s,
+                                             double end_s);
 
 // The step at which paths are walked; longer for spans above an hour.
 constexpr double kStep_s = 0.02;
@@ -74,7 +74,7 @@ constexpr double kHeadOnDeg = 150;
 // Of the states at the closest approach. `overtaking`: the own aircraft is the faster of the two
 // along its course; `overtaken`: the intruder is. Empty where one of them moves over the ground at
 // less than kCourseMps, or both are equally fast on the same course.
-std::optional<Meeting> meeting_of(const Mover& own, const Mover& intruder);
+std::optional<Meeting> meeting_of(const separation::Mover& own, const separation::Mover& intruder);
 
 enum class VerticalMotion { kClimbing, kLevel, kDescending };
 constexpr auto enum_names(VerticalMotion) {
@@ -83,8 +83,8 @@ constexpr auto enum_names(VerticalMotion) {
                                                   {VerticalMotion::kDescending, "descending"}});
 }
 // A climb of 500 ft/min and more is climbing, as TCAS II shows it by an arrow (RTCA DO-185B).
-constexpr double kClimbingMps = 500 * kMetresPerFoot / 60;
-VerticalMotion vertical_motion_of(const Mover& intruder);
+constexpr double kClimbingMps = 500 * separation::kMetresPerFoot / 60;
+VerticalMotion vertical_motion_of(const separation::Mover& intruder);
 
 // Where an intruder stands against the horizon of level ground.
 enum class AgainstHorizon { kBelow, kOn, kAbove };
@@ -98,6 +98,8 @@ constexpr auto enum_names(AgainstHorizon) {
 double horizon_dip_deg(double height_m);
 // `half_height_deg`: half of the angle that the intruder takes up vertically. It is on the horizon
 // where the horizon crosses it. The ground is at down = 0.
-AgainstHorizon against_horizon(const Mover& own, const Mover& intruder, double half_height_deg);
+AgainstHorizon against_horizon(const separation::Mover& own,
+                               const separation::Mover& intruder,
+                               double half_height_deg);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::passage

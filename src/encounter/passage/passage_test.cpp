@@ -8,18 +8,18 @@
 
 #include "support/random_encounter.h"
 
-namespace airtruth::encounter {
+namespace airtruth::passage {
 namespace {
 
-trajectory::Path straight(const Mover& mover) {
+trajectory::Path straight(const separation::Mover& mover) {
   return trajectory::uniform(mover.position_ned_m, mover.velocity_ned_mps, {});
 }
 
 // Of straight paths the closest approach in space is at -r.v / v.v, limited to the span.
 TEST(Passage, TheClosestApproachOfStraightPathsIsTheClosedForm) {
   for (std::uint64_t i = 0; i < 400; ++i) {
-    const Pair pair = random_pair(i);
-    const Relative r = relative(pair.own, pair.intruder);
+    const test_support::Pair pair = test_support::random_pair(i);
+    const separation::Relative r = separation::relative(pair.own, pair.intruder);
     const double square = r.velocity_ned_mps.squaredNorm();
     if (square < 1) continue;
     const double at_s = std::clamp(-r.offset_ned_m.dot(r.velocity_ned_mps) / square, 0.0, 60.0);
@@ -64,11 +64,11 @@ TEST(Passage, OnlyWhileBothAreInTheWorld) {
 
 // Of straight paths, walking finds the interval of the closed form.
 TEST(Passage, ViolationsOfStraightPathsAreTheClosedForm) {
-  for (const NamedVolume& named : named_volumes()) {
+  for (const separation::NamedVolume& named : separation::named_volumes()) {
     int violated = 0;
     for (std::uint64_t i = 0; i < 120; ++i) {
-      const Pair pair = random_pair(i);
-      const auto expected = violation(named.volume, pair.own, pair.intruder, 60);
+      const test_support::Pair pair = test_support::random_pair(i);
+      const auto expected = separation::violation(named.volume, pair.own, pair.intruder, 60);
       const auto found =
           violations(named.volume, straight(pair.own), straight(pair.intruder), 0, 60);
       if (expected && expected->end_s - expected->begin_s < kStep_s) continue;
@@ -88,18 +88,18 @@ TEST(Passage, AShortViolationIsFoundAtTheClosestApproach) {
   const double miss_m = 152.4 - 0.5 / 152.4;
   const auto own = straight({{0, 0, -100}, {150, 0, 0}});
   const auto other = straight({{3001, miss_m, -100}, {-150, 0, 0}});
-  const auto found = violations(named_volume("nmac")->volume, own, other, 0, 20);
+  const auto found = violations(separation::named_volume("nmac")->volume, own, other, 0, 20);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(found[0].end_s - found[0].begin_s, 2.0 / 300, 1e-4);
 }
 
-Mover flying(double course_deg, double speed_mps, double climb_mps = 0) {
+separation::Mover flying(double course_deg, double speed_mps, double climb_mps = 0) {
   const double course = radians(course_deg);
   return {{0, 0, 0}, {speed_mps * std::cos(course), speed_mps * std::sin(course), -climb_mps}};
 }
 
 TEST(GeometryClass, CoursesAreCountedFromTheOwnCourse) {
-  const Mover own = flying(30, 40);
+  const separation::Mover own = flying(30, 40);
   EXPECT_EQ(meeting_of(own, flying(210, 50)), Meeting::kHeadOn);
   EXPECT_EQ(meeting_of(own, flying(185, 50)), Meeting::kHeadOn);
   EXPECT_EQ(meeting_of(own, flying(120, 50)), Meeting::kCrossingFromLeft);
@@ -120,7 +120,7 @@ TEST(GeometryClass, ClimbsFromFiveHundredFeetAMinute) {
 TEST(GeometryClass, TheHorizonDipsWithHeight) {
   EXPECT_NEAR(horizon_dip_deg(1000), 0.0321 * std::sqrt(1000), 2e-3);
   EXPECT_EQ(horizon_dip_deg(-5), 0);
-  const Mover own{{0, 0, -1000}, {}};
+  const separation::Mover own{{0, 0, -1000}, {}};
   const auto at_height = [&](double down_m) {
     return against_horizon(own, {{2000, 0, down_m}, {}}, 0.1);
   };
@@ -130,4 +130,4 @@ TEST(GeometryClass, TheHorizonDipsWithHeight) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::passage

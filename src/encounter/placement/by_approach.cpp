@@ -8,7 +8,7 @@
 #include "encounter/passage/passage.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::placement {
 namespace {
 
 // Slower relative motion is none, in m/s.
@@ -165,7 +165,7 @@ trajectory::Path path_to_approach(const scene::Encounter& encounter,
                                   const trajectory::Path& own,
                                   const trajectory::AttitudeOverride& attitude) {
   const trajectory::State own_then = own_at_approach(encounter, own);
-  const CourseFrame frame{course_rad(own_then)};
+  const CourseFrame frame{passage::course_rad(own_then)};
   const Vector3 velocity = velocity_of(encounter);
   const Vector3 relative = velocity - frame.from_world(own_then.velocity_in_world_mps);
   if (!(relative.norm() > kSameVelocityMps))
@@ -186,4 +186,4 @@ trajectory::Path path_to_approach(const scene::Encounter& encounter,
   return path;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::placement

@@ -4,7 +4,7 @@
 #include "scene/scene/scene.h"
 #include "scene/trajectory/path.h"
 
-namespace airtruth::encounter {
+namespace airtruth::placement {
 
 // The path of an intruder that comes nearest to the own aircraft as a scene states it
 // (docs/formats/scene.md, [intruder.encounter]). The path is straight, or a helix where it turns,
@@ -32,4 +32,4 @@ trajectory::Path path_to_approach(const scene::Encounter& encounter,
 constexpr double kFarthestMissM = 1e5;
 constexpr double kMissErrorM = 0.01;
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::placement

@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 
-namespace airtruth::encounter {
+namespace airtruth::placement {
 namespace {
 
 using trajectory::Path;
@@ -228,4 +228,4 @@ TEST(ByApproach, AFarthestApproachIsAnError) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::placement

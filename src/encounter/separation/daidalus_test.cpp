@@ -18,7 +18,7 @@
 #include "encounter/separation/violation.h"
 #include "support/random_encounter.h"
 
-namespace airtruth::encounter {
+namespace airtruth::separation {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,7 +83,7 @@ void expect_near(double ours, double theirs, double printed, const char* what) {
 }
 
 // `digit`: a unit of the last printed decimal.
-void expect_same(const Pair& pair, const Answer& answer, double digit) {
+void expect_same(const test_support::Pair& pair, const Answer& answer, double digit) {
   const Measures m = measures(pair.own, pair.intruder);
   const Vector3 v = pair.intruder.velocity_ned_mps - pair.own.velocity_ned_mps;
   const double nmi = digit * kMetresPerNauticalMile;
@@ -108,7 +108,7 @@ void expect_same(const Pair& pair, const Answer& answer, double digit) {
   if (m.tcoa_s) expect_near(*m.tcoa_s, *answer.tcoa_s, digit, "tcoa");
 }
 
-void expect_same_violation(const Pair& pair,
+void expect_same_violation(const test_support::Pair& pair,
                            const Volume& volume,
                            double lookahead_s,
                            const std::optional<double>& to_volume_s,
@@ -185,7 +185,8 @@ TEST(Daidalus, H1GivesThePublishedTable) {
     SCOPED_TRACE(fmt::format("at {} s", published[k][0]));
     const Geodetic own = geodetic_of(flown[2 * k]);
     const Plane plane(own.latitude, own.longitude);
-    const Pair pair{projected(plane, own), projected(plane, geodetic_of(flown[2 * k + 1]))};
+    const test_support::Pair pair{projected(plane, own),
+                                  projected(plane, geodetic_of(flown[2 * k + 1]))};
     const Answer answer = answer_of(published[k], 3);
     expect_same(pair, answer, 0.5e-6);
     expect_same_violation(pair, preventive, 180, answer.to_volume_s[0], 0.5e-6);
@@ -250,7 +251,7 @@ TEST(Daidalus, TenThousandRandomPairsGiveItsAnswers) {
       "NAME, sx, sy, sz, vx, vy, vz, time\n"
       "[none], [m], [m], [m], [m/s], [m/s], [m/s], [s]\n";
   for (std::uint64_t i = 0; i < kPairs; ++i) {
-    const Pair pair = random_pair(i);
+    const test_support::Pair pair = test_support::random_pair(i);
     flights += row_of("own", pair.own, i) + row_of("intruder", pair.intruder, i);
   }
   std::ofstream(folder / "pairs.daa") << flights;
@@ -265,7 +266,7 @@ TEST(Daidalus, TenThousandRandomPairsGiveItsAnswers) {
   ASSERT_EQ(rows.size(), kPairs);
   for (std::uint64_t i = 0; i < kPairs && !::testing::Test::HasFailure(); ++i) {
     SCOPED_TRACE(fmt::format("pair {}", i));
-    const Pair pair = random_pair(i);
+    const test_support::Pair pair = test_support::random_pair(i);
     const Answer answer = answer_of(rows[i], named_volumes().size());
     expect_same(pair, answer, 1e-9);
     std::size_t level = 0;
@@ -278,4 +279,4 @@ TEST(Daidalus, TenThousandRandomPairsGiveItsAnswers) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::separation

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace airtruth::encounter {
+namespace airtruth::separation {
 namespace {
 
 using Vector2 = Eigen::Vector2d;
@@ -74,4 +74,4 @@ Measures measures(const Mover& own, const Mover& intruder, const MeasureOptions&
   return result;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::separation

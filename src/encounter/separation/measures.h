@@ -13,7 +13,7 @@
 // Example: the own aircraft flies north at 100 m/s; an intruder 4000 m ahead, 200 m to the right
 // and 300 m higher flies south at 100 m/s and descends at 5 m/s. They close at 200 m/s in the
 // plane: tcpa_s = 20, dcpa_m = hmd_m = 200, and tcoa_s = 60.
-namespace airtruth::encounter {
+namespace airtruth::separation {
 
 // An aircraft as a point in uniform motion, north-east-down.
 struct Mover {
@@ -76,4 +76,4 @@ struct Measures {
 
 Measures measures(const Mover& own, const Mover& intruder, const MeasureOptions& options = {});
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::separation

@@ -8,7 +8,7 @@
 
 #include "support/random_encounter.h"
 
-namespace airtruth::encounter {
+namespace airtruth::separation {
 namespace {
 
 TEST(Measures, HeadOnWithAnOffset) {
@@ -91,7 +91,7 @@ bool is_finite(const std::optional<double>& value) { return !value || std::isfin
 struct Walked {
   double hmd_m = 1e300, vmd_m = 1e300, at_s = 0;
 };
-Walked walked(const Pair& pair, double lookahead_s, double step_s) {
+Walked walked(const test_support::Pair& pair, double lookahead_s, double step_s) {
   const Relative between = relative(pair.own, pair.intruder);
   Walked result;
   const auto steps = static_cast<int>(std::lround(lookahead_s / step_s));
@@ -109,7 +109,7 @@ Walked walked(const Pair& pair, double lookahead_s, double step_s) {
 TEST(Measures, AgreeWithWalkingThroughTimeOnTenThousandPairs) {
   constexpr double kStep_s = 0.05;
   for (std::uint64_t i = 0; i < 10'000; ++i) {
-    const Pair pair = random_pair(i);
+    const test_support::Pair pair = test_support::random_pair(i);
     const Measures m = measures(pair.own, pair.intruder);
     const Walked walk = walked(pair, 180, kStep_s);
     const Vector3 v = pair.intruder.velocity_ned_mps - pair.own.velocity_ned_mps;
@@ -138,7 +138,7 @@ TEST(Measures, AgreeWithWalkingThroughTimeOnTenThousandPairs) {
 TEST(Measures, RatesAreTheChangesOfTheValues) {
   constexpr double kHalf_s = 0.5e-3;
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    const Pair pair = random_pair(i);
+    const test_support::Pair pair = test_support::random_pair(i);
     const auto moved = [](const Mover& mover, double t) {
       return Mover{mover.position_ned_m + t * mover.velocity_ned_mps, mover.velocity_ned_mps};
     };
@@ -163,4 +163,4 @@ TEST(Measures, RatesAreTheChangesOfTheValues) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::separation

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace airtruth::encounter {
+namespace airtruth::separation {
 namespace {
 
 using Vector2 = Eigen::Vector2d;
@@ -109,4 +109,4 @@ std::vector<std::string> volume_names() {
   return names;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::separation

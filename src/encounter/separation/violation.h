@@ -10,7 +10,7 @@
 #include "encounter/separation/measures.h"
 
 // The volumes of airspace around an aircraft that detect-and-avoid keeps others out of.
-namespace airtruth::encounter {
+namespace airtruth::separation {
 
 constexpr double kMetresPerFoot = 0.3048;
 constexpr double kMetresPerNauticalMile = 1852;
@@ -66,4 +66,4 @@ std::optional<Interval> violation(const Volume& volume,
                                   const Mover& intruder,
                                   double lookahead_s);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::separation

@@ -7,7 +7,7 @@
 
 #include "support/random_encounter.h"
 
-namespace airtruth::encounter {
+namespace airtruth::separation {
 namespace {
 
 const Volume& volume(const char* name) { return named_volume(name)->volume; }
@@ -98,7 +98,10 @@ bool defined_inside(const Volume& volume, const Vector3& s, const Vector3& v) {
 }
 
 // Every instant of a walk agrees with the interval, but for those within a rounding of its ends.
-void expect_walk_agrees(const Volume& volume, const Pair& pair, std::uint64_t i, int& violated) {
+void expect_walk_agrees(const Volume& volume,
+                        const test_support::Pair& pair,
+                        std::uint64_t i,
+                        int& violated) {
   constexpr double kLookahead_s = 180;
   constexpr double kStep_s = 0.5;
   constexpr double kRounding_s = 1e-6;
@@ -133,7 +136,7 @@ TEST(Violation, AgreesWithWalkingThroughTimeOnTenThousandPairs) {
   for (const NamedVolume& named : named_volumes()) {
     int violated = 0;
     for (std::uint64_t i = 0; i < 10'000; ++i) {
-      const Pair pair = random_pair(i);
+      const test_support::Pair pair = test_support::random_pair(i);
       ASSERT_NO_FATAL_FAILURE(expect_walk_agrees(named.volume, pair, i, violated)) << named.name;
       const bool now = defined_inside(named.volume,
                                       pair.intruder.position_ned_m - pair.own.position_ned_m,
@@ -146,4 +149,4 @@ TEST(Violation, AgreesWithWalkingThroughTimeOnTenThousandPairs) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::separation

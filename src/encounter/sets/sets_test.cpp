@@ -10,7 +10,7 @@
 #include "foundation/base/files.h"
 #include "support/small_encounter_model.h"
 
-namespace airtruth::encounter {
+namespace airtruth::sets {
 namespace {
 
 class Sets : public ::testing::Test {
@@ -25,17 +25,18 @@ class Sets : public ::testing::Test {
   fs::path folder_;
 };
 
-std::shared_ptr<const Sampler> small_sampler(int duration_s = 20) {
-  SampleOptions options;
+std::shared_ptr<const encounter_model::Sampler> small_sampler(int duration_s = 20) {
+  encounter_model::SampleOptions options;
   options.duration_s = duration_s;
-  return std::make_shared<const Sampler>(parse_model(kSmallModel, "small.txt"), options);
+  return std::make_shared<const encounter_model::Sampler>(
+      encounter_model::parse_model(test_support::kSmallModel, "small.txt"), options);
 }
 
 // Flies east at 55 m/s and climbs at 1 m/s, from 100 s to 120 s.
-Track own_track() { return {"anyone", {100, 120}, {{0, 0, -300}, {0, 1100, -320}}, {}}; }
+track::Track own_track() { return {"anyone", {100, 120}, {{0, 0, -300}, {0, 1100, -320}}, {}}; }
 
-PairingOptions at_110_s() {
-  PairingOptions options;
+pairing::PairingOptions at_110_s() {
+  pairing::PairingOptions options;
   options.cpa_time_s = 110;
   return options;
 }
@@ -61,9 +62,9 @@ TEST_F(Sets, TheFileDoesNotDependOnTheNumberOfThreads) {
 
 TEST_F(Sets, PairsHoldTheOwnTrackAndAnIntruderWithItsWeight) {
   write_set(folder_ / "a.csv", model_pairs(small_sampler(), own_track(), at_110_s(), 3), of(50, 0));
-  const auto encounters = read_encounters(folder_ / "a.csv");
+  const auto encounters = tracks_file::read_encounters(folder_ / "a.csv");
   ASSERT_EQ(encounters.size(), 50u);
-  for (const Encounter& encounter : encounters) {
+  for (const track::Encounter& encounter : encounters) {
     ASSERT_EQ(encounter.aircraft.size(), 2u);
     EXPECT_EQ(encounter.aircraft[0].name, "own");
     EXPECT_EQ(encounter.aircraft[0].positions_ned_m.back(), Vector3(0, 1100, -320));
@@ -71,32 +72,32 @@ TEST_F(Sets, PairsHoldTheOwnTrackAndAnIntruderWithItsWeight) {
     EXPECT_EQ(encounter.aircraft[1].times_s.front(), 100);
     EXPECT_EQ(encounter.aircraft[1].times_s.back(), 120);
     EXPECT_GT(encounter.weight, 0);
-    EXPECT_LE(least_distance_m(encounter.aircraft[0], encounter.aircraft[1]), 500.001);
+    EXPECT_LE(pairing::least_distance_m(encounter.aircraft[0], encounter.aircraft[1]), 500.001);
   }
   EXPECT_NE(encounters[0].weight, encounters[1].weight);
 }
 
 TEST_F(Sets, GeometricPairsPassTheOwnTrack) {
-  GeometricOptions options;
-  options.cpa_time_s = Distribution({105, 115});
-  const GeometricSampler sampler(options, 2, 30);
+  pairing::GeometricOptions options;
+  options.cpa_time_s = pairing::Distribution({105, 115});
+  const pairing::GeometricSampler sampler(options, 2, 30);
   write_set(folder_ / "a.csv", geometric_pairs(sampler, own_track()), of(30, 0));
-  const auto encounters = read_encounters(folder_ / "a.csv");
+  const auto encounters = tracks_file::read_encounters(folder_ / "a.csv");
   ASSERT_EQ(encounters.size(), 30u);
   for (std::size_t i = 0; i < 30; ++i)
-    EXPECT_NEAR(least_distance_m(encounters[i].aircraft[0], encounters[i].aircraft[1]),
+    EXPECT_NEAR(pairing::least_distance_m(encounters[i].aircraft[0], encounters[i].aircraft[1]),
                 std::abs(sampler.draw(i).approach.hmd_m),
                 0.01);
 }
 
 TEST_F(Sets, EveryFormatHoldsTracks) {
   const DrawEncounter draw = model_tracks(small_sampler());
-  for (const std::string& extension : all_enum_names<TracksFormat>()) {
+  for (const std::string& extension : all_enum_names<tracks_file::TracksFormat>()) {
     write_set(folder_ / ("a." + extension), draw, of(70, 0));
-    const auto encounters = read_encounters(folder_ / ("a." + extension));
+    const auto encounters = tracks_file::read_encounters(folder_ / ("a." + extension));
     const bool is_one = extension == "daa" || extension == "txt";
     ASSERT_EQ(encounters.size(), is_one ? 1u : 70u);
-    const Track& last = is_one ? encounters[0].aircraft[69] : encounters[69].aircraft[0];
+    const track::Track& last = is_one ? encounters[0].aircraft[69] : encounters[69].aircraft[0];
     EXPECT_LT(
         (last.positions_ned_m[20] - draw(69).encounter.aircraft[0].positions_ned_m[20]).norm(),
         1e-6)
@@ -133,4 +134,4 @@ TEST_F(Sets, ProgressEndsAtTheCount) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::sets

@@ -12,7 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
 
-namespace airtruth::encounter {
+namespace airtruth::sets {
 namespace {
 
 // A thread draws a block at a time; a window of blocks stands in memory.
@@ -23,7 +23,7 @@ constexpr std::uint64_t kMaxCount = 0xffffffff;
 
 struct Block {
   std::string bytes;
-  std::vector<Encounter> encounters;  // where the bytes are those of all of them at once
+  std::vector<track::Encounter> encounters;  // where the bytes are those of all of them at once
   SetSummary summary;
 };
 
@@ -34,14 +34,15 @@ void add(SetSummary& sum, const SetSummary& more) {
   sum.weight_squares += more.weight_squares;
 }
 
-bool is_stream(TracksFormat format) {
-  return format == TracksFormat::kCsv || format == TracksFormat::kWaypoints;
+bool is_stream(tracks_file::TracksFormat format) {
+  return format == tracks_file::TracksFormat::kCsv ||
+         format == tracks_file::TracksFormat::kWaypoints;
 }
 
 Block drawn_block(const DrawEncounter& draw,
                   std::uint64_t begin,
                   std::uint64_t end,
-                  TracksFormat format) {
+                  tracks_file::TracksFormat format) {
   Block block;
   for (std::uint64_t i = begin; i < end; ++i) {
     DrawnEncounter drawn = draw(i);
@@ -49,7 +50,7 @@ Block drawn_block(const DrawEncounter& draw,
     add(block.summary, {1, static_cast<std::uint64_t>(drawn.draws), weight, weight * weight});
     const auto aircraft = static_cast<std::uint32_t>(drawn.encounter.aircraft.size());
     if (is_stream(format))
-      block.bytes += bytes_of(drawn.encounter, format, i + 1, aircraft);
+      block.bytes += tracks_file::bytes_of(drawn.encounter, format, i + 1, aircraft);
     else
       block.encounters.push_back(std::move(drawn.encounter));
   }
@@ -60,7 +61,7 @@ Block drawn_block(const DrawEncounter& draw,
 template <typename Take>
 void for_each_block(const DrawEncounter& draw,
                     const SetOptions& options,
-                    TracksFormat format,
+                    tracks_file::TracksFormat format,
                     const Take& take) {
   const std::uint64_t blocks = (options.count + kBlock - 1) / kBlock;
   for (std::uint64_t first = 0; first < blocks; first += kBlocksOfWindow) {
@@ -86,19 +87,19 @@ SetSummary write_set(const std::filesystem::path& file,
   if (options.count < 1 || options.count > kMaxCount)
     throw Error(
         fmt::format("{} encounters are asked for; expected 1 to {}", options.count, kMaxCount));
-  const TracksFormat format = tracks_format_of(file);
+  const tracks_file::TracksFormat format = tracks_file::tracks_format_of(file);
   SetSummary summary;
   if (!is_stream(format)) {
-    std::vector<Encounter> all;
+    std::vector<track::Encounter> all;
     for_each_block(draw, options, format, [&](Block& block) {
       add(summary, block.summary);
       std::move(block.encounters.begin(), block.encounters.end(), std::back_inserter(all));
     });
-    write_encounters(file, fitted(std::move(all), format, file));
+    tracks_file::write_encounters(file, tracks_file::fitted(std::move(all), format, file));
     return summary;
   }
   const auto aircraft = static_cast<std::uint32_t>(draw(0).encounter.aircraft.size());
-  TracksWriter writer(file, static_cast<std::uint32_t>(options.count), aircraft);
+  tracks_file::TracksWriter writer(file, static_cast<std::uint32_t>(options.count), aircraft);
   for_each_block(draw, options, format, [&](const Block& block) {
     add(summary, block.summary);
     writer.append(block.bytes);
@@ -107,4 +108,4 @@ SetSummary write_set(const std::filesystem::path& file,
   return summary;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::sets

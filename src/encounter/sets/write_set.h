@@ -9,7 +9,7 @@
 #include "encounter/sets/draw_encounter.h"
 
 // A set of encounters, drawn on all cores and written to one file.
-namespace airtruth::encounter {
+namespace airtruth::sets {
 
 struct SetOptions {
   std::uint64_t count = 100;
@@ -39,4 +39,4 @@ SetSummary write_set(const std::filesystem::path& file,
                      const DrawEncounter& draw,
                      const SetOptions& options);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::sets

@@ -7,7 +7,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::track {
 namespace {
 
 // The derivative at times[at] of the parabola through the samples middle - 1, middle and middle + 1
@@ -92,4 +92,4 @@ void turn_and_move(Track& track,
   for (Vector3& velocity : track.velocities_ned_mps) velocity = turned(velocity);
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::track

@@ -12,7 +12,7 @@
 // (docs/conventions.md); the altitude is -down.
 //
 // Example: {"own", {0, 1}, {(0, 0, -300), (60, 0, -300)}, {}} flies north at 60 m/s, 300 m up.
-namespace airtruth::encounter {
+namespace airtruth::track {
 
 struct Track {
   std::string name;
@@ -72,4 +72,4 @@ constexpr double kMetresOfNauticalMile = 1852;
 constexpr double kMpsOfKnot = kMetresOfNauticalMile / 3600;
 constexpr double kMpsOfFootPerMinute = kMetresOfFoot / 60;
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::track

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace airtruth::encounter {
+namespace airtruth::track {
 namespace {
 
 // A circle of 500 m at 50 m/s, and its exact velocity.
@@ -84,4 +84,4 @@ TEST(Track, TurnsFromNorthTowardsEastAboutThePivot) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::track

@@ -15,7 +15,7 @@
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 enum Column {
@@ -86,7 +86,7 @@ class EncounterRows {
     }
   }
 
-  std::vector<Encounter> take() {
+  std::vector<track::Encounter> take() {
     end();
     return std::move(encounters_);
   }
@@ -122,13 +122,13 @@ class EncounterRows {
   std::set<double> seen_;
   double number_ = 0;
   double weight_ = 0;
-  std::vector<Encounter> encounters_;
+  std::vector<track::Encounter> encounters_;
 };
 
 }  // namespace
 
-std::vector<Encounter> parse_encounter_csv(std::string_view text,
-                                           const std::filesystem::path& file) {
+std::vector<track::Encounter> parse_encounter_csv(std::string_view text,
+                                                  const std::filesystem::path& file) {
   Lines lines(text, file.string());
   std::vector<std::string_view> cells;
   if (!lines.next()) throw Error("is empty; expected a header and rows", {file.string()});
@@ -144,7 +144,7 @@ std::vector<Encounter> parse_encounter_csv(std::string_view text,
           lines.where());
     rows.add(cells, lines.where());
   }
-  std::vector<Encounter> encounters = rows.take();
+  std::vector<track::Encounter> encounters = rows.take();
   if (encounters.empty())
     throw Error("has no rows; expected one for each aircraft and time", lines.where());
   return encounters;
@@ -152,10 +152,10 @@ std::vector<Encounter> parse_encounter_csv(std::string_view text,
 
 std::string encounter_csv_head() { return fmt::format("{}\n", fmt::join(kNames, ",")); }
 
-std::string encounter_csv_rows(const Encounter& encounter, std::uint64_t number) {
+std::string encounter_csv_rows(const track::Encounter& encounter, std::uint64_t number) {
   std::string text;
-  for (const Track& track : encounter.aircraft) {
-    const std::vector<Vector3> velocities = velocities_of(track);
+  for (const track::Track& track : encounter.aircraft) {
+    const std::vector<Vector3> velocities = track::velocities_of(track);
     for (std::size_t i = 0; i < track.size(); ++i) {
       const Vector3& p = track.positions_ned_m[i];
       const Vector3& v = velocities[i];
@@ -176,4 +176,4 @@ std::string encounter_csv_rows(const Encounter& encounter, std::uint64_t number)
   return text;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

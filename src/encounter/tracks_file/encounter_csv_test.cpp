@@ -8,7 +8,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 using ::testing::HasSubstr;
@@ -49,7 +49,7 @@ TEST(EncounterCsv, RowsBecomeEncounters) {
 }
 
 TEST(EncounterCsv, WhatIsWrittenReadsTheSame) {
-  Encounter encounter{
+  track::Encounter encounter{
       {{"a", {0, 0.1}, {{0.1, 1e-7, -1.0 / 3}, {1, 2, 3}}, {{4, 5, 6}, {7, 8, 9.1}}}}, 1.0 / 7};
   const auto again =
       parse_encounter_csv(encounter_csv_head() + encounter_csv_rows(encounter, 12), "a.csv");
@@ -89,4 +89,4 @@ TEST(EncounterCsv, EachFaultNamesTheLineAndWhatWasExpected) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

@@ -16,7 +16,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 enum Column {
@@ -205,7 +205,7 @@ class RowReader {
       throw Error("the position is more than 60 degrees from the first; expected an encounter",
                   where_);
     // The sphere on which a minute of arc is a nautical mile.
-    constexpr double kEarthRadius_m = kMetresOfNauticalMile * 60 * 180 / kPi;
+    constexpr double kEarthRadius_m = track::kMetresOfNauticalMile * 60 * 180 / kPi;
     position_m.x() = kEarthRadius_m * (cos_0 * sin_here - sin_0 * cos_here * cos_turn);
     position_m.y() = kEarthRadius_m * cos_here * sin_turn;
     const double north = velocity_mps.x(), east = velocity_mps.y();
@@ -241,7 +241,7 @@ bool next_row(Lines& lines) {
 
 }  // namespace
 
-Encounter parse_state_table(std::string_view text, const std::filesystem::path& file) {
+track::Encounter parse_state_table(std::string_view text, const std::filesystem::path& file) {
   Lines lines(text, file.string());
   std::vector<std::string_view> cells;
   if (!next_row(lines)) throw Error("is empty; expected headings, units and rows", {file.string()});
@@ -259,7 +259,7 @@ Encounter parse_state_table(std::string_view text, const std::filesystem::path& 
   }
   if (builder.is_empty())
     throw Error("has no rows; expected one for each aircraft and time", lines.where());
-  Encounter encounter = builder.take();
+  track::Encounter encounter = builder.take();
   if (encounter.aircraft.size() < 2)
     throw Error(fmt::format("holds one aircraft only, '{}'; expected the own one and another",
                             encounter.aircraft[0].name),
@@ -269,12 +269,13 @@ Encounter parse_state_table(std::string_view text, const std::filesystem::path& 
 
 namespace {
 
-std::vector<Track> whole_tracks(const Encounter& encounter, const char* format) {
+std::vector<track::Track> whole_tracks(const track::Encounter& encounter, const char* format) {
   if (encounter.aircraft.size() < 2)
     throw Error(
         fmt::format("a {} file holds the own aircraft and another; one aircraft is given", format));
-  std::vector<Track> tracks;
-  for (const Track& track : encounter.aircraft) tracks.push_back(with_velocities(track));
+  std::vector<track::Track> tracks;
+  for (const track::Track& track : encounter.aircraft)
+    tracks.push_back(track::with_velocities(track));
   return tracks;
 }
 
@@ -283,8 +284,8 @@ double plain(double number) { return number + 0.0; }
 
 }  // namespace
 
-std::string daa_of(const Encounter& encounter) {
-  const std::vector<Track> tracks = whole_tracks(encounter, ".daa");
+std::string daa_of(const track::Encounter& encounter) {
+  const std::vector<track::Track> tracks = whole_tracks(encounter, ".daa");
   std::string text =
       "NAME sx sy sz vx vy vz time\n"
       "[none] [m] [m] [m] [m/s] [m/s] [m/s] [s]\n";
@@ -313,14 +314,14 @@ std::string daa_of(const Encounter& encounter) {
   }
 }
 
-std::string state_table_of(const Encounter& encounter) {
+std::string state_table_of(const track::Encounter& encounter) {
   std::string text =
       "NAME, east, north, alt, trk, gs, vs, time\n"
       "unitless, [ft], [ft], [ft], [rad], [ftps], [ftps], [s]\n";
-  for (const Track& track : whole_tracks(encounter, ".txt"))
+  for (const track::Track& track : whole_tracks(encounter, ".txt"))
     for (std::size_t i = 0; i < track.size(); ++i) {
-      const Vector3 p = track.positions_ned_m[i] / kMetresOfFoot;
-      const Vector3 v = track.velocities_ned_mps[i] / kMetresOfFoot;
+      const Vector3 p = track.positions_ned_m[i] / track::kMetresOfFoot;
+      const Vector3 v = track.velocities_ned_mps[i] / track::kMetresOfFoot;
       const double course = std::atan2(v.y(), v.x());
       fmt::format_to(std::back_inserter(text),
                      "{}, {}, {}, {}, {}, {}, {}, {}\n",
@@ -336,4 +337,4 @@ std::string state_table_of(const Encounter& encounter) {
   return text;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

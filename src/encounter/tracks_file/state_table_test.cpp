@@ -11,7 +11,7 @@
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 using ::testing::HasSubstr;
@@ -42,9 +42,9 @@ std::string fault_of_state_table(const std::string& text) {
 }
 
 TEST(StateTable, UnitsAndAxesOfDaa) {
-  const Encounter encounter = parse_state_table(kDaa, "a.daa");
+  const track::Encounter encounter = parse_state_table(kDaa, "a.daa");
   ASSERT_EQ(encounter.aircraft.size(), 2u);
-  const Track& other = encounter.aircraft[1];
+  const track::Track& other = encounter.aircraft[1];
   EXPECT_EQ(encounter.aircraft[0].name, "Own");
   EXPECT_EQ(other.times_s, (std::vector<double>{0, 1}));
   // x is east, y north and z up; 120 kt are 222.24 km/h.
@@ -53,7 +53,7 @@ TEST(StateTable, UnitsAndAxesOfDaa) {
 }
 
 TEST(StateTable, CommasVelocitiesByAxisOtherUnitsAndMoreColumns) {
-  const Encounter encounter = parse_state_table(
+  const track::Encounter encounter = parse_state_table(
       "filetype = state\n"
       "Time, mass, Name, vz, vy, vx, alt, sy, sx\n"
       "[min], [kg], unitless, [m/s], [m/s], [km/h], [m], [km], [m]\n"
@@ -61,7 +61,7 @@ TEST(StateTable, CommasVelocitiesByAxisOtherUnitsAndMoreColumns) {
       "0, 5, b, 0, 0, 0, 0, 0, 0\n"
       "0.5, 5, own ship, 1, 2, 3.6, 130, 1.06, 40,\n",
       "a.daa");
-  const Track& own = encounter.aircraft[0];
+  const track::Track& own = encounter.aircraft[0];
   EXPECT_EQ(own.name, "own_ship");
   EXPECT_EQ(own.times_s[1], 30);
   EXPECT_LT((own.positions_ned_m[0] - Vector3(1000, 10, -100)).norm(), 1e-9);
@@ -77,25 +77,26 @@ TEST(StateTable, AClockCountsHoursMinutesAndSeconds) {
               "0 62:04.5\nOther"),
       "-600 1\n",
       "-600 3725\n");
-  const Encounter encounter = parse_state_table(text, "a.daa");
+  const track::Encounter encounter = parse_state_table(text, "a.daa");
   EXPECT_EQ(encounter.aircraft[0].times_s, (std::vector<double>{3723.5, 3724.5}));
   EXPECT_EQ(encounter.aircraft[1].times_s, (std::vector<double>{3723.5, 3725}));
 }
 
 TEST(StateTable, AnAirspeedIsAlongTheClimbingPath) {
-  const Encounter encounter = parse_state_table(
+  const track::Encounter encounter = parse_state_table(
       "NAME, east, north, alt, hdg, speed, dh, time\n"
       "unitless, [ft], [ft], [ft], [rad], [ftps], [ftps], [s]\n"
       "OWNSHIP, 0, 0, 1000, 1.5707963267948966, 50, 30, 0.0\n"
       "INTRUDER, 0, 1000, 1000, 0, 50, 0, 0.0\n",
       "1.txt");
   EXPECT_LT(
-      (encounter.aircraft[0].velocities_ned_mps[0] / kMetresOfFoot - Vector3(0, 40, -30)).norm(),
+      (encounter.aircraft[0].velocities_ned_mps[0] / track::kMetresOfFoot - Vector3(0, 40, -30))
+          .norm(),
       1e-9);
 }
 
 TEST(StateTable, LatitudesAndLongitudesAreProjected) {
-  const Encounter encounter = parse_state_table(
+  const track::Encounter encounter = parse_state_table(
       "name lat lon alt trk gs vs time\n"
       "[none] [deg] [deg] [ft] [deg] [knot] [fpm] [s]\n"
       "own 60 10 0 0 0 0 0\n"
@@ -170,10 +171,10 @@ TEST(StateTable, LatitudesOutOfRangeAreErrors) {
 }
 
 TEST(StateTable, WhatIsWrittenReadsTheSame) {
-  const Encounter first = parse_state_table(kDaa, "a.daa");
+  const track::Encounter first = parse_state_table(kDaa, "a.daa");
   for (const bool is_daa : {true, false}) {
     const std::string written = is_daa ? daa_of(first) : state_table_of(first);
-    const Encounter again = parse_state_table(written, "b");
+    const track::Encounter again = parse_state_table(written, "b");
     for (std::size_t a = 0; a < 2; ++a) {
       EXPECT_EQ(again.aircraft[a].name, first.aircraft[a].name);
       EXPECT_EQ(again.aircraft[a].times_s, first.aircraft[a].times_s);
@@ -199,13 +200,14 @@ TEST(StateTable, DistancesAreThoseOfDaidalus) {
   const auto encounters = read_encounters(fs::path(shared) / "encounters/daidalus/H1.daa");
   ASSERT_EQ(encounters.size(), 1u);
   ASSERT_EQ(encounters[0].aircraft.size(), 2u);
-  const Track &own = encounters[0].aircraft[0], &other = encounters[0].aircraft[1];
+  const track::Track &own = encounters[0].aircraft[0], &other = encounters[0].aircraft[1];
   EXPECT_EQ(own.size(), 230u);
   const Vector3 apart = own.positions_ned_m[0] - other.positions_ned_m[0];
-  EXPECT_NEAR(apart.head<2>().norm() / kMetresOfNauticalMile, 44.554796, 1e-6);
+  EXPECT_NEAR(apart.head<2>().norm() / track::kMetresOfNauticalMile, 44.554796, 1e-6);
   // DAIDALUS projects the mean velocity over 10 s, here the velocity itself is projected.
   const Vector3 closing = own.velocities_ned_mps[0] - other.velocities_ned_mps[0];
-  EXPECT_NEAR(-apart.head<2>().normalized().dot(closing.head<2>()) / kMpsOfKnot, 799.951467, 0.01);
+  EXPECT_NEAR(
+      -apart.head<2>().normalized().dot(closing.head<2>()) / track::kMpsOfKnot, 799.951467, 0.01);
 }
 
 TEST(StateTable, TheExamplesOfThePairingToolAreRead) {
@@ -213,7 +215,7 @@ TEST(StateTable, TheExamplesOfThePairingToolAreRead) {
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   for (const char* name : {"1.txt", "2.txt"}) {
     const auto encounters = read_encounters(fs::path(shared) / "encounters/examples" / name);
-    for (const Track& track : encounters[0].aircraft) {
+    for (const track::Track& track : encounters[0].aircraft) {
       ASSERT_EQ(track.size(), 1800u);
       EXPECT_EQ(track.times_s.back(), 179.9);
       // Courses have two decimals of radians, so that half a metre a second is lost across.
@@ -224,4 +226,4 @@ TEST(StateTable, TheExamplesOfThePairingToolAreRead) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

@@ -15,7 +15,7 @@
 #include "foundation/base/text.h"
 #include "foundation/geometry/transform.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
@@ -99,15 +99,15 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"unitless unspecified", Dimension::kNone, 1},
     {"m meter metre", Dimension::kLength, 1},
     {"km", Dimension::kLength, 1000},
-    {"ft feet foot", Dimension::kLength, kMetresOfFoot},
-    {"nmi nm NM", Dimension::kLength, kMetresOfNauticalMile},
+    {"ft feet foot", Dimension::kLength, track::kMetresOfFoot},
+    {"nmi nm NM", Dimension::kLength, track::kMetresOfNauticalMile},
     {"deg degree", Dimension::kAngle, radians(1)},
     {"rad radian", Dimension::kAngle, 1},
     {"m/s mps", Dimension::kSpeed, 1},
     {"km/h kph", Dimension::kSpeed, 1 / 3.6},
-    {"knot kn kt kts", Dimension::kSpeed, kMpsOfKnot},
-    {"fpm ft/min", Dimension::kSpeed, kMpsOfFootPerMinute},
-    {"ftps fps ft/s", Dimension::kSpeed, kMetresOfFoot},
+    {"knot kn kt kts", Dimension::kSpeed, track::kMpsOfKnot},
+    {"fpm ft/min", Dimension::kSpeed, track::kMpsOfFootPerMinute},
+    {"ftps fps ft/s", Dimension::kSpeed, track::kMetresOfFoot},
     {"s sec", Dimension::kTime, 1},
     {"ms", Dimension::kTime, 1e-3},
     {"min", Dimension::kTime, 60},
@@ -154,4 +154,4 @@ std::string units_of(Dimension dimension) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

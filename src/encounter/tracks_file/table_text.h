@@ -9,7 +9,7 @@
 #include "foundation/base/error.h"
 
 // Text files of rows and cells, read line by line.
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 
 // The lines of a text with content, each with its number. The mark of UTF-8 at the beginning,
 // carriage returns and everything from '#' on are left out.
@@ -67,4 +67,4 @@ bool is_unit_word(std::string_view word);
 // The names of a dimension's units, for messages: "m, km, ft, nmi".
 std::string units_of(Dimension dimension);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

@@ -5,14 +5,14 @@
 
 #include <fmt/format.h>
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 
 void TrackBuilder::add(const std::string& name,
                        double time_s,
                        const Vector3& position_ned_m,
                        const Vector3* velocity_ned_mps,
                        const Where& where) {
-  std::vector<Track>& aircraft = encounter_.aircraft;
+  std::vector<track::Track>& aircraft = encounter_.aircraft;
   if (last_ >= aircraft.size() || aircraft[last_].name != name) {
     const auto [place, is_new] = places_.try_emplace(name, aircraft.size());
     if (is_new && aircraft.size() == kMaxAircraft)
@@ -24,7 +24,7 @@ void TrackBuilder::add(const std::string& name,
     if (is_new) aircraft.push_back({name, {}, {}, {}});
     last_ = place->second;
   }
-  Track& track = aircraft[last_];
+  track::Track& track = aircraft[last_];
   if (!track.times_s.empty() && !(time_s > track.times_s.back()))
     throw Error(fmt::format("the time of '{}' is {} s after {} s; expected times that increase",
                             name,
@@ -36,10 +36,10 @@ void TrackBuilder::add(const std::string& name,
   if (velocity_ned_mps != nullptr) track.velocities_ned_mps.push_back(*velocity_ned_mps);
 }
 
-Encounter TrackBuilder::take() {
+track::Encounter TrackBuilder::take() {
   places_.clear();
   last_ = 0;
-  return std::exchange(encounter_, Encounter{});
+  return std::exchange(encounter_, track::Encounter{});
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

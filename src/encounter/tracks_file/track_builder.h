@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 
 // Rows of a file, one state of one aircraft each, put together to tracks.
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 
 // The largest number of aircraft in one encounter: a bound for untrusted files.
 constexpr std::size_t kMaxAircraft = 1000;
@@ -26,12 +26,12 @@ class TrackBuilder {
            const Where& where);
   bool is_empty() const { return encounter_.aircraft.empty(); }
   // Hands over what was added and begins anew.
-  Encounter take();
+  track::Encounter take();
 
  private:
-  Encounter encounter_;
+  track::Encounter encounter_;
   std::map<std::string, std::size_t> places_;
   std::size_t last_ = 0;
 };
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

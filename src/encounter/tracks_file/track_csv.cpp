@@ -12,7 +12,7 @@
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 constexpr std::array<std::string_view, 4> kColumnNames = {"time_s", "x_ft", "y_ft", "z_ft"};
@@ -35,7 +35,7 @@ std::array<std::size_t, kColumnNames.size()> places_of(
 
 }  // namespace
 
-Encounter parse_track_csv(std::string_view text, const std::filesystem::path& file) {
+track::Encounter parse_track_csv(std::string_view text, const std::filesystem::path& file) {
   Lines lines(text, file.string());
   std::vector<std::string_view> cells;
   if (!lines.next()) throw Error("is empty; expected a header and rows", {file.string()});
@@ -51,10 +51,10 @@ Encounter parse_track_csv(std::string_view text, const std::filesystem::path& fi
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = number_in(cells[places[i]], kColumnNames[i], lines.where());
     const Vector3 position_ned_ft(values[1], values[2], -values[3]);
-    builder.add("track", values[0], kMetresOfFoot * position_ned_ft, nullptr, lines.where());
+    builder.add("track", values[0], track::kMetresOfFoot * position_ned_ft, nullptr, lines.where());
   }
   if (builder.is_empty()) throw Error("has no rows; expected one for each second", lines.where());
   return builder.take();
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

@@ -7,7 +7,7 @@
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 using ::testing::HasSubstr;
@@ -28,7 +28,7 @@ TEST(TrackCsv, FeetBecomeMetresNorthEastDown) {
   const auto encounters = parse_encounters(kTrack, "BAYES_t2_id1_alt1500_speed200.csv");
   ASSERT_EQ(encounters.size(), 1u);
   ASSERT_EQ(encounters[0].aircraft.size(), 1u);
-  const Track& track = encounters[0].aircraft[0];
+  const track::Track& track = encounters[0].aircraft[0];
   EXPECT_EQ(track.name, "track");
   EXPECT_EQ(track.times_s, (std::vector<double>{0, 1, 2}));
   EXPECT_LT((track.positions_ned_m[2] - Vector3(121.6152, 5.1816, -463.296)).norm(), 1e-9);
@@ -54,4 +54,4 @@ TEST(TrackCsv, FaultsNameFileAndLine) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

@@ -20,7 +20,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 // Largest file that is read: it bounds memory.
@@ -40,25 +40,25 @@ TracksFormat tracks_format_of(const fs::path& file) {
   return *format;
 }
 
-std::vector<Encounter> read_encounters(const fs::path& file) {
+std::vector<track::Encounter> read_encounters(const fs::path& file) {
   tracks_format_of(file);
   return parse_encounters(read_file(file, kMaxBytes), file);
 }
 
-std::vector<Encounter> parse_encounters(std::string_view bytes, const fs::path& file) {
+std::vector<track::Encounter> parse_encounters(std::string_view bytes, const fs::path& file) {
   if (tracks_format_of(file) == TracksFormat::kWaypoints) return parse_waypoints(bytes, file);
   if (begins_with_column(bytes, "encounter")) return parse_encounter_csv(bytes, file);
   if (begins_with_column(bytes, "x_ft")) return {parse_track_csv(bytes, file)};
   return {parse_state_table(bytes, file)};
 }
 
-std::vector<Encounter> fitted(std::vector<Encounter> encounters,
-                              TracksFormat format,
-                              const fs::path& of) {
+std::vector<track::Encounter> fitted(std::vector<track::Encounter> encounters,
+                                     TracksFormat format,
+                                     const fs::path& of) {
   const bool holds_many = format == TracksFormat::kCsv || format == TracksFormat::kWaypoints;
   if (holds_many || encounters.size() <= 1) return encounters;
   const bool is_of_one =
-      std::all_of(encounters.begin(), encounters.end(), [](const Encounter& each) {
+      std::all_of(encounters.begin(), encounters.end(), [](const track::Encounter& each) {
         return each.aircraft.size() == 1;
       });
   if (!is_of_one)
@@ -72,9 +72,9 @@ std::vector<Encounter> fitted(std::vector<Encounter> encounters,
     throw Error(
         fmt::format("would hold {} aircraft; expected up to {}", encounters.size(), kMaxAircraft),
         {of.string()});
-  Encounter all;
+  track::Encounter all;
   for (std::size_t i = 0; i < encounters.size(); ++i) {
-    Track& track = encounters[i].aircraft[0];
+    track::Track& track = encounters[i].aircraft[0];
     track.name += fmt::format("-{}", i + 1);
     all.aircraft.push_back(std::move(track));
   }
@@ -126,7 +126,7 @@ void TracksWriter::finish() {
   });
 }
 
-std::string bytes_of(const Encounter& encounter,
+std::string bytes_of(const track::Encounter& encounter,
                      TracksFormat format,
                      std::uint64_t number,
                      std::uint32_t aircraft) {
@@ -143,7 +143,7 @@ std::string bytes_of(const Encounter& encounter,
   return {};
 }
 
-void write_encounters(const fs::path& file, const std::vector<Encounter>& encounters) {
+void write_encounters(const fs::path& file, const std::vector<track::Encounter>& encounters) {
   check(!encounters.empty(), "there are encounters to write");
   const TracksFormat format = tracks_format_of(file);
   if (encounters.size() > kMaxEncounters)
@@ -158,4 +158,4 @@ void write_encounters(const fs::path& file, const std::vector<Encounter>& encoun
   writer.finish();
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

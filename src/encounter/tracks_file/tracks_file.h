@@ -14,7 +14,7 @@
 #include "foundation/base/names.h"
 
 // Encounters in files, in the formats of docs/formats/encounters.md.
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 
 namespace fs = std::filesystem;
 
@@ -39,21 +39,21 @@ TracksFormat tracks_format_of(const fs::path& file);
 // header has a column "encounter", MIT-LL's CSV of a track where it has a column "x_ft", otherwise
 // a table of states. Throws Error where the file is larger than 256 MiB, or where it is not of its
 // format (state_table.h, waypoint_file.h, encounter_csv.h, track_csv.h).
-std::vector<Encounter> read_encounters(const fs::path& file);
-std::vector<Encounter> parse_encounters(std::string_view bytes, const fs::path& file);
+std::vector<track::Encounter> read_encounters(const fs::path& file);
+std::vector<track::Encounter> parse_encounters(std::string_view bytes, const fs::path& file);
 
 // The encounters as a file of the format holds them. A format of one encounter takes several
 // encounters of one aircraft each as one of all of them, with the number of each behind its name.
 // Throws Error where it cannot hold them. `of` names what is written, for messages.
-std::vector<Encounter> fitted(std::vector<Encounter> encounters,
-                              TracksFormat format,
-                              const fs::path& of);
+std::vector<track::Encounter> fitted(std::vector<track::Encounter> encounters,
+                                     TracksFormat format,
+                                     const fs::path& of);
 
 // Writes a file of encounters piece by piece, so that a large set never stands in memory.
 
 // The bytes of encounter `number` (from 1) in a file whose encounters have `aircraft` aircraft.
 // Throws Error where the format cannot hold it.
-std::string bytes_of(const Encounter& encounter,
+std::string bytes_of(const track::Encounter& encounter,
                      TracksFormat format,
                      std::uint64_t number,
                      std::uint32_t aircraft);
@@ -79,6 +79,6 @@ class TracksWriter {
 
 // Writes all encounters, which fitted() fits to the file's format. Throws Error where the format
 // cannot hold them or the file cannot be written.
-void write_encounters(const fs::path& file, const std::vector<Encounter>& encounters);
+void write_encounters(const fs::path& file, const std::vector<track::Encounter>& encounters);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

@@ -11,7 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 class TracksFile : public ::testing::Test {
@@ -30,8 +30,8 @@ class TracksFile : public ::testing::Test {
   fs::path folder_;
 };
 
-Encounter encounter_of(std::size_t aircraft) {
-  Encounter encounter;
+track::Encounter encounter_of(std::size_t aircraft) {
+  track::Encounter encounter;
   for (std::size_t a = 0; a < aircraft; ++a)
     encounter.aircraft.push_back({a == 0 ? "own" : "intruder",
                                   {0, 1, 2},
@@ -66,15 +66,17 @@ TEST_F(TracksFile, AnExtensionOfAnotherKindIsAnError) {
 }
 
 TEST_F(TracksFile, TracksOfOneAircraftEachFitInOneScenario) {
-  const std::vector<Encounter> singles(3, encounter_of(1));
+  const std::vector<track::Encounter> singles(3, encounter_of(1));
   const auto joined = fitted(singles, TracksFormat::kDaa, "a.daa");
   ASSERT_EQ(joined.size(), 1u);
   EXPECT_EQ(joined[0].aircraft[2].name, "own-3");
   EXPECT_EQ(fitted(singles, TracksFormat::kWaypoints, "a.dat").size(), 3u);
-  EXPECT_THROW(fitted(std::vector<Encounter>(2, encounter_of(2)), TracksFormat::kDaa, "a.daa"),
-               Error);
-  EXPECT_THROW(fitted(std::vector<Encounter>(1001, encounter_of(1)), TracksFormat::kTable, "a.txt"),
-               Error);
+  EXPECT_THROW(
+      fitted(std::vector<track::Encounter>(2, encounter_of(2)), TracksFormat::kDaa, "a.daa"),
+      Error);
+  EXPECT_THROW(
+      fitted(std::vector<track::Encounter>(1001, encounter_of(1)), TracksFormat::kTable, "a.txt"),
+      Error);
 }
 
 TEST_F(TracksFile, WhatCannotBeWrittenLeavesNothing) {
@@ -90,4 +92,4 @@ TEST_F(TracksFile, WhatCannotBeWrittenLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

@@ -12,7 +12,7 @@
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is copied byte by byte");
@@ -54,7 +54,7 @@ class Reader {
     const double north = number("north");
     const double east = number("east");
     const double altitude = number("altitude");
-    return kMetresOfFoot * Vector3(north, east, -altitude);
+    return track::kMetresOfFoot * Vector3(north, east, -altitude);
   }
   std::string place() const { return place_; }
 
@@ -71,7 +71,7 @@ std::string name_of(std::uint32_t aircraft, std::uint32_t count) {
   return aircraft == 1 ? "intruder" : fmt::format("intruder-{}", aircraft);
 }
 
-void read_updates(Reader& reader, Track& track) {
+void read_updates(Reader& reader, track::Track& track) {
   const auto updates = reader.next<std::uint16_t>("the number of updates");
   if (reader.rest() / 32 < updates)
     reader.fail(fmt::format("has {} updates and {} bytes behind them; expected 32 bytes for each",
@@ -90,8 +90,8 @@ void read_updates(Reader& reader, Track& track) {
   }
 }
 
-Encounter read_encounter(Reader& reader, std::uint32_t number, std::uint32_t aircraft) {
-  Encounter encounter;
+track::Encounter read_encounter(Reader& reader, std::uint32_t number, std::uint32_t aircraft) {
+  track::Encounter encounter;
   const auto set_place = [&](std::uint32_t a) {
     reader.set_place(fmt::format("encounter {}, aircraft {}: ", number, a + 1));
   };
@@ -114,14 +114,15 @@ void append(std::string& bytes, Value value) {
 }
 
 void append_position(std::string& bytes, const Vector3& position_ned_m) {
-  append(bytes, position_ned_m.x() / kMetresOfFoot);
-  append(bytes, position_ned_m.y() / kMetresOfFoot);
-  append(bytes, -position_ned_m.z() / kMetresOfFoot);
+  append(bytes, position_ned_m.x() / track::kMetresOfFoot);
+  append(bytes, position_ned_m.y() / track::kMetresOfFoot);
+  append(bytes, -position_ned_m.z() / track::kMetresOfFoot);
 }
 
 }  // namespace
 
-std::vector<Encounter> parse_waypoints(std::string_view bytes, const std::filesystem::path& file) {
+std::vector<track::Encounter> parse_waypoints(std::string_view bytes,
+                                              const std::filesystem::path& file) {
   Reader reader(bytes, file);
   const auto count = reader.next<std::uint32_t>("the number of encounters");
   const auto aircraft = reader.next<std::uint32_t>("the number of aircraft");
@@ -138,7 +139,7 @@ std::vector<Encounter> parse_waypoints(std::string_view bytes, const std::filesy
                     aircraft,
                     reader.rest(),
                     smallest * count));
-  std::vector<Encounter> encounters;
+  std::vector<track::Encounter> encounters;
   for (std::uint32_t e = 0; e < count; ++e)
     encounters.push_back(read_encounter(reader, e + 1, aircraft));
   reader.set_place("");
@@ -155,7 +156,7 @@ std::string waypoint_head(std::uint32_t encounters, std::uint32_t aircraft) {
   return bytes;
 }
 
-std::string waypoints_of(const Encounter& encounter, std::uint32_t aircraft) {
+std::string waypoints_of(const track::Encounter& encounter, std::uint32_t aircraft) {
   if (encounter.aircraft.size() != aircraft)
     throw Error(
         fmt::format("an encounter has {} aircraft, another {}; a waypoint file (.dat) holds "
@@ -163,7 +164,7 @@ std::string waypoints_of(const Encounter& encounter, std::uint32_t aircraft) {
                     encounter.aircraft.size(),
                     aircraft));
   std::string bytes;
-  for (const Track& track : encounter.aircraft) {
+  for (const track::Track& track : encounter.aircraft) {
     if (track.times_s.front() != encounter.aircraft.front().times_s.front())
       throw Error(
           fmt::format("'{}' begins at {} s and '{}' at {} s; in a waypoint file (.dat) all "
@@ -179,7 +180,7 @@ std::string waypoints_of(const Encounter& encounter, std::uint32_t aircraft) {
                               kMaxUpdates + 1));
     append_position(bytes, track.positions_ned_m.front());
   }
-  for (const Track& track : encounter.aircraft) {
+  for (const track::Track& track : encounter.aircraft) {
     append(bytes, static_cast<std::uint16_t>(track.size() - 1));
     for (std::size_t i = 1; i < track.size(); ++i) {
       append(bytes, track.times_s[i] - track.times_s.front());
@@ -189,4 +190,4 @@ std::string waypoints_of(const Encounter& encounter, std::uint32_t aircraft) {
   return bytes;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

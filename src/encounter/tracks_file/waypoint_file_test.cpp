@@ -10,7 +10,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::tracks_file {
 namespace {
 
 using ::testing::HasSubstr;
@@ -53,7 +53,7 @@ std::string fault_of_waypoint(const std::string& bytes) {
 TEST(WaypointFile, ReadsFeetAndUpdates) {
   const auto encounters = parse_waypoints(two_encounters().text, "a.dat");
   ASSERT_EQ(encounters.size(), 2u);
-  const Track& own = encounters[0].aircraft[0];
+  const track::Track& own = encounters[0].aircraft[0];
   EXPECT_EQ(own.name, "own");
   EXPECT_EQ(own.times_s, (std::vector<double>{0, 1, 2}));
   EXPECT_LT((own.positions_ned_m[2] - Vector3(91.44, 0, -304.8)).norm(), 1e-9);
@@ -67,7 +67,7 @@ TEST(WaypointFile, ReadsFeetAndUpdates) {
 TEST(WaypointFile, WritesTheSameBytes) {
   const auto encounters = parse_waypoints(two_encounters().text, "a.dat");
   std::string written = waypoint_head(2, 2);
-  for (const Encounter& encounter : encounters) written += waypoints_of(encounter, 2);
+  for (const track::Encounter& encounter : encounters) written += waypoints_of(encounter, 2);
   EXPECT_EQ(written, two_encounters().text);
 }
 
@@ -112,12 +112,12 @@ TEST(WaypointFile, CountsAndNumbersThatCannotBeAreErrors) {
 }
 
 TEST(WaypointFile, WhatItCannotHoldIsAnError) {
-  const Track track{"a", {5, 6}, {{0, 0, 0}, {1, 0, 0}}, {}};
-  Track late = track;
+  const track::Track track{"a", {5, 6}, {{0, 0, 0}, {1, 0, 0}}, {}};
+  track::Track late = track;
   late.times_s = {6, 7};
   EXPECT_THROW(waypoints_of({{track}, 1}, 2), Error);
   EXPECT_THROW(waypoints_of({{track, late}, 1}, 2), Error);
-  Track longest;
+  track::Track longest;
   for (int i = 0; i < 65537; ++i) {
     longest.times_s.push_back(i);
     longest.positions_ned_m.emplace_back(0, 0, 0);
@@ -137,4 +137,4 @@ TEST(WaypointFile, WhatItCannotHoldIsAnError) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::tracks_file

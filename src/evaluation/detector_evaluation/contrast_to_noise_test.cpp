@@ -82,10 +82,10 @@ std::vector<PairState> head_on(double first_s, double last_s) {
 }
 
 TEST(FirstViolation, IsThatOfTheClosedFormWithinTheFramesAndAfterThem) {
-  const encounter::Volume& volume = encounter::named_volume("f3442")->volume;
+  const separation::Volume& volume = separation::named_volume("f3442")->volume;
   const std::vector<PairState> begin = head_on(0, 0);
   const double exact_s =
-      encounter::violation(volume, begin[0].own, begin[0].intruder, 180)->begin_s;
+      separation::violation(volume, begin[0].own, begin[0].intruder, 180)->begin_s;
   EXPECT_NEAR(*first_violation_s(volume, head_on(0, 40), 180), exact_s, 1e-9);
   EXPECT_NEAR(*first_violation_s(volume, head_on(0, 5), 180), exact_s, 1e-9);
   EXPECT_FALSE(first_violation_s(volume, head_on(0, 5), 1));

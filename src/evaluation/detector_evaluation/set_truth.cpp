@@ -173,7 +173,7 @@ std::optional<double> recorded_violation_s(const JsonObject& record, const std::
 // The violation of a volume that the record does not have.
 void ask_paths(const replay::Finished& finished,
                std::size_t actor,
-               const encounter::Volume& volume,
+               const separation::Volume& volume,
                scores::TruthEncounter& encounter) {
   const std::vector<annotation::Frame>& frames = finished.truth.frames;
   const std::vector<PairState> states = states_of(frames, actor);
@@ -200,7 +200,7 @@ scores::TruthEncounter encounter_of(const replay::Finished& finished,
   if (record != nullptr && was_asked(finished.truth.frames, actor, volume)) {
     encounter.has_volume = true;
     encounter.violation_s = recorded_violation_s(*record, volume);
-  } else if (const auto* named = encounter::named_volume(volume)) {
+  } else if (const auto* named = separation::named_volume(volume)) {
     ask_paths(finished, actor, named->volume, encounter);
   }
   return encounter;
@@ -401,11 +401,11 @@ void drop_hours_unless_all_known(SetTruth& set) {
 }
 
 void expect_volume(const SetTruth& set, const std::string& volume) {
-  if (volume.empty() || encounter::named_volume(volume) != nullptr) return;
+  if (volume.empty() || separation::named_volume(volume) != nullptr) return;
   for (const scores::TruthSequence& truth : set.sequences)
     for (const scores::TruthEncounter& one : truth.encounters)
       if (one.has_volume) return;
-  const std::vector<std::string> names = encounter::volume_names();
+  const std::vector<std::string> names = separation::volume_names();
   const auto nearest = nearest_spelling(volume, names);
   throw Error(fmt::format("--volume is '{}'{}; expected {}, or a volume of the scenes' own",
                           volume,
@@ -415,13 +415,13 @@ void expect_volume(const SetTruth& set, const std::string& volume) {
 
 constexpr int kHalvings = 40;  // of the time between two frames: to less than a nanosecond
 
-encounter::Mover between(const encounter::Mover& a, const encounter::Mover& b, double share) {
+separation::Mover between(const separation::Mover& a, const separation::Mover& b, double share) {
   return {a.position_ned_m + share * (b.position_ned_m - a.position_ned_m),
           a.velocity_ned_mps + share * (b.velocity_ned_mps - a.velocity_ned_mps)};
 }
 
 // `before` does not violate the volume and `after` does.
-double entry_s(const encounter::Volume& volume, const PairState& before, const PairState& after) {
+double entry_s(const separation::Volume& volume, const PairState& before, const PairState& after) {
   double low = 0;
   double high = 1;
   for (int i = 0; i < kHalvings; ++i) {
@@ -484,7 +484,7 @@ void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop)
   }
 }
 
-std::optional<double> first_violation_s(const encounter::Volume& volume,
+std::optional<double> first_violation_s(const separation::Volume& volume,
                                         std::span<const PairState> states,
                                         double lookahead_s) {
   for (std::size_t i = 0; i < states.size(); ++i)
@@ -492,7 +492,7 @@ std::optional<double> first_violation_s(const encounter::Volume& volume,
       return i == 0 ? states[i].time_s : entry_s(volume, states[i - 1], states[i]);
   if (states.empty()) return std::nullopt;
   const PairState& last = states.back();
-  const auto later = encounter::violation(volume, last.own, last.intruder, lookahead_s);
+  const auto later = separation::violation(volume, last.own, last.intruder, lookahead_s);
   return later ? std::optional(last.time_s + later->begin_s) : std::nullopt;
 }
 

@@ -223,7 +223,7 @@ bool is_fraction(double value) { return value >= 0 && value <= 1; }
 bool is_below_0(const std::optional<double>& value) { return value && *value < 0; }
 
 std::optional<std::string> fault(const EncounterTruth& truth) {
-  const encounter::Measures& m = truth.measures;
+  const separation::Measures& m = truth.measures;
   if (m.horizontal_m < 0 || m.hmd_m < 0 || m.vmd_m < 0 || is_below_0(m.dcpa_m) ||
       is_below_0(m.line_of_sight_rate_dps))
     return "has an encounter with a distance or a rate of sight below 0";

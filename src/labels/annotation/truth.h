@@ -43,7 +43,7 @@ using airtruth::VolumeTruth;
 
 // How an intruder stands to the own aircraft on its nominal path.
 struct EncounterTruth {
-  encounter::Measures measures;
+  separation::Measures measures;
   std::vector<VolumeTruth> volumes;
 };
 

@@ -34,7 +34,7 @@ void add_instant(const Sight& sight,
   const Matrix3 rotation = cam_from_body.rotation.toRotationMatrix();
   for (std::size_t part = 0; part < silhouette.points.size(); ++part) {
     const Eigen::Affine3d body_from_part =
-        aircraft::body_from_part(silhouette.mesh->parts[part], time_s).cast<double>();
+        model::body_from_part(silhouette.mesh->parts[part], time_s).cast<double>();
     const Matrix3 cam_from_part = rotation * body_from_part.linear();
     const Vector3 part_in_cam = rotation * body_from_part.translation() + cam_from_body.translation;
     for (const Eigen::Vector3f& point : silhouette.points[part]) {
@@ -142,14 +142,14 @@ void add_swept(const Sight& sight,
   const Sweep sweep(sight, body, world_from_body);
   const double open_s = sight.shutter.exposure_s + sight.shutter.readout_s;
   for (std::size_t i = 0; i < silhouette.points.size(); ++i) {
-    const aircraft::Part& part = silhouette.mesh->parts[i];
-    const double turns = aircraft::fastest_turn_per_s(part) * open_s;
+    const model::Part& part = silhouette.mesh->parts[i];
+    const double turns = model::fastest_turn_per_s(part) * open_s;
     const int steps =
         1 + std::min(kMaxSpinSteps, static_cast<int>(std::ceil(turns / kSpinStepTurns)));
     for (int step = 0; step < steps; ++step) {
       const double dt_s = steps > 1 ? open_s * (double(step) / (steps - 1) - 0.5) : 0;
       const Eigen::Affine3d body_from_part =
-          aircraft::body_from_part(part, time_s + dt_s).cast<double>();
+          model::body_from_part(part, time_s + dt_s).cast<double>();
       for (const Eigen::Vector3f& point : silhouette.points[i]) {
         sweep.add(body_from_part * point.cast<double>(), bounds, partly_unseen);
       }

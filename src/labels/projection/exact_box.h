@@ -35,8 +35,8 @@ std::optional<Pixel> pixel_from_world(const Sight& sight, const Vector3& p_in_wo
 
 // The silhouette points of a mesh, computed once for each aircraft.
 struct SilhouettePoints {
-  const aircraft::Mesh* mesh = nullptr;
-  // The result of aircraft::silhouette_points(*mesh).
+  const model::Mesh* mesh = nullptr;
+  // The result of model::silhouette_points(*mesh).
   std::vector<std::vector<Eigen::Vector3f>> points;
 };
 

@@ -28,9 +28,9 @@ std::vector<Eigen::Vector3f> cube() {
 }
 
 struct Solid {
-  aircraft::Mesh mesh;
+  model::Mesh mesh;
   SilhouettePoints silhouette;
-  explicit Solid(std::vector<Eigen::Vector3f> points, const aircraft::Part& part = {}) {
+  explicit Solid(std::vector<Eigen::Vector3f> points, const model::Part& part = {}) {
     mesh.parts.push_back(part);
     silhouette.points.push_back(std::move(points));
   }
@@ -127,7 +127,7 @@ TEST(ExactBox, BeyondTheHorizonOfTheHomographyIsUnseen) {
 // A blade of 1 m that turns once a second about the nose: it is upright at 0 s and level at 0.25 s.
 TEST(ExactBox, TurnsWithASpinningPart) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
-  aircraft::Part propeller;
+  model::Part propeller;
   propeller.spins = true;
   propeller.revolutions_per_s = 1;
   Solid blade({{0, 0, -1}, {0, 0, 1}}, propeller);

@@ -17,7 +17,7 @@
 namespace airtruth::backdrop {
 
 struct Instance {
-  const aircraft::Mesh* mesh = nullptr;
+  const model::Mesh* mesh = nullptr;
   Rigid world_from_body;
   double time_s = 0;
 };

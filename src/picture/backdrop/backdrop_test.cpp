@@ -27,17 +27,17 @@ Options software() {
 // World axes equal the camera's: x right, y down, z forward. A body keeps its axes.
 const Rigid kCamFromWorld{};
 
-aircraft::Mesh empty_mesh() {
-  aircraft::Mesh mesh;
+model::Mesh empty_mesh() {
+  model::Mesh mesh;
   mesh.parts.push_back({"airframe", {}, false, {1, 0, 0}, {0, 0, 0}, 0});
   return mesh;
 }
 
 // Adds a rectangle [x0, x1] x [y0, y1] at z that faces the camera.
-void add_rectangle(aircraft::Mesh& mesh,
+void add_rectangle(model::Mesh& mesh,
                    const Eigen::Vector4f& bounds,
                    float z,
-                   const aircraft::Material& material) {
+                   const model::Material& material) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   const auto index = static_cast<std::uint32_t>(mesh.materials.size());
   mesh.materials.push_back(material);
@@ -52,8 +52,8 @@ void add_rectangle(aircraft::Mesh& mesh,
   mesh.parts[0].triangles.push_back({{first, first + 2, first + 3}, index});
 }
 
-aircraft::Material plain(float r, float g, float b, float opacity = 1) {
-  aircraft::Material material;
+model::Material plain(float r, float g, float b, float opacity = 1) {
+  model::Material material;
   material.diffuse = {r, g, b};
   material.opacity = opacity;
   return material;
@@ -68,10 +68,10 @@ const std::array<int, 3> kGreen = {0, 255, 0};
 
 class BackdropTest : public testing::Test {
  protected:
-  image::Rgb8 render(const aircraft::Mesh& mesh, const HemisphereLight& light = kEven) {
+  image::Rgb8 render(const model::Mesh& mesh, const HemisphereLight& light = kEven) {
     return backdrop_->render(kFocal, kMiddle, kCamFromWorld, light, {{&mesh, {}, 0}});
   }
-  std::vector<std::array<float, 4>> render_alpha(const aircraft::Mesh& mesh, int supersampling) {
+  std::vector<std::array<float, 4>> render_alpha(const model::Mesh& mesh, int supersampling) {
     return backdrop_->render_alpha(
         kFocal, kMiddle, kCamFromWorld, kEven, {{&mesh, {}, 0}}, supersampling);
   }
@@ -95,7 +95,7 @@ TEST_F(BackdropTest, WithoutIntrudersAllIsGreen) {
 // At 10 m a pixel is 0.1 m: x from -2.8 to -0.8 m is pixel 20 to 40, and y from -2.2 to -1.2 m is
 // pixel 10 to 20.
 TEST_F(BackdropTest, RectangleCoversItsPixelsAndNoOther) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-2.8f, -0.8f, -2.2f, -1.2f}, 10, plain(1, 0, 0));
   const image::Rgb8 image = render(mesh);
   for (int y = 0; y < kHeight; ++y) {
@@ -108,7 +108,7 @@ TEST_F(BackdropTest, RectangleCoversItsPixelsAndNoOther) {
 }
 
 TEST_F(BackdropTest, RightIsRightAndDownIsDown) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {1.2f, 3.2f, 0.8f, 2.8f}, 10, plain(0, 0, 1));
   const image::Rgb8 image = render(mesh);
   EXPECT_EQ(colour(image, 70, 50), (std::array<int, 3>{0, 0, 255}));
@@ -117,7 +117,7 @@ TEST_F(BackdropTest, RightIsRightAndDownIsDown) {
 }
 
 TEST_F(BackdropTest, PrincipalPointAndFocalLengthsMoveAndStretchIt) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -1, 1}, 10, plain(1, 0, 0));
   const image::Rgb8 image =
       backdrop_->render({150, 50}, {40, 20}, kCamFromWorld, kEven, {{&mesh, {}, 0}});
@@ -130,7 +130,7 @@ TEST_F(BackdropTest, PrincipalPointAndFocalLengthsMoveAndStretchIt) {
 }
 
 TEST_F(BackdropTest, InstanceAndCameraPosesAreApplied) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -0.5f, 0.5f}, 0, plain(1, 0, 0));
   // The body is rotated by 90 degrees about the optical axis and stands 10 m in front of a camera
   // at (5, 6, 7).
@@ -149,7 +149,7 @@ TEST_F(BackdropTest, InstanceAndCameraPosesAreApplied) {
 // The rectangle covers three quarters of column 20. With four samples a pixel its colour lies
 // between green and red.
 TEST_F(BackdropTest, EdgesAreMultisampled) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-2.775f, -0.8f, -2.2f, -1.2f}, 10, plain(1, 0, 0));
   const auto edge = colour(render(mesh), 20, 15);
   EXPECT_NEAR(edge[0], 191, 1);
@@ -157,7 +157,7 @@ TEST_F(BackdropTest, EdgesAreMultisampled) {
 }
 
 TEST_F(BackdropTest, LightIsLambertPlusTheSkyEncodedAsSrgb) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-2, 2, -2, 2}, 10, plain(0.5f, 0.5f, 0.5f));
   // The plate faces the camera along the world's -z, which points up, so it sees only the sky. The
   // sun stands 60 degrees off its normal.
@@ -174,7 +174,7 @@ TEST_F(BackdropTest, LightIsLambertPlusTheSkyEncodedAsSrgb) {
 }
 
 TEST_F(BackdropTest, NearerHidesFartherWhateverTheOrder) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -1, 1}, 10, plain(1, 0, 0));
   add_rectangle(mesh, {-1, 1, -1, 1}, 20, plain(0, 0, 1));
   EXPECT_EQ(colour(render(mesh), 48, 32), (std::array<int, 3>{255, 0, 0}));
@@ -183,7 +183,7 @@ TEST_F(BackdropTest, NearerHidesFartherWhateverTheOrder) {
 // Three panes: the nearest is red at 1/2, then blue at 1/2, then opaque white. The result is 1/2
 // red, 1/4 blue, 1/4 white.
 TEST_F(BackdropTest, TranslucentPanesBlendBackToFront) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -1, 1}, 10, plain(1, 0, 0, 0.5f));
   add_rectangle(mesh, {-1.5f, 1.5f, -1.5f, 1.5f}, 11, plain(0, 0, 1, 0.5f));
   add_rectangle(mesh, {-2, 2, -2, 2}, 12, plain(1, 1, 1));
@@ -195,7 +195,7 @@ TEST_F(BackdropTest, TranslucentPanesBlendBackToFront) {
 }
 
 TEST_F(BackdropTest, PaneOverNothingKeepsItsAlpha) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -1, 1}, 10, plain(1, 0.5f, 0, 0.25f));
   const auto pixel = render_alpha(mesh, 2)[at(48, 32)];
   EXPECT_NEAR(pixel[0], 0.25, 1e-5);
@@ -206,10 +206,10 @@ TEST_F(BackdropTest, PaneOverNothingKeepsItsAlpha) {
 // A texture whose left half is opaque blue and whose right half is transparent; its bottom row is v
 // = 0.
 TEST_F(BackdropTest, TexelsDecideWhatIsSeen) {
-  aircraft::Mesh mesh = empty_mesh();
-  aircraft::Material material = plain(1, 1, 1);
+  model::Mesh mesh = empty_mesh();
+  model::Material material = plain(1, 1, 1);
   material.texture = 0;
-  aircraft::Texture texture;
+  model::Texture texture;
   texture.levels.push_back({4, 2, {}});
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 4; ++column) {
@@ -233,7 +233,7 @@ TEST_F(BackdropTest, TexelsDecideWhatIsSeen) {
 // A disc of radius r at distance d, seen face-on, has pi (f r / d)^2 pixels, less the area that a
 // 256-sided polygon lacks.
 TEST_F(BackdropTest, AlphaOfADiscSumsToItsArea) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   mesh.materials.push_back(plain(1, 1, 1));
   constexpr int kSides = 256;
   mesh.positions.emplace_back(0.0f, 0.0f, 10.0f);
@@ -258,9 +258,9 @@ TEST_F(BackdropTest, AlphaOfADiscSumsToItsArea) {
 }
 
 TEST_F(BackdropTest, PropellerTurnsAboutItsAxis) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-2, 2, -0.5f, 0.5f}, 10, plain(1, 0, 0));
-  aircraft::Part& part = mesh.parts[0];
+  model::Part& part = mesh.parts[0];
   part.spins = true;
   part.axis_in_body = {0, 0, 1};
   part.centre_in_body = {0, 0, 10};
@@ -272,7 +272,7 @@ TEST_F(BackdropTest, PropellerTurnsAboutItsAxis) {
 }
 
 TEST_F(BackdropTest, BehindTheCameraIsNothingAndTwiceTheSameMeshIsTwoInstances) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-0.5f, 0.5f, -0.5f, 0.5f}, 0, plain(1, 0, 0));
   const image::Rgb8 image = backdrop_->render(kFocal,
                                               kMiddle,

@@ -111,7 +111,7 @@ struct Graph {
             const PinholeView& view,
             const Box& in_frame,
             const osg::Vec4& clear_colour);
-  OsgMesh& instance_of(const aircraft::Mesh& mesh, std::size_t nth);
+  OsgMesh& instance_of(const model::Mesh& mesh, std::size_t nth);
 
   struct OnDevice {
     std::vector<osg::ref_ptr<osg::Texture2D>> textures;
@@ -128,7 +128,7 @@ struct Graph {
   osg::ref_ptr<osgViewer::Viewer> viewer;
   osg::ref_ptr<osgViewer::GraphicsWindowEmbedded> window;
   osg::GLExtensions* gl = nullptr;
-  std::map<const aircraft::Mesh*, OnDevice> aircraft;
+  std::map<const model::Mesh*, OnDevice> aircraft;
   double near_m = 1;
   double far_m = 2;
   // The target of render().
@@ -137,7 +137,7 @@ struct Graph {
   std::unique_ptr<FrameBuffer> tile;
 };
 
-OsgMesh& Graph::instance_of(const aircraft::Mesh& mesh, std::size_t nth) {
+OsgMesh& Graph::instance_of(const model::Mesh& mesh, std::size_t nth) {
   const auto [place, is_new] = aircraft.try_emplace(&mesh);
   OnDevice& on_device = place->second;
   if (is_new) on_device.textures = osg_textures(mesh, options.anisotropy);
@@ -152,7 +152,7 @@ std::vector<Box> Graph::stage(const PinholeView& view,
   root->removeChildren(0, root->getNumChildren());
   shading.set_light(light, view.cam_from_world);
   std::vector<Box> boxes;
-  std::map<const aircraft::Mesh*, std::size_t> used;
+  std::map<const model::Mesh*, std::size_t> used;
   near_m = 1e9;
   far_m = 0;
   const Box frame{0, 0, static_cast<double>(width), static_cast<double>(height)};

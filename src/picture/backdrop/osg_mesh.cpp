@@ -13,8 +13,8 @@
 namespace airtruth::backdrop {
 namespace {
 
-osg::ref_ptr<osg::Texture2D> osg_texture(const aircraft::Texture& texture, float anisotropy) {
-  const aircraft::Texture::Level& level = texture.levels.at(0);
+osg::ref_ptr<osg::Texture2D> osg_texture(const model::Texture& texture, float anisotropy) {
+  const model::Texture::Level& level = texture.levels.at(0);
   osg::ref_ptr<osg::Image> image = new osg::Image;
   image->allocateImage(level.width, level.height, 1, GL_RGBA, GL_FLOAT);
   std::memcpy(image->data(), level.texels.data(), level.texels.size() * sizeof(level.texels[0]));
@@ -35,15 +35,15 @@ osg::ref_ptr<osg::Texture2D> osg_texture(const aircraft::Texture& texture, float
 
 // The triangles of one material of one part, with only the vertices that they use: OpenSceneGraph
 // sorts drawables by the middle of their vertices.
-osg::ref_ptr<osg::Geometry> osg_geometry(const aircraft::Mesh& mesh,
-                                         const aircraft::Part& part,
+osg::ref_ptr<osg::Geometry> osg_geometry(const model::Mesh& mesh,
+                                         const model::Part& part,
                                          std::uint32_t material) {
   osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
   osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
   osg::ref_ptr<osg::Vec2Array> uvs = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
   osg::ref_ptr<osg::DrawElementsUInt> indices = new osg::DrawElementsUInt(GL_TRIANGLES);
   std::map<std::uint32_t, unsigned> index_of_vertex;
-  for (const aircraft::Triangle& triangle : part.triangles) {
+  for (const model::Triangle& triangle : part.triangles) {
     if (triangle.material != material) continue;
     for (std::uint32_t vertex : triangle.vertex) {
       const auto [place, is_new] =
@@ -92,13 +92,13 @@ void sort_triangles(osg::Geometry& geometry, const osg::Vec3f& eye_in_part) {
   indices.dirty();
 }
 
-double radius(const aircraft::Mesh& mesh) {
+double radius(const model::Mesh& mesh) {
   float result = 0;
-  for (const aircraft::Part& part : mesh.parts) {
+  for (const model::Part& part : mesh.parts) {
     const Eigen::Vector3f centre =
         part.moves() ? part.centre_in_body : Eigen::Vector3f::Zero().eval();
-    if (part.moves()) result = std::max(result, centre.norm() + aircraft::reach_m(mesh, part));
-    for (const aircraft::Triangle& triangle : part.triangles) {
+    if (part.moves()) result = std::max(result, centre.norm() + model::reach_m(mesh, part));
+    for (const model::Triangle& triangle : part.triangles) {
       for (std::uint32_t vertex : triangle.vertex)
         result = std::max(result, centre.norm() + (mesh.positions[vertex] - centre).norm());
     }
@@ -108,16 +108,14 @@ double radius(const aircraft::Mesh& mesh) {
 
 }  // namespace
 
-std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const aircraft::Mesh& mesh,
-                                                       float anisotropy) {
+std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const model::Mesh& mesh, float anisotropy) {
   std::vector<osg::ref_ptr<osg::Texture2D>> textures;
-  for (const aircraft::Texture& texture : mesh.textures)
+  for (const model::Texture& texture : mesh.textures)
     textures.push_back(osg_texture(texture, anisotropy));
   return textures;
 }
 
-OsgMesh::OsgMesh(const aircraft::Mesh& mesh,
-                 const std::vector<osg::ref_ptr<osg::Texture2D>>& textures)
+OsgMesh::OsgMesh(const model::Mesh& mesh, const std::vector<osg::ref_ptr<osg::Texture2D>>& textures)
     : mesh_(mesh), body_(new osg::MatrixTransform), radius_m_(radius(mesh)) {
   for (std::size_t part = 0; part < mesh.parts.size(); ++part) add_part(part, textures);
 }
@@ -127,11 +125,11 @@ void OsgMesh::add_part(std::size_t part,
   parts_.push_back(new osg::MatrixTransform);
   body_->addChild(parts_.back());
   std::vector<bool> used(mesh_.materials.size(), false);
-  for (const aircraft::Triangle& triangle : mesh_.parts[part].triangles)
+  for (const model::Triangle& triangle : mesh_.parts[part].triangles)
     used.at(triangle.material) = true;
   for (std::uint32_t m = 0; m < used.size(); ++m) {
     if (!used[m]) continue;
-    const aircraft::Material& material = mesh_.materials[m];
+    const model::Material& material = mesh_.materials[m];
     osg::Texture* texture = material.texture >= 0
                                 ? textures.at(static_cast<std::size_t>(material.texture)).get()
                                 : nullptr;
@@ -151,7 +149,7 @@ void OsgMesh::place(const Instance& instance, const Rigid& cam_from_world) {
                                    Eigen::Affine3d(world_from_body.rotation)));
   std::vector<Eigen::Affine3f> body_from_parts;
   for (std::size_t part = 0; part < parts_.size(); ++part) {
-    body_from_parts.push_back(aircraft::body_from_part(mesh_.parts[part], instance.time_s));
+    body_from_parts.push_back(model::body_from_part(mesh_.parts[part], instance.time_s));
     parts_[part]->setMatrix(osg_from_affine(body_from_parts.back().cast<double>()));
   }
   const Vector3 eye_in_body = world_from_body.inverse() * cam_from_world.inverse().translation;

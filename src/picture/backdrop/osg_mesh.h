@@ -13,13 +13,12 @@
 namespace airtruth::backdrop {
 
 // The textures of one mesh, which all its instances share.
-std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const aircraft::Mesh& mesh,
-                                                       float anisotropy);
+std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const model::Mesh& mesh, float anisotropy);
 
 // One aircraft in the scene graph: a transform for the body and one below it for each part.
 class OsgMesh {
  public:
-  OsgMesh(const aircraft::Mesh& mesh, const std::vector<osg::ref_ptr<osg::Texture2D>>& textures);
+  OsgMesh(const model::Mesh& mesh, const std::vector<osg::ref_ptr<osg::Texture2D>>& textures);
   osg::Node* node() const { return body_.get(); }
   // Radius of a sphere about the body's origin that contains the aircraft with its propellers at
   // any angle.
@@ -35,7 +34,7 @@ class OsgMesh {
   };
   void add_part(std::size_t part, const std::vector<osg::ref_ptr<osg::Texture2D>>& textures);
 
-  const aircraft::Mesh& mesh_;
+  const model::Mesh& mesh_;
   osg::ref_ptr<osg::MatrixTransform> body_;
   std::vector<osg::ref_ptr<osg::MatrixTransform>> parts_;
   std::vector<Translucent> translucent_;

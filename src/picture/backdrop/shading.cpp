@@ -11,7 +11,7 @@
 namespace airtruth::backdrop {
 namespace {
 
-using aircraft::kOpaque;
+using model::kOpaque;
 
 constexpr const char* kVertexShader = R"(#version 120
 varying vec3 p_in_part;
@@ -111,7 +111,7 @@ void Shading::set_encoding(Encoding encoding) {
   state_->getOrCreateUniform("encode", osg::Uniform::BOOL)->set(encoding == Encoding::kSrgb);
 }
 
-bool is_drawn_in(Pass pass, const aircraft::Material& material, const aircraft::Mesh& mesh) {
+bool is_drawn_in(Pass pass, const model::Material& material, const model::Mesh& mesh) {
   const bool translucent_texels =
       material.texture >= 0 &&
       mesh.textures[static_cast<std::size_t>(material.texture)].has_translucency;
@@ -120,7 +120,7 @@ bool is_drawn_in(Pass pass, const aircraft::Material& material, const aircraft::
 }
 
 osg::ref_ptr<osg::StateSet> material_state(Pass pass,
-                                           const aircraft::Material& material,
+                                           const model::Material& material,
                                            osg::Texture* texture) {
   osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
   state->addUniform(new osg::Uniform("diffuse", osg_from_rgb(material.diffuse)));

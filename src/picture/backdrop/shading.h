@@ -26,10 +26,10 @@ class Shading {
   osg::ref_ptr<osg::StateSet> state_;
 };
 
-bool is_drawn_in(Pass pass, const aircraft::Material& material, const aircraft::Mesh& mesh);
+bool is_drawn_in(Pass pass, const model::Material& material, const model::Mesh& mesh);
 
 osg::ref_ptr<osg::StateSet> material_state(Pass pass,
-                                           const aircraft::Material& material,
+                                           const model::Material& material,
                                            osg::Texture* texture);
 
 }  // namespace airtruth::backdrop

@@ -57,7 +57,7 @@ backdrop::Options software() {
   return options;
 }
 
-image::Layer traced(const aircraft::Mesh& mesh,
+image::Layer traced(const model::Mesh& mesh,
                     const Rigid& world_from_body,
                     const HemisphereLight& light,
                     int quality) {
@@ -75,7 +75,7 @@ image::Layer traced(const aircraft::Mesh& mesh,
                         {.quality = quality});
 }
 
-Comparison compare(const aircraft::Mesh& mesh,
+Comparison compare(const model::Mesh& mesh,
                    const Rigid& world_from_body,
                    const HemisphereLight& light,
                    const Precision& precision = {}) {
@@ -118,25 +118,25 @@ std::ostream& operator<<(std::ostream& out, const Comparison& c) {
              << c.colour_bias;
 }
 
-aircraft::Material plain(float r, float g, float b, float opacity = 1) {
-  aircraft::Material material;
+model::Material plain(float r, float g, float b, float opacity = 1) {
+  model::Material material;
   material.diffuse = {r, g, b};
   material.opacity = opacity;
   return material;
 }
 
-aircraft::Mesh empty_mesh() {
-  aircraft::Mesh mesh;
+model::Mesh empty_mesh() {
+  model::Mesh mesh;
   mesh.parts.push_back({"airframe", {}, false, {1, 0, 0}, {0, 0, 0}, 0});
   return mesh;
 }
 
 // A quadrilateral from a corner and two sides, with its normal along their cross product.
-void add_plate(aircraft::Mesh& mesh,
+void add_plate(model::Mesh& mesh,
                const Eigen::Vector3f& corner,
                const Eigen::Vector3f& u,
                const Eigen::Vector3f& v,
-               const aircraft::Material& material) {
+               const model::Material& material) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   const auto index = static_cast<std::uint32_t>(mesh.materials.size());
   mesh.materials.push_back(material);
@@ -152,8 +152,8 @@ void add_plate(aircraft::Mesh& mesh,
 }
 
 // A crate with sides of six colours.
-aircraft::Mesh crate(float length, float width, float height) {
-  aircraft::Mesh mesh = empty_mesh();
+model::Mesh crate(float length, float width, float height) {
+  model::Mesh mesh = empty_mesh();
   const Eigen::Vector3f x(length, 0, 0), y(0, width, 0), z(0, 0, height);
   const Eigen::Vector3f low = -(x + y + z) / 2;
   const Eigen::Vector3f high = -low;
@@ -171,7 +171,7 @@ Rigid pose(double distance_m, const YawPitchRoll& attitude) {
 }
 
 TEST(TwoRenderers, AgreeOnACrate) {
-  const aircraft::Mesh mesh = crate(8, 5, 3);
+  const model::Mesh mesh = crate(8, 5, 3);
   for (const YawPitchRoll& attitude : {YawPitchRoll{30, 20, 10}, YawPitchRoll{200, -35, 75}}) {
     const Comparison c = compare(mesh, pose(300, attitude), kSunny);
     EXPECT_GT(c.alpha_sum, 200);
@@ -183,7 +183,7 @@ TEST(TwoRenderers, AgreeOnACrate) {
 }
 
 TEST(TwoRenderers, AgreeOnPanesBehindEachOther) {
-  aircraft::Mesh mesh = empty_mesh();
+  model::Mesh mesh = empty_mesh();
   add_plate(mesh, {0, -4, -3}, {0, 6, 0}, {0, 0, 5}, plain(0.9f, 0.1f, 0.1f, 0.4f));
   add_plate(mesh, {-2, -2, -2}, {0, 6, 0}, {0, 0, 5}, plain(0.1f, 0.1f, 0.9f, 0.6f));
   add_plate(mesh, {2, -3, 0}, {0, 6, 0}, {0, 0, 2}, plain(0.8f, 0.8f, 0.8f));
@@ -195,12 +195,12 @@ TEST(TwoRenderers, AgreeOnPanesBehindEachOther) {
 
 // A window in a painted plate: texels of 8x8 with a translucent middle.
 TEST(TwoRenderers, AgreeOnATextureThatIsTranslucentInPlaces) {
-  aircraft::Mesh mesh = empty_mesh();
-  aircraft::Texture texture;
+  model::Mesh mesh = empty_mesh();
+  model::Texture texture;
   texture.has_translucency = true;
   texture.repeat_u = texture.repeat_v = false;
   for (int size = 8; size >= 1; size /= 2) {
-    aircraft::Texture::Level level{size, size, {}};
+    model::Texture::Level level{size, size, {}};
     for (int i = 0; i < size * size; ++i) {
       if (size == 8) {
         const bool middle = i % 8 >= 2 && i % 8 < 6 && i / 8 >= 2 && i / 8 < 6;
@@ -209,7 +209,7 @@ TEST(TwoRenderers, AgreeOnATextureThatIsTranslucentInPlaces) {
             {0.9f * alpha, 0.1f * static_cast<float>(i % 8) * alpha, 0.2f * alpha, alpha});
         continue;
       }
-      const aircraft::Texture::Level& finer = texture.levels.back();
+      const model::Texture::Level& finer = texture.levels.back();
       std::array<float, 4> mean{};
       for (int k = 0; k < 4; ++k) {
         const int x = 2 * (i % size) + k % 2;
@@ -222,7 +222,7 @@ TEST(TwoRenderers, AgreeOnATextureThatIsTranslucentInPlaces) {
     texture.levels.push_back(level);
   }
   mesh.textures.push_back(texture);
-  aircraft::Material material = plain(1, 1, 1);
+  model::Material material = plain(1, 1, 1);
   material.texture = 0;
   add_plate(mesh, {0, -4, -3}, {0, 8, 0}, {0, 0, 6}, material);
   const Comparison c = compare(mesh, pose(300, {20, 10, 5}), kSunny);
@@ -239,12 +239,12 @@ class TwoRenderersOnAircraft : public testing::TestWithParam<const char*> {};
 // a painted part on its texture, and the colour of the 737 at 20 px changes by 8 %.
 TEST_P(TwoRenderersOnAircraft, AgreeAt20And100Pixels) {
   try {
-    aircraft::find_aircraft(GetParam());
+    fleet::find_aircraft(GetParam());
   } catch (const Error& error) {
     GTEST_SKIP() << error.what();
   }
-  const aircraft::Aircraft plane = aircraft::load_aircraft(GetParam());
-  const aircraft::Extents extents = aircraft::extents(plane.mesh);
+  const fleet::Aircraft plane = fleet::load_aircraft(GetParam());
+  const model::Extents extents = model::extents(plane.mesh);
   const double size_m = std::max(extents.length_m(), extents.span_m());
   for (double size_px : {20.0, 100.0}) {
     const Rigid world_from_body = pose(kFocalPx * size_m / size_px, {50, 8, -15});

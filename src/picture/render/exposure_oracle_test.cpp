@@ -35,11 +35,11 @@ struct Setting {
 
 class Oracle {
  public:
-  Oracle(const aircraft::Mesh& mesh, const View& view, const Instance& instance)
+  Oracle(const model::Mesh& mesh, const View& view, const Instance& instance)
       : mesh_(mesh), view_(view), instance_(instance) {
-    for (const aircraft::Part& part : mesh.parts)
+    for (const model::Part& part : mesh.parts)
       if (!part.spins)
-        for (const aircraft::Triangle& t : part.triangles)
+        for (const model::Triangle& t : part.triangles)
           triangles_.push_back({mesh.positions[t.vertex[0]].cast<double>(),
                                 mesh.positions[t.vertex[1]].cast<double>(),
                                 mesh.positions[t.vertex[2]].cast<double>()});
@@ -148,7 +148,7 @@ class Oracle {
     return bounds.box();
   }
 
-  const aircraft::Mesh& mesh_;
+  const model::Mesh& mesh_;
   View view_;
   Instance instance_;
   std::vector<Triangle> triangles_;
@@ -156,8 +156,8 @@ class Oracle {
 };
 
 // A small aircraft of boxes and a slanted fin: opaque, with few triangles and thin parts.
-aircraft::Mesh toy() {
-  aircraft::Mesh mesh;
+model::Mesh toy() {
+  model::Mesh mesh;
   mesh.materials.emplace_back();
   mesh.parts.push_back({.name = "airframe"});
   const auto box = [&](const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
@@ -210,7 +210,7 @@ struct Scene {
 };
 
 Scene scene_of(const Setting& setting,
-               const aircraft::Mesh& mesh,
+               const model::Mesh& mesh,
                const shade::Model& model,
                double size_px) {
   Scene scene;
@@ -228,7 +228,7 @@ Scene scene_of(const Setting& setting,
   Twist body = setting.body;
   body.velocity_mps *= std::max(1.0, range_m / 300);
   scene.instance = {&model, {airtruth::world_from_body({70, 8, 20}), place}, 0, body};
-  const projection::SilhouettePoints silhouette{&mesh, aircraft::silhouette_points(mesh)};
+  const projection::SilhouettePoints silhouette{&mesh, model::silhouette_points(mesh)};
   const projection::Sight sight{&setting.lens,
                                 scene.view.world_from_cam.inverse(),
                                 Homography::Identity(),
@@ -289,7 +289,7 @@ void compare_covered(const image::Layer& layer,
 // Compares every pixel of the patch, the box of the visible pixels and the centroid. Returns the
 // largest alpha error.
 double compare_all(const Setting& setting,
-                   const aircraft::Mesh& mesh,
+                   const model::Mesh& mesh,
                    const shade::Model& model,
                    double size_px) {
   const std::string where = fmt::format("{} at {} px", setting.name, size_px);
@@ -339,7 +339,7 @@ double compare_all(const Setting& setting,
 }
 
 TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
-  const aircraft::Mesh mesh = toy();
+  const model::Mesh mesh = toy();
   const shade::Model model(mesh);
   const std::vector<Setting> all = settings();
   for (const Setting& setting : all) {
@@ -354,7 +354,7 @@ TEST(Exposure, AlphaBoxAndCentroidAgreeWithBruteForceThroughEveryLens) {
 
 // An airliner from FlightGear with engines and fins.
 TEST(Exposure, ARealAircraftAgreesWithBruteForce) {
-  const aircraft::Aircraft airliner = aircraft::load_aircraft("738/738-Ryanair");
+  const fleet::Aircraft airliner = fleet::load_aircraft("738/738-Ryanair");
   const shade::Model model(airliner.mesh);
   const std::vector<Setting> all = settings();
   EXPECT_LT(compare_all(all[2], airliner.mesh, model, 20), 1.0 / 64);

@@ -24,19 +24,19 @@ struct Stage {
             kStageSide,
             kStageSide};
 
-  image::LayerPixel middle(const aircraft::Mesh& mesh,
+  image::LayerPixel middle(const model::Mesh& mesh,
                            const shade::Light& light,
                            Rigid body = {}) const {
     const image::Layer layer = whole(mesh, light, body);
     return layer.pixels[layer.index(kStageSide / 2, kStageSide / 2)];
   }
-  image::Layer whole(const aircraft::Mesh& mesh, const shade::Light& light, Rigid body = {}) const {
+  image::Layer whole(const model::Mesh& mesh, const shade::Light& light, Rigid body = {}) const {
     const shade::Model model(mesh);
     return render(view, light, {{&model, body, 0}}, {kWhole});
   }
 };
 
-void add_triangles(aircraft::Mesh& mesh, const std::vector<std::array<Eigen::Vector3f, 3>>& all) {
+void add_triangles(model::Mesh& mesh, const std::vector<std::array<Eigen::Vector3f, 3>>& all) {
   if (mesh.parts.empty()) mesh.parts.push_back({.name = "all"});
   if (mesh.materials.empty()) mesh.materials.emplace_back();
   for (const auto& corners : all) {
@@ -53,8 +53,8 @@ void add_triangles(aircraft::Mesh& mesh, const std::vector<std::array<Eigen::Vec
 }
 
 // A square about the origin across x, with half-side h and its front to the south.
-aircraft::Mesh plate(float h) {
-  aircraft::Mesh mesh;
+model::Mesh plate(float h) {
+  model::Mesh mesh;
   add_triangles(
       mesh,
       {{Eigen::Vector3f(0, -h, -h), Eigen::Vector3f(0, h, h), Eigen::Vector3f(0, h, -h)},
@@ -63,8 +63,8 @@ aircraft::Mesh plate(float h) {
 }
 
 // A sphere by longitude and latitude, with exact normals.
-aircraft::Mesh sphere(float radius) {
-  aircraft::Mesh mesh;
+model::Mesh sphere(float radius) {
+  model::Mesh mesh;
   constexpr int kSteps = 48;
   const auto at = [&](int i, int k) {
     const auto u = static_cast<float>(2 * kPi * i / (2 * kSteps));
@@ -116,7 +116,7 @@ TEST(LightAround, AWhiteSphereInAFurnaceIsInvisible) {
 // A black coated sphere mirrors by Schlick's formula: 0.04 in its middle and nearly everything at
 // its rim.
 TEST(LightAround, ABlackSphereHasABrightRim) {
-  aircraft::Mesh black = sphere(4);
+  model::Mesh black = sphere(4);
   black.materials[0].diffuse = {0, 0, 0};
   const Stage stage;
   EXPECT_NEAR(stage.middle(black, only(even(1)), at_distance(100)).green, kCoat, 0.002);
@@ -158,7 +158,7 @@ TEST(LightAround, APlateInTheSunGivesItsLightBack) {
 // a mean radiance of the sun's irradiance over 4 pi. A clear coat reflects the share that it
 // mirrors at half the angle between sun and camera (Schlick 1994), where the disc shows the sun.
 TEST(LightAround, ABlackSphereMirrorsTheSun) {
-  aircraft::Mesh black = sphere(4);
+  model::Mesh black = sphere(4);
   black.materials[0].diffuse = {0, 0, 0};
   const Stage stage;
   shade::Light light = only(even(0));
@@ -181,7 +181,7 @@ TEST(LightAround, ABlackSphereMirrorsTheSun) {
 // A small plate at the foot of a very long wall sees half of the light. The plate hardly shades the
 // wall, which reflects like light paint: 0.6 of the light that it hides.
 TEST(LightAround, AWallHidesHalfOfTheLight) {
-  aircraft::Mesh mesh = plate(0.5f);
+  model::Mesh mesh = plate(0.5f);
   add_triangles(mesh,
                 {{Eigen::Vector3f(0, -50, 0.5f),
                   Eigen::Vector3f(-50, -50, 0.5f),
@@ -200,7 +200,7 @@ TEST(LightAround, AWallHidesHalfOfTheLight) {
 // plate's view, so the plate receives half of the wall's 0.6. The renderer finds it to a sixteenth
 // of all directions.
 TEST(LightAround, ASunlitWallLightsAPlateInShadow) {
-  aircraft::Mesh mesh = plate(0.5f);
+  model::Mesh mesh = plate(0.5f);
   add_triangles(mesh,
                 {{Eigen::Vector3f(0, -50, 0.5f),
                   Eigen::Vector3f(-50, -50, 0.5f),
@@ -219,8 +219,8 @@ TEST(LightAround, ASunlitWallLightsAPlateInShadow) {
 
 // Bare metal of albedo 1 mirrors all light, so it is invisible in a uniform environment as well.
 TEST(LightAround, AWhiteMetalSphereInAFurnaceIsInvisible) {
-  aircraft::Mesh metal = sphere(4);
-  metal.materials[0].finish = aircraft::Finish::kMetal;
+  model::Mesh metal = sphere(4);
+  metal.materials[0].finish = model::Finish::kMetal;
   const Stage stage;
   const image::Layer layer = stage.whole(metal, only(even(1)), at_distance(100));
   for (const image::LayerPixel& pixel : layer.pixels) EXPECT_NEAR(pixel.red, pixel.alpha, 0.001);
@@ -228,8 +228,8 @@ TEST(LightAround, AWhiteMetalSphereInAFurnaceIsInvisible) {
 
 // It also reflects the sun in its own colour, wherever the sun stands.
 TEST(LightAround, AMetalSphereMirrorsTheSunInItsColour) {
-  aircraft::Mesh copper = sphere(4);
-  copper.materials[0].finish = aircraft::Finish::kMetal;
+  model::Mesh copper = sphere(4);
+  copper.materials[0].finish = model::Finish::kMetal;
   copper.materials[0].diffuse = {0.9f, 0.6f, 0.4f};
   const Stage stage;
   shade::Light light = only(even(0));
@@ -251,8 +251,8 @@ TEST(LightAround, AMetalSphereMirrorsTheSunInItsColour) {
 TEST(LightAround, AClearPaneMirrorsAsAnOpaqueOneDoes) {
   const Stage stage;
   for (const float opacity : {0.25f, 1.0f}) {
-    aircraft::Mesh pane = plate(10);
-    pane.materials[0].finish = aircraft::Finish::kGlass;
+    model::Mesh pane = plate(10);
+    pane.materials[0].finish = model::Finish::kGlass;
     pane.materials[0].opacity = opacity;
     const image::LayerPixel pixel = stage.middle(pane, only(even(1)), at_distance(100));
     EXPECT_NEAR(pixel.alpha, opacity, 1e-4);
@@ -262,8 +262,8 @@ TEST(LightAround, AClearPaneMirrorsAsAnOpaqueOneDoes) {
 
 // The discs that represent turning blades are mat.
 TEST(LightAround, AMatPlateMirrorsNothing) {
-  aircraft::Mesh mat = plate(10);
-  mat.materials[0].finish = aircraft::Finish::kMat;
+  model::Mesh mat = plate(10);
+  mat.materials[0].finish = model::Finish::kMat;
   mat.materials[0].diffuse = {0, 0, 0};
   const Stage stage;
   EXPECT_EQ(stage.middle(mat, only(even(1)), at_distance(100)).red, 0);

@@ -22,12 +22,12 @@ struct Rectangle {
   constexpr double area() const { return width * height; }
 };
 
-void add(aircraft::Mesh& mesh,
+void add(model::Mesh& mesh,
          const Rectangle& at,
          double north_m,
          float opacity,
          std::array<float, 3> diffuse) {
-  aircraft::Material material;
+  model::Material material;
   material.opacity = opacity;
   material.diffuse = diffuse;
   mesh.materials.push_back(material);
@@ -70,7 +70,7 @@ const lens::Lens& pinhole() {
 
 // exposes: a long exposure of a scene at rest, which is the scene at an instant, but takes the
 // other code.
-image::Layer layer_of(const aircraft::Mesh& mesh, bool exposes) {
+image::Layer layer_of(const model::Mesh& mesh, bool exposes) {
   const shade::Model model(mesh);
   View view{&pinhole(),
             Rigid{cam_from_body().conjugate(), Vector3::Zero()},
@@ -91,7 +91,7 @@ double total_alpha(const image::Layer& layer) {
 class Panes : public testing::TestWithParam<int> {};
 
 TEST_P(Panes, BeforeAPlateHaveTheAlphaTheColourAndTheDistanceOfBoth) {
-  aircraft::Mesh mesh;
+  model::Mesh mesh;
   add(mesh, kPlate, kPlateM, 1, kPlateColour);
   add(mesh, kPane, kPaneM, kOpacity, kPaneColour);
   const image::Layer layer = layer_of(mesh, GetParam() > 0);
@@ -126,7 +126,7 @@ TEST_P(Panes, BeforeAPlateHaveTheAlphaTheColourAndTheDistanceOfBoth) {
 
 // Before nothing but the sky; the samples of a pixel are covered by one of them, or by both.
 TEST_P(Panes, OfTwoThatOverlapEachStopsItsShareOfWhatTheOtherLeaves) {
-  aircraft::Mesh mesh;
+  model::Mesh mesh;
   add(mesh, kPlate, kPlateM, 0.7F, kPlateColour);
   add(mesh, kPane, kPaneM, 0.4F, kPaneColour);
   const image::Layer layer = layer_of(mesh, GetParam() > 0);
@@ -143,9 +143,9 @@ TEST_P(Panes, OfTwoThatOverlapEachStopsItsShareOfWhatTheOtherLeaves) {
 TEST_P(Panes, OfDifferentOpacityInAPixelHaveTheirMean) {
   constexpr int kTexels = 64;
   const Rectangle pane{10, 10, 20, 30};
-  aircraft::Mesh mesh;
+  model::Mesh mesh;
   add(mesh, pane, kPaneM, 1, kPaneColour);
-  aircraft::Texture texture;
+  model::Texture texture;
   texture.repeat_u = texture.repeat_v = false;
   texture.has_translucency = true;
   texture.levels.push_back({kTexels, kTexels, {}});

@@ -44,9 +44,8 @@ ScreenBounds wider(const ScreenBounds& bounds, float margin) {
   return {bounds.left - margin, bounds.top - margin, bounds.right + margin, bounds.bottom + margin};
 }
 
-int spans_of_part(const aircraft::Part& part, const Span& span) {
-  const double turn_rad =
-      2 * kPi * aircraft::fastest_turn_per_s(part) * (span.end_s - span.begin_s);
+int spans_of_part(const model::Part& part, const Span& span) {
+  const double turn_rad = 2 * kPi * model::fastest_turn_per_s(part) * (span.end_s - span.begin_s);
   return std::clamp(static_cast<int>(std::ceil(turn_rad / kTurnOfSpanRad)), 1, kMostSpans);
 }
 
@@ -171,9 +170,8 @@ PlacedInstance place(const Instance& instance,
   placed.up_in_body = (body_from_world * Vector3(0, 0, -1)).cast<float>();
   if (light.surroundings)
     placed.surroundings = light.surroundings->turned(body_from_world.transpose().cast<float>());
-  for (const aircraft::Part& part : model.mesh.parts)
-    placed.body_from_part.push_back(
-        aircraft::body_from_part(part, instance.time_s + span.middle_s()));
+  for (const model::Part& part : model.mesh.parts)
+    placed.body_from_part.push_back(model::body_from_part(part, instance.time_s + span.middle_s()));
   return result;
 }
 
@@ -192,7 +190,7 @@ class RayTriangles::Projected {
  public:
   Projected(const View& view, const Span& span, const Instance& instance, std::size_t part)
       : part_(instance.model->impl().geometry[part]) {
-    const aircraft::Part& source = instance.model->impl().mesh.parts[part];
+    const model::Part& source = instance.model->impl().mesh.parts[part];
     for (std::size_t k = 0; k < (span.is_instant() ? 1U : 3U); ++k) {
       const double dt_s = span.is_instant() ? span.begin_s : span.at(static_cast<int>(k));
       const View then = view.at(dt_s);
@@ -202,7 +200,7 @@ class RayTriangles::Projected {
           Eigen::Translation3d(cam_from_body.translation) * Eigen::Affine3d(cam_from_body.rotation);
       if (source.moves())
         cam_from_part =
-            cam_from_part * aircraft::body_from_part(source, instance.time_s + dt_s).cast<double>();
+            cam_from_part * model::body_from_part(source, instance.time_s + dt_s).cast<double>();
       views_.emplace_back(then);
       eyes_in_part_.push_back(cam_from_part.inverse(Eigen::Isometry).translation());
       std::vector<Vector3>& in_cam = in_cam_.emplace_back();
@@ -347,7 +345,7 @@ void RayTriangles::add_part(const View& view,
                             std::uint32_t instance,
                             std::uint32_t part) {
   const shade::Model::Impl& model = *placed.placed.model;
-  const aircraft::Part& source = model.mesh.parts[part];
+  const model::Part& source = model.mesh.parts[part];
   if (source.triangles.empty()) return;
   const int count = spans_of_part(source, span);
   const double each_s = (span.end_s - span.begin_s) / count;
@@ -362,7 +360,7 @@ void RayTriangles::add_part(const View& view,
     if (count > 1) {
       triangle.pose = static_cast<std::uint32_t>(placed.placed.body_from_part.size());
       placed.placed.body_from_part.push_back(
-          aircraft::body_from_part(source, placed.instance.time_s + now.middle_s()));
+          model::body_from_part(source, placed.instance.time_s + now.middle_s()));
     }
     const Projected projected(view, now, placed.instance, part);
     for (std::size_t t = 0; t < projected.triangles(); ++t) {

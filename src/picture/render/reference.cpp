@@ -36,8 +36,8 @@ class Then {
     const shade::Model::Impl& model = *placed.placed.model;
     // Single precision suffices near the aircraft.
     start_m_ = std::max(0.0, (eye_in_body_ - model.centre_in_body).norm() - model.radius_m);
-    for (const aircraft::Part& part : model.mesh.parts)
-      body_from_part_.push_back(aircraft::body_from_part(part, instance.time_s + dt_s));
+    for (const model::Part& part : model.mesh.parts)
+      body_from_part_.push_back(model::body_from_part(part, instance.time_s + dt_s));
   }
 
   // Appends the surfaces that the ray through a point of the frame meets. Returns the share of
@@ -83,7 +83,7 @@ class Then {
     const shade::Placed& placed = placed_.placed;
     const shade::Hit& hit = fragment.hit;
     const shade::Facet& facet = placed.facet(hit);
-    const aircraft::Material& material = placed.material(facet);
+    const model::Material& material = placed.material(facet);
     const shade::Surface surface = shade::surface_at(
         placed, body_from_part_[static_cast<std::size_t>(hit.part)], ray.direction, hit);
     const shade::Sunlit sunlit = shade::sunlit_at(placed, surface, material);

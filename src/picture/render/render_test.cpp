@@ -27,9 +27,9 @@ View view_through(const lens::Lens& lens) {
           kSide};
 }
 
-void add_quad(aircraft::Mesh& mesh,
+void add_quad(model::Mesh& mesh,
               const std::array<Eigen::Vector3f, 4>& corners,
-              const aircraft::Material& material) {
+              const model::Material& material) {
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   const Eigen::Vector3f normal =
       (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
@@ -47,9 +47,9 @@ void add_quad(aircraft::Mesh& mesh,
 
 // A square plate across the line of sight, at a distance of `north` metres. `half` is half its
 // side, in metres.
-aircraft::Mesh plate(float half, float north, float opacity = 1) {
-  aircraft::Mesh mesh;
-  aircraft::Material material;
+model::Mesh plate(float half, float north, float opacity = 1) {
+  model::Mesh mesh;
+  model::Material material;
   material.opacity = opacity;
   add_quad(
       mesh,
@@ -90,8 +90,8 @@ TEST(Render, APlateCoversWhatProjectionSays) {
 }
 
 // A regular polygon of n corners on a circle of radius r, across the line of sight.
-aircraft::Mesh disc(int n, double r, float north) {
-  aircraft::Mesh mesh;
+model::Mesh disc(int n, double r, float north) {
+  model::Mesh mesh;
   for (int i = 0; i < n; ++i) {
     const double a = 2 * kPi * i / n;
     mesh.positions.emplace_back(
@@ -155,7 +155,7 @@ TEST(Render, ASlantedEdgeCoversEachPixelByItsExactShare) {
       const Eigen::Vector2d p = u * along + v * across;
       return Eigen::Vector3f(100, static_cast<float>(p.x()), static_cast<float>(p.y()));
     };
-    aircraft::Mesh mesh;
+    model::Mesh mesh;
     add_quad(
         mesh, {{corner(-400, -400), corner(400, -400), corner(400, 0.1), corner(-400, 0.1)}}, {});
     const shade::Model model(mesh);
@@ -187,7 +187,7 @@ TEST(Render, ASunlitPlateShinesAsLambertSays) {
 }
 
 TEST(Render, APlateBetweenSunAndPlateCastsAShadow) {
-  aircraft::Mesh mesh = plate(10, 100);
+  model::Mesh mesh = plate(10, 100);
   // A smaller plate beside the line of sight blocks the sun, which stands above and behind the
   // camera.
   add_quad(mesh, {{{90, -3, -13}, {90, 3, -13}, {90, 3, -7}, {90, -3, -7}}}, {});
@@ -248,21 +248,20 @@ TEST(Render, WhatTheFrameCutsOffIsCounted) {
 }
 
 struct Stand {
-  aircraft::Aircraft aircraft;
+  fleet::Aircraft aircraft;
   shade::Model model;
-  explicit Stand(const char* name)
-      : aircraft(aircraft::load_aircraft(name)), model(aircraft.mesh) {}
+  explicit Stand(const char* name) : aircraft(fleet::load_aircraft(name)), model(aircraft.mesh) {}
 };
 
 double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRoll& attitude) {
   const lens::Lens lens = pinhole(2000);
   const View view = view_through(lens);
-  const aircraft::Extents extents = aircraft::extents(stand.aircraft.mesh);
+  const model::Extents extents = model::extents(stand.aircraft.mesh);
   const double range_m = 2000 * std::max(extents.length_m(), extents.span_m()) / size_px;
   const Rigid world_from_body{airtruth::world_from_body(attitude), Vector3(range_m, 0.3, -0.2)};
   const projection::Sight sight{&lens, view.world_from_cam.inverse(), Homography::Identity()};
   const projection::SilhouettePoints silhouette{&stand.aircraft.mesh,
-                                                aircraft::silhouette_points(stand.aircraft.mesh)};
+                                                model::silhouette_points(stand.aircraft.mesh)};
   Box box = *projection::exact_box(sight, silhouette, world_from_body, 0).box;
   box = {box.x - 1.5, box.y - 1.5, box.width + 3, box.height + 3};
   const std::vector<Instance> one = {{&stand.model, world_from_body, 0}};

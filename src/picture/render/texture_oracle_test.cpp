@@ -18,13 +18,13 @@ namespace {
 constexpr int kTextureSide = 120;
 constexpr int kFiner = 8;
 
-image::Layer textured_layer(const aircraft::Aircraft& aircraft,
+image::Layer textured_layer(const fleet::Aircraft& aircraft,
                             const shade::Model& model,
                             double size_px,
                             int finer,
                             const YawPitchRoll& attitude,
                             int quality) {
-  const aircraft::Extents extents = aircraft::extents(aircraft.mesh);
+  const model::Extents extents = model::extents(aircraft.mesh);
   const double longest_m = std::max(extents.length_m(), extents.span_m());
   const int side = finer * kTextureSide;
   const double focal_px = 2000.0 * finer;
@@ -64,7 +64,7 @@ double code_of(double linear) {
   return 255 * static_cast<double>(image::srgb_from_linear(static_cast<float>(linear)));
 }
 
-TextureError texture_error(const aircraft::Aircraft& aircraft,
+TextureError texture_error(const fleet::Aircraft& aircraft,
                            const shade::Model& model,
                            double size_px,
                            const YawPitchRoll& attitude) {
@@ -105,7 +105,7 @@ TextureError texture_error(const aircraft::Aircraft& aircraft,
 
 TEST(Texture, IsNotWashedOutWhereAnAircraftIsSmall) {
   for (const char* name : {"738/738-Ryanair", "c172/news"}) {
-    const aircraft::Aircraft aircraft = aircraft::load_aircraft(name);
+    const fleet::Aircraft aircraft = fleet::load_aircraft(name);
     const shade::Model model(aircraft.mesh);
     for (const double size_px : {12.0, 30.0, 100.0})
       for (const YawPitchRoll& attitude :
@@ -126,7 +126,7 @@ TEST(Texture, IsNotWashedOutWhereAnAircraftIsSmall) {
 // The reference traces 4,096 rays through a pixel and shades what they meet.
 TEST(Texture, HasTheReferencesColours) {
   for (const char* name : {"738/738-Ryanair", "c172/news"}) {
-    const aircraft::Aircraft aircraft = aircraft::load_aircraft(name);
+    const fleet::Aircraft aircraft = fleet::load_aircraft(name);
     const shade::Model model(aircraft.mesh);
     const image::Layer got = textured_layer(aircraft, model, 30, 1, {40, 5, 12}, 3);
     const image::Layer reference = textured_layer(aircraft, model, 30, 1, {40, 5, 12}, 5);

@@ -44,8 +44,8 @@ struct VisibleScene {
   }
 };
 
-double size_m(const aircraft::Mesh& mesh) {
-  const aircraft::Extents extents = aircraft::extents(mesh);
+double size_m(const model::Mesh& mesh) {
+  const model::Extents extents = model::extents(mesh);
   return std::max(extents.length_m(), extents.span_m());
 }
 
@@ -75,8 +75,8 @@ Met met_by_rays(const VisibleScene& scene, const PlacedInstance& placed, int x, 
     const Vector3 eye = body_from_world * then.world_from_cam.translation;
     const Vector3 start = eye + ((eye - model.centre_in_body).norm() - model.radius_m) * d;
     std::vector<Eigen::Affine3f> poses;
-    for (const aircraft::Part& part : model.mesh.parts)
-      poses.push_back(aircraft::body_from_part(part, scene.instance.time_s + dt_s));
+    for (const model::Part& part : model.mesh.parts)
+      poses.push_back(model::body_from_part(part, scene.instance.time_s + dt_s));
     const auto hit = shade::nearest_hit(model, poses, {start.cast<float>(), d.cast<float>()}, 0);
     if (!hit) continue;
     met.alpha += 1.0 / Met::kRays;
@@ -88,7 +88,7 @@ Met met_by_rays(const VisibleScene& scene, const PlacedInstance& placed, int x, 
 }
 
 void compare(const std::string& name, double size_px, bool moves) {
-  const aircraft::Aircraft aircraft = aircraft::load_aircraft(name);
+  const fleet::Aircraft aircraft = fleet::load_aircraft(name);
   const shade::Model model(aircraft.mesh);
   VisibleScene scene(model, {37, 9, 20}, kVisibleFocalPx * size_m(aircraft.mesh) / size_px);
   if (moves) scene.move();
@@ -141,7 +141,7 @@ TEST(Visibility, TheVisibilityBufferSeesWhatRaysMeetAt100Pixels) {
 
 // The rotors turn by more than a radian while a pixel is exposed, so that each has several spans.
 TEST(Visibility, ASpinningPartIsWhereTheReferenceHasIt) {
-  const aircraft::Mesh mesh = aircraft::multirotor({});
+  const model::Mesh mesh = shapes::multirotor({});
   const shade::Model model(mesh);
   VisibleScene scene(model, {30, 25, 10}, kVisibleFocalPx * size_m(mesh) / 24);
   scene.view.shutter = {0.002, 0.004, Readout::kDown};

@@ -62,7 +62,7 @@ std::array<Eigen::Vector3f, 2> axes_across(const Eigen::Vector3f& n) {
           Eigen::Vector3f(b, sign + n.y() * n.y() * a, -n.y())};
 }
 
-Eigen::Vector3f face_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
+Eigen::Vector3f face_of(const model::Mesh& mesh, const model::Triangle& triangle) {
   const auto& [a, b, c] = triangle.vertex;
   const Eigen::Vector3f face =
       (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
@@ -123,7 +123,7 @@ Eigen::Vector3f given_back_by(const Model::Impl& model,
 template <typename Visit>
 void each_corner(const Model::Impl& model, ModelOcclusion& occlusion, const Visit& visit) {
   for (std::size_t p = 0; p < model.mesh.parts.size(); ++p) {
-    const aircraft::Part& part = model.mesh.parts[p];
+    const model::Part& part = model.mesh.parts[p];
     if (part.moves()) continue;
     tbb::parallel_for(std::size_t{0}, part.triangles.size(), [&](std::size_t i) {
       const Eigen::Vector3f face = face_of(model.mesh, part.triangles[i]);
@@ -160,7 +160,7 @@ void find_given_back(const Model::Impl& model,
 ModelOcclusion model_occlusion(const Model::Impl& model) {
   std::size_t corners = 1;
   ModelOcclusion result;
-  for (const aircraft::Part& part : model.mesh.parts) {
+  for (const model::Part& part : model.mesh.parts) {
     corners += 3 * part.triangles.size();
     result.emplace_back(part.triangles.size());
   }
@@ -182,13 +182,13 @@ ModelOcclusion model_occlusion(const Model::Impl& model) {
   return result;
 }
 
-disk_cache::Key occlusion_key(const aircraft::Mesh& mesh, std::string_view tracer) {
+disk_cache::Key occlusion_key(const model::Mesh& mesh, std::string_view tracer) {
   disk_cache::Key key("ambient occlusion");
   key.add(tracer).add(mesh.positions.size());
   for (const Eigen::Vector3f& p : mesh.positions) key.add(p.x()).add(p.y()).add(p.z());
-  for (const aircraft::Part& part : mesh.parts) {
+  for (const model::Part& part : mesh.parts) {
     key.add(part.triangles.size()).add(part.moves());
-    for (const aircraft::Triangle& triangle : part.triangles)
+    for (const model::Triangle& triangle : part.triangles)
       for (const std::uint32_t v : triangle.vertex) key.add(v);
   }
   return key;
@@ -228,11 +228,11 @@ std::string stored(const ModelOcclusion& occlusion) {
   return body;
 }
 
-ModelOcclusion occlusion_from(const std::string& body, const aircraft::Mesh& mesh) {
+ModelOcclusion occlusion_from(const std::string& body, const model::Mesh& mesh) {
   if (body.size() != 6 * mesh.triangle_count() * sizeof(StoredCorner))
     throw Error("ambient occlusion of another mesh");
   ModelOcclusion occlusion;
-  for (const aircraft::Part& part : mesh.parts) occlusion.emplace_back(part.triangles.size());
+  for (const model::Part& part : mesh.parts) occlusion.emplace_back(part.triangles.size());
   const char* from = body.data();
   each_stored(occlusion, [&](AmbientOcclusion& corner) {
     StoredCorner v;

@@ -27,11 +27,11 @@ ModelOcclusion model_occlusion(const Model::Impl& model);
 // What the ambient occlusion depends on: the positions, the triangles of each part and whether the
 // part moves, and `tracer`: the version and the instruction set of Embree. The liveries of one
 // model share it.
-disk_cache::Key occlusion_key(const aircraft::Mesh& mesh, std::string_view tracer);
+disk_cache::Key occlusion_key(const model::Mesh& mesh, std::string_view tracer);
 
 // As an entry of the cache holds it, and back. Error where the entry is of another mesh or out of
 // range.
 std::string stored(const ModelOcclusion& occlusion);
-ModelOcclusion occlusion_from(const std::string& body, const aircraft::Mesh& mesh);
+ModelOcclusion occlusion_from(const std::string& body, const model::Mesh& mesh);
 
 }  // namespace airtruth::shade

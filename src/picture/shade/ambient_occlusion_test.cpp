@@ -15,8 +15,8 @@ namespace airtruth::shade {
 namespace {
 
 // Two squares that meet along y, at a right angle.
-std::shared_ptr<const aircraft::Mesh> corner() {
-  auto mesh = std::make_shared<aircraft::Mesh>();
+std::shared_ptr<const model::Mesh> corner() {
+  auto mesh = std::make_shared<model::Mesh>();
   mesh->positions = {{0, -1, 0}, {0, 1, 0}, {1, -1, 0}, {1, 1, 0}, {0, -1, -1}, {0, 1, -1}};
   mesh->normals.assign(6, Eigen::Vector3f(0, 0, -1));
   mesh->uvs.assign(6, Eigen::Vector2f(0, 0));
@@ -120,9 +120,9 @@ TEST_F(OcclusionCacheTest, AValueOutOfRangeIsRefused) {
 }
 
 TEST_F(OcclusionCacheTest, TheNameFollowsWhatTheOcclusionDependsOn) {
-  const aircraft::Mesh mesh = *corner();
+  const model::Mesh mesh = *corner();
   const std::string name = occlusion_key(mesh, "tracer").name();
-  aircraft::Mesh other = mesh;
+  model::Mesh other = mesh;
   other.materials[0].diffuse = {0, 0, 0};
   EXPECT_EQ(occlusion_key(other, "tracer").name(), name) << "another livery";
   EXPECT_NE(occlusion_key(mesh, "another tracer").name(), name);

@@ -11,7 +11,7 @@
 namespace airtruth::shade {
 
 // Adds a triangle with vertices of its own to the first part.
-inline void add_triangle(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 3>& corners) {
+inline void add_triangle(model::Mesh& mesh, const std::array<Eigen::Vector3f, 3>& corners) {
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
   mesh.normals.resize(mesh.positions.size(), Eigen::Vector3f(1, 0, 0));
@@ -21,8 +21,8 @@ inline void add_triangle(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f,
 
 // A cube about the origin, with sides of 2 m; each side has two triangles, whose normals point
 // outwards. Each triangle has vertices of its own, as in meshes with hard edges.
-inline aircraft::Mesh cube() {
-  aircraft::Mesh mesh;
+inline model::Mesh cube() {
+  model::Mesh mesh;
   mesh.materials.emplace_back();
   mesh.parts.push_back({.name = "cube"});
   for (int axis = 0; axis < 3; ++axis)
@@ -40,8 +40,6 @@ inline aircraft::Mesh cube() {
   return mesh;
 }
 
-inline void turn(aircraft::Triangle& triangle) {
-  std::swap(triangle.vertex[0], triangle.vertex[1]);
-}
+inline void turn(model::Triangle& triangle) { std::swap(triangle.vertex[0], triangle.vertex[1]); }
 
 }  // namespace airtruth::shade

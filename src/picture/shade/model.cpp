@@ -34,7 +34,7 @@ Device new_device() {
   throw Error("Embree has no device");
 }
 
-RTCScene scene_of(RTCDevice device, const aircraft::Mesh& mesh, const aircraft::Part& part) {
+RTCScene scene_of(RTCDevice device, const model::Mesh& mesh, const model::Part& part) {
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
@@ -67,7 +67,7 @@ RTCScene scene_of(RTCDevice device, const aircraft::Mesh& mesh, const aircraft::
 
 // Texels per metre over a triangle: the square root of the ratio of its area in the texture to that
 // in space.
-float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
+float density(const model::Mesh& mesh, const model::Triangle& triangle) {
   const int texture = mesh.materials[triangle.material].texture;
   if (texture < 0) return 0;
   const auto& level = mesh.textures[static_cast<std::size_t>(texture)].levels.front();
@@ -81,12 +81,12 @@ float density(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
   return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;
 }
 
-PartGeometry geometry_of(const aircraft::Mesh& mesh, const aircraft::Part& part) {
+PartGeometry geometry_of(const model::Mesh& mesh, const model::Part& part) {
   // In place of an index: a vertex that the part has not used yet.
   constexpr std::uint32_t kNone = 0xffffffff;
   PartGeometry geometry;
   std::vector<std::uint32_t> of_vertex(mesh.positions.size(), kNone);
-  for (const aircraft::Triangle& triangle : part.triangles) {
+  for (const model::Triangle& triangle : part.triangles) {
     PartGeometry::Triangle& result = geometry.triangles.emplace_back();
     std::array<Eigen::Vector3d, 3> corner;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -107,7 +107,7 @@ PartGeometry geometry_of(const aircraft::Mesh& mesh, const aircraft::Part& part)
   return geometry;
 }
 
-Facet facet_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle, Opacity opacity) {
+Facet facet_of(const model::Mesh& mesh, const model::Triangle& triangle, Opacity opacity) {
   Facet facet;
   for (std::size_t k = 0; k < 3; ++k) {
     facet.corner[k] = mesh.positions[triangle.vertex[k]];
@@ -140,15 +140,15 @@ ModelOcclusion known_occlusion(const Model::Impl& model,
 
 }  // namespace
 
-Model::Model(const aircraft::Mesh& mesh) : Model(std::make_shared<const aircraft::Mesh>(mesh)) {}
+Model::Model(const model::Mesh& mesh) : Model(std::make_shared<const model::Mesh>(mesh)) {}
 
-Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem::path& folder)
+Model::Model(std::shared_ptr<const model::Mesh> shared, const std::filesystem::path& folder)
     : impl_(std::make_unique<Impl>(std::move(shared))) {
-  const aircraft::Mesh& mesh = impl_->mesh;
+  const model::Mesh& mesh = impl_->mesh;
   const Device device = new_device();
   impl_->device.reset(device.device);
   const auto opacity = opacities(mesh);
-  for (const aircraft::Part& part : mesh.parts) {
+  for (const model::Part& part : mesh.parts) {
     impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
     std::vector<Facet>& facets = impl_->facets.emplace_back();
     const std::size_t p = impl_->facets.size() - 1;
@@ -166,17 +166,17 @@ Model::Model(std::shared_ptr<const aircraft::Mesh> shared, const std::filesystem
 
 void Model::Impl::find_sphere() {
   Eigen::AlignedBox3f bounds;
-  for (const aircraft::Part& part : mesh.parts)
-    for (const aircraft::Triangle& triangle : part.triangles)
+  for (const model::Part& part : mesh.parts)
+    for (const model::Triangle& triangle : part.triangles)
       for (std::uint32_t v : triangle.vertex) bounds.extend(mesh.positions[v]);
   if (bounds.isEmpty()) bounds.extend(Eigen::Vector3f::Zero());
   centre_in_body = bounds.center().cast<double>();
-  for (const aircraft::Part& part : mesh.parts) {
+  for (const model::Part& part : mesh.parts) {
     const Eigen::Vector3d hub = part.centre_in_body.cast<double>();
     if (!part.hinges.empty())
       radius_m =
-          std::max(radius_m, (hub - centre_in_body).norm() + double(aircraft::reach_m(mesh, part)));
-    for (const aircraft::Triangle& triangle : part.triangles) {
+          std::max(radius_m, (hub - centre_in_body).norm() + double(model::reach_m(mesh, part)));
+    for (const model::Triangle& triangle : part.triangles) {
       for (std::uint32_t v : triangle.vertex) {
         const Eigen::Vector3d p = mesh.positions[v].cast<double>();
         double far_m = (p - centre_in_body).norm();

@@ -14,10 +14,10 @@ class Model {
  public:
   // Shares the mesh. `occlusion_cache`: a folder that keeps the ambient occlusion of models from
   // one run to the next (ambient_occlusion.h); empty: none.
-  explicit Model(std::shared_ptr<const aircraft::Mesh> mesh,
+  explicit Model(std::shared_ptr<const model::Mesh> mesh,
                  const std::filesystem::path& occlusion_cache = {});
   // Copies the mesh.
-  explicit Model(const aircraft::Mesh& mesh);
+  explicit Model(const model::Mesh& mesh);
   ~Model();
   Model(Model&&) noexcept;
   struct Impl;

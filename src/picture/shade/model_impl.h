@@ -85,11 +85,11 @@ struct PartGeometry {
 };
 
 struct Model::Impl {
-  explicit Impl(std::shared_ptr<const aircraft::Mesh> shared)
+  explicit Impl(std::shared_ptr<const model::Mesh> shared)
       : owned(std::move(shared)), mesh(*owned) {}
 
-  std::shared_ptr<const aircraft::Mesh> owned;
-  const aircraft::Mesh& mesh;
+  std::shared_ptr<const model::Mesh> owned;
+  const model::Mesh& mesh;
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
   // One BVH for each part, in the part's own coordinates; primitive k is parts[i].triangles[k].
   std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;

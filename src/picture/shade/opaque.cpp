@@ -42,7 +42,7 @@ int end_texel(float place, int size) {
 
 // A triangle in a texture; empty where the texture wraps round within it, or the coordinates are
 // not finite.
-std::optional<TexelCorners> corners_in(const aircraft::Texture& texture,
+std::optional<TexelCorners> corners_in(const model::Texture& texture,
                                        const std::array<Eigen::Vector2f, 3>& uvs) {
   Eigen::Vector2f low = uvs[0].cwiseMin(uvs[1]).cwiseMin(uvs[2]);
   Eigen::Vector2f high = uvs[0].cwiseMax(uvs[1]).cwiseMax(uvs[2]);
@@ -52,7 +52,7 @@ std::optional<TexelCorners> corners_in(const aircraft::Texture& texture,
   low -= turns;
   high -= turns;
   if (!(low.minCoeff() >= 0 && high.maxCoeff() <= 1)) return std::nullopt;
-  const aircraft::Texture::Level& level = texture.levels.front();
+  const model::Texture::Level& level = texture.levels.front();
   TexelCorners corners;
   for (std::size_t k = 0; k < 3; ++k)
     corners[k] = {(uvs[k].x() - turns.x()) * static_cast<float>(level.width) - 0.5F,
@@ -63,7 +63,7 @@ std::optional<TexelCorners> corners_in(const aircraft::Texture& texture,
 // Calls use(y, from, to) for the texels [from, to) of row y within a triangle, or where it contains
 // none, for the texel in its middle.
 template <typename Use>
-void each_run(const aircraft::Texture::Level& level, const TexelCorners& corners, const Use& use) {
+void each_run(const model::Texture::Level& level, const TexelCorners& corners, const Use& use) {
   const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
   bool has_texel = false;
   for (int y = first_texel(low, level.height); y < end_texel(high, level.height); ++y) {
@@ -84,11 +84,11 @@ void each_run(const aircraft::Texture::Level& level, const TexelCorners& corners
 
 // The least and the largest alpha of the texels within a triangle; of all alphas where the texture
 // wraps round within it.
-std::array<float, 2> alphas_within(const aircraft::Texture& texture,
+std::array<float, 2> alphas_within(const model::Texture& texture,
                                    const std::array<Eigen::Vector2f, 3>& uvs) {
   const auto corners = corners_in(texture, uvs);
   if (!corners) return {0, 1};
-  const aircraft::Texture::Level& level = texture.levels.front();
+  const model::Texture::Level& level = texture.levels.front();
   float least = 1;
   float most = 0;
   each_run(level, *corners, [&](int y, int from, int to) {
@@ -102,27 +102,27 @@ std::array<float, 2> alphas_within(const aircraft::Texture& texture,
   return {least, most};
 }
 
-Opacity opacity_of(const aircraft::Mesh& mesh, const aircraft::Triangle& triangle) {
+Opacity opacity_of(const model::Mesh& mesh, const model::Triangle& triangle) {
   // Opacities, from 0 to 1, that differ by less are the same.
   constexpr float kEven = 0.01F;
-  const aircraft::Material& material = mesh.materials[triangle.material];
+  const model::Material& material = mesh.materials[triangle.material];
   const auto& [a, b, c] = triangle.vertex;
-  const aircraft::Texture* texture =
+  const model::Texture* texture =
       material.texture < 0 ? nullptr : &mesh.textures[static_cast<std::size_t>(material.texture)];
   if (texture == nullptr || !texture->has_translucency)
-    return material.opacity >= aircraft::kOpaque ? Opacity::kOpaque : Opacity::kEven;
+    return material.opacity >= model::kOpaque ? Opacity::kOpaque : Opacity::kEven;
   const auto [least, most] = alphas_within(*texture, {mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]});
-  if (material.opacity >= aircraft::kOpaque && least >= aircraft::kOpaque) return Opacity::kOpaque;
+  if (material.opacity >= model::kOpaque && least >= model::kOpaque) return Opacity::kOpaque;
   return material.opacity * (most - least) < kEven ? Opacity::kEven : Opacity::kVaries;
 }
 
 }  // namespace
 
-std::vector<std::vector<Opacity>> opacities(const aircraft::Mesh& mesh) {
+std::vector<std::vector<Opacity>> opacities(const model::Mesh& mesh) {
   std::vector<std::vector<Opacity>> result;
-  for (const aircraft::Part& part : mesh.parts) {
+  for (const model::Part& part : mesh.parts) {
     std::vector<Opacity>& of_part = result.emplace_back();
-    for (const aircraft::Triangle& triangle : part.triangles)
+    for (const model::Triangle& triangle : part.triangles)
       of_part.push_back(opacity_of(mesh, triangle));
   }
   return result;

@@ -20,6 +20,6 @@ enum class Opacity {
 };
 
 // By [part][triangle].
-std::vector<std::vector<Opacity>> opacities(const aircraft::Mesh& mesh);
+std::vector<std::vector<Opacity>> opacities(const model::Mesh& mesh);
 
 }  // namespace airtruth::shade

@@ -12,9 +12,9 @@ constexpr int kTexelsPerSide = 16;
 
 // A texture of kTexelsPerSide x kTexelsPerSide texels whose columns from 8 on are transparent, and
 // one triangle.
-aircraft::Mesh mesh_of(const std::array<Eigen::Vector2f, 3>& in_texels) {
-  aircraft::Mesh mesh;
-  aircraft::Texture texture;
+model::Mesh mesh_of(const std::array<Eigen::Vector2f, 3>& in_texels) {
+  model::Mesh mesh;
+  model::Texture texture;
   texture.levels.push_back({kTexelsPerSide, kTexelsPerSide, {}});
   for (int i = 0; i < kTexelsPerSide * kTexelsPerSide; ++i)
     texture.levels[0].texels.push_back(i % kTexelsPerSide < 8 ? std::array<float, 4>{1, 1, 1, 1}
@@ -66,7 +66,7 @@ TEST(Opaque, ARepeatedTextureIsTheSameEverywhere) {
 }
 
 TEST(Opaque, PaintThatPackingLeftAShadeTransparentIsOpaque) {
-  aircraft::Mesh mesh = mesh_of({V(1, 1), V(8, 1), V(8, 15)});
+  model::Mesh mesh = mesh_of({V(1, 1), V(8, 1), V(8, 15)});
   mesh.materials[0].opacity = 250.5F / 255;
   EXPECT_EQ(opacities(mesh)[0][0], Opacity::kOpaque);
   mesh.materials[0].opacity = 0.9F;
@@ -75,7 +75,7 @@ TEST(Opaque, PaintThatPackingLeftAShadeTransparentIsOpaque) {
 
 // Columns up to 7 are opaque and the others transparent.
 bool is_even(const std::array<Eigen::Vector2f, 3>& in_texels, float opacity) {
-  aircraft::Mesh mesh = mesh_of(in_texels);
+  model::Mesh mesh = mesh_of(in_texels);
   mesh.materials[0].opacity = opacity;
   return opacities(mesh)[0][0] != Opacity::kVaries;
 }
@@ -91,7 +91,7 @@ TEST(Even, IsATriangleWhoseTexelsAreAlike) {
 }
 
 TEST(Even, IsATriangleWithoutATranslucentTexture) {
-  aircraft::Mesh mesh = mesh_of({V(1, 1), V(12, 1), V(12, 15)});
+  model::Mesh mesh = mesh_of({V(1, 1), V(12, 1), V(12, 15)});
   mesh.textures[0].has_translucency = false;
   EXPECT_NE(opacities(mesh)[0][0], Opacity::kVaries);
   mesh.materials[0].texture = -1;

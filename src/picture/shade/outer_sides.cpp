@@ -16,7 +16,7 @@ namespace airtruth::shade {
 namespace {
 
 // A number for each position of the mesh; equal positions have the same one.
-std::vector<std::uint32_t> points_of(const aircraft::Mesh& mesh) {
+std::vector<std::uint32_t> points_of(const model::Mesh& mesh) {
   // Bits have an order whatever the numbers are; adding 0 turns -0 into 0.
   const auto key = [&](std::uint32_t i) {
     const Eigen::Vector3f& p = mesh.positions[i];
@@ -38,7 +38,7 @@ std::vector<std::uint32_t> points_of(const aircraft::Mesh& mesh) {
 }
 
 // The sides of all triangles with three different corners; equal ones follow one another.
-std::vector<Side> sides_of(const aircraft::Part& part, const std::vector<std::uint32_t>& points) {
+std::vector<Side> sides_of(const model::Part& part, const std::vector<std::uint32_t>& points) {
   std::vector<Side> sides;
   sides.reserve(3 * part.triangles.size());
   for (std::size_t t = 0; t < part.triangles.size(); ++t) {
@@ -101,10 +101,10 @@ Surfaces connected(std::vector<Side> sides, std::size_t triangles) {
 
 }  // namespace
 
-std::vector<Surfaces> surfaces_of(const aircraft::Mesh& mesh) {
+std::vector<Surfaces> surfaces_of(const model::Mesh& mesh) {
   const std::vector<std::uint32_t> points = points_of(mesh);
   std::vector<Surfaces> surfaces;
-  for (const aircraft::Part& part : mesh.parts)
+  for (const model::Part& part : mesh.parts)
     surfaces.push_back(connected(sides_of(part, points), part.triangles.size()));
   return surfaces;
 }
@@ -134,8 +134,8 @@ std::vector<bool> are_closed(const Surfaces& surfaces) {
 
 // By surface: the volume that it encloses, positive where its normals, each times its sign, point
 // outwards (divergence theorem).
-std::vector<double> volumes_m3(const aircraft::Mesh& mesh,
-                               const aircraft::Part& part,
+std::vector<double> volumes_m3(const model::Mesh& mesh,
+                               const model::Part& part,
                                const Surfaces& surfaces) {
   std::vector<double> volumes(surfaces.count, 0.0);
   for (std::size_t t = 0; t < part.triangles.size(); ++t) {
@@ -149,8 +149,8 @@ std::vector<double> volumes_m3(const aircraft::Mesh& mesh,
   return volumes;
 }
 
-std::vector<std::int8_t> outward_of(const aircraft::Mesh& mesh,
-                                    const aircraft::Part& part,
+std::vector<std::int8_t> outward_of(const model::Mesh& mesh,
+                                    const model::Part& part,
                                     const Surfaces& surfaces,
                                     const std::vector<std::uint8_t>& opaque) {
   // A cubic centimetre: a surface that encloses less is a sheet with two sides.
@@ -171,7 +171,7 @@ std::vector<std::int8_t> outward_of(const aircraft::Mesh& mesh,
 }  // namespace
 
 std::vector<std::vector<std::int8_t>> outward_normals(
-    const aircraft::Mesh& mesh,
+    const model::Mesh& mesh,
     const std::vector<Surfaces>& surfaces,
     const std::vector<std::vector<std::uint8_t>>& opaque) {
   std::vector<std::vector<std::int8_t>> outward;

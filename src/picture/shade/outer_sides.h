@@ -56,7 +56,7 @@ struct Surfaces {
 };
 
 // By part.
-std::vector<Surfaces> surfaces_of(const aircraft::Mesh& mesh);
+std::vector<Surfaces> surfaces_of(const model::Mesh& mesh);
 
 // Calls use(first, last) for the sides between the same two points.
 template <typename Use>
@@ -73,7 +73,7 @@ void for_each_side(const std::vector<Side>& sides, const Use& use) {
 // it points into it. 0 where the surface is open, encloses nothing, or has a triangle that is not
 // opaque. surfaces: of surfaces_of(). opaque: as Model::Impl::opaque.
 std::vector<std::vector<std::int8_t>> outward_normals(
-    const aircraft::Mesh& mesh,
+    const model::Mesh& mesh,
     const std::vector<Surfaces>& surfaces,
     const std::vector<std::vector<std::uint8_t>>& opaque);
 

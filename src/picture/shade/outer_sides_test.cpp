@@ -19,7 +19,7 @@ namespace {
 
 using Signs = std::vector<std::int8_t>;
 
-Signs outward_of(const aircraft::Mesh& mesh) {
+Signs outward_of(const model::Mesh& mesh) {
   const std::vector<std::uint8_t> opaque(mesh.parts[0].triangles.size(), 1);
   return outward_normals(mesh, surfaces_of(mesh), {opaque})[0];
 }
@@ -27,7 +27,7 @@ Signs outward_of(const aircraft::Mesh& mesh) {
 TEST(Closed, ACubesNormalsPointOutwards) { EXPECT_EQ(outward_of(cube()), Signs(12, 1)); }
 
 TEST(Closed, NormalsThatPointInwardsAreFoundAllOrOne) {
-  aircraft::Mesh mesh = cube();
+  model::Mesh mesh = cube();
   turn(mesh.parts[0].triangles[4]);
   Signs expected(12, 1);
   expected[4] = -1;
@@ -38,20 +38,20 @@ TEST(Closed, NormalsThatPointInwardsAreFoundAllOrOne) {
 }
 
 TEST(Closed, AHoleOpensTheWholeSurface) {
-  aircraft::Mesh mesh = cube();
+  model::Mesh mesh = cube();
   mesh.parts[0].triangles.pop_back();
   EXPECT_EQ(outward_of(mesh), Signs(11, 0));
 }
 
 TEST(Closed, OneTranslucentTriangleOpensTheWholeSurface) {
-  const aircraft::Mesh mesh = cube();
+  const model::Mesh mesh = cube();
   std::vector<std::uint8_t> opaque(12, 1);
   opaque[7] = 0;
   EXPECT_EQ(outward_normals(mesh, surfaces_of(mesh), {opaque})[0], Signs(12, 0));
 }
 
 TEST(Closed, ASheetWithTwoSidesEnclosesNothing) {
-  aircraft::Mesh mesh = cube();
+  model::Mesh mesh = cube();
   auto& triangles = mesh.parts[0].triangles;
   triangles.resize(2);
   for (std::size_t t = 0; t < 2; ++t) {
@@ -68,19 +68,19 @@ namespace {
 using Outer = std::vector<OuterSides>;
 
 // Two triangles between four corners, which are given along the outline.
-void add_quad(aircraft::Mesh& mesh, const std::array<Eigen::Vector3f, 4>& corners) {
+void add_quad(model::Mesh& mesh, const std::array<Eigen::Vector3f, 4>& corners) {
   add_triangle(mesh, {corners[0], corners[1], corners[2]});
   add_triangle(mesh, {corners[0], corners[2], corners[3]});
 }
 
 // A square plate at right angles to x, with sides of `size`; its front looks towards +x.
-void add_plate(aircraft::Mesh& mesh, float x, float size) {
+void add_plate(model::Mesh& mesh, float x, float size) {
   const float h = size / 2;
   add_quad(mesh, {{{x, -h, -h}, {x, h, -h}, {x, h, h}, {x, -h, h}}});
 }
 
 // A strip that is turned by half a turn on its way round (Moebius 1858), 1 m across.
-void add_strip_of_one_side(aircraft::Mesh& mesh) {
+void add_strip_of_one_side(model::Mesh& mesh) {
   constexpr int kSteps = 12;
   const auto rim = [](int step, float side) -> Eigen::Vector3f {
     // The end joins the beginning with its rims exchanged, by the same numbers.
@@ -97,14 +97,14 @@ void add_strip_of_one_side(aircraft::Mesh& mesh) {
 }
 
 // The cube without its side x = -1.
-aircraft::Mesh open_cube() {
-  aircraft::Mesh mesh = cube();
+model::Mesh open_cube() {
+  model::Mesh mesh = cube();
   auto& triangles = mesh.parts[0].triangles;
   triangles.erase(triangles.begin(), triangles.begin() + 2);
   return mesh;
 }
 
-Outer outer_of(const aircraft::Mesh& mesh) { return Model(mesh).impl().outer_sides[0]; }
+Outer outer_of(const model::Mesh& mesh) { return Model(mesh).impl().outer_sides[0]; }
 
 Outer from(const Outer& outer, std::size_t first) {
   return {outer.begin() + static_cast<std::ptrdiff_t>(first), outer.end()};
@@ -112,7 +112,7 @@ Outer from(const Outer& outer, std::size_t first) {
 
 TEST(OuterSides, AreTheOuterOnesOfAClosedSurface) {
   EXPECT_EQ(outer_of(cube()), Outer(12, kFrontSide));
-  aircraft::Mesh turned = cube();
+  model::Mesh turned = cube();
   turn(turned.parts[0].triangles[4]);
   Outer expected(12, kFrontSide);
   expected[4] = kBackSide;
@@ -125,14 +125,14 @@ TEST(OuterSides, AreBothWhereASurfaceIsOpen) {
 
 // A plate closes the cube, though no vertex of it is one of the cube's.
 TEST(OuterSides, AreTheOuterOnesWhereAnOpenSurfaceIsCovered) {
-  aircraft::Mesh mesh = open_cube();
+  model::Mesh mesh = open_cube();
   add_plate(mesh, -1, 2.2F);
   Outer expected(12, kFrontSide);
   expected[10] = expected[11] = kBackSide;
   EXPECT_EQ(outer_of(mesh), expected);
   // A smaller one leaves a gap. Rays leave through it from within the cube, but none from the inner
   // side of the plate.
-  aircraft::Mesh with_gap = open_cube();
+  model::Mesh with_gap = open_cube();
   add_plate(with_gap, -1, 1.8F);
   Outer seen_through_gap(12, kBothSides);
   seen_through_gap[10] = seen_through_gap[11] = kBackSide;
@@ -140,13 +140,13 @@ TEST(OuterSides, AreTheOuterOnesWhereAnOpenSurfaceIsCovered) {
 }
 
 TEST(OuterSides, AreNoneWithinAClosedSurface) {
-  aircraft::Mesh mesh = cube();
+  model::Mesh mesh = cube();
   add_plate(mesh, 0, 1);
   EXPECT_EQ(from(outer_of(mesh), 12), Outer(2, kNoSide));
   // A closed surface within another.
-  const aircraft::Mesh inner = cube();
-  aircraft::Mesh nested = cube();
-  for (const aircraft::Triangle& triangle : inner.parts[0].triangles) {
+  const model::Mesh inner = cube();
+  model::Mesh nested = cube();
+  for (const model::Triangle& triangle : inner.parts[0].triangles) {
     const auto& [a, b, c] = triangle.vertex;
     add_triangle(nested,
                  {0.5F * inner.positions[a], 0.5F * inner.positions[b], 0.5F * inner.positions[c]});
@@ -157,7 +157,7 @@ TEST(OuterSides, AreNoneWithinAClosedSurface) {
 }
 
 TEST(OuterSides, AreBothBehindAPane) {
-  aircraft::Mesh mesh = open_cube();
+  model::Mesh mesh = open_cube();
   mesh.materials.emplace_back().opacity = 0.5F;
   add_plate(mesh, -1, 2.2F);
   for (std::size_t t = 10; t < 12; ++t) mesh.parts[0].triangles[t].material = 1;
@@ -165,14 +165,14 @@ TEST(OuterSides, AreBothBehindAPane) {
 }
 
 TEST(OuterSides, AreBothOfASurfaceWithOneSideOnly) {
-  aircraft::Mesh mesh = cube();
+  model::Mesh mesh = cube();
   add_strip_of_one_side(mesh);
   EXPECT_EQ(from(outer_of(mesh), 12), Outer(24, kBothSides));
 }
 
 // Whether an eye at one place or at three cannot see a triangle.
-bool is_hidden_from(const aircraft::Mesh& mesh,
-                    const aircraft::Triangle& triangle,
+bool is_hidden_from(const model::Mesh& mesh,
+                    const model::Triangle& triangle,
                     OuterSides outer,
                     const std::vector<Vector3>& eyes) {
   const auto& [a, b, c] = triangle.vertex;
@@ -189,21 +189,21 @@ bool is_hidden_from(const aircraft::Mesh& mesh,
 }
 
 TEST(IsHidden, OfACubeAreThoseThatFaceAway) {
-  const aircraft::Mesh mesh = cube();
+  const model::Mesh mesh = cube();
   // The eye is before the side x = 1 and above none of the others; or it moves from before the side
   // x = 1 to before the side y = 1: both are left at all times.
   const std::vector<Vector3> before = {Vector3(5, 0.5, -0.5)};
   const std::vector<Vector3> around = {Vector3(5, 0, 0), Vector3(4, 4, 0), Vector3(0, 5, 0)};
   for (std::size_t t = 0; t < 12; ++t) {
-    const aircraft::Triangle& triangle = mesh.parts[0].triangles[t];
+    const model::Triangle& triangle = mesh.parts[0].triangles[t];
     EXPECT_EQ(is_hidden_from(mesh, triangle, kFrontSide, before), t / 2 != 1) << t;
     EXPECT_EQ(is_hidden_from(mesh, triangle, kFrontSide, around), t / 2 != 1 && t / 2 != 3) << t;
   }
 }
 
 TEST(IsHidden, IsAllWithoutAnOuterSideAndNoneWithBoth) {
-  const aircraft::Mesh mesh = cube();
-  for (const aircraft::Triangle& triangle : mesh.parts[0].triangles) {
+  const model::Mesh mesh = cube();
+  for (const model::Triangle& triangle : mesh.parts[0].triangles) {
     EXPECT_TRUE(is_hidden_from(mesh, triangle, kNoSide, {Vector3(5, 0, 0)}));
     EXPECT_FALSE(is_hidden_from(mesh, triangle, kBothSides, {Vector3(5, 0, 0)}));
   }
@@ -215,7 +215,7 @@ TEST(IsHidden, IsNoTriangleThatRaysFromOutsideMeet) {
   std::normal_distribution<double> normal;
   for (const char* name :
        {"738/738-Ryanair", "733/733-AirBaltic", "A300/A300-ACT-Cargo", "c172/news"}) {
-    const Model model(aircraft::load_aircraft(name).mesh);
+    const Model model(fleet::load_aircraft(name).mesh);
     const Model::Impl& impl = model.impl();
     int hits = 0, of_one_side = 0;
     for (int i = 0; i < 20000; ++i) {

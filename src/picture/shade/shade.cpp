@@ -23,12 +23,12 @@ constexpr float kCabin = 0.05f;
 
 }  // namespace
 
-float roughness_of(const aircraft::Material& material) {
-  return material.finish == aircraft::Finish::kMetal ? kMetalRoughness : kCoatRoughness;
+float roughness_of(const model::Material& material) {
+  return material.finish == model::Finish::kMetal ? kMetalRoughness : kCoatRoughness;
 }
 
-Coat coat_of(const aircraft::Material& material, const std::array<float, 4>& texel) {
-  using aircraft::Finish;
+Coat coat_of(const model::Material& material, const std::array<float, 4>& texel) {
+  using model::Finish;
   Coat coat;
   // A pane mirrors in full, however little it hides.
   coat.cover = texel[3] * (material.finish == Finish::kGlass ? 1 : material.opacity);
@@ -63,9 +63,9 @@ Glint sun_glint(const Eigen::Vector3f& normal,
   return {facets * visibility * to_light, half.dot(to_sun)};
 }
 
-float opacity_at(const aircraft::Mesh& mesh,
+float opacity_at(const model::Mesh& mesh,
                  const Facet& facet,
-                 const aircraft::Material& material,
+                 const model::Material& material,
                  float u,
                  float v,
                  float footprint_m) {
@@ -74,7 +74,7 @@ float opacity_at(const aircraft::Mesh& mesh,
                         mesh.textures[static_cast<std::size_t>(material.texture)].has_translucency;
   const float alpha = material.opacity *
                       (textured ? TriangleTexture(mesh, facet, footprint_m).texel(u, v)[3] : 1.0f);
-  return alpha >= aircraft::kOpaque ? 1.0f : alpha;
+  return alpha >= model::kOpaque ? 1.0f : alpha;
 }
 
 Surface surface_at(const Placed& placed,
@@ -168,7 +168,7 @@ float sun_on(const Placed& placed, const Surface& surface) {
   return cosine > 0 && surface.face.dot(to_sun) > 0 ? cosine : 0;
 }
 
-Rgb as_opengl(const aircraft::Material& material,
+Rgb as_opengl(const model::Material& material,
               const Texel& texel,
               const Around& around,
               const Sunlit& sunlit,
@@ -187,7 +187,7 @@ Rgb as_opengl(const aircraft::Material& material,
 }
 
 // A surface that mirrors a share of the light and scatters part of the rest. Premultiplied.
-Rgb coated(const aircraft::Material& material,
+Rgb coated(const model::Material& material,
            const Texel& texel,
            const Around& around,
            const Sunlit& sunlit,
@@ -215,7 +215,7 @@ Around around_at(const Placed& placed, const Surface& surface, const Hit& hit, c
   return light_around(placed, surface, occlusion_of(placed, hit, surface), mirror, light);
 }
 
-Sunlit sunlit_at(const Placed& placed, const Surface& surface, const aircraft::Material& material) {
+Sunlit sunlit_at(const Placed& placed, const Surface& surface, const model::Material& material) {
   Sunlit lit;
   lit.sun = sun_on(placed, surface);
   if (!(lit.sun > 0)) return lit;
@@ -236,7 +236,7 @@ BodyRay to_sun_from(const Placed& placed,
   return {point_in_body + kStartM * surface.face, placed.to_sun_in_body};
 }
 
-Rgb colour_of(const aircraft::Material& material,
+Rgb colour_of(const model::Material& material,
               const Texel& texel,
               const Around& around,
               const Sunlit& sunlit,

@@ -28,9 +28,9 @@ struct Coat {
   std::array<float, 3> scattered{};
 };
 // GGX's alpha of the material's finish.
-float roughness_of(const aircraft::Material& material);
+float roughness_of(const model::Material& material);
 // `texel`: the texture's value there, premultiplied; white for a material without a texture.
-Coat coat_of(const aircraft::Material& material, const std::array<float, 4>& texel);
+Coat coat_of(const model::Material& material, const std::array<float, 4>& texel);
 
 // Mirrored share of the light by the cosine between the view (or the light) and the mirror's normal
 // (Schlick 1994). `at_normal`: the share along the normal.
@@ -74,15 +74,15 @@ struct Placed {
   const Facet& facet(const Hit& hit) const {
     return model->facets[static_cast<std::size_t>(hit.part)][hit.triangle];
   }
-  const aircraft::Material& material(const Facet& of) const {
+  const model::Material& material(const Facet& of) const {
     return model->mesh.materials[of.material];
   }
 };
 
 // Opacity of a triangle at barycentric weights, texture included.
-float opacity_at(const aircraft::Mesh& mesh,
+float opacity_at(const model::Mesh& mesh,
                  const Facet& facet,
-                 const aircraft::Material& material,
+                 const model::Material& material,
                  float u,
                  float v,
                  float footprint_m);
@@ -128,7 +128,7 @@ struct Sunlit {
   // 1977).
   Glint glint;
 };
-Sunlit sunlit_at(const Placed& placed, const Surface& surface, const aircraft::Material& material);
+Sunlit sunlit_at(const Placed& placed, const Surface& surface, const model::Material& material);
 
 // The ray from a point of the surface to the sun: where the aircraft blocks it, the surface is in
 // shadow.
@@ -137,7 +137,7 @@ BodyRay to_sun_from(const Placed& placed,
                     const Surface& surface);
 
 // The light of a surface: linear, premultiplied by opacity. `cosine`: of Surface.
-Rgb colour_of(const aircraft::Material& material,
+Rgb colour_of(const model::Material& material,
               const Texel& texel,
               const Around& around,
               const Sunlit& sunlit,

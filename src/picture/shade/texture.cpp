@@ -33,7 +33,7 @@ TexelPlace texel_place(float place) {
 // Four channels at once.
 using Channels = Eigen::Array4f;
 
-Channels bilinear(const aircraft::Texture& texture, std::size_t index, float u, float v) {
+Channels bilinear(const model::Texture& texture, std::size_t index, float u, float v) {
   const auto& level = texture.levels[index];
   const auto [x, fx] = texel_place(u * static_cast<float>(level.width) - 0.5f);
   const auto [y, fy] = texel_place(v * static_cast<float>(level.height) - 0.5f);
@@ -54,7 +54,7 @@ Channels bilinear(const aircraft::Texture& texture, std::size_t index, float u, 
 
 }  // namespace
 
-TriangleTexture::TriangleTexture(const aircraft::Mesh& mesh, const Facet& facet, float footprint_m)
+TriangleTexture::TriangleTexture(const model::Mesh& mesh, const Facet& facet, float footprint_m)
     : facet_(&facet) {
   const int index = mesh.materials[facet.material].texture;
   if (index < 0) return;

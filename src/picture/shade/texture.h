@@ -14,7 +14,7 @@ using Texel = std::array<float, 4>;
 class TriangleTexture {
  public:
   // References mesh and facet. `footprint_m`: the width on the surface that a sample represents.
-  TriangleTexture(const aircraft::Mesh& mesh, const Facet& facet, float footprint_m);
+  TriangleTexture(const model::Mesh& mesh, const Facet& facet, float footprint_m);
   // By barycentric coordinates, as in Hit; white without a texture.
   Texel texel(float u, float v) const;
   // The same, without the holes that a coarse mip level mixes into an opaque triangle's own texels.
@@ -23,7 +23,7 @@ class TriangleTexture {
  private:
   const Facet* facet_;
   // Null for a material without a texture.
-  const aircraft::Texture* texture_ = nullptr;
+  const model::Texture* texture_ = nullptr;
   std::size_t level_ = 0;
 };
 

@@ -11,8 +11,8 @@ Distractor usual_distractor(DistractorKind kind, double size_m) {
   Distractor distractor;
   distractor.kind = kind;
   distractor.size_m = size_m;
-  distractor.flap_hz = aircraft::usual_strokes_per_s(size_m);
-  if (kind == DistractorKind::kBalloon) distractor.colour = aircraft::BalloonShape{}.colour;
+  distractor.flap_hz = shapes::usual_strokes_per_s(size_m);
+  if (kind == DistractorKind::kBalloon) distractor.colour = shapes::BalloonShape{}.colour;
   return distractor;
 }
 

@@ -38,8 +38,8 @@ struct Distractor {
   DistractorKind kind = DistractorKind::kBird;
   // A bird's span, the distance between opposite rotors, a balloon's diameter.
   double size_m = 1;
-  // Birds (aircraft::BirdShape).
-  aircraft::Plumage plumage = aircraft::Plumage::kGull;
+  // Birds (shapes::BirdShape).
+  shapes::Plumage plumage = shapes::Plumage::kGull;
   double aspect_ratio = 8;
   double flap_hz = 3;
   double flap_phase = 0;

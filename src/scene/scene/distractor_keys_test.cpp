@@ -46,7 +46,7 @@ TEST(DistractorKeys, ABirdFollowsAPathAndBeatsAsItsSizeHasIt) {
   ASSERT_TRUE(bird.distractor);
   EXPECT_FALSE(is_aircraft(bird));
   EXPECT_EQ(bird.distractor->size_m, 0.65);
-  EXPECT_EQ(bird.distractor->plumage, aircraft::Plumage::kGrey);
+  EXPECT_EQ(bird.distractor->plumage, shapes::Plumage::kGrey);
   EXPECT_NEAR(bird.distractor->flap_hz, 3.05 * std::sqrt(1.34 / 0.65), 1e-12);
   EXPECT_EQ(bird.speed_mps, 12.0);
 }

@@ -62,7 +62,7 @@ std::vector<Intruder> flock_of(const Intruder& leader,
     Distractor& one = *member.distractor;
     one.size_m = varied(random, one.size_m, kSizeSpread);
     one.flap_hz = varied(random, one.flap_hz, kRateSpread);
-    one.flap_phase = random.uniform(0, aircraft::kStrokesOfBout);
+    one.flap_phase = random.uniform(0, model::kStrokesOfBout);
     // A neighbour that varies as much stays apart.
     const Vector3 place = free_place(random, spread_m, 2 * one.size_m, flock);
     member.offset_ned_m = place;

@@ -73,7 +73,7 @@ Distractor distractor_in(const TableReader& table, DistractorKind kind) {
   Distractor one =
       usual_distractor(kind, table.number("size_m", kSize).value_or(usual_size_m(kind)));
   if (kind == DistractorKind::kBird) {
-    one.plumage = table.choice<aircraft::Plumage>("plumage").value_or(one.plumage);
+    one.plumage = table.choice<shapes::Plumage>("plumage").value_or(one.plumage);
     one.aspect_ratio = table.number("aspect_ratio", kAspect).value_or(one.aspect_ratio);
     one.flap_hz = table.number("flap_hz", kStrokeRate).value_or(one.flap_hz);
     one.flap_phase = table.number("flap_phase", kStrokes).value_or(one.flap_phase);

@@ -145,7 +145,7 @@ std::string aircraft_in(const TableReader& table) {
   if (!name)
     throw Error("has no aircraft; expected a name (see `airtruth aircraft list`) or a model file",
                 table.where());
-  return aircraft::is_model_file(*name) ? table.path("aircraft")->string() : *name;
+  return wrapper::is_model_file(*name) ? table.path("aircraft")->string() : *name;
 }
 
 }  // namespace airtruth::scene

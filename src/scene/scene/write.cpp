@@ -139,8 +139,8 @@ void add_realism(Text& text, const Realism& realism) {
 }
 
 std::string aircraft_text(const std::string& aircraft) {
-  return aircraft::is_model_file(aircraft) ? fs::absolute(aircraft).lexically_normal().string()
-                                           : aircraft;
+  return wrapper::is_model_file(aircraft) ? fs::absolute(aircraft).lexically_normal().string()
+                                          : aircraft;
 }
 
 void add_encounter(Text& text, const Encounter& encounter, std::string_view table) {

@@ -38,11 +38,11 @@ image::Picture sky_tile(int tile_px) {
                                   {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
 }
 
-image::Rgb8 tile(const aircraft::Aircraft& aircraft,
+image::Rgb8 tile(const fleet::Aircraft& aircraft,
                  const shade::Model& model,
                  const Pose& pose,
                  int tile_px = kTilePx) {
-  const aircraft::Extents size = aircraft::extents(aircraft.mesh);
+  const model::Extents size = model::extents(aircraft.mesh);
   const double largest_m = std::max({size.length_m(), size.span_m(), size.height_m()});
   const double range_m = 12 * largest_m;
   const double focal_px = pose.length_px * range_m / largest_m;
@@ -60,7 +60,7 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft,
       Rigid{eye, centre + range_m * to_eye} * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
   const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
   const projection::SilhouettePoints silhouette{&aircraft.mesh,
-                                                aircraft::silhouette_points(aircraft.mesh)};
+                                                model::silhouette_points(aircraft.mesh)};
   const auto box = projection::exact_box(sight, silhouette, {}, 0).box;
   shade::Light light;
   light.to_sun_in_world = shade::to_sun(degrees(azimuth) + 35, 45);
@@ -76,7 +76,7 @@ image::Rgb8 tile(const aircraft::Aircraft& aircraft,
 
 }  // namespace
 
-image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft) {
+image::Rgb8 aircraft_sheet(const fleet::Aircraft& aircraft) {
   const std::array<Pose, 9> poses = {{{"nose", 0, 0, 380},
                                       {"front left, above", -40, 18, 380},
                                       {"left side", -90, 0, 380},
@@ -92,7 +92,7 @@ image::Rgb8 aircraft_sheet(const aircraft::Aircraft& aircraft) {
   return drawing::tiled(aircraft.name, std::move(tiles), 3);
 }
 
-image::Rgb8 aircraft_tile(const aircraft::Aircraft& aircraft) {
+image::Rgb8 aircraft_tile(const fleet::Aircraft& aircraft) {
   // Side of the tile: room around an aircraft that is 138 px long.
   constexpr int kSmallTilePx = 150;
   return tile(aircraft, shade::Model(aircraft.mesh), {"", -40, 18, 138}, kSmallTilePx);

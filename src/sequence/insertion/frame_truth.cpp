@@ -46,13 +46,13 @@ void add_bearings(annotation::Intruder& truth,
 annotation::EncounterTruth encounter_of(const setup::World& world,
                                         const trajectory::State& own_state,
                                         const trajectory::State& state) {
-  const encounter::Mover own = encounter::mover_of(own_state);
-  const encounter::Mover intruder = encounter::mover_of(state);
+  const separation::Mover own = passage::mover_of(own_state);
+  const separation::Mover intruder = passage::mover_of(state);
   annotation::EncounterTruth truth;
-  truth.measures = encounter::measures(own, intruder, {.lookahead_s = world.lookahead_s});
+  truth.measures = separation::measures(own, intruder, {.lookahead_s = world.lookahead_s});
   for (const auto& [name, volume] : world.volumes) {
-    const bool inside = encounter::is_inside(volume, own, intruder);
-    const auto violated = encounter::violation(volume, own, intruder, world.lookahead_s);
+    const bool inside = separation::is_inside(volume, own, intruder);
+    const auto violated = separation::violation(volume, own, intruder, world.lookahead_s);
     annotation::VolumeTruth& one = truth.volumes.emplace_back();
     one.name = name;
     one.inside = inside;

@@ -121,12 +121,12 @@ TEST(Distractors, BoxesOfMultirotorsAndBalloonsAgree) {
 }
 
 // The bird as a rigid mesh in the pose of one moment.
-aircraft::Mesh posed(const aircraft::Mesh& bird, double time_s) {
-  aircraft::Mesh mesh = bird;
-  for (const aircraft::Part& part : bird.parts) {
-    const Eigen::Affine3f pose = aircraft::body_from_part(part, time_s);
+model::Mesh posed(const model::Mesh& bird, double time_s) {
+  model::Mesh mesh = bird;
+  for (const model::Part& part : bird.parts) {
+    const Eigen::Affine3f pose = model::body_from_part(part, time_s);
     std::vector<bool> is_moved(mesh.positions.size(), false);
-    for (const aircraft::Triangle& triangle : part.triangles)
+    for (const model::Triangle& triangle : part.triangles)
       for (const std::uint32_t v : triangle.vertex) {
         if (is_moved[v]) continue;
         is_moved[v] = true;
@@ -134,7 +134,7 @@ aircraft::Mesh posed(const aircraft::Mesh& bird, double time_s) {
         mesh.normals[v] = pose.linear() * bird.normals[v];
       }
   }
-  for (aircraft::Part& part : mesh.parts) part.hinges.clear();
+  for (model::Part& part : mesh.parts) part.hinges.clear();
   return mesh;
 }
 
@@ -152,7 +152,7 @@ std::vector<double> coverage_of_rows(const shade::Model& model,
 }
 
 TEST(Distractors, EachRowSeesItsOwnMomentOfTheStroke) {
-  const aircraft::Mesh bird = aircraft::bird({.span_m = 2, .strokes_per_s = 5, .glide = 0});
+  const model::Mesh bird = shapes::bird({.span_m = 2, .strokes_per_s = 5, .glide = 0});
   const lens::Lens lens = lens::pinhole_from_vertical_fov(50, kSize);
   render::View view;
   view.lens = &lens;

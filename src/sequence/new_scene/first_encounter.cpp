@@ -55,7 +55,7 @@ int moments_in_view(const scene::Encounter& encounter,
                     double duration_s,
                     const std::function<Shake(double)>& shake_at) {
   try {
-    const trajectory::Path path = encounter::path_to_approach(encounter, own);
+    const trajectory::Path path = placement::path_to_approach(encounter, own);
     int count = 0;
     for (int i = 0; i <= kSteps; ++i) {
       const double time_s = std::min(duration_s, kMaxApproachS) * i / kSteps;

@@ -28,11 +28,11 @@ struct Boxes {
   bool outside = false;             // something was drawn outside the exact box
 };
 
-Boxes boxes_of(const aircraft::Aircraft& aircraft,
+Boxes boxes_of(const fleet::Aircraft& aircraft,
                const shade::Model& model,
                const projection::SilhouettePoints& silhouette,
                double size_px) {
-  const aircraft::Extents extents = aircraft::extents(aircraft.mesh);
+  const model::Extents extents = model::extents(aircraft.mesh);
   const double largest_m = std::max({extents.length_m(), extents.span_m(), extents.height_m()});
   const Vector3 middle = 0.5 * (extents.low_in_body + extents.high_in_body);
   const Quaternion world_from_body = airtruth::world_from_body({37, 8, 14});
@@ -74,15 +74,15 @@ double widest_gap(const Boxes& boxes) {
 TEST(EveryAircraft, HasItsTwoBoxesTogetherNearAndFar) {
   std::set<std::string> kinds;
   int checked = 0;
-  for (const aircraft::Entry& entry : aircraft::list_aircraft()) {
+  for (const fleet::Entry& entry : fleet::list_aircraft()) {
     const std::string kind = entry.name.substr(0, entry.name.find('/'));
     if (kinds.contains(kind)) continue;
     SCOPED_TRACE(entry.name);
     kinds.insert(kind);
-    const aircraft::Aircraft aircraft = aircraft::load_aircraft(entry.name);
+    const fleet::Aircraft aircraft = fleet::load_aircraft(entry.name);
     const shade::Model model(aircraft.mesh);
     const projection::SilhouettePoints silhouette{&aircraft.mesh,
-                                                  aircraft::silhouette_points(aircraft.mesh)};
+                                                  model::silhouette_points(aircraft.mesh)};
     for (const double size_px : {8.0, 60.0, 300.0}) {
       const Boxes boxes = boxes_of(aircraft, model, silhouette, size_px);
       ASSERT_TRUE(boxes.touched) << size_px << " px";

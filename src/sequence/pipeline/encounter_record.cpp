@@ -20,17 +20,16 @@ double half_height_deg(const setup::World& world, const FirstSeen& seen, double 
   return degrees(std::atan2(0.5 * height_m, range_m));
 }
 
-std::optional<encounter::AgainstHorizon> horizon_at(const setup::World& world,
-                                                    const setup::Actor& actor,
-                                                    const FirstSeen& seen,
-                                                    double time_s) {
+std::optional<passage::AgainstHorizon> horizon_at(const setup::World& world,
+                                                  const setup::Actor& actor,
+                                                  const FirstSeen& seen,
+                                                  double time_s) {
   const auto own = world.camera.at(time_s);
   const auto intruder = actor.path.at(time_s);
   if (!own || !intruder) return std::nullopt;
   const double range_m = (intruder->position_in_world - own->position_in_world).norm();
-  return encounter::against_horizon(encounter::mover_of(*own),
-                                    encounter::mover_of(*intruder),
-                                    half_height_deg(world, seen, range_m));
+  return passage::against_horizon(
+      passage::mover_of(*own), passage::mover_of(*intruder), half_height_deg(world, seen, range_m));
 }
 
 EncounterRecord record_of(const setup::World& world,
@@ -41,20 +40,19 @@ EncounterRecord record_of(const setup::World& world,
   EncounterRecord record;
   record.id = actor.id;
   record.first_seen = seen;
-  record.closest = encounter::closest_approach(world.camera, actor.path, 0, end_s);
+  record.closest = passage::closest_approach(world.camera, actor.path, 0, end_s);
   if (record.closest) {
     const auto own = world.camera.at(record.closest->time_s);
     const auto intruder = actor.path.at(record.closest->time_s);
     check(own && intruder, "both are in the world at their closest approach");
-    record.meeting =
-        encounter::meeting_of(encounter::mover_of(*own), encounter::mover_of(*intruder));
-    record.vertical_motion = encounter::vertical_motion_of(encounter::mover_of(*intruder));
+    record.meeting = passage::meeting_of(passage::mover_of(*own), passage::mover_of(*intruder));
+    record.vertical_motion = passage::vertical_motion_of(passage::mover_of(*intruder));
     if (seen) record.horizon = horizon_at(world, actor, *seen, record.closest->time_s);
   }
   if (seen) record.horizon_when_first_seen = horizon_at(world, actor, *seen, seen->time_s);
   for (const auto& [name, volume] : world.volumes)
-    for (const encounter::Interval& time :
-         encounter::violations(volume, world.camera, actor.path, 0, end_s))
+    for (const separation::Interval& time :
+         passage::violations(volume, world.camera, actor.path, 0, end_s))
       record.violations.push_back({name, time});
   return record;
 }
@@ -134,7 +132,7 @@ std::optional<Enum> maybe_named(const JsonObject& object, const std::string& key
   return value;
 }
 
-encounter::Approach approach_of(const JsonObject& object) {
+passage::Approach approach_of(const JsonObject& object) {
   return {object.number("time_s"),
           object.number("distance_m"),
           object.number("horizontal_m"),
@@ -153,13 +151,13 @@ EncounterRecord record_of(const JsonObject& object) {
   record.id = object.text("id");
   if (object.has("closest_approach"))
     record.closest = approach_of(object.object("closest_approach"));
-  record.meeting = maybe_named<encounter::Meeting>(object, "meeting");
-  record.vertical_motion = maybe_named<encounter::VerticalMotion>(object, "vertical_motion");
-  record.horizon = maybe_named<encounter::AgainstHorizon>(object, "horizon");
+  record.meeting = maybe_named<passage::Meeting>(object, "meeting");
+  record.vertical_motion = maybe_named<passage::VerticalMotion>(object, "vertical_motion");
+  record.horizon = maybe_named<passage::AgainstHorizon>(object, "horizon");
   if (object.has("first_seen")) {
     const JsonObject seen = object.object("first_seen");
     record.first_seen = first_seen_of(seen);
-    record.horizon_when_first_seen = maybe_named<encounter::AgainstHorizon>(seen, "horizon");
+    record.horizon_when_first_seen = maybe_named<passage::AgainstHorizon>(seen, "horizon");
   }
   for (const JsonObject& violation : object.objects("violations"))
     record.violations.push_back(

@@ -28,22 +28,22 @@ std::optional<FirstSeen> seen_in(const annotation::Frame& frame,
 
 struct NamedInterval {
   std::string volume;
-  encounter::Interval time;
+  separation::Interval time;
 };
 
 struct EncounterRecord {
   std::string id;
   // From the first frame to the lookahead after the last one; empty for an intruder that is not in
   // the world then.
-  std::optional<encounter::Approach> closest;
+  std::optional<passage::Approach> closest;
   // Of the states at the closest approach.
-  std::optional<encounter::Meeting> meeting;
-  std::optional<encounter::VerticalMotion> vertical_motion;
+  std::optional<passage::Meeting> meeting;
+  std::optional<passage::VerticalMotion> vertical_motion;
   // At the closest approach, with the height that it has where it is first seen; empty for one that
   // is never seen.
-  std::optional<encounter::AgainstHorizon> horizon;
+  std::optional<passage::AgainstHorizon> horizon;
   std::optional<FirstSeen> first_seen;
-  std::optional<encounter::AgainstHorizon> horizon_when_first_seen;
+  std::optional<passage::AgainstHorizon> horizon_when_first_seen;
   // In the order of the world's volumes; over the same time as `closest`.
   std::vector<NamedInterval> violations;
 };

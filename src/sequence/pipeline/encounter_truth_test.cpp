@@ -104,7 +104,7 @@ TEST_F(EncounterTruth, EveryFrameIsWhatItsNeighboursPositionsSay) {
       SCOPED_TRACE(std::to_string(k) + " " + frames[k].intruders[i].id);
       const Observed o = observed(frames, k, i);
       ASSERT_TRUE(frames[k].intruders[i].encounter);
-      const encounter::Measures& m = frames[k].intruders[i].encounter->measures;
+      const separation::Measures& m = frames[k].intruders[i].encounter->measures;
       EXPECT_NEAR(m.horizontal_m, std::hypot(o.offset.x(), o.offset.y()), 1e-9);
       EXPECT_NEAR(m.above_m, -o.offset.z(), 1e-9);
       // Differences over 0.2 s are off by the third derivatives, which are large close by.

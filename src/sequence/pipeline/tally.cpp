@@ -23,8 +23,8 @@ void warn_nearer(const scene::Intruder& intruder,
   constexpr double kNearerM = 0.1;  // a smaller difference is not worth a warning: chosen
   if (!intruder.encounter) return;
   const double cpa_time_s = intruder.encounter->cpa_time_s;
-  const auto stated = encounter::closest_approach(own, actor.path, cpa_time_s, cpa_time_s);
-  const auto nearest = encounter::closest_approach(own, actor.path, 0, last_time_s);
+  const auto stated = passage::closest_approach(own, actor.path, cpa_time_s, cpa_time_s);
+  const auto nearest = passage::closest_approach(own, actor.path, 0, last_time_s);
   if (!stated || !nearest || nearest->distance_m > stated->distance_m - kNearerM) return;
   warn(to_warn,
        fmt::format("{}: intruder '{}' comes nearer than at its cpa_time_s of {:.2f} s: {:.1f} m in "

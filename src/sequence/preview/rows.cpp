@@ -20,8 +20,8 @@ std::string cell(const std::optional<double>& value, const char* format) {
 
 PreviewRow row_of(const setup::World& world, const setup::Moment& moment, std::size_t actor) {
   const trajectory::State& state = *moment.states[actor];
-  const encounter::Measures m =
-      encounter::measures(encounter::mover_of(moment.camera), encounter::mover_of(state));
+  const separation::Measures m =
+      separation::measures(passage::mover_of(moment.camera), passage::mover_of(state));
   PreviewRow row;
   row.time_s = moment.time_s;
   row.intruder = world.actors[actor].id;
@@ -64,7 +64,7 @@ std::vector<std::string> approach_lines(const setup::World& world,
   std::vector<std::string> lines;
   for (std::size_t actor = 0; actor < world.actors.size(); ++actor) {
     const setup::Actor& intruder = world.actors[actor];
-    const auto closest = encounter::closest_approach(world.camera, intruder.path, 0, duration_s);
+    const auto closest = passage::closest_approach(world.camera, intruder.path, 0, duration_s);
     if (!closest) {
       lines.push_back(fmt::format("{}: not in the world while the clip lasts", intruder.id));
       continue;

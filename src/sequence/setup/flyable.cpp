@@ -35,30 +35,29 @@ std::optional<double> turn_bank_deg(const trajectory::Path& path, double time_s)
   const double speed_mps = 0.5 * (ground_speed_mps(a) + ground_speed_mps(b));
   if (speed_mps < kHeadingMps) return std::nullopt;
   const double turn_rad = std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
-  return degrees(
-      std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / aircraft::kStandardGravityMps2));
+  return degrees(std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / fleet::kStandardGravityMps2));
 }
 
 // What a class limits, in the order of BeyondLimit::Quantity, and how an excess of it reads.
 struct Limited {
-  double aircraft::FlightLimits::*limit;
+  double fleet::FlightLimits::*limit;
   double sign;  // -1: the limit is the least, not the most
   const char* words;
 };
 constexpr std::array<Limited, 5> kLimited = {{
-    {&aircraft::FlightLimits::fastest_mps,
+    {&fleet::FlightLimits::fastest_mps,
      1,
      "at {:.2f} s it flies {:.1f} m/s, the fastest of its class {:.0f} m/s"},
-    {&aircraft::FlightLimits::slowest_mps,
+    {&fleet::FlightLimits::slowest_mps,
      -1,
      "at {:.2f} s it flies {:.1f} m/s, the slowest of its class {:.0f} m/s"},
-    {&aircraft::FlightLimits::most_bank_deg,
+    {&fleet::FlightLimits::most_bank_deg,
      1,
      "at {:.2f} s it banks {:.1f} degrees, its class at most {:.0f}"},
-    {&aircraft::FlightLimits::most_climb_mps,
+    {&fleet::FlightLimits::most_climb_mps,
      1,
      "at {:.2f} s it climbs {:.1f} m/s, its class at most {:.0f} m/s"},
-    {&aircraft::FlightLimits::most_descent_mps,
+    {&fleet::FlightLimits::most_descent_mps,
      1,
      "at {:.2f} s it descends {:.1f} m/s, its class at most {:.0f} m/s"},
 }};
@@ -81,7 +80,7 @@ std::vector<BeyondLimit> beyond_limits(const std::string& aircraft,
                                        const trajectory::Path& path,
                                        double begin_s,
                                        double end_s) {
-  const aircraft::FlightLimits* limits = aircraft::flight_limits(aircraft);
+  const fleet::FlightLimits* limits = fleet::flight_limits(aircraft);
   begin_s = std::max(begin_s, path.start_s());
   end_s = std::min(end_s, path.end_s());
   if (limits == nullptr || !(end_s >= begin_s)) return {};
@@ -120,7 +119,7 @@ std::string words_beyond_limits(const std::string& aircraft,
                          beyond.value,
                          beyond.limit);
   if (words.empty()) return words;
-  const std::string_view name = aircraft::flight_limits(aircraft)->name;
+  const std::string_view name = fleet::flight_limits(aircraft)->name;
   return fmt::format("{} ({}) cannot fly its path: {}", aircraft, name, words);
 }
 

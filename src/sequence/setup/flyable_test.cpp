@@ -79,7 +79,7 @@ TEST(Flyable, OnlyTheTimeOfTheClipCountsAndAnUnknownTypeHasNoLimits) {
 
 // The ranges that are drawn from are within the limits, and no class is without sense.
 TEST(Flyable, WhatIsUsualIsFlyable) {
-  for (const aircraft::FlightLimits& c : aircraft::flight_classes()) {
+  for (const fleet::FlightLimits& c : fleet::flight_classes()) {
     EXPECT_LT(c.slowest_mps, c.usual_low_mps) << c.name;
     EXPECT_LT(c.usual_low_mps, c.usual_high_mps) << c.name;
     EXPECT_LT(c.usual_high_mps, c.fastest_mps) << c.name;
@@ -91,17 +91,17 @@ TEST(Flyable, WhatIsUsualIsFlyable) {
 
 // Every type of the installed list has a class but those that fly like no other.
 TEST(Flyable, TypesOfTheListHaveAClass) {
-  std::vector<aircraft::Entry> entries;
+  std::vector<fleet::Entry> entries;
   try {
-    entries = aircraft::list_aircraft();
+    entries = fleet::list_aircraft();
   } catch (const Error&) {
     GTEST_SKIP() << "no aircraft are installed";
   }
-  for (const aircraft::Entry& entry : entries) {
+  for (const fleet::Entry& entry : entries) {
     const std::string type = entry.name.substr(0, entry.name.find('/'));
     const bool odd = type == "balloon" || type == "bluebird" || type == "Ferry" ||
                      type == "SpaceShuttle" || type == "SR-71";
-    EXPECT_EQ(aircraft::flight_limits(entry.name) == nullptr, odd) << entry.name;
+    EXPECT_EQ(fleet::flight_limits(entry.name) == nullptr, odd) << entry.name;
   }
 }
 

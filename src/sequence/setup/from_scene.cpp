@@ -109,7 +109,7 @@ trajectory::Path drift_of(const scene::Intruder& intruder) {
 trajectory::Path flown_path(const scene::Intruder& intruder, const trajectory::Path& own) {
   if (intruder.position_ned_m) return drift_of(intruder);
   const trajectory::AttitudeOverride attitude = attitude_of(intruder);
-  if (intruder.encounter) return encounter::path_to_approach(*intruder.encounter, own, attitude);
+  if (intruder.encounter) return placement::path_to_approach(*intruder.encounter, own, attitude);
   return at_place(intruder.where, [&] {
     const trajectory::Path path =
         intruder.path_file ? trajectory::read_path_file(*intruder.path_file, attitude)
@@ -129,22 +129,22 @@ trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path
                                          : trajectory::displaced(path, intruder.offset_ned_m);
 }
 
-std::vector<encounter::AskedVolume> volumes_of(const scene::Truth& truth) {
-  std::vector<encounter::AskedVolume> result;
+std::vector<separation::AskedVolume> volumes_of(const scene::Truth& truth) {
+  std::vector<separation::AskedVolume> result;
   for (const std::string& name : truth.volumes) {
-    const encounter::NamedVolume* known = encounter::named_volume(name);
+    const separation::NamedVolume* known = separation::named_volume(name);
     if (known == nullptr) {
-      const auto nearest = nearest_spelling(name, encounter::volume_names());
+      const auto nearest = nearest_spelling(name, separation::volume_names());
       throw Error(fmt::format("[truth] volumes has '{}', which is unknown{}; expected {}",
                               name,
                               nearest ? fmt::format("; did you mean '{}'?", *nearest) : "",
-                              fmt::join(encounter::volume_names(), ", ")),
+                              fmt::join(separation::volume_names(), ", ")),
                   truth.where);
     }
     result.push_back({name, known->volume});
   }
   for (const scene::TruthVolume& own : truth.own_volumes) {
-    if (encounter::named_volume(own.name) != nullptr)
+    if (separation::named_volume(own.name) != nullptr)
       throw Error(fmt::format("[[truth.volume]] has the name '{}' of a known volume; expected "
                               "another name",
                               own.name),

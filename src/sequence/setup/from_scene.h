@@ -34,7 +34,7 @@ trajectory::Path path_of(const scene::Intruder& intruder, const trajectory::Path
 
 // [truth]: the volumes that it asks for, with those of own thresholds last. Error where a name is
 // unknown.
-std::vector<encounter::AskedVolume> volumes_of(const scene::Truth& truth);
+std::vector<separation::AskedVolume> volumes_of(const scene::Truth& truth);
 
 // [light]: the unit vector to the sun, in world axes.
 Vector3 to_sun_in_world(const scene::Light& light);

@@ -28,38 +28,37 @@ std::string type_key(const scene::Intruder& intruder, const trajectory::Path& pa
                        one.rotors,
                        fmt::join(one.colour, ","));
   }
-  const aircraft::LoadOptions options = load_options(intruder, path);
-  std::string key =
-      intruder.aircraft + '|' + aircraft::configuration_of(intruder.aircraft, options);
+  const model::LoadOptions options = load_options(intruder, path);
+  std::string key = intruder.aircraft + '|' + fleet::configuration_of(intruder.aircraft, options);
   if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
   if (options.axes)
     key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
   return key;
 }
 
-std::size_t bytes_of(const aircraft::Mesh& mesh) {
+std::size_t bytes_of(const model::Mesh& mesh) {
   // Of a triangle: its share of vertices, its BVH, and the ambient occlusion of its sides.
   constexpr std::size_t kBytesOfATriangle = 400;
   std::size_t texels = 0;
-  for (const aircraft::Texture& texture : mesh.textures)
-    for (const aircraft::Texture::Level& level : texture.levels) texels += level.texels.size();
+  for (const model::Texture& texture : mesh.textures)
+    for (const model::Texture::Level& level : texture.levels) texels += level.texels.size();
   return texels * sizeof(std::array<float, 4>) + mesh.triangle_count() * kBytesOfATriangle;
 }
 
-std::vector<FileStamp> stamps_of(const aircraft::Aircraft& aircraft) {
+std::vector<FileStamp> stamps_of(const fleet::Aircraft& aircraft) {
   std::vector<FileStamp> stamps;
   for (const auto& source : aircraft.sources) stamps.push_back(file_stamp(source));
   return stamps;
 }
 
-std::shared_ptr<const Type> prepared(std::shared_ptr<const aircraft::Aircraft> aircraft,
+std::shared_ptr<const Type> prepared(std::shared_ptr<const fleet::Aircraft> aircraft,
                                      std::vector<std::string> warnings,
                                      const std::filesystem::path& occlusion_cache) {
   auto type = std::make_shared<Type>();
   // The model shares the mesh within the aircraft.
-  const std::shared_ptr<const aircraft::Mesh> mesh(aircraft, &aircraft->mesh);
+  const std::shared_ptr<const model::Mesh> mesh(aircraft, &aircraft->mesh);
   type->model = std::make_shared<const shade::Model>(mesh, occlusion_cache);
-  type->silhouette = {&aircraft->mesh, aircraft::silhouette_points(aircraft->mesh)};
+  type->silhouette = {&aircraft->mesh, model::silhouette_points(aircraft->mesh)};
   type->bytes = bytes_of(aircraft->mesh);
   type->aircraft = std::move(aircraft);
   type->warnings = std::move(warnings);
@@ -73,7 +72,7 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
                                                   const Warn& warn,
                                                   const std::stop_token& stop) {
   // A missing file is an error at the scene's line.
-  if (is_aircraft(intruder)) aircraft::aircraft_file(intruder.aircraft);
+  if (is_aircraft(intruder)) fleet::aircraft_file(intruder.aircraft);
   const std::shared_ptr<Slot> slot = slot_of(type_key(intruder, path));
   const std::lock_guard lock(slot->loading);
   std::shared_ptr<const Type> type = known(*slot);
@@ -127,7 +126,7 @@ std::shared_ptr<const Type> SharedInputs::known(const Slot& slot) const {
 }
 
 // A kept aircraft that equals the loaded one in all that a sequence and its record contain.
-std::shared_ptr<const Type> SharedInputs::twin_of(const aircraft::Aircraft& loaded) const {
+std::shared_ptr<const Type> SharedInputs::twin_of(const fleet::Aircraft& loaded) const {
   std::vector<std::shared_ptr<const Type>> candidates;
   {
     const std::lock_guard lock(mutex_);
@@ -135,7 +134,7 @@ std::shared_ptr<const Type> SharedInputs::twin_of(const aircraft::Aircraft& load
       if (slot->type && slot->type->aircraft->name == loaded.name) candidates.push_back(slot->type);
   }
   for (const auto& candidate : candidates) {
-    const aircraft::Aircraft& other = *candidate->aircraft;
+    const fleet::Aircraft& other = *candidate->aircraft;
     if (other.catalogue_scale == loaded.catalogue_scale && other.sources == loaded.sources &&
         other.mesh == loaded.mesh)
       return candidate;

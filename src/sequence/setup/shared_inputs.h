@@ -66,7 +66,7 @@ class SharedInputs {
 
   std::shared_ptr<Slot> slot_of(const std::string& key);
   std::shared_ptr<const Type> known(const Slot& slot) const;
-  std::shared_ptr<const Type> twin_of(const aircraft::Aircraft& loaded) const;
+  std::shared_ptr<const Type> twin_of(const fleet::Aircraft& loaded) const;
   void keep(Slot& slot, std::shared_ptr<const Type> type);
   void drop_unused();
 

@@ -86,8 +86,8 @@ TEST_F(SharedInputsTest, AFileThatHasChangedIsReadAgain) {
   EXPECT_EQ(before, airtruth::sha256_of_file(intruder.aircraft));
   triangle(12.5);
   const auto second = shared.type_of(intruder, straight_at(60), {}, {});
-  EXPECT_DOUBLE_EQ(aircraft::extents(first->aircraft->mesh).span_m(), 10);
-  EXPECT_DOUBLE_EQ(aircraft::extents(second->aircraft->mesh).span_m(), 12.5);
+  EXPECT_DOUBLE_EQ(model::extents(first->aircraft->mesh).span_m(), 10);
+  EXPECT_DOUBLE_EQ(model::extents(second->aircraft->mesh).span_m(), 12.5);
   EXPECT_EQ(shared.sha256_of_file(intruder.aircraft), airtruth::sha256_of_file(intruder.aircraft));
   EXPECT_NE(shared.sha256_of_file(intruder.aircraft), before);
 }
@@ -124,10 +124,10 @@ TEST_F(SharedInputsTest, AnAircraftThatIsMissingIsAnErrorEachTime) {
 // The text is the same exactly where the loaded aircraft is.
 TEST(Configuration, FollowsTheLimitsOfTheWrapper) {
   const auto at = [](double airspeed_kt, double altitude_agl_ft = 3000) {
-    aircraft::LoadOptions options;
+    model::LoadOptions options;
     options.airspeed_kt = airspeed_kt;
     options.altitude_agl_ft = altitude_agl_ft;
-    return aircraft::configuration_of("738/738-Ryanair", options);
+    return fleet::configuration_of("738/738-Ryanair", options);
   };
   EXPECT_EQ(at(250), at(251.5));
   EXPECT_EQ(at(250), at(250, 30'000));
@@ -136,8 +136,8 @@ TEST(Configuration, FollowsTheLimitsOfTheWrapper) {
 }
 
 TEST(Configuration, OfABareModelFileIsEmpty) {
-  EXPECT_EQ(aircraft::configuration_of("some/file.obj", {}), "");
-  EXPECT_NE(aircraft::configuration_of("some/file.xml", {}), "");
+  EXPECT_EQ(fleet::configuration_of("some/file.obj", {}), "");
+  EXPECT_NE(fleet::configuration_of("some/file.xml", {}), "");
 }
 
 }  // namespace

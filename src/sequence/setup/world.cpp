@@ -54,15 +54,15 @@ Loaded load_actor(const scene::Intruder& intruder,
   return {placed, actor_of(placed, world, types, {}, stop)};
 }
 
-aircraft::Mesh mesh_of(const scene::Distractor& one) {
+model::Mesh mesh_of(const scene::Distractor& one) {
   switch (one.kind) {
     case scene::DistractorKind::kBird:
-      return aircraft::bird(
+      return shapes::bird(
           {one.size_m, one.aspect_ratio, one.plumage, one.flap_hz, one.flap_phase, one.glide});
     case scene::DistractorKind::kMultirotor:
-      return aircraft::multirotor({one.size_m, one.rotors, one.colour});
+      return shapes::multirotor({one.size_m, one.rotors, one.colour});
     case scene::DistractorKind::kBalloon:
-      return aircraft::balloon({one.size_m, one.colour});
+      return shapes::balloon({one.size_m, one.colour});
     default:
       break;
   }
@@ -84,10 +84,10 @@ World without_actors(const scene::Scene& scene, lens::ImageSize size) {
 
 }  // namespace
 
-aircraft::LoadOptions load_options(const scene::Intruder& intruder,
-                                   const trajectory::Path& path,
-                                   const std::stop_token& stop) {
-  aircraft::LoadOptions options;
+model::LoadOptions load_options(const scene::Intruder& intruder,
+                                const trajectory::Path& path,
+                                const std::stop_token& stop) {
+  model::LoadOptions options;
   options.stop = stop;
   // A path without a beginning begins with the clip.
   const double begin_s = std::isfinite(path.start_s()) ? path.start_s() : 0;
@@ -97,7 +97,7 @@ aircraft::LoadOptions load_options(const scene::Intruder& intruder,
   }
   options.catalogue_scale = intruder.catalogue_scale;
   if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
-    aircraft::ModelAxes axes;
+    model::ModelAxes axes;
     if (intruder.model_forward) axes.forward = *intruder.model_forward;
     if (intruder.model_up) axes.up = *intruder.model_up;
     if (intruder.model_scale) axes.scale = *intruder.model_scale;
@@ -106,18 +106,18 @@ aircraft::LoadOptions load_options(const scene::Intruder& intruder,
   return options;
 }
 
-std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
-                                                      const trajectory::Path& path,
-                                                      const Warn& warn,
-                                                      const std::stop_token& stop) {
+std::shared_ptr<const fleet::Aircraft> aircraft_of(const scene::Intruder& intruder,
+                                                   const trajectory::Path& path,
+                                                   const Warn& warn,
+                                                   const std::stop_token& stop) {
   if (intruder.distractor) {
-    auto made = std::make_shared<aircraft::Aircraft>();
+    auto made = std::make_shared<fleet::Aircraft>();
     made->name = intruder.aircraft;
     made->mesh = mesh_of(*intruder.distractor);
     return made;
   }
-  return std::make_shared<const aircraft::Aircraft>(
-      aircraft::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
+  return std::make_shared<const fleet::Aircraft>(
+      fleet::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
 }
 
 World load_world(const scene::Scene& scene,
@@ -171,7 +171,7 @@ void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   check_camera_path(world.camera, info);
   for (const scene::Intruder& intruder : scene.intruders) {
     if (is_aircraft(intruder))
-      at_place(intruder.where, [&] { return aircraft::aircraft_file(intruder.aircraft); });
+      at_place(intruder.where, [&] { return fleet::aircraft_file(intruder.aircraft); });
     path_of(
         intruder.seen.empty() ? intruder : placed_as_seen(intruder, world, steady_frame, nullptr),
         world.camera);

@@ -27,7 +27,7 @@ class SharedInputs;
 
 // An aircraft that is ready to be drawn.
 struct Type {
-  std::shared_ptr<const aircraft::Aircraft> aircraft;
+  std::shared_ptr<const fleet::Aircraft> aircraft;
   std::shared_ptr<const shade::Model> model;
   projection::SilhouettePoints silhouette;
   std::vector<std::string> warnings;  // of its reader
@@ -49,7 +49,7 @@ struct World {
   std::vector<Actor> actors;
   Shutter shutter;
   // What the truth says of encounters ([truth]).
-  std::vector<encounter::AskedVolume> volumes;
+  std::vector<separation::AskedVolume> volumes;
   double lookahead_s = 180;
   // What is on the lens.
   std::vector<scene::LensMark> lens_marks;
@@ -61,16 +61,16 @@ struct World {
 
 // How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
 // beginning of its path.
-aircraft::LoadOptions load_options(const scene::Intruder& intruder,
-                                   const trajectory::Path& path,
-                                   const std::stop_token& stop = {});
+model::LoadOptions load_options(const scene::Intruder& intruder,
+                                const trajectory::Path& path,
+                                const std::stop_token& stop = {});
 
 // Returns an intruder's aircraft in its configuration at the beginning of its path: the airspeed
 // and the height there determine gear and flaps.
-std::shared_ptr<const aircraft::Aircraft> aircraft_of(const scene::Intruder& intruder,
-                                                      const trajectory::Path& path,
-                                                      const Warn& warn,
-                                                      const std::stop_token& stop = {});
+std::shared_ptr<const fleet::Aircraft> aircraft_of(const scene::Intruder& intruder,
+                                                   const trajectory::Path& path,
+                                                   const Warn& warn,
+                                                   const std::stop_token& stop = {});
 
 // Loads a scene without "auto" keys (pipeline/resolved_scene.h). Intruders of [[intruder.seen]] are
 // placed as if the camera did not shake; place_seen() puts them right. Throws Interrupted on stop.

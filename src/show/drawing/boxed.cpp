@@ -18,7 +18,7 @@ constexpr int kRimmedPx = 2;
 // The decoded pixels with the top row first. OpenCV's imgcodecs would decode them too, but loading
 // that library takes 0.1 s at the start of every command (docs/optimisations.md).
 cv::Mat decoded(const std::string& jpeg) {
-  aircraft::Picture rows_from_below = aircraft::read_picture(jpeg);
+  texture_file::Picture rows_from_below = texture_file::read_picture(jpeg);
   const cv::Mat rgba(
       rows_from_below.height, rows_from_below.width, CV_8UC4, rows_from_below.rgba.data());
   cv::Mat rgb;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/model/model_fields.h"
+#include "encounter/encounter_model/model_fields.h"
 
 #include <algorithm>
 #include <charconv>
@@ -10,7 +10,7 @@
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
 
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 namespace {
 
 const std::vector<std::string> kFields = {"labels_initial",
@@ -159,4 +159,4 @@ std::vector<double> ModelFields::numbers(const std::string& name,
   return numbers;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

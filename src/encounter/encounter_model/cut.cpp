@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/model/cut.h"
+#include "encounter/encounter_model/cut.h"
 
 #include <algorithm>
 #include <string>
@@ -8,7 +8,7 @@
 
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 namespace {
 
 // Number of combinations that are summed: it bounds the time.
@@ -133,4 +133,4 @@ void CutTable::draw(Random& random, std::size_t* bins) const {
   for (std::size_t i = 0; i < variables_.size(); ++i) bins[variables_[i]] = combinations_[at + i];
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "encounter/model/model_file.h"
+#include "encounter/encounter_model/model_file.h"
 #include "foundation/base/seed.h"
 
 // The part of a model's traffic that a user wants.
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 
 // Each limit is off where it is empty.
 struct Cut {
@@ -65,4 +65,4 @@ inline std::size_t column_of(const Node& node,
   return column;
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/model/model_file.h"
+#include "encounter/encounter_model/model_file.h"
 
 #include <cstdlib>
 #include <string>
@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "support/small_encounter_model.h"
 
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 namespace {
 
 using ::testing::ElementsAre;
@@ -19,7 +19,7 @@ using ::testing::StartsWith;
 
 // The small model with one piece of text replaced.
 std::string changed(const std::string& from, const std::string& to) {
-  std::string text = kSmallModel;
+  std::string text = test_support::kSmallModel;
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return text.replace(at, from.size(), to);
@@ -35,7 +35,7 @@ std::string fault_of(const std::string& text) {
 }
 
 TEST(ModelFile, TablesFollowTheGraph) {
-  const BayesModel model = parse_model(kSmallModel, "model.txt");
+  const BayesModel model = parse_model(test_support::kSmallModel, "model.txt");
   EXPECT_THAT(model.labels, ElementsAre("G", "L", "v", "\\dot v", "\\dot h", "\\dot \\psi"));
   EXPECT_THAT(model.initial[1].parents, ElementsAre(0u));
   EXPECT_THAT(model.initial[1].sums, ElementsAre(80, 100, 1, 4));
@@ -58,18 +58,21 @@ TEST(ModelFile, TablesFollowTheGraph) {
 
 TEST(ModelFile, TheOrderFollowsParentsThatComeLater) {
   // The domain depends on the altitude here, and not the reverse.
-  const BayesModel model = parse_model(
-      changed("0 1 0 0 0 0\n0 0 1 0 0 0", "0 0 0 0 0 0\n1 0 1 0 0 0")
-          .replace(std::string(kSmallModel).find("300 100 80 20 1 3"), 17, "80 20 1 3 300 100"),
-      "model.txt");
+  const BayesModel model =
+      parse_model(changed("0 1 0 0 0 0\n0 0 1 0 0 0", "0 0 0 0 0 0\n1 0 1 0 0 0")
+                      .replace(std::string(test_support::kSmallModel).find("300 100 80 20 1 3"),
+                               17,
+                               "80 20 1 3 300 100"),
+                  "model.txt");
   EXPECT_THAT(model.initial_order, ElementsAre(1u, 2u, 3u, 4u, 5u, 0u));
 }
 
 TEST(ModelFile, LineEndsAndBlankLinesDoNotMatter) {
   std::string text;
-  for (const char c : std::string(kSmallModel)) text += c == '\n' ? "\r\n\r\n" : std::string(1, c);
+  for (const char c : std::string(test_support::kSmallModel))
+    text += c == '\n' ? "\r\n\r\n" : std::string(1, c);
   EXPECT_EQ(parse_model(text, "model.txt").initial[5].sums,
-            parse_model(kSmallModel, "model.txt").initial[5].sums);
+            parse_model(test_support::kSmallModel, "model.txt").initial[5].sums);
 }
 
 TEST(ModelFile, EachFaultNamesTheLineAndWhatWasExpected) {
@@ -120,7 +123,7 @@ TEST(ModelFile, ATableTooLargeIsRefusedBeforeItIsMade) {
 }
 
 TEST(ModelFile, EveryCutOffFileIsAnError) {
-  const std::string text = kSmallModel;
+  const std::string text = test_support::kSmallModel;
   // A cut within the last number, or the blanks after it, leaves a whole file.
   for (std::size_t size = 0; size + 4 < text.size(); ++size)
     EXPECT_THROW(parse_model(text.substr(0, size), "model.txt"), Error) << size;
@@ -153,4 +156,4 @@ TEST(ModelFile, PublishedModelsAreRead) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/model/sampler.h"
+#include "encounter/encounter_model/sampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
 
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 namespace {
 
 // Of the published models nine draws in ten and more can be flown.
@@ -60,9 +60,10 @@ Sampler::Sampler(BayesModel model, const SampleOptions& options)
         "a track of {} s is asked for; expected 1 to {} s", options.duration_s, kMaxDuration_s));
   for (const std::size_t variable : cut_.variables()) is_cut_[variable] = true;
   const VariablePlaces& places = model_.places;
-  if (places.speed_kt) speeds_ = ranges_of(model_.edges[*places.speed_kt], kMpsOfKnot);
+  if (places.speed_kt) speeds_ = ranges_of(model_.edges[*places.speed_kt], track::kMpsOfKnot);
   rate_variables_ = {places.acceleration_ktps, places.vertical_rate_ftpmin, places.turn_rate_dps};
-  const std::array<double, kRates> units = {kMpsOfKnot, kMpsOfFootPerMinute, radians(1)};
+  const std::array<double, kRates> units = {
+      track::kMpsOfKnot, track::kMpsOfFootPerMinute, radians(1)};
   for (std::size_t rate = 0; rate < kRates; ++rate)
     if (const auto variable = rate_variables_[rate])
       ranges_[rate] = ranges_of(model_.edges[*variable], units[rate]);
@@ -147,7 +148,7 @@ struct Sampler::Flight {
 Sampler::Flight Sampler::begin(Random& random, const std::size_t* bins) const {
   Flight flight;
   const auto [low_ft, width_ft] = cut_.altitude_range_ft(bins[*model_.places.altitude_ft]);
-  flight.position_m.z() = -kMetresOfFoot * (low_ft + width_ft * random.uniform());
+  flight.position_m.z() = -track::kMetresOfFoot * (low_ft + width_ft * random.uniform());
   if (const auto speed = model_.places.speed_kt)
     flight.speed_mps = drawn_value(speeds_[bins[*speed]], random);
   for (std::size_t rate = 0; rate < kRates; ++rate)
@@ -178,7 +179,7 @@ bool Sampler::can_fly(const Flight& flight) const {
          flight.speed_mps > std::abs(flight.rates[kVerticalRate]);
 }
 
-bool Sampler::fly(Random& random, std::size_t* bins, Track& track) const {
+bool Sampler::fly(Random& random, std::size_t* bins, track::Track& track) const {
   Flight flight = begin(random, bins);
   for (std::size_t i = 0; i < track.size(); ++i) {
     if (i > 0) {
@@ -196,7 +197,7 @@ SampledTrack Sampler::sample(std::uint64_t index) const {
   Random random = Seed(options_.seed).stream("encounter model", index);
   SampledTrack sampled;
   const auto count = static_cast<std::size_t>(options_.duration_s) + 1;
-  Track& track = sampled.track;
+  track::Track& track = sampled.track;
   track.times_s.resize(count);
   for (std::size_t i = 0; i < count; ++i) track.times_s[i] = static_cast<double>(i);
   track.positions_ned_m.resize(count);
@@ -214,4 +215,4 @@ SampledTrack Sampler::sample(std::uint64_t index) const {
               {model_.file.string()});
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

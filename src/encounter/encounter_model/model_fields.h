@@ -11,7 +11,7 @@
 #include "foundation/base/error.h"
 
 // The fields of a model file as text: a line "# name", followed by lines of data.
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 
 struct FieldLine {
   std::string_view text;
@@ -50,4 +50,4 @@ class ModelFields {
   std::map<std::string, Field> fields_;
 };
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

@@ -14,7 +14,7 @@
 // Kochenderfer, Edwards, Espindle, Kuchar and Griffith (2010), "Airspace encounter models for
 // estimating collision risk"; of the file: the text files of em-model-manned-bayes
 // (docs/formats/encounters.md).
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 
 namespace fs = std::filesystem;
 
@@ -81,4 +81,4 @@ struct BayesModel {
 BayesModel read_model(const fs::path& file);
 BayesModel parse_model(std::string_view text, const fs::path& file);
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

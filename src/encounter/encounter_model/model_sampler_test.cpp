@@ -7,19 +7,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "encounter/model/sampler.h"
+#include "encounter/encounter_model/sampler.h"
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
 #include "support/chi_square.h"
 #include "support/small_encounter_model.h"
 
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 namespace {
 
 using Bins = std::vector<std::size_t>;
 constexpr int kSamples = 100'000;
 
-BayesModel small_model() { return parse_model(kSmallModel, "small.txt"); }
+BayesModel small_model() { return parse_model(test_support::kSmallModel, "small.txt"); }
 
 std::vector<double> probabilities_of(const Node& node, std::size_t column) {
   std::vector<double> probabilities;
@@ -42,7 +42,7 @@ std::size_t column_by_definition(const Node& node, const Bins& sizes, const Bins
 }
 
 struct Tested {
-  ChiSquare initial, transition, within;
+  test_support::ChiSquare initial, transition, within;
   std::int64_t stayed = 0;
 };
 
@@ -97,8 +97,8 @@ TEST(ModelSampler, DrawsWhatTheTablesSay) {
   // The bins of each column that have counts, less one.
   EXPECT_EQ(tested.initial.degrees, 16);
   EXPECT_EQ(tested.transition.degrees, 27);
-  EXPECT_LT(tested.initial.normal_deviate(), kLevel0001);
-  EXPECT_LT(tested.transition.normal_deviate(), kLevel0001);
+  EXPECT_LT(tested.initial.normal_deviate(), test_support::kLevel0001);
+  EXPECT_LT(tested.transition.normal_deviate(), test_support::kLevel0001);
   EXPECT_GT(tested.stayed, 1000);
 }
 
@@ -114,7 +114,7 @@ TEST(ModelSampler, MarginalsAreThoseOfTheJointDistribution) {
     ++speed[bins[2]];
     ++turn[bins[5]];
   }
-  ChiSquare chi;
+  test_support::ChiSquare chi;
   // P(L = 1) = 0.75 0.8 + 0.25 0.25.
   const double low = 0.6625;
   chi.add(altitude, {low, 1 - low});
@@ -124,7 +124,7 @@ TEST(ModelSampler, MarginalsAreThoseOfTheJointDistribution) {
            0.2 * 0.8 + 0.6 * 0.5 + 0.2 * 0.05,
            0.2 * 0.1 + 0.6 * 0.25 + 0.2 * 0.9});
   EXPECT_EQ(chi.degrees, 5);
-  EXPECT_LT(chi.normal_deviate(), kLevel0001);
+  EXPECT_LT(chi.normal_deviate(), test_support::kLevel0001);
 }
 
 TEST(ModelSampler, PublishedModelsAreDrawnAsTheirTablesSay) {
@@ -138,8 +138,8 @@ TEST(ModelSampler, PublishedModelsAreDrawnAsTheirTablesSay) {
                            "uncor_1200only_rotorcraft_v1p2.txt"}) {
     const Sampler sampler(read_model(fs::path(shared) / "encounters/models" / name), {});
     const Tested tested = test_networks(sampler, kSamples, 10);
-    EXPECT_LT(tested.initial.normal_deviate(), kLevel0001) << name;
-    EXPECT_LT(tested.transition.normal_deviate(), kLevel0001) << name;
+    EXPECT_LT(tested.initial.normal_deviate(), test_support::kLevel0001) << name;
+    EXPECT_LT(tested.transition.normal_deviate(), test_support::kLevel0001) << name;
     const SampledTrack first = sampler.sample(0);
     EXPECT_EQ(first.track.size(), 61u) << name;
   }
@@ -161,11 +161,11 @@ TEST(ModelSampler, TheCutIsTheConditionalDistribution) {
     ASSERT_EQ(bins[0], 1u);
     ++layers[bins[1]];
   }
-  ChiSquare chi;
+  test_support::ChiSquare chi;
   chi.add(layers, {low / (low + high), high / (low + high)});
-  EXPECT_LT(chi.normal_deviate(), kLevel0001);
+  EXPECT_LT(chi.normal_deviate(), test_support::kLevel0001);
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    const double start_ft = -sampler.sample(i).track.positions_ned_m[0].z() / kMetresOfFoot;
+    const double start_ft = -sampler.sample(i).track.positions_ned_m[0].z() / track::kMetresOfFoot;
     EXPECT_GE(start_ft, 1000 - 1e-9);
     EXPECT_LE(start_ft, 2000 + 1e-9);
   }
@@ -190,7 +190,7 @@ TEST(ModelSampler, TracksMoveAsTheirVelocitiesSay) {
   const Sampler sampler(small_model(), options);
   double longest_m = 0;
   for (std::uint64_t i = 0; i < 500; ++i) {
-    const Track track = sampler.sample(i).track;
+    const track::Track track = sampler.sample(i).track;
     ASSERT_EQ(track.size(), 121u);
     for (std::size_t s = 0; s + 1 < track.size(); ++s) {
       const Vector3 step = track.positions_ned_m[s + 1] - track.positions_ned_m[s];
@@ -208,8 +208,8 @@ TEST(ModelSampler, TracksMoveAsTheirVelocitiesSay) {
     EXPECT_EQ(track.velocities_ned_mps[0].y(), 0);
     longest_m = std::max(longest_m, track.positions_ned_m.back().head<2>().norm());
   }
-  EXPECT_LT(longest_m, 120 * 150 * kMpsOfKnot);
-  EXPECT_GT(longest_m, 120 * 100 * kMpsOfKnot);
+  EXPECT_LT(longest_m, 120 * 150 * track::kMpsOfKnot);
+  EXPECT_GT(longest_m, 120 * 100 * track::kMpsOfKnot);
 }
 
 // Aircraft that all fly at 100 kt, level, and turn right at 3 to 3.0001 degrees a second.
@@ -246,8 +246,8 @@ TEST(ModelSampler, ASteadyTurnIsACircle) {
   const BayesModel model = parse_model(kTurningModel, "turn.txt");
   SampleOptions options;
   options.duration_s = 120;  // once round
-  const Track track = Sampler(model, options).sample(0).track;
-  const double radius_m = 100 * kMpsOfKnot / radians(3);
+  const track::Track track = Sampler(model, options).sample(0).track;
+  const double radius_m = 100 * track::kMpsOfKnot / radians(3);
   for (const Vector3& position : track.positions_ned_m) {
     EXPECT_NEAR((position.head<2>() - Eigen::Vector2d(0, radius_m)).norm(), radius_m, 0.1);
     EXPECT_EQ(position.z(), track.positions_ned_m[0].z());
@@ -260,12 +260,12 @@ TEST(ModelSampler, ResampleRatesChangeValuesWithinABin) {
   const Sampler sampler(small_model(), {});
   // A turn to the right goes on in its bin with probability 0.9, and is then drawn anew in 30 %.
   std::int64_t anew = 0, kept = 0;
-  const auto turn_of = [](const Track& track, std::size_t s) {
+  const auto turn_of = [](const track::Track& track, std::size_t s) {
     const Vector3 &a = track.velocities_ned_mps[s], &b = track.velocities_ned_mps[s + 1];
     return std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
   };
   for (std::uint64_t i = 0; i < 3000; ++i) {
-    const Track track = sampler.sample(i).track;
+    const track::Track track = sampler.sample(i).track;
     for (std::size_t s = 0; s + 2 < track.size(); ++s) {
       const double first = turn_of(track, s), second = turn_of(track, s + 1);
       if (first < radians(0.5) || second < radians(0.5)) continue;  // both in the right bin
@@ -309,4 +309,4 @@ TEST(ModelSampler, LengthsOutOfRangeAreErrors) {
 }
 
 }  // namespace
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

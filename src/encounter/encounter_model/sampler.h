@@ -7,13 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include "encounter/model/cut.h"
-#include "encounter/model/model_file.h"
+#include "encounter/encounter_model/cut.h"
+#include "encounter/encounter_model/model_file.h"
 #include "encounter/track/track.h"
 #include "foundation/base/seed.h"
 
 // Tracks drawn from an encounter model.
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 
 struct SampleOptions {
   std::uint64_t seed = 1;
@@ -27,7 +27,7 @@ constexpr int kMaxDuration_s = 3600;
 
 struct SampledTrack {
   // A sample for each second from 0 on. The track begins above the origin and heads north.
-  Track track;
+  track::Track track;
   // Bins of the initial variables, from 0.
   std::vector<std::size_t> initial_bins;
   // How many draws it took: this one, and those before it that cannot be flown.
@@ -75,7 +75,7 @@ class Sampler {
   Flight begin(Random& random, const std::size_t* bins) const;
   void change(Random& random, std::size_t* bins, Flight& flight) const;
   bool can_fly(const Flight& flight) const;
-  bool fly(Random& random, std::size_t* bins, Track& track) const;
+  bool fly(Random& random, std::size_t* bins, track::Track& track) const;
 
   BayesModel model_;
   SampleOptions options_;
@@ -89,4 +89,4 @@ class Sampler {
   std::vector<std::size_t> rate_of_dynamic_;
 };
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/model/model_file.h"
+#include "encounter/encounter_model/model_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "encounter/model/model_fields.h"
+#include "encounter/encounter_model/model_fields.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::encounter {
+namespace airtruth::encounter_model {
 namespace {
 
 // Largest file that is read: it bounds memory.
@@ -260,4 +260,4 @@ BayesModel read_model(const fs::path& file) {
   return parse_model(read_file(file, kMaxBytes), file);
 }
 
-}  // namespace airtruth::encounter
+}  // namespace airtruth::encounter_model
