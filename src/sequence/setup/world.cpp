@@ -70,7 +70,7 @@ model::Mesh mesh_of(const scene::Distractor& one) {
   return {};
 }
 
-World without_actors(const scene::Scene& scene, lens::ImageSize size) {
+World without_actors(const scene::Scene& scene, lens::ImageSize size, const Warn& warn) {
   return {lens_of(scene.lens, size, warn),
           at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
           {},
@@ -125,7 +125,7 @@ World load_world(const scene::Scene& scene,
                  const Warn& warn,
                  const std::stop_token& stop,
                  SharedInputs* shared) {
-  World world = without_actors(scene, size);
+  World world = without_actors(scene, size, warn);
   SharedInputs own;
   SharedInputs& types = shared != nullptr ? *shared : own;
   for (const scene::Intruder& intruder : scene.intruders)
@@ -167,7 +167,7 @@ void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& 
 }
 
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
-  const World world = without_actors(scene, {info.width, info.height});
+  const World world = without_actors(scene, {info.width, info.height}, {});
   check_camera_path(world.camera, info);
   for (const scene::Intruder& intruder : scene.intruders) {
     if (is_aircraft(intruder))
