@@ -75,7 +75,7 @@ def make_inputs():
         for number, picture in enumerate(pictures):
             write(f"otb/{name}/img/{number + 1:04}.png", picture)
         write(f"otb/{name}/groundtruth_rect.txt", "".join(f"{x + 1},{y + 1},{w},{h}\n" for x, y, w, h in map(target, range(COUNT))))
-    made("dataset", "import", "otb", "-f", "otb", "-o", "set")
+    made("dataset", "import", "otb", "-f", "otb", "--frame-rate", "25", "-o", "set")
 
 
 class OverASet(Case):
@@ -167,7 +167,7 @@ class OwnAircraft(Case):
 
 class OverAVideo(Case):
     def test_its_name_is_that_of_its_file(self):
-        made("detect", "otb/one/img", "-d", "cmo", "-o", "video")
+        made("detect", "otb/one/img", "-d", "cmo", "--frame-rate", "25", "-o", "video")
         self.assertEqual(sorted(os.listdir(path("video", "cmo"))), ["detector.json", "img.detections.json", "img.json", "img.txt"])
 
 

@@ -105,7 +105,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="airtruth_detection_") as root:
         run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=root)
         write_otb(root + "/otb", [CLIP], FRAMES)
-        run("dataset", "import", "otb", "--format", "otb", "-o", "clips")
+        run("dataset", "import", "otb", "--format", "otb", "--frame-rate", "25", "-o", "clips")
         finder = [mot_line(k, 7, box_of(k), 5) for k in range(FIRST_FOUND, FRAMES)]
         finder += [mot_line(k, -1, ALARM_BOX, 9) for k in ALARM_FRAMES]
         write_results(root + "/results/finder", finder)

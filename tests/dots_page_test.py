@@ -68,7 +68,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="airtruth_dots_") as root:
         run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=root)
         write_otb(root + "/otb", ["clip"], 5)
-        run("dataset", "import", "otb", "--format", "otb", "-o", "clips")
+        run("dataset", "import", "otb", "--format", "otb", "--frame-rate", "25", "-o", "clips")
         os.makedirs(root + "/finder")
         with open(root + "/finder/clip.txt", "w", encoding="utf-8") as file:
             file.writelines(f"{k + 1},-1,{x + 1},{y + 1},{w},{h},0.9,-1,-1,-1\n" for k, (x, y, w, h) in enumerate(map(box_of, range(5))))

@@ -18,7 +18,7 @@ FRAMES = 12
 
 def make_inputs():
     write_otb(path("otb"), ["broken", "whole"], FRAMES)
-    made("dataset", "import", "otb", "--format", "otb", "-o", "clips")
+    made("dataset", "import", "otb", "--format", "otb", "--frame-rate", "25", "-o", "clips")
     for number in range(2, FRAMES + 1):
         write(f"otb/broken/img/{number:04}.png", "no picture")
     for name in ("broken", "whole"):

@@ -151,7 +151,7 @@ def numbered(airtruth, browser, root):
     """The page opens on the sequence that has results and shows the frame that it names; names are inert; colours differ."""
     run = lambda *command: subprocess.run([airtruth, *command], check=True, stdout=subprocess.DEVNULL, cwd=root)
     write_otb(root + "/otb", NAMES, 200)
-    run("dataset", "import", "otb", "--format", "otb", "-o", "clips")
+    run("dataset", "import", "otb", "--format", "otb", "--frame-rate", "25", "-o", "clips")
     for offset, tracker in enumerate(HOSTILE):
         os.makedirs(f"{root}/hostile/{tracker}")
         with open(f"{root}/hostile/{tracker}/{NAMES[1]}.txt", "w", encoding="utf-8") as file:

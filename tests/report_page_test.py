@@ -209,7 +209,7 @@ def played(airtruth, browser, root):
     """The page shows the frames that it names, counts boxes where they are, and plays the file beside it."""
     run = lambda *command: subprocess.run([airtruth, "dataset", *command], check=True, stdout=subprocess.DEVNULL, cwd=root)
     write_otb(root + "/otb", ["numbered 100%"], 100)
-    run("import", "otb", "--format", "otb", "-o", "clips")
+    run("import", "otb", "--format", "otb", "--frame-rate", "25", "-o", "clips")
     run("report", "clips", "-o", "numbered.html")
     data = data_of(root + "/numbered.html")
     wanted = [0] * (32 * 24)

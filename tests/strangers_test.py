@@ -251,6 +251,76 @@ def listed_size(it):
     assert "data: [ 250.0, 0.0, 319.75" in text, text
 
 
+def log(name, positions, *words):
+    def case(it):
+        said = it.run("log", "show", it.path(name))
+        assert f"positions: {positions}," in said, said
+        for word in words:
+            assert word in said, said
+    return case
+
+
+SCENE = """name = "s"
+[background]
+video = "{video}"
+{more}
+[lens]
+{lens}
+[[intruder]]
+aircraft = "738/738-Delta"
+waypoints_ned_m = [[280, -60, -175], [300, 60, -178]]
+speed_mps = 60
+[output]
+video = "mkv"
+"""
+
+
+def rendered(it, video, lens="vertical_fov_deg = 45", more="", code=0):
+    with open(os.path.join(it.scratch, "s.toml"), "w", encoding="utf-8") as file:
+        file.write(SCENE.format(video=it.path(video), lens=lens, more=more))
+    return it.run("render", "s.toml", "--out", "out", "--overwrite", code=code)
+
+
+def edit_list(it):
+    assert "ends early" not in rendered(it, "f_editlist.mp4")
+
+
+def high_range(it):
+    assert "HLG" in rendered(it, "hlg.mkv", code=2)
+    rendered(it, "sdr.mkv")
+
+
+def picture_rate(it):
+    assert "frame_rate_hz" in rendered(it, "", code=2)
+    rendered(it, "", more="frame_rate_hz = 10")
+    with open(os.path.join(it.scratch, "out", "s", "truth.jsonl"), encoding="utf-8") as file:
+        frames = [json.loads(line) for line in file]
+    times = [frame["time_s"] for frame in frames if "time_s" in frame]
+    assert [round(t, 9) for t in times] == [0, 0.1, 0.2], times
+
+
+def interlaced(it):
+    assert "interlaced" in rendered(it, "f_interlaced.mp4")
+
+
+def open_group(it):
+    it.run("motion", it.path("og_cut.ts"), "-o", "m.csv")
+    with open(os.path.join(it.scratch, "m.csv"), encoding="utf-8") as file:
+        assert sum(1 for line in file if line[0].isdigit()) == 60
+
+
+def turned(it):
+    said = rendered(it, "f_rot90.mp4", lens=f'file = "{it.path("gf320.json")}"', code=2)
+    assert "turned by 90 degrees" in said and "lens crop" not in said, said
+
+
+def pixel_shape(it):
+    rendered(it, "f_sar43.mp4")
+    with open(os.path.join(it.scratch, "out", "s", "truth.jsonl"), encoding="utf-8") as file:
+        text = file.read()
+    assert "217.27" in text and "289.70" in text, text[:600]
+
+
 CASES = {
     "det-rate-of-import-mot": rate_of_import,
     "ev-coco-ids-from-0": coco_ids,
@@ -284,6 +354,25 @@ CASES = {
     "lens-image-size-list": listed_size,
     "lens-kalibr": lens_read("kalibr_camchain.yaml", (752, 480)),
     "lens-omni": lens_said("omni_matrix.yaml", (752, 480), "omni"),
+    "log-bin-nan-start": log("bin_nanpos.bin", 96, "altitude is nan"),
+    "log-dji-embedded-subtitles": log("dji_embedded.mp4", 60),
+    "log-gopro-karma-real": log("gp_karma.mp4", 47, "33.125"),
+    "log-gpx-one-without-ele": log("oneele_missing.gpx", 29, "<ele>"),
+    "log-gpx-one-without-time": log("onemissing_time.gpx", 29, "<time>"),
+    "log-srt-bad-latitude": log("badlat.srt", 59, "947"),
+    "log-srt-comma-decimals": log("comma_decimals.srt", 60, "latitude: 47 to 47.0006"),
+    "log-srt-one-bad": log("teleport.srt", 59, "out of reach"),
+    "log-ulog-corrupt-middle": log("ulg_corrupt_mid.ulg", 30, "damaged from byte"),
+    "log-ulog-instance-1": log("ulg_gps_instance1.ulg", 32),
+    "log-ulog-q_nan_first": log("q_nan_first.ulg", 13, "quaternion"),
+    "log-ulog-q_zero_first": log("q_zero_first.ulg", 13, "quaternion"),
+    "vid-edit-list": edit_list,
+    "vid-hlg": high_range,
+    "vid-image-folder-rate": picture_rate,
+    "vid-interlaced": interlaced,
+    "vid-open-gop-cut": open_group,
+    "vid-rotated-calibration": turned,
+    "vid-sar-4-3": pixel_shape,
     "lens-unknown-distortion-key": lens_said("coeffs_key.yaml", (640, 480), "holds four numbers"),
 }
 

@@ -77,8 +77,11 @@ std::string description(const FlightLog& log) {
   text += flown(log) + "\n";
   text += records(log.attitudes, "attitudes") + "\n" + records(log.rates, "turn rates");
   if (log.left_out > 0)
-    text += fmt::format("\nleft out: {} records without a fix, or at a time that does not increase",
-                        log.left_out);
+    text += fmt::format(
+        "\nleft out: {} records without a fix, at a time that does not increase, or "
+        "with a fault",
+        log.left_out);
+  if (!log.first_fault.empty()) text += "\nthe first fault: " + log.first_fault;
   return text;
 }
 

@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
-#include "labels/exchange/pixel_mask.h"
+#include "labels/pixel_mask/pixel_mask.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/insertion/masks.h"
@@ -27,10 +27,20 @@ std::optional<exchange::PixelMask> pixels_of_mask(const replay::Finished& finish
   const auto box = mask ? composite::covered_box(*mask) : std::nullopt;
   if (!box) return std::nullopt;
   const auto width = static_cast<std::size_t>(mask->patch.width);
-  return exchange::pixel_mask_of(mask->patch.width, mask->patch.height, *box, [&](int x, int y) {
+  return pixel_mask::pixel_mask_of(mask->patch.width, mask->patch.height, *box, [&](int x, int y) {
     return mask->alpha[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] >=
            composite::kCoveredAlpha;
   });
+}
+
+// The rate of the video; of numbered pictures, which state none, that of the truth's times.
+std::optional<double> rate_of(const replay::Finished& finished) {
+  const video::StreamInfo info = video::Reader(finished.video, {.threads = 1}).info();
+  if (info.is_rate_stated) return info.frame_rate.value();
+  const std::vector<annotation::Frame>& frames = finished.truth.frames;
+  if (frames.size() < 2 || !(frames.back().time_s > frames.front().time_s)) return std::nullopt;
+  return static_cast<double>(frames.back().frame - frames.front().frame) /
+         (frames.back().time_s - frames.front().time_s);
 }
 
 exchange::Clip clip_of(const replay::Finished& finished, dataset::Boxes boxes, bool with_masks) {
@@ -39,7 +49,7 @@ exchange::Clip clip_of(const replay::Finished& finished, dataset::Boxes boxes, b
   clip.media = finished.video;
   clip.width = finished.truth.lens.width;
   clip.height = finished.truth.lens.height;
-  clip.frame_rate_hz = video::Reader(finished.video, {.threads = 1}).info().frame_rate.value();
+  clip.frame_rate_hz = rate_of(finished);
   for (const annotation::Frame& truth : finished.truth.frames) {
     clip.frames.push_back(sequences::labels_of(truth, boxes, clip.width, clip.height));
     if (!with_masks) continue;

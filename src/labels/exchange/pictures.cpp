@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
-#include "foundation/base/series.h"
+#include "foundation/picture_series/series.h"
 #include "labels/exchange/text.h"
 
 namespace airtruth::exchange {
@@ -27,7 +27,8 @@ void sort_pictures(std::vector<LabelledPicture>& pictures) {
       });
   std::stable_sort(
       pictures.begin(), pictures.end(), [&](const LabelledPicture& a, const LabelledPicture& b) {
-        return have_numbers ? *a.number < *b.number : is_numbered_before(a.name, b.name);
+        return have_numbers ? *a.number < *b.number
+                            : picture_series::is_numbered_before(a.name, b.name);
       });
 }
 
@@ -142,11 +143,12 @@ std::vector<Clip> clips_of_pictures(std::vector<LabelledPicture> pictures,
   std::vector<Clip> clips;
   for (auto& [key, held] : folders) {
     const std::vector<std::string> names = names_of(held);
-    const std::vector<Series> all = series_of(names, Stray::kOfOneSeries);
-    for (const Series& series : all) {
+    const std::vector<picture_series::Series> all =
+        picture_series::series_of(names, picture_series::Stray::kOfOneSeries);
+    for (const picture_series::Series& series : all) {
       std::vector<LabelledPicture> one;
       for (const std::size_t i : series) one.push_back(std::move(held[i]));
-      const std::string common = common_name(names_of(one));
+      const std::string common = picture_series::common_name(names_of(one));
       const std::string folder = name_of_folder(key.second);
       const std::string name = all.size() > 1 ? first_of(common, folder, otherwise)
                                               : first_of(folder, otherwise, common);
@@ -159,7 +161,7 @@ std::vector<Clip> clips_of_pictures(std::vector<LabelledPicture> pictures,
 std::vector<std::string> pictures_in(const fs::path& folder) {
   std::vector<std::string> names;
   for (const fs::path& file : entries(folder))
-    if (is_picture_file(file)) names.push_back(file.filename().string());
+    if (picture_series::is_picture_file(file)) names.push_back(file.filename().string());
   return names;
 }
 
@@ -193,8 +195,8 @@ void join_by_number(Clip& clip,
 void join_in_order(Clip& clip, const fs::path& folder, const Warn& warn) {
   std::vector<std::string> names = pictures_in(folder);
   if (names.empty()) return;
-  std::stable_sort(names.begin(), names.end(), is_numbered_before);
-  const std::size_t series = series_of(names, Stray::kApart).size();
+  std::stable_sort(names.begin(), names.end(), picture_series::is_numbered_before);
+  const std::size_t series = picture_series::series_of(names, picture_series::Stray::kApart).size();
   if (names.size() != clip.frames.size() || series != 1)
     return airtruth::warn(warn,
                           fmt::format("{}: holds {} pictures{}, and there are labels for {} frames "

@@ -46,8 +46,8 @@ Clip clip_of_pictures(const std::string& name,
                       const Warn& warn);
 
 // The clips of pictures of which the set states no video: one for each series of each folder
-// (foundation/base/series.h). A clip has the name of its folder; where the folder holds several
-// series or has no name, what the pictures' names have in common, or else `otherwise`.
+// (foundation/picture_series/series.h). A clip has the name of its folder; where the folder holds
+// several series or has no name, what the pictures' names have in common, or else `otherwise`.
 std::vector<Clip> clips_of_pictures(std::vector<LabelledPicture> pictures,
                                     const std::string& otherwise,
                                     const fs::path& source,

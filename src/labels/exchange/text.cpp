@@ -10,8 +10,8 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/series.h"
 #include "foundation/base/text.h"
+#include "foundation/picture_series/series.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -138,7 +138,7 @@ std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
                                                     const ReadOptions& options) {
   if (!options.size_of_picture) return std::nullopt;
   for (const fs::path& file : entries(folder))
-    if (is_picture_file(file)) return options.size_of_picture(file);
+    if (picture_series::is_picture_file(file)) return options.size_of_picture(file);
   return std::nullopt;
 }
 

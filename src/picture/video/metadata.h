@@ -27,4 +27,15 @@ struct TelemetryPacket {
 // no regular file. Throws Error where the file cannot be opened.
 std::vector<TelemetryPacket> read_telemetry(const std::filesystem::path& path);
 
+// A subtitle of a video's own track of text.
+struct Subtitle {
+  // Seconds from the first frame of the video.
+  double begin_s = 0;
+  std::string text;
+};
+
+// The subtitles of the first track of text (mov_text, SubRip) in their order; empty where the file
+// has none, or the path is no regular file. Throws Error where the file cannot be opened.
+std::vector<Subtitle> read_subtitles(const std::filesystem::path& path);
+
 }  // namespace airtruth::video

@@ -10,8 +10,8 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/series.h"
 #include "foundation/base/text.h"
+#include "foundation/picture_series/series.h"
 
 namespace airtruth::video {
 namespace {
@@ -31,7 +31,8 @@ bool follows(std::string_view a, std::string_view b) {
   std::size_t at = next.size() - 1;
   while (next[at] == '9') next[at--] = '0';
   ++next[at];
-  return !is_numbered_before(next, b) && !is_numbered_before(b, next);
+  return !picture_series::is_numbered_before(next, b) &&
+         !picture_series::is_numbered_before(b, next);
 }
 
 // Where a name's last digits begin; its end where it does not end in one.
@@ -54,7 +55,7 @@ NumberedImages in_order(std::vector<fs::path> files) {
 }
 
 // "vidA_000.jpg and 3 like it": what a folder holds beside other series.
-std::string words_of(const Series& series, const std::vector<std::string>& names) {
+std::string words_of(const picture_series::Series& series, const std::vector<std::string>& names) {
   const std::string& first = names[series.front()];
   return series.size() == 1 ? first : fmt::format("{} and {} like it", first, series.size() - 1);
 }
@@ -63,11 +64,12 @@ std::optional<NumberedImages> in_folder(const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (is_picture_file(name) && !name.starts_with(".")) names.push_back(name);
+    if (picture_series::is_picture_file(name) && !name.starts_with(".")) names.push_back(name);
   }
   if (names.empty()) return std::nullopt;
   std::sort(names.begin(), names.end());
-  const std::vector<Series> all = series_of(names, Stray::kApart);
+  const std::vector<picture_series::Series> all =
+      picture_series::series_of(names, picture_series::Stray::kApart);
   if (all.size() > 1)
     throw Error(
         fmt::format("holds pictures of {} series ({}; {}{}); expected one; a pattern such as "
@@ -95,7 +97,7 @@ NumberedImages in_list(const fs::path& list) {
     if (line.empty() || line.front() == '#') continue;
     const fs::path file = list.parent_path() / line;
     const Where where{list.string(), number};
-    if (!is_picture_file(file))
+    if (!picture_series::is_picture_file(file))
       throw Error(fmt::format("is '{}'; expected the path of a picture", line.substr(0, 200)),
                   where);
     std::error_code ignored;
@@ -135,7 +137,7 @@ NumberedImages of_pattern(const fs::path& path, std::size_t begin, std::size_t e
     }
   if (images.empty()) throw Error("matches no file; expected numbered images", {path.string()});
   std::sort(images.begin(), images.end(), [](const fs::path& a, const fs::path& b) {
-    return is_numbered_before(a.filename().string(), b.filename().string());
+    return picture_series::is_numbered_before(a.filename().string(), b.filename().string());
   });
   return in_order(std::move(images));
 }

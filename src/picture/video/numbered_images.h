@@ -18,9 +18,9 @@ struct NumberedImages {
 // `path` is a folder of pictures, a pattern of their names such as "frames/%06d.png", or a list of
 // pictures: a text file (.txt) with a path on each line, relative to its own folder, in the order
 // of the frames. The result is empty for anything else. The pictures of a folder are one series
-// (foundation/base/series.h) and are taken in the order of their names, with runs of digits as
-// numbers. Throws Error for a folder of several series, for a pattern that matches no file, and for
-// a line of a list that is no picture's path.
+// (foundation/picture_series/series.h) and are taken in the order of their names, with runs of
+// digits as numbers. Throws Error for a folder of several series, for a pattern that matches no
+// file, and for a line of a list that is no picture's path.
 std::optional<NumberedImages> numbered_images(const std::filesystem::path& path);
 
 }  // namespace airtruth::video

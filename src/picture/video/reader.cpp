@@ -63,6 +63,16 @@ Frame owned(Decoded decoded) {
   return std::move(decoded.frame);
 }
 
+// The number of frames of a stream as its container states it, without those that an edit list
+// leaves out; 0: unknown.
+std::int64_t shown_frames(const AVStream& stream) {
+  if (stream.nb_frames <= 0 || stream.duration <= 0 || stream.avg_frame_rate.num <= 0)
+    return stream.nb_frames;
+  const double shown = static_cast<double>(stream.duration) * av_q2d(stream.time_base) *
+                       av_q2d(stream.avg_frame_rate);
+  return std::min<std::int64_t>(stream.nb_frames, std::llround(shown));
+}
+
 // libav names its readers of a single picture png_pipe, bmp_pipe and so on. Their stream is there
 // without a look at its packets.
 bool is_picture_file(const AVFormatContext& input) {
@@ -92,6 +102,8 @@ struct Reader::State {
   bool read_failed = false;
   // True after a packet failed: frames are suspect until the next key frame.
   bool broken = false;
+  // True once a frame was decoded that refers to no missing one.
+  bool has_whole_frame = false;
   std::int64_t corrupt = 0;
   // Number of frames that the decoder has returned.
   std::int64_t decoded = 0;
@@ -113,6 +125,7 @@ struct Reader::State {
 
   void open_input();
   void open_codec();
+  void warn_of_fields(const AVStream& stream) const;
   void describe_stream(const AVStream& stream);
   void describe(const AVFrame& first);
   // Goes to the key frame at or before a time stamp; false where the file cannot.
@@ -198,7 +211,17 @@ void Reader::State::open_codec() {
   describe_stream(stream);
 }
 
+void Reader::State::warn_of_fields(const AVStream& stream) const {
+  const AVFieldOrder order = stream.codecpar->field_order;
+  if (order == AV_FIELD_UNKNOWN || order == AV_FIELD_PROGRESSIVE) return;
+  airtruth::warn(warn,
+                 path.string() +
+                     ": is interlaced, and its frames are taken whole, each of two moments; "
+                     "`ffmpeg -i IN -vf bwdif OUT` makes a video of one picture for each field");
+}
+
 void Reader::State::describe_stream(const AVStream& stream) {
+  warn_of_fields(stream);
   info.time_base = rational(stream.time_base);
   const AVRational average =
       stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
@@ -208,7 +231,7 @@ void Reader::State::describe_stream(const AVStream& stream) {
       std::abs(av_q2d(stream.avg_frame_rate) / av_q2d(stream.r_frame_rate) - 1) > 0.01;
   orientation = orientation_of_stream(stream);
   info.rotation_deg = orientation.clockwise_deg;
-  info.frame_count_estimate = stream.nb_frames;
+  info.frame_count_estimate = shown_frames(stream);
   if (info.frame_count_estimate <= 0 && input->duration > 0)
     info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
         static_cast<double>(input->duration) / AV_TIME_BASE * info.frame_rate.value()));
@@ -274,7 +297,13 @@ bool Reader::State::decode_one() {
   for (;;) {
     av_frame_unref(frame.get());
     const int got = avcodec_receive_frame(codec.get(), frame.get());
-    if (got == 0) return true;
+    // Of a stream that is cut within a group of pictures, the first ones refer to pictures that are
+    // gone. They are no frames, as ffmpeg, ffprobe and OpenCV count.
+    if (got == 0 && !has_whole_frame && (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) continue;
+    if (got == 0) {
+      has_whole_frame = true;
+      return true;
+    }
     if (got == AVERROR_EOF) return false;
     if (got != AVERROR(EAGAIN)) {
       ++corrupt;
@@ -486,7 +515,7 @@ bool Reader::ends_early() const {
   const State& s = *state_;
   const AVStream& stream = *s.input->streams[s.stream_index];
   if (s.read_failed) return true;
-  if (stream.nb_frames > 0) return s.decoded + s.corrupt < stream.nb_frames;
+  if (stream.nb_frames > 0) return s.decoded + s.corrupt < shown_frames(stream);
   // Matroska stores no number of frames, so the duration decides. One second of slack allows for
   // sound that is longer than the picture.
   if (s.input->duration <= 0 || !s.first_pts || s.options.first_frame > 0) return false;

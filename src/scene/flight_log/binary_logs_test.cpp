@@ -112,6 +112,43 @@ TEST(Ulog, OlderSatelliteTopicsAreInWholeNumbers) {
   EXPECT_NEAR(read.fixes[0].altitude_m, 512.345, 1e-9);
 }
 
+// Positions of a satellite receiver: its number in the log, and the kind of fix.
+std::string receiver_data(std::uint16_t id, int i, char fix_type) {
+  return data(id,
+              bytes_of(std::uint64_t(1'000'000 * i)) + bytes_of(std::int32_t{471234567 + i}) +
+                  bytes_of(std::int32_t{85000000}) + bytes_of(std::int32_t{512345}) +
+                  byte(fix_type));
+}
+
+std::string receiver_subscription(std::uint16_t id, char instance) {
+  std::string text = subscription(id, "vehicle_gps_position");
+  text[3] = instance;  // behind the head of the message
+  return text;
+}
+
+constexpr const char* kReceiverFormat =
+    "vehicle_gps_position:uint64_t timestamp;int32_t lat;int32_t lon;int32_t alt;uint8_t fix_type;";
+
+TEST(Ulog, TheFirstReceiverWithAFixIsRead) {
+  std::string log = ulog_header() + ulog_message('F', kReceiverFormat);
+  log += receiver_subscription(7, 0) + receiver_subscription(8, 1);
+  for (int i = 0; i < 4; ++i) log += receiver_data(7, i, 1) + receiver_data(8, i, 3);
+  EXPECT_EQ(parse_flight_log(log, "a.ulg").fixes.size(), 4u);
+}
+
+// ULog File Format, "Sync Message": a reader goes on there after damage.
+TEST(Ulog, ADamagedPartEndsAtTheNextSynchronisation) {
+  const std::string sync = ulog_message('S', "\x2f\x73\x13\x20\x25\x0c\xbb\x12");
+  std::string log = ulog_header() + ulog_message('F', kReceiverFormat);
+  log += receiver_subscription(7, 0);
+  for (int i = 0; i < 4; ++i) log += receiver_data(7, i, 3);
+  log += std::string(50, '\xff') + sync;
+  for (int i = 4; i < 8; ++i) log += receiver_data(7, i, 3);
+  const FlightLog read = parse_flight_log(log, "a.ulg");
+  EXPECT_EQ(read.fixes.size(), 8u);
+  EXPECT_THAT(read.first_fault, testing::HasSubstr("damaged from byte"));
+}
+
 TEST(Ulog, ALogCutOffAnywhereIsReadUpToThereOrRefused) {
   const std::string whole = small_ulog();
   for (std::size_t n = 0; n < whole.size(); ++n) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,12 +17,36 @@ constexpr double kMaxHeightM = 1e5;    // the border of space
 constexpr double kMaxAngleDeg = 1e4;   // some loggers count turns
 constexpr double kMaxRateRadps = 1e3;  // gyroscopes of aircraft end at 4,000 degrees a second
 
-void require(bool good, const char* what, double value, const char* expected, const Where& where) {
-  if (!good) throw Error(fmt::format("{} is {}; expected {}", what, value, expected), where);
+// An aircraft moves by less than this in a second, and fixes of one place scatter by less than the
+// distance.
+constexpr double kFastestMps = 1e3;
+constexpr double kScatterM = 100;
+// Of a degree of latitude.
+constexpr double kMetresOfDegree = 111e3;
+
+// "latitude is 947; expected -90 to 90 degrees" where the value is not good; empty where it is.
+std::string unless(bool good, const char* what, double value, const char* expected) {
+  return good ? "" : fmt::format("{} is {}; expected {}", what, value, expected);
 }
 
-void require_time(double time_s, const Where& where) {
-  require(std::abs(time_s) <= kMaxTimeS, "time", time_s, "seconds up to 1e11", where);
+std::string fault_of_time(double time_s) {
+  return unless(std::abs(time_s) <= kMaxTimeS, "time", time_s, "seconds up to 1e11");
+}
+
+std::string first_of(std::initializer_list<std::string> faults) {
+  for (const std::string& fault : faults)
+    if (!fault.empty()) return fault;
+  return {};
+}
+
+// Whether an aircraft can be at both positions. The plane of the first is near enough: what is
+// excluded is far away.
+bool are_in_reach(const Fix& a, const Fix& b) {
+  double east = b.longitude_deg - a.longitude_deg;
+  east -= 360 * std::round(east / 360);
+  const double distance_m = kMetresOfDegree * std::hypot(b.latitude_deg - a.latitude_deg,
+                                                         east * std::cos(radians(a.latitude_deg)));
+  return distance_m <= kScatterM + kFastestMps * std::abs(b.time_s - a.time_s);
 }
 
 // True where the record follows the one before in time; counts it otherwise.
@@ -33,36 +59,104 @@ bool follows(FlightLog& log, const std::vector<Record>& records, double time_s) 
 
 }  // namespace
 
+std::string fault_of(const Fix& fix) {
+  const bool is_place = fix.latitude_deg != 0 || fix.longitude_deg != 0;
+  return first_of(
+      {fault_of_time(fix.time_s),
+       unless(std::abs(fix.latitude_deg) <= 90, "latitude", fix.latitude_deg, "-90 to 90 degrees"),
+       unless(std::abs(fix.longitude_deg) <= 180,
+              "longitude",
+              fix.longitude_deg,
+              "-180 to 180 degrees"),
+       unless(std::abs(fix.altitude_m) <= kMaxHeightM, "altitude", fix.altitude_m, "up to 1e5 m"),
+       unless(!fix.height_m || std::abs(*fix.height_m) <= kMaxHeightM,
+              "height",
+              fix.height_m.value_or(0),
+              "up to 1e5 m"),
+       is_place ? "" : "the place is 0, 0; expected one with a fix"});
+}
+
+std::string fault_of(const Attitude& attitude) {
+  const YawPitchRoll& a = attitude.angles;
+  return first_of(
+      {fault_of_time(attitude.time_s),
+       unless(std::abs(a.yaw_deg) <= kMaxAngleDeg, "yaw", a.yaw_deg, "degrees up to 1e4"),
+       unless(std::abs(a.pitch_deg) <= kMaxAngleDeg, "pitch", a.pitch_deg, "degrees up to 1e4"),
+       unless(std::abs(a.roll_deg) <= kMaxAngleDeg, "roll", a.roll_deg, "degrees up to 1e4")});
+}
+
+std::string fault_of(const Rates& rates) {
+  std::string fault = fault_of_time(rates.time_s);
+  for (const double rate : rates.in_body_radps)
+    if (fault.empty())
+      fault = unless(std::abs(rate) <= kMaxRateRadps, "turn rate", rate, "rad/s up to 1e3");
+  return fault;
+}
+
+void leave_out(FlightLog& log, const std::string& fault, const Where& where) {
+  ++log.left_out;
+  if (log.first_fault.empty()) log.first_fault = to_string(where) + ": " + fault;
+}
+
 void add_fix(FlightLog& log, const Fix& fix, const Where& where) {
-  require_time(fix.time_s, where);
-  require(
-      std::abs(fix.latitude_deg) <= 90, "latitude", fix.latitude_deg, "-90 to 90 degrees", where);
-  require(std::abs(fix.longitude_deg) <= 180,
-          "longitude",
-          fix.longitude_deg,
-          "-180 to 180 degrees",
-          where);
-  require(
-      std::abs(fix.altitude_m) <= kMaxHeightM, "altitude", fix.altitude_m, "up to 1e5 m", where);
-  if (fix.height_m)
-    require(std::abs(*fix.height_m) <= kMaxHeightM, "height", *fix.height_m, "up to 1e5 m", where);
+  if (const std::string fault = fault_of(fix); !fault.empty()) return leave_out(log, fault, where);
   if (follows(log, log.fixes, fix.time_s)) log.fixes.push_back(fix);
 }
 
 void add_attitude(FlightLog& log, const Attitude& attitude, const Where& where) {
-  require_time(attitude.time_s, where);
-  const YawPitchRoll& a = attitude.angles;
-  require(std::abs(a.yaw_deg) <= kMaxAngleDeg, "yaw", a.yaw_deg, "degrees up to 1e4", where);
-  require(std::abs(a.pitch_deg) <= kMaxAngleDeg, "pitch", a.pitch_deg, "degrees up to 1e4", where);
-  require(std::abs(a.roll_deg) <= kMaxAngleDeg, "roll", a.roll_deg, "degrees up to 1e4", where);
+  if (const std::string fault = fault_of(attitude); !fault.empty())
+    return leave_out(log, fault, where);
   if (follows(log, log.attitudes, attitude.time_s)) log.attitudes.push_back(attitude);
 }
 
 void add_rates(FlightLog& log, const Rates& rates, const Where& where) {
-  require_time(rates.time_s, where);
-  for (const double rate : rates.in_body_radps)
-    require(std::abs(rate) <= kMaxRateRadps, "turn rate", rate, "rad/s up to 1e3", where);
+  if (const std::string fault = fault_of(rates); !fault.empty())
+    return leave_out(log, fault, where);
   if (follows(log, log.rates, rates.time_s)) log.rates.push_back(rates);
+}
+
+FlightLog without_jumps(FlightLog log, const std::string& file) {
+  const std::vector<Fix>& all = log.fixes;
+  std::size_t longest_begin = 0, longest = 0;
+  for (std::size_t begin = 0; begin < all.size();) {
+    std::size_t end = begin + 1;
+    while (end < all.size() && are_in_reach(all[end - 1], all[end])) ++end;
+    if (end - begin > longest) longest_begin = begin, longest = end - begin;
+    begin = end;
+  }
+  if (longest == all.size()) return log;
+  std::vector<Fix> before, kept(all.begin() + static_cast<std::ptrdiff_t>(longest_begin),
+                                all.begin() + static_cast<std::ptrdiff_t>(longest_begin + longest));
+  const auto left_out = [&](const Fix& fix) {
+    leave_out(log,
+              fmt::format("the position at {:.3f} s, {:.6f}, {:.6f}, is out of reach of the others",
+                          fix.time_s,
+                          fix.latitude_deg,
+                          fix.longitude_deg),
+              {file});
+  };
+  for (std::size_t i = longest_begin; i-- > 0;) {
+    if (are_in_reach(before.empty() ? kept.front() : before.back(), all[i]))
+      before.push_back(all[i]);
+    else
+      left_out(all[i]);
+  }
+  for (std::size_t i = longest_begin + longest; i < all.size(); ++i) {
+    if (are_in_reach(kept.back(), all[i]))
+      kept.push_back(all[i]);
+    else
+      left_out(all[i]);
+  }
+  std::reverse(before.begin(), before.end());
+  before.insert(before.end(), kept.begin(), kept.end());
+  log.fixes = std::move(before);
+  return log;
+}
+
+void take_positions(FlightLog& log, const FlightLog& positions) {
+  log.fixes = positions.fixes;
+  log.left_out += positions.left_out;
+  if (log.first_fault.empty()) log.first_fault = positions.first_fault;
 }
 
 FlightLog from_first_record(FlightLog log) {
@@ -93,7 +187,11 @@ void require_positions(const FlightLog& log, const std::string& file) {
                   log.fixes.size(),
                   log.fixes.size() == 1 ? "position" : "positions",
                   name(log.format),
-                  log.left_out > 0 ? fmt::format(", {} records left out", log.left_out) : ""),
+                  log.left_out > 0 ? fmt::format(", {} records left out{}{}",
+                                                 log.left_out,
+                                                 log.first_fault.empty() ? "" : ", the first: ",
+                                                 log.first_fault)
+                                   : ""),
       {file});
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+#include <string>
+
 #include "foundation/base/error.h"
 #include "scene/flight_log/flight_log.h"
 
@@ -8,12 +11,37 @@
 // the one before is left out and counted; loggers repeat a time when they write a value twice.
 namespace airtruth::flight_log {
 
-// Throws Error where a number is not finite, a latitude is beyond 90 degrees, a longitude beyond
-// 180 degrees, or a height beyond 100 km.
+// What is wrong with a record, as a sentence; empty where nothing is: a number that is not finite,
+// a latitude beyond 90 degrees, a longitude beyond 180 degrees, a height beyond 100 km, a turn rate
+// beyond 1,000 rad/s, and the place 0, 0, which receivers write before they have a fix.
+std::string fault_of(const Fix& fix);
+std::string fault_of(const Attitude& attitude);
+std::string fault_of(const Rates& rates);
+
+// Add a record; one that has a fault is left out.
 void add_fix(FlightLog& log, const Fix& fix, const Where& where);
 void add_attitude(FlightLog& log, const Attitude& attitude, const Where& where);
-// Throws Error beyond 1,000 rad/s.
 void add_rates(FlightLog& log, const Rates& rates, const Where& where);
+
+// Counts a record that is left out, and keeps the first fault.
+void leave_out(FlightLog& log, const std::string& fault, const Where& where);
+
+// The log without positions that no aircraft reaches from their neighbours: those that are kept
+// form the longest run of positions of which each is within reach of the one before, continued on
+// both sides by the positions within reach.
+FlightLog without_jumps(FlightLog log, const std::string& file);
+
+// The receiver with the lowest number that has two positions; where none has, that with the lowest
+// number. An empty log where there is no receiver.
+template <typename Number>
+FlightLog first_with_fix(const std::map<Number, FlightLog>& receivers) {
+  for (const auto& [number, receiver] : receivers)
+    if (receiver.fixes.size() >= 2) return receiver;
+  return receivers.empty() ? FlightLog() : receivers.begin()->second;
+}
+
+// Gives a log the positions of another one, and what that one left out.
+void take_positions(FlightLog& log, const FlightLog& positions);
 
 // The log with its times counted from its first record of any kind.
 FlightLog from_first_record(FlightLog log);

@@ -185,13 +185,15 @@ class DataFlashReader {
     const auto microseconds = number("TimeUS");
     if (!microseconds) return;
     // Messages of a second GPS or inertial unit have an instance above 0.
-    if (number("I").value_or(0) != 0) return;
+    const double instance = number("I").value_or(0);
+    if (instance != 0 && kind.name != "GPS") return;
     const Where where{fmt::format("{} (byte {})", file_, at)};
     const double time_s = *microseconds * 1e-6;
     if (kind.name == "POS") add_position(position_, number, time_s, where);
     if (kind.name == "GPS") {
-      if (number("Status").value_or(0) < kStatusFix3d) return void(++satellite_.left_out);
-      add_position(satellite_, number, time_s, where);
+      FlightLog& receiver = receivers_[instance];
+      if (number("Status").value_or(0) < kStatusFix3d) return void(++receiver.left_out);
+      add_position(receiver, number, time_s, where);
     }
     if (kind.name == "ATT") add_angles(number, time_s, where);
     if (kind.name == "IMU") add_rate(number, time_s, where);
@@ -219,17 +221,16 @@ class DataFlashReader {
     if (x && y && z) add_rates(log_, {time_s, {*x, *y, *z}}, where);
   }
 
-  // The estimator's positions, else those of the satellites.
+  // The estimator's positions, else those of the first receiver that has a fix.
   void choose_positions() {
-    const FlightLog& chosen = position_.fixes.size() >= 2 ? position_ : satellite_;
-    log_.fixes = chosen.fixes;
-    log_.left_out += chosen.left_out;
+    take_positions(log_, position_.fixes.size() >= 2 ? position_ : first_with_fix(receivers_));
   }
 
   std::string_view bytes_;
   std::string file_;
   std::map<std::uint8_t, Kind> kinds_;
-  FlightLog log_, position_, satellite_;
+  FlightLog log_, position_;
+  std::map<double, FlightLog> receivers_;  // by instance
 };
 
 }  // namespace

@@ -26,6 +26,7 @@ namespace airtruth::flight_log {
 namespace {
 
 constexpr std::size_t kTypeHeadBytes = 4096;  // in which a file shows what it is
+constexpr std::size_t kMaxNumberBytes = 64;   // of a number and what stands before it
 
 std::optional<double> number_at_start(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(" :\t(,"), text.size()));
@@ -49,9 +50,20 @@ std::optional<std::string_view> behind(std::string_view text, std::string_view w
   return std::nullopt;
 }
 
+// The number behind a word. A comma between digits is a decimal one, which some devices write by
+// their language: "latitude: 47,000100".
 std::optional<double> value_of(std::string_view text, std::string_view word) {
   const auto rest = behind(text, word);
-  return rest ? number_at_start(*rest) : std::nullopt;
+  if (!rest) return std::nullopt;
+  std::string number(rest->substr(0, kMaxNumberBytes));
+  const auto is_digit = [&](std::size_t at) {
+    return at < number.size() && std::isdigit(static_cast<unsigned char>(number[at])) != 0;
+  };
+  const std::size_t first = std::min(number.find_first_of("0123456789"), number.size());
+  const std::size_t end = std::min(number.find_first_not_of("0123456789", first), number.size());
+  if (end > first && end < number.size() && number[end] == ',' && is_digit(end + 1))
+    number[end] = '.';
+  return number_at_start(number);
 }
 
 std::optional<double> first_of(std::string_view text,
@@ -125,6 +137,16 @@ std::optional<Fix> fix_of_keys(std::string_view text) {
   return fix;
 }
 
+void add_block(FlightLog& log, std::string_view block, double time_s, const Where& where) {
+  auto fix = fix_of_keys(block);
+  if (!fix) fix = fix_of_gps(block);
+  // 0, 0 is what these aircraft write while no satellites are seen.
+  if (!fix || (fix->latitude_deg == 0 && fix->longitude_deg == 0)) return void(++log.left_out);
+  fix->time_s = time_s;
+  add_fix(log, *fix, where);
+  if (const auto gimbal = gimbal_of(block)) add_attitude(log, {time_s, *gimbal}, where);
+}
+
 class SubtitleReader {
  public:
   SubtitleReader(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
@@ -159,14 +181,7 @@ class SubtitleReader {
 
  private:
   void add(std::string_view block, std::optional<double> time_s, int line) {
-    if (!time_s) return;
-    auto fix = fix_of_keys(block);
-    if (!fix) fix = fix_of_gps(block);
-    // 0, 0 is what these aircraft write while no satellites are seen.
-    if (!fix || (fix->latitude_deg == 0 && fix->longitude_deg == 0)) return void(++log_.left_out);
-    fix->time_s = *time_s;
-    add_fix(log_, *fix, {file_, line});
-    if (const auto gimbal = gimbal_of(block)) add_attitude(log_, {*time_s, *gimbal}, {file_, line});
+    if (time_s) add_block(log_, block, *time_s, {file_, line});
   }
 
   std::string_view text_;
@@ -179,6 +194,13 @@ class SubtitleReader {
 bool is_dji_subtitles(std::string_view content) {
   const std::string_view head = content.substr(0, kTypeHeadBytes);
   return head.find("-->") != std::string_view::npos;
+}
+
+void add_dji_subtitle(FlightLog& log,
+                      std::string_view text,
+                      double time_s,
+                      const std::string& file) {
+  add_block(log, text, time_s, {file});
 }
 
 FlightLog from_dji_subtitles(std::string_view text, const std::string& file) {

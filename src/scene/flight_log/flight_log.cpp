@@ -46,7 +46,7 @@ const char* name(Format format) {
 
 FlightLog parse_flight_log(std::string_view content, const std::filesystem::path& name) {
   const std::string file = name.string();
-  FlightLog log = read_by_format(content, file);
+  FlightLog log = without_jumps(read_by_format(content, file), file);
   require_positions(log, file);
   return log;
 }

@@ -59,16 +59,27 @@ struct FlightLog {
   std::vector<Fix> fixes;
   std::vector<Attitude> attitudes;
   std::vector<Rates> rates;
-  // Records that were left out: positions without a satellite fix, times that do not increase.
+  // Records that were left out: positions without a satellite fix or out of reach of their
+  // neighbours, times that do not increase, numbers that are not finite or out of range.
   std::int64_t left_out = 0;
+  // What is wrong with the first of them that is more than a missing fix or a repeated time, and
+  // where it stands; may be empty.
+  std::string first_fault;
 };
 
-// Reads the log in a file other than a video; its content decides the format. An Error with the
-// file, and the line of a text file, is thrown for an unknown format, a log that is cut off, a
-// number that is not finite or out of range, and a log with fewer than two positions.
+// Reads the log in a file other than a video; its content decides the format. Bad records are left
+// out and counted. An Error with the file, and the line of a text file, is thrown for an unknown
+// format, a text that is none of the format's, a log with fewer than two positions, and for a bad
+// record of airtruth's own CSV.
 FlightLog read_flight_log(const std::filesystem::path& path);
 
 // The same from the content of the file `name`.
 FlightLog parse_flight_log(std::string_view content, const std::filesystem::path& name);
+
+// Adds one of a DJI aircraft's subtitles, as a video holds them in a track of their own.
+void add_dji_subtitle(FlightLog& log,
+                      std::string_view text,
+                      double time_s,
+                      const std::string& file);
 
 }  // namespace airtruth::flight_log

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,11 +60,11 @@ TEST(DjiSubtitles, OlderTextsStateLongitudeFirst) {
       "1\n00:00:00,000 --> 00:00:01,000\nHOME(8.1,47.1) 2017.08.05 14:11:51\nGPS(8.2,47.2,16) "
       "BAROMETER:91.2\n"
       "ISO:100 Shutter:60 EV: Fnum:F2.8\n\n"
-      "2\n00:00:01,000 --> 00:00:02,000\nHOME(8.1,47.1) 2017.08.05 14:11:52\nGPS(8.3,47.2,16) "
+      "2\n00:00:01,000 --> 00:00:02,000\nHOME(8.1,47.1) 2017.08.05 14:11:52\nGPS(8.201,47.2,16) "
       "BAROMETER:91.4\n",
       "a.srt");
   ASSERT_EQ(phantom.fixes.size(), 2u);
-  EXPECT_DOUBLE_EQ(phantom.fixes[1].longitude_deg, 8.3);
+  EXPECT_DOUBLE_EQ(phantom.fixes[1].longitude_deg, 8.201);
   EXPECT_DOUBLE_EQ(phantom.fixes[1].altitude_m, 91.4);
 }
 
@@ -71,9 +72,10 @@ TEST(DjiSubtitles, AHeightInBracketsComesWithLatitudeFirstAndTheGimbalAsPitchRol
   const FlightLog matrice = parse_flight_log(
       "1\n00:00:00,000 --> 00:00:01,000\n2022.06.21 16:06:17\nGPS(36.6,-6.1,0.0M) "
       "BAROMETER:0.3M\n\n"
-      "2\n00:00:01,000 --> 00:00:02,000\n2022.06.21 16:06:18\nGPS(36.7,-6.2,0.0M) BAROMETER:1.3M\n",
+      "2\n00:00:01,000 --> 00:00:02,000\n2022.06.21 16:06:18\nGPS(36.601,-6.101,0.0M) "
+      "BAROMETER:1.3M\n",
       "a.srt");
-  EXPECT_DOUBLE_EQ(matrice.fixes[1].latitude_deg, 36.7);
+  EXPECT_DOUBLE_EQ(matrice.fixes[1].latitude_deg, 36.601);
   EXPECT_DOUBLE_EQ(matrice.fixes[1].height_m.value(), 1.3);
   const FlightLog rtk = parse_flight_log(
       "1\n00:15:04,904 --> 00:15:05,905\nF/5.6, EV +0.7, GPS (-59.409424, -34.650200, 16), HOME "
@@ -102,7 +104,41 @@ TEST(DjiSubtitles, FramesWithoutSatellitesAreLeftOutAndBadTimesNamed) {
   EXPECT_EQ(
       error_of("1\n00:00:00,000 --> 00:00:00,033\n[latitude: 95] [longitude: 0.0] [rel_alt: 1]\n",
                "a.srt"),
-      "a.srt:2: latitude is 95; expected -90 to 90 degrees");
+      "a.srt: holds 0 positions (DJI subtitles, 1 records left out, the first: a.srt:2: latitude "
+      "is "
+      "95; expected -90 to 90 degrees); expected at least two");
+}
+
+std::string subtitle(int i, const std::string& text) {
+  return fmt::format("{}\n00:00:{:02d},000 --> 00:00:{:02d},500\n{}\n\n", i + 1, i, i, text);
+}
+
+TEST(DjiSubtitles, DecimalCommasAreDecimal) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += subtitle(i,
+                     fmt::format("[latitude: 47,00010{}] [longitude: -8,5] [rel_alt: 30,100 "
+                                 "abs_alt: 430,200]",
+                                 i));
+  const FlightLog log = parse_flight_log(text, "a.srt");
+  EXPECT_DOUBLE_EQ(log.fixes.at(2).latitude_deg, 47.000102);
+  EXPECT_DOUBLE_EQ(log.fixes.at(2).longitude_deg, -8.5);
+  EXPECT_DOUBLE_EQ(log.fixes.at(2).height_m.value(), 30.1);
+  EXPECT_DOUBLE_EQ(log.fixes.at(2).altitude_m, 430.2);
+}
+
+TEST(DjiSubtitles, PositionsOutOfReachAreLeftOutWhereverTheyStand) {
+  for (const int wrong : {0, 3, 9}) {
+    std::string text;
+    for (int i = 0; i < 10; ++i)
+      text += subtitle(i,
+                       fmt::format("[latitude: {}] [longitude: 8.5] [rel_alt: 30 abs_alt: 430]",
+                                   i == wrong ? -12.5 : 47 + 1e-5 * i));
+    const FlightLog log = parse_flight_log(text, "a.srt");
+    EXPECT_EQ(log.fixes.size(), 9u) << wrong;
+    EXPECT_EQ(log.left_out, 1) << wrong;
+    EXPECT_THAT(log.first_fault, testing::HasSubstr("-12.5")) << wrong;
+  }
 }
 
 TEST(Gpx, PointsWithTimesOfAnyZoneAreRead) {
@@ -110,32 +146,51 @@ TEST(Gpx, PointsWithTimesOfAnyZoneAreRead) {
       R"(<?xml version="1.0"?>
 <gpx version="1.1" xmlns="http://www.topografix.com/GPX/1/1"><trk><trkseg>
 <trkpt lat="47.5" lon="8.25"><ele>500.5</ele><time>2024-02-28T23:59:59.500Z</time></trkpt>
-<trkpt lat="47.6" lon="8.26"><ele>501</ele><time>2024-02-29T02:00:01+02:00</time></trkpt>
-<trkpt lat="47.6" lon="8.26"><ele>501</ele><time>2024-02-29T00:00:01Z</time></trkpt>
+<trkpt lat="47.501" lon="8.251"><ele>501</ele><time>2024-02-29T02:00:01+02:00</time></trkpt>
+<trkpt lat="47.501" lon="8.251"><ele>501</ele><time>2024-02-29T00:00:01Z</time></trkpt>
 </trkseg></trk></gpx>)",
       "a.gpx");
   EXPECT_EQ(log.format, Format::kGpx);
   ASSERT_EQ(log.fixes.size(), 2u);
   EXPECT_DOUBLE_EQ(log.fixes[0].time_s, 0);
   EXPECT_DOUBLE_EQ(log.fixes[1].time_s, 1.5);
-  EXPECT_DOUBLE_EQ(log.fixes[1].longitude_deg, 8.26);
+  EXPECT_DOUBLE_EQ(log.fixes[1].longitude_deg, 8.251);
   EXPECT_EQ(log.left_out, 1);  // the same time twice
 }
 
-TEST(Gpx, WhatAPointLacksIsAnErrorAtItsLine) {
-  const std::string head = "<gpx>\n<trk><trkseg>\n";
-  EXPECT_EQ(
-      error_of(head + "<trkpt lat=\"47\" "
-                      "lon=\"8\"><time>2024-05-17T08:30:05Z</time></trkpt></trkseg></trk></gpx>",
-               "a.gpx"),
-      "a.gpx:3: <trkpt> has no <ele>; expected a height in each point");
-  EXPECT_EQ(error_of(head + "<trkpt lat=\"47\" "
-                            "lon=\"8\"><ele>1</ele><time>noon</time></trkpt></trkseg></trk></gpx>",
-                     "a.gpx"),
+TEST(Gpx, APointThatLacksSomethingIsLeftOut) {
+  const auto log_with = [](const std::string& bad) {
+    std::string text = "<gpx>\n<trk><trkseg>\n" + bad + "\n";
+    for (int i = 0; i < 3; ++i)
+      text += fmt::format(
+          "<trkpt lat=\"47\" lon=\"8\"><ele>1</ele><time>2024-05-17T08:30:0{}Z"
+          "</time></trkpt>\n",
+          i);
+    return parse_flight_log(text + "</trkseg></trk></gpx>", "a.gpx");
+  };
+  const auto fault = [&](const std::string& bad) {
+    const FlightLog log = log_with(bad);
+    EXPECT_EQ(log.fixes.size(), 3u) << bad;
+    EXPECT_EQ(log.left_out, 1) << bad;
+    return log.first_fault;
+  };
+  EXPECT_EQ(fault("<trkpt lat=\"47\" lon=\"8\"><time>2024-05-17T08:30:05Z</time></trkpt>"),
+            "a.gpx:3: <ele> is ''; expected a number");
+  EXPECT_EQ(fault("<trkpt lat=\"47\" lon=\"8\"><ele>1</ele><time>noon</time></trkpt>"),
             "a.gpx:3: <time> is 'noon'; expected a time such as 2024-05-17T08:30:05Z");
-  EXPECT_EQ(error_of(head + "<trkpt lat=\"x\" lon=\"8\"/></trkseg></trk></gpx>", "a.gpx"),
-            "a.gpx:3: lat is 'x'; expected a number");
-  EXPECT_THAT(error_of(head + "<trkpt", "a.gpx"), testing::StartsWith("a.gpx:3: is no XML: "));
+  EXPECT_EQ(fault("<trkpt lat=\"x\" lon=\"8\"/>"), "a.gpx:3: lat is 'x'; expected a number");
+  EXPECT_THAT(error_of("<gpx>\n<trk><trkseg>\n<trkpt", "a.gpx"),
+              testing::StartsWith("a.gpx:3: is no XML: "));
+}
+
+TEST(Gpx, PrefixesOfTheNamespaceAreRead) {
+  const FlightLog log = parse_flight_log(
+      "<gpx:gpx xmlns:gpx=\"http://www.topografix.com/GPX/1/1\"><gpx:trk><gpx:trkseg>"
+      "<gpx:trkpt lat=\"47\" lon=\"8\"><gpx:ele>1</gpx:ele><gpx:time>2024-05-17T08:30:05Z"
+      "</gpx:time></gpx:trkpt><gpx:trkpt lat=\"47\" lon=\"8\"><gpx:ele>2</gpx:ele>"
+      "<gpx:time>2024-05-17T08:30:06Z</gpx:time></gpx:trkpt></gpx:trkseg></gpx:trk></gpx:gpx>",
+      "a.gpx");
+  EXPECT_EQ(log.fixes.size(), 2u);
 }
 
 TEST(CsvLog, OptionalColumnsComeInGroups) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/flight_log/gpmf.h"
 
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "camera/gyro/gpmf.h"
 
@@ -18,6 +18,9 @@ constexpr std::uint32_t kGpmfFix3d = 3;
 constexpr std::size_t kGps9Bytes = 32, kGps9FixAt = 30;
 // GPS5 holds five 32-bit numbers.
 constexpr std::size_t kGps5Bytes = 20;
+// GLPI, the position of a Karma drone: a time, latitude, longitude, altitude and height in 32 bits
+// each, three speeds and a course in 16 bits. It has the scales of all nine, and no kind of fix.
+constexpr std::size_t kKarmaBytes = 28;
 
 double signed_at(const GpmfElement& e, std::size_t at) {
   return static_cast<std::int32_t>(big_endian(e.data, at, 4));
@@ -25,7 +28,7 @@ double signed_at(const GpmfElement& e, std::size_t at) {
 
 // What a stream states about its positions.
 struct Stream {
-  std::array<double, 3> scale{};
+  std::vector<double> scales;
   std::uint32_t fix = 0;
   std::vector<Fix> fixes;
   std::int64_t left_out = 0;
@@ -33,21 +36,29 @@ struct Stream {
 
 void read_scale(const GpmfElement& e, Stream& stream) {
   if (e.type != 'l' || e.size != 4 || e.count < 3) return;
-  for (std::size_t i = 0; i < 3; ++i) stream.scale[i] = signed_at(e, 4 * i);
+  stream.scales.clear();
+  for (std::size_t i = 0; i < e.count; ++i) stream.scales.push_back(signed_at(e, 4 * i));
 }
 
 void read_positions(const GpmfElement& e, Stream& stream) {
   const bool states_fix = e.key == "GPS9";
-  if (e.size != (states_fix ? kGps9Bytes : kGps5Bytes)) return;
-  for (const double scale : stream.scale)
-    if (!(scale > 0)) return;
+  const bool is_karma = e.key == "GLPI";
+  if (e.size != (is_karma ? kKarmaBytes : states_fix ? kGps9Bytes : kGps5Bytes)) return;
+  // The place of the latitude among the numbers.
+  const std::size_t latitude = is_karma ? 1 : 0;
+  if (stream.scales.size() < latitude + 3) return;
+  const double* scale = stream.scales.data() + latitude;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(scale[i] > 0)) return;
   for (std::size_t i = 0; i < e.count; ++i) {
-    const std::size_t at = i * e.size;
-    const std::uint32_t fix = states_fix ? big_endian(e.data, at + kGps9FixAt, 2) : stream.fix;
+    const std::size_t at = i * e.size + 4 * latitude;
+    const std::uint32_t fix = is_karma     ? kGpmfFix3d
+                              : states_fix ? big_endian(e.data, at + kGps9FixAt, 2)
+                                           : stream.fix;
     Fix position;
-    position.latitude_deg = signed_at(e, at) / stream.scale[0];
-    position.longitude_deg = signed_at(e, at + 4) / stream.scale[1];
-    position.altitude_m = signed_at(e, at + 8) / stream.scale[2];
+    position.latitude_deg = signed_at(e, at) / scale[0];
+    position.longitude_deg = signed_at(e, at + 4) / scale[1];
+    position.altitude_m = signed_at(e, at + 8) / scale[2];
     if (fix < kGpmfFix3d || std::abs(position.latitude_deg) > 90 ||
         std::abs(position.longitude_deg) > 180)
       position.latitude_deg = NAN;  // left out below, where its place in time still counts
@@ -61,7 +72,7 @@ Stream stream_of(std::span<const std::uint8_t> bytes) {
     if (e.key == "SCAL") read_scale(e, stream);
     if (e.key == "GPSF" && e.type == 'L' && e.size == 4 && e.count > 0)
       stream.fix = big_endian(e.data, 0, 4);
-    if (e.key == "GPS5" || e.key == "GPS9") read_positions(e, stream);
+    if (e.key == "GPS5" || e.key == "GPS9" || e.key == "GLPI") read_positions(e, stream);
   });
   return stream;
 }

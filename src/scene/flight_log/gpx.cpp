@@ -69,40 +69,52 @@ class GpxReader {
     if (!parsed)
       throw Error(fmt::format("is no XML: {}", parsed.description()),
                   {file_, line_of(text_, parsed.offset), 0});
-    for (const pugi::xml_node& track : document.child("gpx").children("trk"))
-      for (const pugi::xml_node& segment : track.children("trkseg"))
-        for (const pugi::xml_node& point : segment.children("trkpt")) add(point);
+    for (const pugi::xml_node& track : children(document.document_element(), "trk"))
+      for (const pugi::xml_node& segment : children(track, "trkseg"))
+        for (const pugi::xml_node& point : children(segment, "trkpt")) add(point);
     return from_first_record(std::move(log_));
   }
 
  private:
-  [[noreturn]] void fail(const pugi::xml_node& node, const std::string& message) const {
-    throw Error(message, where(node));
-  }
   Where where(const pugi::xml_node& node) const {
     return {file_, line_of(text_, node.offset_debug()), 0};
   }
 
-  double number(const pugi::xml_node& point, std::string_view text, const char* what) const {
-    const auto value = number_in<double>(trimmed(text));
-    if (!value)
-      fail(point, fmt::format("{} is '{}'; expected a number", what, printable(trimmed(text))));
-    return *value;
+  // The elements of a name, with or without a prefix of its namespace (gpx:trkpt).
+  static std::vector<pugi::xml_node> children(const pugi::xml_node& node, std::string_view name) {
+    std::vector<pugi::xml_node> found;
+    for (const pugi::xml_node& child : node.children()) {
+      std::string_view local = child.name();
+      local.remove_prefix(local.find(':') == std::string_view::npos ? 0 : local.find(':') + 1);
+      if (local == name) found.push_back(child);
+    }
+    return found;
   }
 
+  static std::string_view text_of(const pugi::xml_node& point, const char* name) {
+    const auto found = children(point, name);
+    return found.empty() ? std::string_view() : trimmed(found.front().text().get());
+  }
+
+  // A point without height or time says where, but not when or how high: it is left out.
   void add(const pugi::xml_node& point) {
+    std::string fault;
+    const auto number = [&](std::string_view text, const char* what) {
+      const auto value = number_in<double>(trimmed(text));
+      if (!value && fault.empty())
+        fault = fmt::format("{} is '{}'; expected a number", what, printable(trimmed(text)));
+      return value.value_or(0);
+    };
     Fix fix;
-    fix.latitude_deg = number(point, point.attribute("lat").value(), "lat");
-    fix.longitude_deg = number(point, point.attribute("lon").value(), "lon");
-    // A point without height or time says where, but not when or how high.
-    if (!point.child("ele")) fail(point, "<trkpt> has no <ele>; expected a height in each point");
-    fix.altitude_m = number(point, point.child("ele").text().get(), "ele");
-    const std::string_view time = trimmed(point.child("time").text().get());
+    fix.latitude_deg = number(point.attribute("lat").value(), "lat");
+    fix.longitude_deg = number(point.attribute("lon").value(), "lon");
+    fix.altitude_m = number(text_of(point, "ele"), "<ele>");
+    const std::string_view time = text_of(point, "time");
     const auto seconds = seconds_of(time);
-    if (!seconds)
-      fail(point,
-           fmt::format("<time> is '{}'; expected a time such as 2024-05-17T08:30:05Z",
-                       printable(time)));
+    if (!seconds && fault.empty())
+      fault = fmt::format("<time> is '{}'; expected a time such as 2024-05-17T08:30:05Z",
+                          printable(time));
+    if (!fault.empty()) return leave_out(log_, fault, where(point));
     // Times are kept from the first point on: seconds since 1970 would lose the microseconds.
     if (!first_s_) first_s_ = *seconds;
     fix.time_s = *seconds - *first_s_;
@@ -120,7 +132,8 @@ class GpxReader {
 bool is_gpx(std::string_view content) {
   // In which a file shows what it is.
   constexpr std::size_t kHeadBytes = 4096;
-  return content.substr(0, kHeadBytes).find("<gpx") != std::string_view::npos;
+  const std::string_view head = content.substr(0, kHeadBytes);
+  return head.find("<gpx") != std::string_view::npos || head.find(":gpx") != std::string_view::npos;
 }
 
 FlightLog from_gpx(std::string_view text, const std::string& file) {

@@ -19,9 +19,14 @@ namespace airtruth::flight_log {
 namespace {
 
 constexpr std::string_view kMagic("ULog\x01\x12\x35", 7);
+// The types of messages, and the whole of a synchronisation message: its length, type and magic.
+constexpr std::string_view kTypes = "BFIMPQADRLCSO";
+constexpr std::string_view kSync("\x08\x00S\x2f\x73\x13\x20\x25\x0c\xbb\x12", 11);
 // Lengths of the header of a file and of a message's.
 constexpr std::size_t kHeaderBytes = 16;
 constexpr std::size_t kMessageHeadBytes = 3;
+// How far from 1 the norm of an attitude's quaternion may be, which is written as floats.
+constexpr double kUnitTolerance = 0.1;
 constexpr int kMaxNesting = 8;  // formats of PX4 nest once
 // The largest array of one field; PX4's largest message has fewer than 4,096 bytes.
 constexpr std::size_t kMaxCount = 4096;
@@ -77,6 +82,12 @@ struct Place {
 };
 using Topic = std::map<std::string, Place, std::less<>>;
 
+struct Subscription {
+  std::string name;
+  int instance = 0;
+  Topic topic;
+};
+
 class UlogReader {
  public:
   UlogReader(std::string_view bytes, std::string file) : bytes_(bytes), file_(std::move(file)) {
@@ -86,14 +97,22 @@ class UlogReader {
   FlightLog read() {
     if (bytes_.size() < kHeaderBytes) fail("is cut off within its header; expected 16 bytes", 0);
     std::size_t at = kHeaderBytes;
-    while (at < bytes_.size()) {
-      // A log whose aircraft lost power ends within a message. All messages before count.
-      if (bytes_.size() - at < kMessageHeadBytes) break;
+    // A log whose aircraft lost power ends within a message. All messages before count.
+    while (bytes_.size() - at >= kMessageHeadBytes) {
       const std::size_t size = little_endian<std::uint16_t>(bytes_, at);
       const char type = bytes_[at + 2];
-      if (bytes_.size() - at - kMessageHeadBytes < size) break;
-      message(type, bytes_.substr(at + kMessageHeadBytes, size), at);
-      at += kMessageHeadBytes + size;
+      const bool is_whole = bytes_.size() - at - kMessageHeadBytes >= size;
+      if (is_whole && kTypes.find(type) != std::string_view::npos) {
+        message(type, bytes_.substr(at + kMessageHeadBytes, size), at);
+        at += kMessageHeadBytes + size;
+        continue;
+      }
+      // What is damaged ends at the next synchronisation message.
+      const std::size_t next = bytes_.find(kSync, at + 1);
+      if (next == std::string_view::npos) break;
+      leave_out(
+          log_, fmt::format("is damaged from byte {}; it goes on at byte {}", at, next), {file_});
+      at = next;
     }
     choose_positions();
     return from_first_record(std::move(log_));
@@ -144,15 +163,14 @@ class UlogReader {
     const auto format = formats_.find(name);
     if (format == formats_.end())
       fail(fmt::format("subscribes '{}' before its format", printable(name)), at);
-    // Topics beyond the first instance come from spare sensors.
-    if (body[0] != 0) return;
     Topic topic;
     std::size_t place = 0;
     for (const Field& field : format->second) {
       topic[field.name] = {place, field.type, field.count};
       place += size_of(field, 0, at);
     }
-    topics_[little_endian<std::uint16_t>(body, 1)] = {name, std::move(topic)};
+    const auto instance = static_cast<std::uint8_t>(body[0]);
+    topics_[little_endian<std::uint16_t>(body, 1)] = {name, instance, std::move(topic)};
   }
 
   // The number in a field; empty where the topic or the message lacks it.
@@ -179,14 +197,16 @@ class UlogReader {
     if (body.size() < 2) fail("a data message is cut off", at);
     const auto found = topics_.find(little_endian<std::uint16_t>(body, 0));
     if (found == topics_.end()) return;
-    const auto& [name, topic] = found->second;
+    const auto& [name, instance, topic] = found->second;
     const std::string_view values = body.substr(2);
     const auto microseconds = number(topic, values, "timestamp");
     if (!microseconds) return;
     const double time_s = *microseconds * 1e-6;
-    if (name == "vehicle_global_position") add_position(global_, topic, values, time_s, at);
     if (name == "vehicle_gps_position" || name == "sensor_gps")
-      add_position(satellite_, topic, values, time_s, at);
+      add_position(receivers_[instance], topic, values, time_s, at);
+    // Other topics beyond the first instance come from spare sensors and estimators.
+    if (instance != 0) return;
+    if (name == "vehicle_global_position") add_position(global_, topic, values, time_s, at);
     if (name == "vehicle_local_position") keep_height(topic, values);
     if (name == "vehicle_attitude") add_quaternion(topic, values, time_s, at);
     if (name == "vehicle_angular_velocity") add_rate(angular_, topic, values, "xyz", time_s, at);
@@ -232,8 +252,9 @@ class UlogReader {
       q[i] = *value;
     }
     const Quaternion world_from_body(q[0], q[1], q[2], q[3]);
-    if (!(std::abs(world_from_body.norm() - 1) < 0.1))
-      fail("an attitude is no unit quaternion", at);
+    if (!(std::abs(world_from_body.norm() - 1) < kUnitTolerance))
+      return leave_out(
+          log_, "an attitude is no unit quaternion", {fmt::format("{} (byte {})", file_, at)});
     add_attitude(log_, {time_s, yaw_pitch_roll(world_from_body.normalized())}, {file_});
   }
 
@@ -254,18 +275,18 @@ class UlogReader {
 
   // The estimator's positions and rates, else those of the sensors.
   void choose_positions() {
-    const FlightLog& positions = global_.fixes.size() >= 2 ? global_ : satellite_;
+    take_positions(log_, global_.fixes.size() >= 2 ? global_ : first_with_fix(receivers_));
     const FlightLog& rates = angular_.rates.empty() ? combined_ : angular_;
-    log_.fixes = positions.fixes;
     log_.rates = rates.rates;
-    log_.left_out += positions.left_out + rates.left_out;
+    log_.left_out += rates.left_out;
   }
 
   std::string_view bytes_;
   std::string file_;
   Formats formats_;
-  std::map<std::uint16_t, std::pair<std::string, Topic>> topics_;
-  FlightLog log_, global_, satellite_, angular_, combined_;
+  std::map<std::uint16_t, Subscription> topics_;
+  FlightLog log_, global_, angular_, combined_;
+  std::map<int, FlightLog> receivers_;  // by instance
   std::optional<double> height_m_;
 };
 

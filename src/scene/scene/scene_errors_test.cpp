@@ -97,8 +97,8 @@ TEST(SceneErrors, UnknownKeysNameTheNearest) {
 
 TEST(SceneErrors, TheFirstOfSeveralUnknownKeysIsNamed) {
   EXPECT_EQ(with_background("video = 'a'\nzeta = 1\nalpha = 2"),
-            "s.toml:4:1: unknown key 'zeta' in [background]; expected video, mask, first_frame or "
-            "frame_count");
+            "s.toml:4:1: unknown key 'zeta' in [background]; expected video, name, mask, "
+            "first_frame, frame_count or frame_rate_hz");
 }
 
 TEST(SceneErrors, WrongTypes) {

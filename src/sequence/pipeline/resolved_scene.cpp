@@ -291,9 +291,33 @@ void simplify_for_preview(scene::Scene& scene) {
 
 }  // namespace
 
+// Of pixels that are not square, the focal lengths in their widths and heights differ.
+void take_pixel_shape(scene::Scene& scene, const video::StreamInfo& info) {
+  const double width_of_height = info.sample_aspect.value();
+  if (!scene.lens.vertical_fov_deg || !(width_of_height > 0) || width_of_height == 1) return;
+  const double focal_px = setup::lens_of(scene.lens, size_of(info)).focal_px();
+  scene.lens.focal_px = {focal_px / width_of_height, focal_px};
+  scene.lens.vertical_fov_deg.reset();
+}
+
+// Codes of a curve for high dynamic range are no light that a camera of standard range records.
+void expect_standard_range(const scene::Scene& scene, const video::StreamInfo& info) {
+  constexpr int kPq = 16;   // AVCOL_TRC_SMPTE2084
+  constexpr int kHlg = 18;  // AVCOL_TRC_ARIB_STD_B67
+  if (info.transfer_tag != kPq && info.transfer_tag != kHlg) return;
+  throw Error(
+      fmt::format("is of high dynamic range ({}); expected standard range, as `ffmpeg -i IN -vf "
+                  "zscale=t=linear:npl=100,tonemap=hable,zscale=p=bt709:t=bt709:m=bt709:r=tv,"
+                  "format=yuv420p OUT` makes it",
+                  info.transfer_tag == kPq ? "PQ" : "HLG"),
+      {scene.background.video.string()});
+}
+
 StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
   refuse_with_chroma_key(scene);
+  expect_standard_range(scene, info);
+  take_pixel_shape(result.scene, info);
   take_angle(result.scene, info);
   scene::CameraFile file;
   if (scene.realism.file) file = file_of(scene, {info.width, info.height});

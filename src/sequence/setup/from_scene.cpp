@@ -16,6 +16,7 @@
 #include "foundation/base/names.h"
 #include "picture/render/renderer.h"
 #include "picture/video/metadata.h"
+#include "scene/flight_log/builder.h"
 #include "scene/flight_log/gpmf.h"
 #include "scene/flight_log/local_path.h"
 
@@ -54,9 +55,9 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
   });
 }
 
-trajectory::Path camera_path(const scene::Camera& camera) {
+trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {
   if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
-  if (camera.log) return path_from_log(camera);
+  if (camera.log) return path_from_log(camera, warn);
   return trajectory::uniform(
       camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
 }
@@ -206,10 +207,18 @@ flight_log::FlightLog log_in_video(const std::filesystem::path& path) {
   log.format = flight_log::Format::kGpmf;
   log.is_on_video_clock = true;
   const auto packets = video::read_telemetry(path);
-  if (packets.empty())
-    throw Error("is a video without a GoPro's telemetry; expected a flight log", {path.string()});
   for (const video::TelemetryPacket& packet : packets)
     flight_log::add_gpmf_packet(log, packet.bytes, packet.begin_s, packet.end_s);
+  const auto subtitles =
+      packets.empty() ? video::read_subtitles(path) : std::vector<video::Subtitle>();
+  if (!subtitles.empty()) log.format = flight_log::Format::kDjiSubtitles;
+  for (const video::Subtitle& subtitle : subtitles)
+    flight_log::add_dji_subtitle(log, subtitle.text, subtitle.begin_s, path.string());
+  if (packets.empty() && subtitles.empty())
+    throw Error(
+        "is a video without a GoPro's telemetry and without subtitles; expected a flight log",
+        {path.string()});
+  log = flight_log::without_jumps(std::move(log), path.string());
   if (log.fixes.size() < 2)
     throw Error(fmt::format("holds {} positions with a fix ({} without); expected at least two",
                             log.fixes.size(),
@@ -247,8 +256,14 @@ flight_log::FlightLog read_log(const std::filesystem::path& path) {
   return is_mp4(path) ? log_in_video(path) : flight_log::read_flight_log(path);
 }
 
-trajectory::Path path_from_log(const scene::Camera& camera) {
+trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   const flight_log::FlightLog log = read_log(*camera.log);
+  if (!log.first_fault.empty())
+    airtruth::warn(warn,
+                   fmt::format("{}: {} records are left out (the first with a fault: {})",
+                               camera.log->string(),
+                               log.left_out,
+                               log.first_fault));
   const double offset_s = offset_of(camera, log);
   Vector3 first = camera.position_ned_m;
   if (!camera.position_is_stated)

@@ -26,7 +26,7 @@ namespace airtruth::setup {
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& warn = {});
 
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
-trajectory::Path camera_path(const scene::Camera& camera);
+trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn = {});
 
 // [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is
 // `seen` must have been placed (seen.h).
@@ -83,6 +83,6 @@ flight_log::FlightLog read_log(const std::filesystem::path& path);
 //
 // Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
 // not cover the first frame.
-trajectory::Path path_from_log(const scene::Camera& camera);
+trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn = {});
 
 }  // namespace airtruth::setup

@@ -72,7 +72,7 @@ model::Mesh mesh_of(const scene::Distractor& one) {
 
 World without_actors(const scene::Scene& scene, lens::ImageSize size, const Warn& warn) {
   return {lens_of(scene.lens, size, warn),
-          at_place(scene.camera.where, [&] { return camera_path(scene.camera); }),
+          at_place(scene.camera.where, [&] { return camera_path(scene.camera, warn); }),
           {},
           shutter_of(scene.camera_model),
           volumes_of(scene.truth),

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "labels/exchange/pixel_mask.h"
+#include "labels/pixel_mask/pixel_mask.h"
 
 #include <random>
 
 #include <gtest/gtest.h>
 
-namespace airtruth::exchange {
+namespace airtruth::pixel_mask {
 namespace {
 
 // The decoder of the published rules: groups of 5 bits become numbers, differences become counts,
 // and counts become pixels down the columns.
-std::vector<std::vector<bool>> decoded(const PixelMask& mask) {
+std::vector<std::vector<bool>> decoded(const exchange::PixelMask& mask) {
   std::vector<std::int64_t> counts;
   for (std::size_t at = 0; at < mask.counts.size();) {
     std::int64_t number = 0;
@@ -44,7 +44,7 @@ std::vector<std::vector<bool>> decoded(const PixelMask& mask) {
 // Worked by hand. 3 x 3, the middle column inside:
 // counts 3 3 3; the third is stored as it is: characters '3' each (48 + 3).
 TEST(PixelMask, ThreeColumnsByHand) {
-  const PixelMask mask = pixel_mask_of(3, 3, {1, 0, 1, 3}, [](int, int) { return true; });
+  const exchange::PixelMask mask = pixel_mask_of(3, 3, {1, 0, 1, 3}, [](int, int) { return true; });
   EXPECT_EQ(mask.counts, "333");
   EXPECT_EQ(mask.area_px, 3);
   // The first pixel is inside: 0 outside, 1 inside, 8 outside.
@@ -76,7 +76,7 @@ TEST(PixelMask, AnyMaskReadsBackByThePublishedRules) {
         wanted[static_cast<std::size_t>(v)][static_cast<std::size_t>(u)] = here;
         area += here ? 1 : 0;
       }
-    const PixelMask mask = pixel_mask_of(width, height, bounds, [&](int u, int v) {
+    const exchange::PixelMask mask = pixel_mask_of(width, height, bounds, [&](int u, int v) {
       return wanted[static_cast<std::size_t>(v)][static_cast<std::size_t>(u)];
     });
     EXPECT_EQ(mask.area_px, area);
@@ -85,4 +85,4 @@ TEST(PixelMask, AnyMaskReadsBackByThePublishedRules) {
 }
 
 }  // namespace
-}  // namespace airtruth::exchange
+}  // namespace airtruth::pixel_mask

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "labels/exchange/pixel_mask.h"
+#include "labels/pixel_mask/pixel_mask.h"
 
 #include "foundation/base/error.h"
 
-namespace airtruth::exchange {
+namespace airtruth::pixel_mask {
 
-PixelMask pixel_mask_of(int width,
-                        int height,
-                        const PixelBox& bounds,
-                        const std::function<bool(int x, int y)>& inside) {
+exchange::PixelMask pixel_mask_of(int width,
+                                  int height,
+                                  const PixelBox& bounds,
+                                  const std::function<bool(int x, int y)>& inside) {
   check(bounds.x >= 0 && bounds.y >= 0 && bounds.right() <= width && bounds.bottom() <= height,
         "a mask's bounds lie in its picture");
   std::vector<std::uint32_t> counts = {0};
@@ -19,7 +19,7 @@ PixelMask pixel_mask_of(int width,
     is_inside = next;
     counts.back() += pixels;
   };
-  PixelMask mask{width, height, {}, 0};
+  exchange::PixelMask mask{width, height, {}, 0};
   const auto column = static_cast<std::uint32_t>(height);
   add(false, column * static_cast<std::uint32_t>(bounds.x));
   for (int x = bounds.x; x < bounds.right(); ++x) {
@@ -52,4 +52,4 @@ std::string compressed_counts(const std::vector<std::uint32_t>& counts) {
   return text;
 }
 
-}  // namespace airtruth::exchange
+}  // namespace airtruth::pixel_mask

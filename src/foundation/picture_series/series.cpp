@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/base/series.h"
+#include "foundation/picture_series/series.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include "foundation/base/names.h"
 
-namespace airtruth {
+namespace airtruth::picture_series {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,4 +153,4 @@ std::string common_name(std::span<const std::string> names) {
   return common;
 }
 
-}  // namespace airtruth
+}  // namespace airtruth::picture_series

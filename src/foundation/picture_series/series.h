@@ -9,7 +9,7 @@
 #include <vector>
 
 // The order of pictures by their names, and the series that the pictures of a folder form.
-namespace airtruth {
+namespace airtruth::picture_series {
 
 // True for a file whose ending is that of a picture (.png, .jpg, .jpeg, .bmp, .tif, .tiff, .ppm,
 // .pgm, .webp), whatever the case of its letters.
@@ -42,4 +42,4 @@ std::vector<Series> series_of(std::span<const std::string> names, Stray stray);
 // empty.
 std::string common_name(std::span<const std::string> names);
 
-}  // namespace airtruth
+}  // namespace airtruth::picture_series

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/base/series.h"
+#include "foundation/picture_series/series.h"
 
 #include <gmock/gmock.h>
 
-namespace airtruth {
+namespace airtruth::picture_series {
 namespace {
 
 using ::testing::ElementsAre;
@@ -71,4 +71,4 @@ TEST(Series, HaveACommonName) {
 }
 
 }  // namespace
-}  // namespace airtruth
+}  // namespace airtruth::picture_series
