@@ -260,6 +260,19 @@ def log(name, positions, *words):
     return case
 
 
+def model(name, words=None):
+    """The model is shown; what is not read of it is said, and nothing else."""
+    def case(it):
+        said = it.run("aircraft", "show", it.path(*name.split("/")), "-o", "sheet.jpg")
+        assert (words in said) if words else ("warning" not in said), said
+    return case
+
+
+def case_of_letters(it):
+    said = it.run("aircraft", "show", it.path("test1.3ds"), "-o", "sheet.jpg")
+    assert "1 textures" in said and "IMAGE1" not in said, said
+
+
 SCENE = """name = "s"
 [background]
 video = "{video}"
@@ -366,6 +379,13 @@ CASES = {
     "log-ulog-instance-1": log("ulg_gps_instance1.ulg", 32),
     "log-ulog-q_nan_first": log("q_nan_first.ulg", 13, "quaternion"),
     "log-ulog-q_zero_first": log("q_zero_first.ulg", 13, "quaternion"),
+    "mod-emissive": model("emissive.glb"),
+    "mod-gazebo-layout-real": model("meshes/x8_elevon_left.dae"),
+    "mod-texture-case-real": case_of_letters,
+    "mod-texture-missing": model("winpath.obj", "Red Paint.PNG is not there"),
+    "mod-texture-transform-real": model("textureTransform/TextureTransformTest.gltf", "turned or scaled"),
+    "mod-vertex-colours-glb": model("vcol_f32.glb", "vertices"),
+    "mod-vertex-colours-u8": model("vcol_u8.glb", "vertices"),
     "vid-edit-list": edit_list,
     "vid-hlg": high_range,
     "vid-image-folder-rate": picture_rate,

@@ -276,6 +276,7 @@ struct Source {
   fs::path in_data_root;
   fs::path file;
   bool from_debian = false;
+  LetterCase letter_case = LetterCase::kMatters;
 };
 
 // Whether Debian's package installs the file. If so, `below` receives its path below the data root.
@@ -296,9 +297,12 @@ Source source_of(const fs::path& file, const fs::path& folder, const fs::path& i
 }
 
 Source source_of_path(const fs::path& file) {
-  const fs::path folder = file.parent_path();
+  const fs::path folder = wrapper::folder_of_model(file);
   Source source = source_of(file, folder, wrapper::place_in_data_root(folder));
-  if (!source.from_debian) source.file = file.filename();
+  if (source.from_debian) return source;
+  source.file = folder == file.parent_path() ? file.filename()
+                                             : file.parent_path().filename() / file.filename();
+  source.letter_case = LetterCase::kIgnored;
   return source;
 }
 
@@ -317,13 +321,13 @@ model::RawModel read_source(const Source& source,
     sources = files.sources();
     return model;
   }
-  wrapper::DiskFiles before(source.folder, source.in_data_root, true);
+  wrapper::DiskFiles before(source.folder, source.in_data_root, true, source.letter_case);
   const auto key = confined::model_key(before, source.file, options);
   if (auto kept = key ? confined::cached_model(*key, before) : std::nullopt) {
     sources = before.sources();
     return std::move(*kept);
   }
-  wrapper::DiskFiles files(source.folder, source.in_data_root, true);
+  wrapper::DiskFiles files(source.folder, source.in_data_root, true, source.letter_case);
   model::RawModel model = confined::read_in_child(files, source.file, options);
   if (key) confined::keep_model(*key, files, model);
   sources = files.sources();

@@ -2,12 +2,14 @@
 #include "aircraft/model_reader/other_formats.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include <assimp/BaseImporter.h>
 #include <assimp/IOStream.hpp>
@@ -25,8 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kSmoothBelowDeg = 60;   // the crease angle where a file states no normals; chosen
-constexpr int kMaxNodeDepth = 256;      // bounds the recursion over a hostile file
+constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states no normals; chosen
+constexpr int kMaxNodeDepth = 256;     // bounds the recursion over a hostile file
+constexpr std::array<float, 3> kBlack = {0, 0, 0};
 constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
 
 class MemoryStream : public Assimp::IOStream {
@@ -113,9 +116,29 @@ class SceneReader {
     // assimp turns 3D Studio's axes here; model_forward and model_up speak of the file's own.
     const aiMatrix4x4 root = ending_ == ".3ds" ? aiMatrix4x4() : scene_.mRootNode->mTransformation;
     read_node(*scene_.mRootNode, root, 0);
+    if (has_vertex_colours_)
+      warn("the colours of its vertices are not read; materials and textures show");
+    for (unsigned i = 0; i < scene_.mNumMaterials; ++i)
+      if (turns_or_scales(*scene_.mMaterials[i]))
+        return warn("a texture is turned or scaled on its surface, which may not show rightly");
   }
 
  private:
+  // What is done to the coordinates of a texture beyond moving them (KHR_texture_transform).
+  static bool turns_or_scales(const aiMaterial& material) {
+    aiUVTransform change;
+    for (const aiTextureType kind : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR})
+      if (material.Get(AI_MATKEY_UVTRANSFORM(kind, 0), change) == aiReturn_SUCCESS &&
+          (change.mRotation != 0 || change.mScaling.x != 1 || change.mScaling.y != 1))
+        return true;
+    return false;
+  }
+
+  void warn(const char* text) {
+    if (assembly_.model().warnings.size() < model::kMaxWarnings)
+      assembly_.model().warnings.emplace_back(text);
+  }
+
   void read_node(const aiNode& node, const aiMatrix4x4& file_from_node, int depth) {
     if (depth > kMaxNodeDepth) throw Error("nests objects too deep");
     const bool named = node.mName.length > 0;
@@ -137,6 +160,7 @@ class SceneReader {
       uv_channel = 0;
     aiMatrix3x3 normals_from_node(file_from_node);
     normals_from_node.Inverse().Transpose();
+    if (mesh.HasVertexColors(0)) has_vertex_colours_ = true;
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D p = file_from_node * mesh.mVertices[i];
       batch.positions.emplace_back(p.x, p.y, p.z);
@@ -164,6 +188,8 @@ class SceneReader {
       batch.srgb.diffuse = colour_of(colour, is_linear);
     if (material.Get(AI_MATKEY_COLOR_EMISSIVE, colour) == aiReturn_SUCCESS)
       batch.srgb.emission = colour_of(colour, is_linear);
+    // A material that shines by itself alone is seen as paint of that colour.
+    if (batch.srgb.diffuse == kBlack) std::swap(batch.srgb.diffuse, batch.srgb.emission);
     if (material.Get(AI_MATKEY_COLOR_SPECULAR, colour) == aiReturn_SUCCESS)
       batch.srgb.specular = colour_of(colour, is_linear);
     aiString name;
@@ -216,6 +242,7 @@ class SceneReader {
   std::string ending_;
   std::vector<std::string> names_;
   std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
+  bool has_vertex_colours_ = false;
 };
 
 // Removes all importers except those of the ending, so that the content of a file cannot choose
@@ -263,7 +290,7 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
   const aiScene* scene = importer.ReadFile(
       file.path.string(),
       aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_TransformUVCoords);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw Error("cannot be read as a 3D model: " + one_sentence(importer.GetErrorString()),
                 {shown});

@@ -10,6 +10,7 @@
 #include "aircraft/ac3d/ac_file.h"
 #include "aircraft/ac3d/ac_mesh.h"
 #include "aircraft/model/texture.h"
+#include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::wrapper {
@@ -74,6 +75,17 @@ int Assembly::read_texture(const fs::path& path, bool repeat_u, bool repeat_v) {
   return index;
 }
 
+// The models of FlightGear's catalogue (AC3D) are complete. Those of other formats often lack a
+// texture, and then show the material's plain colour.
+void Assembly::warn_of_texture(const std::string& name) {
+  const std::string text = "the texture " + name.substr(0, 200) +
+                           " is not there; the material's plain colour stands for it";
+  std::vector<std::string>& warnings = model_.warnings;
+  if (warnings.size() < model::kMaxWarnings &&
+      std::find(warnings.begin(), warnings.end(), text) == warnings.end())
+    warnings.push_back(text);
+}
+
 int Assembly::texture_of(const ac3d::Batch& batch,
                          const PartChoice& choice,
                          const ModelFile& file) {
@@ -83,6 +95,10 @@ int Assembly::texture_of(const ac3d::Batch& batch,
   const Where where{files_.shown(file.path).string(), replaced ? 0 : batch.texture_line};
   const fs::path path =
       replaced ? fs::path(choice.texture) : find_texture(files_, batch.texture, file.folders);
+  if (path.empty() && ending_of(file.path) != ".ac") {
+    warn_of_texture(batch.texture);
+    return -1;
+  }
   if (path.empty()) {
     std::vector<std::string> searched;
     for (const fs::path& folder : file.folders)

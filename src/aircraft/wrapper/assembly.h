@@ -37,9 +37,9 @@ class Assembly {
   ModelFiles& files() { return files_; }
   model::RawModel& model() { return model_; }
 
-  // Appends triangles of a file. Throws Error, with the file and the line that names the texture,
-  // where a texture is missing or unreadable, and where triangles, vertices or pixels exceed a
-  // limit.
+  // Appends triangles of a file. A texture that is missing is a warning, but for AC3D. Throws
+  // Error, with the file and the line that names the texture, where one is unreadable, and where
+  // triangles, vertices or pixels exceed a limit.
   void add(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
 
   // Adds a picture from inside a model file and returns its index for Batch::picture.
@@ -48,6 +48,7 @@ class Assembly {
   texture_file::PictureLimits picture_limits() const;
 
  private:
+  void warn_of_texture(const std::string& name);
   int texture_of(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
   int read_texture(const fs::path& path, bool repeat_u, bool repeat_v);
   std::uint32_t material_of(const ac3d::Batch& batch, const PartChoice& choice, int texture);

@@ -5,6 +5,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::wrapper {
 namespace {
@@ -12,6 +13,8 @@ namespace {
 // Number of files: a bound for untrusted files, far above those of any aircraft.
 constexpr std::size_t kMaxModelReads = 2000;
 constexpr std::size_t kMaxPathBytes = 4096;  // PATH_MAX
+// Number of files of a folder among which a name is searched whatever its case.
+constexpr std::size_t kMaxListed = 10'000;
 
 // The path in normal form; empty where it leaves the folder.
 fs::path inside(const fs::path& path) {
@@ -51,16 +54,40 @@ fs::path ModelFiles::shown(const fs::path& path) const {
   return shown_folder_.empty() ? path : shown_folder_ / path;
 }
 
-DiskFiles::DiskFiles(const fs::path& folder, const fs::path& in_data_root, bool hashes)
-    : ModelFiles(folder, in_data_root), hashes_(hashes) {
+DiskFiles::DiskFiles(const fs::path& folder,
+                     const fs::path& in_data_root,
+                     bool hashes,
+                     LetterCase letter_case)
+    : ModelFiles(folder, in_data_root), hashes_(hashes), letter_case_(letter_case) {
   std::error_code ignored;
   folder_ = fs::canonical(folder.empty() ? fs::path(".") : folder, ignored);
+}
+
+// The file of that name, whatever the case of its letters: names from DOS and Windows have none.
+// The path itself where there is no such file, or several.
+fs::path DiskFiles::whatever_case(const fs::path& path) const {
+  std::error_code failed;
+  if (fs::exists(fs::symlink_status(folder_ / path, failed))) return path;
+  const fs::path folder = path.parent_path();
+  const std::string wanted = lower_case(path.filename().string());
+  fs::path found;
+  std::size_t seen = 0;
+  for (fs::directory_iterator at(folder_ / folder, failed), end; !failed && at != end;
+       at.increment(failed)) {
+    if (++seen > kMaxListed) return path;
+    const fs::path name = at->path().filename();
+    if (lower_case(name.string()) != wanted) continue;
+    if (!found.empty()) return path;
+    found = folder / name;
+  }
+  return found.empty() ? path : found;
 }
 
 // The path without symbolic links; empty where nothing is there or it leads out of the folder.
 fs::path DiskFiles::resolved(const fs::path& path) const {
   std::error_code missing;
-  const fs::path real = fs::canonical(folder_ / path, missing);
+  const fs::path named = letter_case_ == LetterCase::kIgnored ? whatever_case(path) : path;
+  const fs::path real = fs::canonical(folder_ / named, missing);
   if (missing || folder_.empty()) return {};
   const auto differ = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end()).first;
   return differ == folder_.end() ? real : fs::path();
@@ -118,13 +145,25 @@ fs::path place_in_data_root(const fs::path& folder) {
   return place;
 }
 
+fs::path folder_of_model(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  const fs::path whole = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
+  std::error_code ignored;
+  const bool is_gazebo =
+      whole.filename() == "meshes" && fs::is_directory(whole.parent_path() / "materials", ignored);
+  return is_gazebo ? (folder.has_parent_path() ? folder.parent_path() : whole.parent_path())
+                   : folder;
+}
+
 fs::path find_texture(ModelFiles& files,
                       const std::string& name,
                       const std::vector<fs::path>& folders) {
   std::string clean = name;
   std::replace(clean.begin(), clean.end(), '\\', '/');
+  const fs::path file = fs::path(clean).filename();
   for (const fs::path& folder : folders)
-    for (const fs::path& candidate : {folder / clean, folder / fs::path(clean).filename()})
+    for (const fs::path& candidate :
+         {folder / clean, folder / file, folder.parent_path() / "materials" / "textures" / file})
       if (files.kind(candidate) == ModelFiles::Kind::kFile) return candidate.lexically_normal();
   return {};
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "foundation/base/names.h"
+
 namespace airtruth::wrapper {
 
 namespace fs = std::filesystem;
@@ -54,8 +56,12 @@ class DiskFiles : public ModelFiles {
     bool operator==(const Asked&) const = default;
   };
 
-  // `folder` is as the user stated it; empty means the working folder.
-  DiskFiles(const fs::path& folder, const fs::path& in_data_root, bool hashes = false);
+  // `folder` is as the user stated it; empty means the working folder. Where the case of letters is
+  // ignored, a name that is not there stands for the only one that differs in it.
+  DiskFiles(const fs::path& folder,
+            const fs::path& in_data_root,
+            bool hashes = false,
+            LetterCase letter_case = LetterCase::kMatters);
 
   // Every file read, as shown, in the order of reading.
   const std::vector<fs::path>& sources() const { return sources_; }
@@ -66,10 +72,12 @@ class DiskFiles : public ModelFiles {
   std::string read_below(const fs::path& path, std::size_t max_bytes) override;
 
  private:
+  fs::path whatever_case(const fs::path& path) const;
   fs::path resolved(const fs::path& path) const;
 
   fs::path folder_;  // absolute, without symbolic links
   bool hashes_;
+  LetterCase letter_case_;
   std::vector<fs::path> sources_;
   std::vector<Asked> asked_;
 };
@@ -78,8 +86,12 @@ class DiskFiles : public ModelFiles {
 // with AI/Aircraft. Empty where it has no such part.
 fs::path place_in_data_root(const fs::path& folder);
 
-// The file of that name, or of the last part of the name, in the first folder that holds it; an
-// empty path where no folder does.
+// The folder below which the files of a model may lie: that of its file, or, where that is called
+// `meshes` beside `materials` as Gazebo has it, the one above.
+fs::path folder_of_model(const fs::path& file);
+
+// The file of that name, or of the last part of the name, in the first folder that holds it, or in
+// Gazebo's materials/textures beside it; an empty path where no folder does.
 fs::path find_texture(ModelFiles& files,
                       const std::string& name,
                       const std::vector<fs::path>& folders);

@@ -28,6 +28,7 @@ constexpr double kAspectTolerance = 0.01;
 // The limits, in px and without a unit, of the keys of [lens] in a scene (scene/scene/limits.h).
 constexpr double kMinFocal_px = 1;
 constexpr double kFarthest_px = 1e6;
+constexpr double kLargestCoefficient = 1e12;
 
 std::string shown(double number) {
   char text[32];
@@ -54,7 +55,9 @@ void check_matrix(const Calibration& c, const std::string& file) {
       throw Error("the camera matrix has its centre at " + shown(m[i]) + "; expected it within 1e6",
                   {file});
   for (const double k : c.distortion)
-    if (!std::isfinite(k)) throw Error("has a distortion coefficient that is not finite", {file});
+    if (!(std::abs(k) <= kLargestCoefficient))
+      throw Error("has a distortion coefficient of " + shown(k) + "; expected it within 1e12",
+                  {file});
   if (m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
     throw Error("the camera matrix is not of the form [fx 0 cx; 0 fy cy; 0 0 1]", {file});
 }
@@ -94,24 +97,22 @@ std::vector<double> trimmed(std::vector<double> distortion, bool fisheye, const 
 Calibration parsed(std::string_view text, const std::filesystem::path& name) {
   std::string extension = name.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  Calibration c;
-  if (extension == ".json" && text.find("calib_dimension") == std::string_view::npos &&
-      text.find("camera_matrix") != std::string_view::npos) {
-    c = parse_opencv_calibration(text, name);  // OpenCV's JSON is YAML too
-  } else if (extension == ".json") {
-    c = parse_gyroflow_profile(text, name);
-  } else if (extension == ".xml" && text.find("<calibration>") != std::string_view::npos) {
-    c = parse_agisoft_calibration(text, name);
-  } else if (extension == ".txt") {
-    c = parse_colmap_cameras(text, name);
-  } else if (extension == ".yml" || extension == ".yaml" || extension == ".xml") {
-    c = parse_opencv_calibration(text, name);
-  } else {
+  const auto says = [&](const char* word) { return text.find(word) != std::string_view::npos; };
+  // OpenCV's JSON is YAML too.
+  const bool is_gyroflow =
+      extension == ".json" && (says("calib_dimension") || !says("camera_matrix"));
+  const bool is_agisoft = extension == ".xml" && says("<calibration>");
+  const bool is_known = extension == ".json" || extension == ".yml" || extension == ".yaml" ||
+                        extension == ".xml" || extension == ".txt";
+  if (!is_known)
     throw Error(
         "is no calibration file: expected .json (Gyroflow or OpenCV), .yml or .yaml (OpenCV, "
         "ROS or Kalibr), .xml (OpenCV or Agisoft) or .txt (COLMAP)",
         {name.string()});
-  }
+  Calibration c = is_gyroflow           ? parse_gyroflow_profile(text, name)
+                  : is_agisoft          ? parse_agisoft_calibration(text, name)
+                  : extension == ".txt" ? parse_colmap_cameras(text, name)
+                                        : parse_opencv_calibration(text, name);
   check_matrix(c, name.string());
   return c;
 }

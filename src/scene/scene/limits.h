@@ -66,7 +66,7 @@ inline constexpr Limits kFocal{.expected = "pixels from 1 to 1e6", .low = 1, .hi
 inline constexpr Limits kPrincipalPoint{
     .expected = "pixels from -1e6 to 1e6", .low = -1e6, .high = 1e6};
 inline constexpr Limits kDistortion{
-    .expected = "a number from -1e6 to 1e6", .low = -1e6, .high = 1e6};
+    .expected = "a number from -1e12 to 1e12", .low = -1e12, .high = 1e12};
 
 // A place in the picture; it may lie outside the image.
 inline constexpr Limits kPixel{.expected = "pixels from -1e5 to 1e5", .low = -1e5, .high = 1e5};
