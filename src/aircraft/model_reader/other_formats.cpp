@@ -107,6 +107,16 @@ std::array<float, 3> colour_of(const aiColor3D& c, bool is_linear) {
   return result;
 }
 
+// What is done to the coordinates of a texture beyond moving them (KHR_texture_transform).
+bool turns_or_scales(const aiMaterial& material) {
+  aiUVTransform change;
+  for (const aiTextureType kind : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR})
+    if (material.Get(AI_MATKEY_UVTRANSFORM(kind, 0), change) == aiReturn_SUCCESS &&
+        (change.mRotation != 0 || change.mScaling.x != 1 || change.mScaling.y != 1))
+      return true;
+  return false;
+}
+
 class SceneReader {
  public:
   SceneReader(const aiScene& scene, wrapper::Assembly& assembly, const wrapper::ModelFile& file)
@@ -118,22 +128,9 @@ class SceneReader {
     read_node(*scene_.mRootNode, root, 0);
     if (has_vertex_colours_)
       warn("the colours of its vertices are not read; materials and textures show");
-    for (unsigned i = 0; i < scene_.mNumMaterials; ++i)
-      if (turns_or_scales(*scene_.mMaterials[i]))
-        return warn("a texture is turned or scaled on its surface, which may not show rightly");
   }
 
  private:
-  // What is done to the coordinates of a texture beyond moving them (KHR_texture_transform).
-  static bool turns_or_scales(const aiMaterial& material) {
-    aiUVTransform change;
-    for (const aiTextureType kind : {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR})
-      if (material.Get(AI_MATKEY_UVTRANSFORM(kind, 0), change) == aiReturn_SUCCESS &&
-          (change.mRotation != 0 || change.mScaling.x != 1 || change.mScaling.y != 1))
-        return true;
-    return false;
-  }
-
   void warn(const char* text) {
     if (assembly_.model().warnings.size() < model::kMaxWarnings)
       assembly_.model().warnings.emplace_back(text);
@@ -290,10 +287,20 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
   const aiScene* scene = importer.ReadFile(
       file.path.string(),
       aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType | aiProcess_TransformUVCoords);
+          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw Error("cannot be read as a 3D model: " + one_sentence(importer.GetErrorString()),
                 {shown});
+  // assimp moves the coordinates of textures rightly; it turns and scales them otherwise than glTF.
+  for (unsigned i = 0; i < scene->mNumMaterials; ++i)
+    if (assembly.model().warnings.size() < model::kMaxWarnings &&
+        turns_or_scales(*scene->mMaterials[i])) {
+      assembly.model().warnings.emplace_back(
+          "a texture is turned or scaled on its surface, which may not show rightly");
+      break;
+    }
+  scene = importer.ApplyPostProcessing(aiProcess_TransformUVCoords);
+  if (scene == nullptr) throw Error("cannot be read as a 3D model", {shown});
   try {
     SceneReader(*scene, assembly, file).read();
   } catch (const Error& error) {

@@ -132,8 +132,7 @@ Calibration parse_agisoft_calibration(std::string_view text, const std::filesyst
   } else {
     c.distortion = {values["k1"], values["k2"], values["p2"], values["p1"], values["k3"]};
   }
-  const std::vector<const char*> absent =
-      c.fisheye ? std::vector{"p1", "p2"} : std::vector{"k4"};
+  const std::vector<const char*> absent = c.fisheye ? std::vector{"p1", "p2"} : std::vector{"k4"};
   for (const char* key : absent)
     if (values[key] != 0)
       throw Error(std::string(key) + " is not 0; no lens model here has it", where(top));
