@@ -15,6 +15,7 @@
 #include "foundation/base/names.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/pictures.h"
+#include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
@@ -29,18 +30,30 @@ constexpr const char* kPictureList = "pictures.txt";
 // Whether the frames of a clip are pictures, and their folder is its media.
 bool has_pictures(const exchange::Clip& clip) { return fs::is_directory(clip.media); }
 
-// Pictures that the user names for a clip: those that the labels name, or else one for each frame
-// in the order of their names.
-void join_given_folder(exchange::Clip& clip, const Warn& warn) {
-  const fs::path folder = std::exchange(clip.media, {});
-  const bool are_named = std::all_of(
-      clip.frames.begin(), clip.frames.end(), [&](const exchange::LabelledFrame& frame) {
-        return !frame.picture.empty() && fs::is_regular_file(folder / frame.picture);
-      });
-  if (are_named)
-    clip.media = folder;
-  else
-    exchange::join_in_order(clip, folder, warn);
+// Gives a clip the pictures that the user names for it (a folder, a pattern or a list): in a folder
+// those that the labels name, else one for each frame in their order. A video stays as it is.
+void join_given_pictures(exchange::Clip& clip, const Warn& warn) {
+  const fs::path given = clip.media;
+  if (fs::is_directory(given)) {
+    clip.media.clear();
+    exchange::join_by_name(clip, given, {});
+    if (!clip.media.empty()) return;
+  }
+  const auto images = video::numbered_images(given);
+  if (!images) return;
+  clip.media.clear();
+  if (images->files.size() != clip.frames.size())
+    return airtruth::warn(
+        warn,
+        fmt::format("{}: holds {} pictures, and there are labels for {} frames of "
+                    "{}; they are imported without the pictures",
+                    given.string(),
+                    images->files.size(),
+                    clip.frames.size(),
+                    clip.name));
+  clip.media = fs::is_directory(given) ? given : given.parent_path();
+  for (std::size_t i = 0; i < clip.frames.size(); ++i)
+    clip.frames[i].picture = images->files[i].lexically_relative(clip.media).string();
 }
 
 // The frames of pictures are numbered by their places.
@@ -79,7 +92,7 @@ void ask_video(exchange::Clip& clip, const Warn& warn) {
   }
   const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
   expect_size(clip, info.width, info.height, clip.media);
-  if (!clip.frame_rate_hz) clip.frame_rate_hz = info.frame_rate.value();
+  if (!clip.frame_rate_hz && info.is_rate_stated) clip.frame_rate_hz = info.frame_rate.value();
   const std::int64_t labelled = clip.frames.back().frame + 1;
   if (info.frame_count_estimate > 0 && labelled > info.frame_count_estimate)
     airtruth::warn(warn,
@@ -172,10 +185,10 @@ void complete(std::vector<exchange::Clip>& clips,
     if (video != options.videos.end()) clip.media = video->second;
     if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
     require_utf8(clip.media);
-    if (video != options.videos.end() && has_pictures(clip)) join_given_folder(clip, options.warn);
+    if (video != options.videos.end()) join_given_pictures(clip, options.warn);
     if (has_pictures(clip)) number_by_place(clip);
-    if (!clip.frame_rate_hz) clip.frame_rate_hz = options.frame_rate_hz;
     ask_video(clip, options.warn);
+    if (!clip.frame_rate_hz) clip.frame_rate_hz = options.frame_rate_hz;
     clip.name = free_name(clip.name, taken);
     expect_rate(clip, source);
   }

@@ -224,26 +224,14 @@ class FlightReader {
       const auto above = entity.object("labels").maybe_number("is_above_horizon");
       if (above && *above != 0) label.above_horizon = *above > 0;
     }
-    add_label(frame, label, clip_, left_out_, entity.place());
+    add_label(frame.labels, label, clip_.width, clip_.height, left_out_, entity.place());
   }
 
   // Pictures belong to frames by img_name.
   void join() {
     const fs::path images = file_.parent_path().parent_path() / "Images" / clip_.name;
     if (pictures_in(images).empty()) return;
-    const auto missing =
-        std::find_if(clip_.frames.begin(), clip_.frames.end(), [&](const LabelledFrame& frame) {
-          return frame.picture.empty() || !fs::is_regular_file(images / frame.picture);
-        });
-    if (missing == clip_.frames.end())
-      clip_.media = images;
-    else
-      airtruth::warn(
-          warn_,
-          fmt::format("{}: holds no picture of frame {} of {}; it is imported without pictures",
-                      images.string(),
-                      missing->frame,
-                      clip_.name));
+    join_by_name(clip_, images, warn_);
   }
 
   // Where a range is unknown, the published files contain NaN, a string or no key.

@@ -212,8 +212,7 @@ Clips read_coco(const Reading& in) {
   if (files.empty()) throw Error("holds no annotation file (*.json)", {in.source.string()});
   Clips clips;
   for (const fs::path& file : files) {
-    Clips more = CocoReader(file, in.warn).read();
-    std::move(more.begin(), more.end(), std::back_inserter(clips));
+    append(clips, CocoReader(file, in.warn).read());
   }
   return clips;
 }

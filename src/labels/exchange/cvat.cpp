@@ -329,7 +329,12 @@ class TrackReader {
   }
 
   void put(const Label& label, std::size_t place) {
-    add_label(clip_.frames.at(place), label, clip_, in_.left_out, file_.string());
+    add_label(clip_.frames.at(place).labels,
+              label,
+              clip_.width,
+              clip_.height,
+              in_.left_out,
+              file_.string());
   }
 
   // Pictures belong to frames by the <image> that names them, or else by the number in their names.
@@ -339,18 +344,7 @@ class TrackReader {
     if (!top.child("image")) return join_by_number(clip_, images, 0, in_.warn);
     for (const pugi::xml_node& image : top.children("image"))
       clip_.frames.at(place_of(frame_of(image, "id"))).picture = image.attribute("name").value();
-    const auto is_missing = [&](const LabelledFrame& frame) {
-      return frame.picture.empty() || !fs::is_regular_file(images / frame.picture);
-    };
-    const auto missing = std::find_if(clip_.frames.begin(), clip_.frames.end(), is_missing);
-    if (missing == clip_.frames.end())
-      clip_.media = images;
-    else
-      warn(in_.warn,
-           fmt::format("{}: holds no picture of frame {} of {}; it is imported without pictures",
-                       images.string(),
-                       missing->frame,
-                       clip_.name));
+    join_by_name(clip_, images, in_.warn);
   }
 
   fs::path file_;
@@ -388,18 +382,19 @@ Clips read_images(const fs::path& file,
       Label label =
           label_of(xml, shape, shape.attribute("label").value(), std::ssize(picture.labels) + 1);
       label.box_px = *box;
-      if (is_in_picture(*box, picture.width, picture.height))
-        picture.labels.push_back(std::move(label));
-      else
-        in.left_out.add(kOutside, file.string());
+      add_label(picture.labels,
+                std::move(label),
+                picture.width,
+                picture.height,
+                in.left_out,
+                file.string());
     }
     subsets[subset].push_back(std::move(picture));
   }
   Clips clips;
   for (auto& [subset, pictures] : subsets) {
-    Clips more =
-        clips_of_pictures(std::move(pictures), subset.empty() ? name : subset, file, in.warn);
-    std::move(more.begin(), more.end(), std::back_inserter(clips));
+    append(clips,
+           clips_of_pictures(std::move(pictures), subset.empty() ? name : subset, file, in.warn));
   }
   return clips;
 }
@@ -441,8 +436,7 @@ Clips read_cvat(const Reading& in) {
   if (files.empty()) throw Error("holds no annotations.xml", {in.source.string()});
   Clips clips;
   for (const fs::path& file : files) {
-    Clips more = clips_of_file(file, in);
-    std::move(more.begin(), more.end(), std::back_inserter(clips));
+    append(clips, clips_of_file(file, in));
   }
   return clips;
 }

@@ -201,24 +201,27 @@ namespace {
 
 // Gives each label the class that its category states.
 void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& warn) {
-  std::map<std::string, std::int64_t> unknown, unused;
-  for (const auto& [category, object_class] : options.class_of) unused[category] = 0;
+  // By category, its class; empty where it states none.
+  std::map<std::string, std::string> classes;
+  std::map<std::string, std::int64_t> unknown;
   for (Clip& clip : clips)
     for (LabelledFrame& frame : clip.frames)
       for (Label& label : frame.labels) {
-        unused.erase(label.category);
-        const auto asked = options.class_of.find(label.category);
-        const auto stated = annotation::class_of_category(label.category);
-        if (asked != options.class_of.end())
-          label.object_class = asked->second;
-        else if (stated)
-          label.object_class = *stated;
+        const auto [known, is_new] = classes.try_emplace(label.category);
+        if (is_new) {
+          const auto asked = options.class_of.find(label.category);
+          known->second = asked != options.class_of.end()
+                              ? asked->second
+                              : annotation::class_of_category(label.category).value_or("");
+        }
+        if (!known->second.empty())
+          label.object_class = known->second;
         else if (label.category != options.category)
           ++unknown[label.category];
       }
-  if (!unused.empty())
-    throw Error("no label has the category '" + unused.begin()->first +
-                "', for which a class is given");
+  for (const auto& [category, object_class] : options.class_of)
+    if (!classes.contains(category))
+      throw Error("no label has the category '" + category + "', for which a class is given");
   std::vector<std::string> words;
   for (const auto& [category, count] : unknown)
     words.push_back(fmt::format("'{}' ({})", category, count));

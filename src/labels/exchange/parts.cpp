@@ -26,15 +26,20 @@ LabelledFrame& frame_at(Clip& clip, std::size_t number) {
   return clip.frames[number];
 }
 
-void add_label(LabelledFrame& frame,
+void add_label(std::vector<Label>& labels,
                Label label,
-               const Clip& clip,
+               int width,
+               int height,
                LeftOut& left_out,
                const std::string& place) {
-  if (is_in_picture(label.box_px, clip.width, clip.height))
-    frame.labels.push_back(std::move(label));
+  if (is_in_picture(label.box_px, width, height))
+    labels.push_back(std::move(label));
   else
     left_out.add(kOutside, place);
+}
+
+void append(Clips& clips, Clips more) {
+  std::move(more.begin(), more.end(), std::back_inserter(clips));
 }
 
 std::vector<fs::path> two_levels(const fs::path& folder) {

@@ -65,12 +65,17 @@ LabelledFrame& frame_at(Clip& clip, std::size_t number);
 // Why a label is left out whose box has no area or lies outside the picture.
 inline constexpr const char* kOutside = "boxes that are empty or outside their image";
 
-// Adds a label to a frame of the clip; `place` says where a label stands that is left out.
-void add_label(LabelledFrame& frame,
+// Adds a label to those of a picture of that size (0: unknown); `place` says where a label stands
+// that is left out.
+void add_label(std::vector<Label>& labels,
                Label label,
-               const Clip& clip,
+               int width,
+               int height,
                LeftOut& left_out,
                const std::string& place);
+
+// Moves clips to the end of a list.
+void append(Clips& clips, Clips more);
 
 // The folder itself, what it holds, and what that holds, each folder before its content.
 std::vector<fs::path> two_levels(const fs::path& folder);

@@ -165,6 +165,22 @@ std::vector<std::string> pictures_in(const fs::path& folder) {
   return names;
 }
 
+void join_by_name(Clip& clip, const fs::path& folder, const Warn& warn) {
+  const auto missing =
+      std::find_if(clip.frames.begin(), clip.frames.end(), [&](const LabelledFrame& frame) {
+        return frame.picture.empty() || !fs::is_regular_file(folder / frame.picture);
+      });
+  if (missing == clip.frames.end())
+    clip.media = folder;
+  else
+    airtruth::warn(
+        warn,
+        fmt::format("{}: holds no picture of frame {} of {}; it is imported without pictures",
+                    folder.string(),
+                    missing->frame,
+                    clip.name));
+}
+
 void join_by_number(Clip& clip,
                     const fs::path& folder,
                     std::int64_t first_number,

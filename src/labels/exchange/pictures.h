@@ -53,6 +53,10 @@ std::vector<Clip> clips_of_pictures(std::vector<LabelledPicture> pictures,
                                     const fs::path& source,
                                     const Warn& warn);
 
+// Gives a clip the folder of the pictures that its frames name. The clip has no media, with a
+// warning, where a frame names none that is there.
+void join_by_name(Clip& clip, const fs::path& folder, const Warn& warn);
+
 // Gives the frames of a clip the pictures of a folder by their numbers: frame 0 has the picture
 // whose name ends in first_number, and so on. The clip has no media, with a warning, where a frame
 // has no picture or two have one.

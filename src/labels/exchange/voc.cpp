@@ -151,10 +151,12 @@ LabelledPicture read_picture(const fs::path& file,
     const double x = xml.number(box, "xmin") - 1;
     const double y = xml.number(box, "ymin") - 1;
     label.box_px = {x, y, xml.number(box, "xmax") - x, xml.number(box, "ymax") - y};
-    if (is_in_picture(label.box_px, picture.width, picture.height))
-      picture.labels.push_back(std::move(label));
-    else
-      in.left_out.add(kOutside, file.string());
+    add_label(picture.labels,
+              std::move(label),
+              picture.width,
+              picture.height,
+              in.left_out,
+              file.string());
   }
   return picture;
 }
@@ -184,8 +186,7 @@ Clips read_voc(const Reading& in) {
     std::vector<LabelledPicture> pictures;
     for (const fs::path& file : files_with(annotations, ".xml"))
       pictures.push_back(read_picture(file, folders, stems, in));
-    Clips more = clips_of_pictures(std::move(pictures), "", annotations, in.warn);
-    std::move(more.begin(), more.end(), std::back_inserter(clips));
+    append(clips, clips_of_pictures(std::move(pictures), "", annotations, in.warn));
   }
   if (clips.empty()) throw Error("holds no Annotations/*.xml", {in.source.string()});
   return clips;

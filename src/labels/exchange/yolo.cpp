@@ -144,8 +144,7 @@ class YoloReader {
       throw Error("holds no labels/, no PART/labels/ and no obj_train_data/", {root_.string()});
     Clips clips;
     for (const Folders& one : folders) {
-      Clips more = clips_of_pictures(pictures(one), "", one.labels, in_.warn);
-      std::move(more.begin(), more.end(), std::back_inserter(clips));
+      append(clips, clips_of_pictures(pictures(one), "", one.labels, in_.warn));
     }
     if (clips.empty()) throw Error("holds no labels", {folders.front().labels.string()});
     return clips;
@@ -217,10 +216,12 @@ class YoloReader {
                       n[3] * picture.width,
                       n[4] * picture.height};
     }
-    if (is_in_picture(label.box_px, picture.width, picture.height))
-      picture.labels.push_back(std::move(label));
-    else
-      in_.left_out.add(kOutside, file.string() + ":" + std::to_string(line.number));
+    add_label(picture.labels,
+              std::move(label),
+              picture.width,
+              picture.height,
+              in_.left_out,
+              file.string() + ":" + std::to_string(line.number));
   }
 
   const Reading& in_;

@@ -46,16 +46,24 @@ class SetImages {
   SetImage by_id(std::int64_t id, const Where& where) const;
   SetImage by_number_in_name(std::int64_t number, const Where& where) const;
   SetImage by_name(const std::string& text, const Where& where) const;
-  bool has_id(std::int64_t id) const { return ids_.contains(id); }
+  bool has_id(std::int64_t id) const {
+    return states_ids() ? ids_.contains(id) : id >= 1 && id <= frames_;
+  }
   bool has_number_in_name(std::int64_t number) const { return numbers_.contains(number); }
+  bool has_numbers_in_names() const { return !numbers_.empty(); }
 
  private:
   using Images = std::vector<SetImage>;
 
-  void add(std::size_t sequence, std::size_t frame, std::int64_t counted);
+  void add(std::size_t sequence, std::size_t frame);
   SetImage only(const Images& found, const std::string& what, const Where& where) const;
 
+  // Whether the set gives its pictures numbers; else the frames are counted from 1.
+  bool states_ids() const { return !ids_.empty(); }
+
   std::span<const ExpectedSequence> set_;
+  std::vector<std::int64_t> first_ids_;  // by sequence
+  std::int64_t frames_ = 0;
   std::map<std::int64_t, Images> ids_;
   std::map<std::int64_t, Images> numbers_;
   // By the whole name, by the file name, and by either without its ending.
@@ -72,19 +80,20 @@ std::optional<std::int64_t> number_of(const std::string& text) {
 }
 
 SetImages::SetImages(std::span<const ExpectedSequence> set) : set_(set) {
-  std::int64_t counted = 1;
   for (std::size_t i = 0; i < set.size(); ++i) {
     names_.emplace(set[i].name, i);
-    for (std::int64_t frame = 0; frame < set[i].frames; ++frame)
-      add(i, static_cast<std::size_t>(frame), counted++);
+    first_ids_.push_back(frames_ + 1);
+    frames_ += set[i].frames;
+    const std::size_t named = std::max(set[i].pictures.size(), set[i].image_ids.size());
+    for (std::size_t frame = 0; frame < named; ++frame) add(i, frame);
   }
 }
 
-void SetImages::add(std::size_t sequence, std::size_t frame, std::int64_t counted) {
+void SetImages::add(std::size_t sequence, std::size_t frame) {
   const ExpectedSequence& of = set_[sequence];
   const SetImage image{sequence, static_cast<std::int64_t>(frame)};
-  const auto stated = frame < of.image_ids.size() ? of.image_ids[frame] : std::nullopt;
-  ids_[stated.value_or(counted)].push_back(image);
+  if (frame < of.image_ids.size() && of.image_ids[frame])
+    ids_[*of.image_ids[frame]].push_back(image);
   if (frame >= of.pictures.size() || of.pictures[frame].empty()) return;
   const fs::path picture = of.pictures[frame];
   const std::string stem = picture.stem().string();
@@ -107,14 +116,17 @@ SetImage SetImages::only(const Images& found, const std::string& what, const Whe
 }
 
 SetImage SetImages::by_id(std::int64_t id, const Where& where) const {
-  const auto found = ids_.find(id);
-  if (found != ids_.end()) return only(found->second, fmt::format("image_id {}", id), where);
-  throw Error(fmt::format("image_id is {}; the set has {} images with ids from {} to {}",
-                          id,
-                          ids_.size(),
-                          ids_.empty() ? 0 : ids_.begin()->first,
-                          ids_.empty() ? 0 : ids_.rbegin()->first),
-              where);
+  if (!has_id(id))
+    throw Error(fmt::format("image_id is {}; the set has {} images with ids from {} to {}",
+                            id,
+                            states_ids() ? std::ssize(ids_) : frames_,
+                            states_ids() ? ids_.begin()->first : 1,
+                            states_ids() ? ids_.rbegin()->first : frames_),
+                where);
+  if (states_ids()) return only(ids_.at(id), fmt::format("image_id {}", id), where);
+  const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), id);
+  const auto sequence = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
+  return {sequence, id - first_ids_[sequence]};
 }
 
 SetImage SetImages::by_number_in_name(std::int64_t number, const Where& where) const {
@@ -279,8 +291,10 @@ std::vector<SequenceDetections> read_coco_results(const fs::path& file,
     lists.emplace_back(sequence.name, sequence.width, sequence.height, sequence.frames);
   const Found found = found_in(text, file);
   const char* what = found.names ? "annotations" : "detections";
-  const bool are_named = found.names && !found.names->image_files.empty();
-  const Ids ids = are_named ? Ids::kOfTheSet : ids_in(found.list, file, what, images);
+  const bool names_images = found.names && !found.names->image_files.empty();
+  const Ids ids = names_images || !images.has_numbers_in_names()
+                      ? Ids::kOfTheSet
+                      : ids_in(found.list, file, what, images);
   JsonElements elements(found.list, file, what);
   while (const auto element = elements.next()) {
     const Where where{file.string(), element->line};
@@ -293,6 +307,16 @@ std::vector<SequenceDetections> read_coco_results(const fs::path& file,
   for (FrameList& list : lists) all.push_back(list.take());
   return all;
 }
+
+namespace {
+
+// The number of a frame's picture in its set, or else its place, counted from `first` on.
+std::int64_t image_id_of(const ExpectedSequence& sequence, std::size_t frame, std::int64_t first) {
+  const auto stated = frame < sequence.image_ids.size() ? sequence.image_ids[frame] : std::nullopt;
+  return stated.value_or(first + static_cast<std::int64_t>(frame));
+}
+
+}  // namespace
 
 void write_coco_results(const fs::path& file,
                         const fs::path& folder,
@@ -310,7 +334,7 @@ void write_coco_results(const fs::path& file,
       for (std::size_t i = 0; i < read.frames.size(); ++i)
         for (const Detection& d : read.frames[i]) {
           Json json = {
-              {"image_id", first + static_cast<std::int64_t>(i)},
+              {"image_id", image_id_of(sequence, i, first)},
               {"category_id", 1 + std::distance(categories.begin(), categories.find(d.category))},
               {"bbox", {d.box_px.x, d.box_px.y, d.box_px.width, d.box_px.height}},
               {"score", d.score}};

@@ -12,8 +12,8 @@
 namespace airtruth::results {
 
 // Writes COCO results of `sequences` to a file. Categories are numbered from 1 in alphabetical
-// order; `set` gives the image ids. The sequences are read from `folder` one at a time; a sequence
-// of the set that is not in the folder has no results.
+// order; `set` gives the image ids, as read_detections() takes them. The sequences are read from
+// `folder` one at a time; a sequence of the set that is not in the folder has no results.
 void write_coco_results(const fs::path& file,
                         const fs::path& folder,
                         std::span<const ExpectedSequence> set);

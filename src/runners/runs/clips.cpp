@@ -98,8 +98,13 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
 
 std::vector<results::ExpectedSequence> sequences_of(const labelled::LabelledSet& set) {
   std::vector<results::ExpectedSequence> sequences;
-  for (const std::string& name : set.names())
-    sequences.push_back({name, 0, 0, set.facts(name).frames});
+  for (const std::string& name : set.names()) {
+    results::ExpectedSequence& sequence =
+        sequences.emplace_back(results::ExpectedSequence{name, 0, 0, set.facts(name).frames});
+    if (!set.is_imported(name)) continue;
+    for (const exchange::LabelledFrame& frame : set.clip(name).frames)
+      sequence.image_ids.push_back(frame.image_id);
+  }
   return sequences;
 }
 
