@@ -75,7 +75,7 @@ def check_read(examples, data_set, names):
         with open(f"{data_set}/{name}/truth.jsonl") as file:
             for k, truth in enumerate(map(json.loads, file)):
                 for intruder in truth["intruders"]:
-                    if "covered_box_px" not in intruder:
+                    if intruder["covered_box_px"] is None:
                         continue
                     x, y, width, height = intruder["covered_box_px"]
                     bright = luma[k][y * WIDTH + x] if luma else None

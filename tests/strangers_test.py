@@ -113,6 +113,14 @@ def ultralytics(it):
         assert ap_of(it, "e" + results) == 1.0, ap_of(it, "e" + results)
 
 
+def all_empty(it):
+    it.imported("mot", "gt")
+    it.run("evaluate", it.set, it.path("empty"), "--detections", "-o", "e", "--no-page")
+    with open(os.path.join(it.scratch, "e", "detection.json"), encoding="utf-8") as file:
+        (detector,) = json.load(file)["detectors"]
+    assert (detector["sequences"], detector["detections"], detector["average_precision"]["ap"]) == (3, 0, 0), detector
+
+
 def ap_of(it, folder="e"):
     with open(os.path.join(it.scratch, folder, "detection.json"), encoding="utf-8") as file:
         return json.load(file)["detectors"][0]["average_precision"]["ap"]
@@ -336,6 +344,7 @@ def pixel_shape(it):
 
 CASES = {
     "det-rate-of-import-mot": rate_of_import,
+    "ev-all-empty": all_empty,
     "ev-coco-ids-from-0": coco_ids,
     "ev-ultralytics-predictions": ultralytics,
     "lab-coco-cvat-trackid": track_of_cvat,

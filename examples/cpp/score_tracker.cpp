@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,11 @@ std::vector<std::optional<airtruth::Box>> read_boxes(const std::filesystem::path
   return boxes;
 }
 
+// A measure that nothing defines prints as "nan".
+double number(const std::optional<double>& measure) {
+  return measure.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -52,16 +58,16 @@ int main(int argc, char** argv) try {
       scores.push_back(airtruth::evaluation::score(pairs, clip.width, clip.height));
       std::printf("%s: AUC %.17g, AO %.17g, centre %.17g px\n",
                   clip.name.c_str(),
-                  scores.back().auc,
-                  scores.back().average_overlap,
-                  scores.back().centre_mean_px);
+                  number(scores.back().auc),
+                  number(scores.back().average_overlap),
+                  number(scores.back().centre_mean_px));
     }
   }
   const auto overall = airtruth::evaluation::mean_of(scores);
   std::printf("overall: AUC %.17g, AO %.17g, centre %.17g px\n",
-              overall.auc,
-              overall.average_overlap,
-              overall.centre_mean_px);
+              number(overall.auc),
+              number(overall.average_overlap),
+              number(overall.centre_mean_px));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;

@@ -51,6 +51,9 @@ struct Label {
   std::optional<bool> truncated;
   std::optional<double> range_m;
   std::optional<bool> above_horizon;
+  // Area of the object's pixels: those of the covered box with at least its coverage, or what the
+  // set states (COCO's `area`). Where it is empty, an object's area is that of its box.
+  std::optional<double> area_px;
   // The file labels.jsonl does not store it.
   std::optional<PixelMask> mask;
   // As IntruderTruth::object_class in <airtruth/truth.h>. "ignore" marks a region in which

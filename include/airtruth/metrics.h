@@ -40,7 +40,8 @@ AIRTRUTH_API double overlap(const Box& a, const Box& b);
 constexpr int kSuccessSteps = 21;
 constexpr int kPrecisionSteps = 51;
 
-// The measures of one sequence, or means over sequences.
+// The measures of one sequence, or means over sequences. A measure is empty where no frame, or no
+// sequence, defines it.
 struct Score {
   // Number of frames of the sequence.
   std::int64_t frames = 0;
@@ -48,45 +49,45 @@ struct Score {
   std::int64_t counted = 0;
 
   // The measures of the E-Vision paper, section IV: errors of X and Y of the box's centre, in
-  // pixels, over the frames that show the target after the first.
-  double x_mean_px = 0, x_rmse_px = 0, x_most_px = 0;
-  double y_mean_px = 0, y_rmse_px = 0, y_most_px = 0;
-  double centre_mean_px = 0;
+  // pixels, over the frames after the first that show the target and have an answer.
+  std::optional<double> x_mean_px, x_rmse_px, x_most_px;
+  std::optional<double> y_mean_px, y_rmse_px, y_most_px;
+  std::optional<double> centre_mean_px;
 
   // OTB's one-pass evaluation (Wu, Lim and Yang 2013, section 4). Frames without a target are
   // skipped, and the first frame's answer is the truth itself. success[k]: share of frames whose
-  // overlap exceeds 0.05 k. precision[k]: share of frames whose centre error is at most k px.
+  // overlap exceeds 0.05 k. precision[k]: share of frames whose centre error is at most k px. Both
+  // curves are 0 where `counted` is.
   std::array<double, kSuccessSteps> success{};
   std::array<double, kPrecisionSteps> precision{};
   // Mean of success.
-  double auc = 0;
+  std::optional<double> auc;
   // Equal to precision[20].
-  double precision_20px = 0;
+  std::optional<double> precision_20px;
   // Normalised precision (Mueller et al. 2018, TrackingNet, eq. 2): the centre error divided by the
   // truth's width and height. normalised_auc is the mean of the curve.
   std::array<double, kPrecisionSteps> normalised{};
-  double normalised_auc = 0;
+  std::optional<double> normalised_auc;
 
   // GOT-10k's measures (Huang, Zhao and Huang 2019, section 4.1): without the first frame, and with
   // boxes clipped to the picture.
-  double average_overlap = 0;
-  double success_50 = 0;
-  double success_75 = 0;
+  std::optional<double> average_overlap;
+  std::optional<double> success_50;
+  std::optional<double> success_75;
 
-  // Frames a second: 1 / seconds after the first frame, over the frames with a time above 0. The
-  // value 0 means unknown.
+  // Frames a second: 1 / seconds after the first frame, over the frames with a time above 0.
   // Mean, as in OTB and GOT-10k.
-  double frames_per_second = 0;
-  double frames_per_second_median = 0;
+  std::optional<double> frames_per_second;
+  std::optional<double> frames_per_second_median;
 };
 
 // Scores the frames of one sequence, in order. width and height are those of the picture; 0:
-// unknown, and no box is clipped. A frame with a target and no answer counts as an overlap of 0, as
-// an infinite distance in the curves, and with the distance of the last answer in the means.
+// unknown, and no box is clipped. A frame with a target and no answer counts as an overlap of 0 and
+// as an infinite distance in the curves; it has no centre error.
 AIRTRUTH_API Score score(std::span<const FramePair> frames, int width, int height);
 
-// Means over sequences: plain means of the sequences' numbers (OTB), frames a second over the
-// sequences that have them, and GOT-10k's measures over the frames of all sequences together.
+// Means over the sequences that have the measure: plain means of their numbers (OTB), and GOT-10k's
+// measures over the frames of all sequences together.
 AIRTRUTH_API Score mean_of(std::span<const Score> scores);
 
 // A target is lost after kGrace frames with an overlap of at most kLostOverlap.

@@ -98,6 +98,8 @@ struct IntruderTruth {
   // Bounds of the whole pixels that the intruder covers with an alpha of 0.08 or more: the box for
   // training and scoring.
   std::optional<PixelBox> covered_box_px;
+  // Number of those pixels; empty without that box, and in older files.
+  std::optional<std::int64_t> covered_area_px;
   // Bounds of the pixels that changed; present exactly where the state is kVisible.
   std::optional<PixelBox> visible_box_px;
   // Number of pixels that changed.

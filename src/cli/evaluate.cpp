@@ -232,23 +232,22 @@ std::string one_pass_line(const tracker_evaluation::ScoredTracker& tracker,
                           const evaluation::Score& s) {
   const auto interval = tracker.intervals.at("auc");
   return fmt::format(
-      "{:<20} {:>9} {:>6.3f} {:>15} {:>6.3f} {:>6.3f} {:>6.3f} {:>6.3f} {:>9.1f} {:>7} {:>4} "
-      "{:>10.1f} {:>10.1f}",
+      "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}",
       tracker.name,
       std::count_if(tracker.sequences.begin(),
                     tracker.sequences.end(),
                     [](const auto& sequence) { return sequence.score.has_value(); }),
-      s.auc,
+      number(s.auc, 3),
       interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-",
-      s.precision_20px,
-      s.normalised_auc,
-      s.average_overlap,
-      s.success_50,
-      s.centre_mean_px,
+      number(s.precision_20px, 3),
+      number(s.normalised_auc, 3),
+      number(s.average_overlap, 3),
+      number(s.success_50, 3),
+      number(s.centre_mean_px, 1),
       number(tracker.angle_mrad, 1),
       tracker.lost,
-      s.frames_per_second,
-      s.frames_per_second_median);
+      number(s.frames_per_second, 1),
+      number(s.frames_per_second_median, 1));
 }
 
 void print_one_pass(const tracker_evaluation::Assessment& assessment, Console& console) {

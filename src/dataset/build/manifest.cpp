@@ -8,6 +8,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
+#include "foundation/json/or_null.h"
 
 namespace airtruth::build {
 namespace {
@@ -25,7 +26,7 @@ Json manifest_line(const catalogue::Folder& folder, const catalogue::Item& item)
       {"folder", fs::relative(folder.sequence(item), folder.root).string()},
       {"frames", summary.count("frames")},
       {"frames_with_an_intruder_visible", summary.count("frames_with_an_intruder_visible")}};
-  if (record.has("weight")) line["weight"] = record.value("weight");
+  line["weight"] = or_null(record.maybe_number("weight"));
   line["outputs"] = record.value("outputs");
   return line;
 }

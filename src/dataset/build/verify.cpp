@@ -163,8 +163,11 @@ class Check {
         insertion::read_alpha_mask(finished.folder, finished.truth.lens, intruder.id, frame.frame);
     if (mask && intruder.state != annotation::State::kVisible)
       return fault(where + "a mask, and not visible");
-    const auto bounds = mask ? composite::covered_box(*mask) : std::nullopt;
-    if (bounds != intruder.covered_box_px)
+    const auto covered = mask ? composite::covered(*mask) : std::nullopt;
+    const auto bounds = covered ? std::optional(covered->box) : std::nullopt;
+    const bool is_of_area =
+        !intruder.covered_area_px || !covered || *intruder.covered_area_px == covered->area_px;
+    if (bounds != intruder.covered_box_px || !is_of_area)
       fault(where + (mask ? "its mask is not of its covered box" : "a covered box without a mask"));
   }
 

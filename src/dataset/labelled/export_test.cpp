@@ -398,6 +398,7 @@ TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
     intruder["state"] = "outside";
     intruder.erase("visible_box_px");
     intruder.erase("covered_box_px");
+    intruder.erase("covered_area_px");
   });
   const build::VerifyResult result = build::verify(copy, {});
   EXPECT_EQ(result.in_view_without_box, 1);

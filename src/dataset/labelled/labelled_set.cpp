@@ -24,11 +24,12 @@ std::optional<exchange::PixelMask> pixels_of_mask(const replay::Finished& finish
                                                   const std::string& id,
                                                   std::int64_t frame) {
   const auto mask = insertion::read_alpha_mask(finished.folder, finished.truth.lens, id, frame);
-  const auto box = mask ? composite::covered_box(*mask) : std::nullopt;
-  if (!box) return std::nullopt;
+  const auto covered = mask ? composite::covered(*mask) : std::nullopt;
+  if (!covered) return std::nullopt;
   const auto width = static_cast<std::size_t>(mask->patch.width);
-  return pixel_mask::pixel_mask_of(mask->patch.width, mask->patch.height, *box, [&](int x, int y) {
-    return mask->alpha[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] >=
+  const auto& [patch, alpha] = *mask;
+  return pixel_mask::pixel_mask_of(patch.width, patch.height, covered->box, [&](int x, int y) {
+    return alpha[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] >=
            composite::kCoveredAlpha;
   });
 }

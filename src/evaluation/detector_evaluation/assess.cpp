@@ -161,19 +161,22 @@ bool has_ending(const fs::path& file, const char* ending) {
   return file.extension() == ending && fs::is_regular_file(file);
 }
 
+enum class Text { kEmpty, kMotOfDetector, kOther };
+
 // MOTChallenge's lines have an id as their second cell of seven or more; a detection without a
 // track has the id -1.
-bool is_mot(const fs::path& file, bool with_tracks) {
+Text text_of(const fs::path& file, bool with_tracks) {
   std::ifstream text(file);
   std::string line;
   while (std::getline(text, line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    if (std::count(line.begin(), line.end(), ',') < 6) return false;
+    if (std::count(line.begin(), line.end(), ',') < 6) return Text::kOther;
     const std::size_t first = line.find(',') + 1;
     const std::size_t begin = line.find_first_not_of(" \t", first);
-    return with_tracks || (begin != std::string::npos && line.compare(begin, 2, "-1") == 0);
+    const bool has_no_track = begin != std::string::npos && line.compare(begin, 2, "-1") == 0;
+    return with_tracks || has_no_track ? Text::kMotOfDetector : Text::kOther;
   }
-  return false;
+  return Text::kEmpty;
 }
 
 }  // namespace
@@ -195,10 +198,14 @@ bool holds_detections(const fs::path& results, bool is_mot_of_detector) {
       has_folder = has_folder || entry.is_directory(failed);
     }
   if (has_det || (json == 1 && texts.empty() && !has_folder)) return true;
+  std::erase_if(texts,
+                [](const fs::path& file) { return file.stem().string().ends_with("_time"); });
   std::sort(texts.begin(), texts.end());
-  return std::any_of(texts.begin(), texts.end(), [&](const fs::path& file) {
-    return !file.stem().string().ends_with("_time") && is_mot(file, is_mot_of_detector);
-  });
+  std::vector<Text> kinds;
+  for (const fs::path& file : texts) kinds.push_back(text_of(file, is_mot_of_detector));
+  // A detector that detects nothing leaves empty files; a tracker has a line for each frame.
+  const auto of = [&](Text kind) { return std::count(kinds.begin(), kinds.end(), kind); };
+  return of(Text::kMotOfDetector) > 0 || (!texts.empty() && of(Text::kEmpty) == std::ssize(texts));
 }
 
 }  // namespace airtruth::detector_evaluation

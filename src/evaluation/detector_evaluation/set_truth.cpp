@@ -32,6 +32,7 @@ scores::TruthObject object_of(const exchange::Label& label) {
   object.object_class = label.object_class;
   object.category = label.category;
   object.box_px = label.box_px;
+  object.area_px = label.area_px.value_or(label.box_px.area());
   object.range_m = label.range_m;
   object.above_horizon = label.above_horizon;
   return object;

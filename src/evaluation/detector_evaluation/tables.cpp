@@ -14,7 +14,6 @@ namespace {
 
 using report::Json;
 using report::json_of;
-using report::or_null;
 
 Json json_of(const std::optional<measures::PrecisionCurve>& curve,
              const std::optional<measures::PrecisionBand>& band) {
@@ -118,7 +117,7 @@ Json json_of(const scores::DetectionBin& bin) {
     json["name"] = bin.name;
   }
   json.update(json_of(bin.detection));
-  if (bin.weighted) json["weighted"] = json_of(*bin.weighted);
+  json["weighted"] = bin.weighted ? json_of(*bin.weighted) : Json();
   return json;
 }
 
@@ -312,8 +311,9 @@ Json json_of_detector(const scores::DetectorScore& detector, const scores::Asses
                {"tracks", tracks_json_of(detector, assessment)},
                {"strongest_false_alarms", Json::array()},
                {"misses", Json::array()}};
-  if (detector.point && detector.weighted_detection)
-    json["point"]["weighted_detection"] = json_of(*detector.weighted_detection);
+  if (detector.point)
+    json["point"]["weighted_detection"] =
+        detector.weighted_detection ? json_of(*detector.weighted_detection) : Json();
   for (const auto& [key, bins] : detector.by) {
     json["by"][key] = Json::array();
     for (const scores::DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));
@@ -507,7 +507,7 @@ void write_tables(const scores::Assessment& assessment, const std::filesystem::p
               {"version", kVersion},
               {"dataset", assessment.set},
               {"options", point_options_of(assessment)},
-              {"manoeuvre_s", report::or_null(assessment.manoeuvre_s)},
+              {"manoeuvre_s", or_null(assessment.manoeuvre_s)},
               {"volume", assessment.volume.empty() ? Json() : Json(assessment.volume)},
               {"weighted", assessment.is_weighted},
               {"left_out", assessment.left_out},

@@ -49,8 +49,8 @@ std::optional<double> likeness(const ScoredBox& detection,
   return overlap >= std::min(options.threshold, 1 - 1e-10) ? std::optional(overlap) : std::nullopt;
 }
 
-bool is_outside(const Box& box, const AreaRange& areas) {
-  return box.area() < areas.low_px || box.area() > areas.high_px;
+bool is_outside(double area_px, const AreaRange& areas) {
+  return area_px < areas.low_px || area_px > areas.high_px;
 }
 
 // The matching of cocoeval.py's evaluateImg.
@@ -60,7 +60,7 @@ class ImageMatcher {
       : image_(image), options_(options) {
     for (const LabelledBox& truth : image.truths)
       ignored_.push_back(truth.is_region || truth.is_ignored ||
-                         is_outside(truth.box_px, options.areas));
+                         is_outside(truth.area_px.value_or(truth.box_px.area()), options.areas));
     order_.resize(image.truths.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
@@ -86,7 +86,7 @@ class ImageMatcher {
       const auto truth = best_of(detection);
       if (truth) is_taken_[*truth] = true;
       const bool is_ignored =
-          truth ? ignored_[*truth] != 0 : is_outside(detection.box_px, options_.areas);
+          truth ? ignored_[*truth] != 0 : is_outside(detection.box_px.area(), options_.areas);
       if (!is_ignored) add(detection.score, truth.has_value());
     }
   }

@@ -31,6 +31,9 @@ struct LabelledBox {
   bool is_region = false;
   // Counts neither way, and is taken by one detection.
   bool is_ignored = false;
+  // By which an AreaRange selects it; empty: the area of its box. COCO's is that of the object's
+  // pixels.
+  std::optional<double> area_px;
 };
 struct ScoredBox {
   Box box_px;

@@ -62,6 +62,14 @@ TEST(AveragePrecision, AreasSelectTruthsAndUnmatchedDetections) {
   EXPECT_NEAR(ap_of(image), 0.5, 1e-9);
 }
 
+TEST(AveragePrecision, TheAreaOfATruthIsThatOfItsPixelsWhereTheyAreKnown) {
+  // The box of 40 x 40 is medium, its 900 pixels are small.
+  const Box medium{0, 0, 40, 40};
+  const ScoredImage image{{{medium, false, false, 900}}, {{medium, 0.5}}};
+  EXPECT_NEAR(ap_of(image, {Likeness::kOverlap, 0.5, kSmall}), 1, 1e-9);
+  EXPECT_NEAR(ap_of(image, {Likeness::kOverlap, 0.5, kMedium}), -1, 1e-9);
+}
+
 TEST(AveragePrecision, OnlyTheBestDetectionsAreTaken) {
   const ScoredImage image{{{kFirst}}, {{kNowhere, 0.9}, {kFirst, 0.8}}};
   EXPECT_NEAR(ap_of(image, {Likeness::kOverlap, 0.5, kAllAreas, 1}), 0, 1e-9);

@@ -49,13 +49,18 @@ void add_curves(const Box& truth, const std::optional<Box>& answer, Score& score
 }
 
 template <std::size_t n>
-double divided(std::array<double, n>& curve, double count) {
+void divide(std::array<double, n>& curve, double count) {
+  for (double& value : curve) value /= count;
+}
+
+template <std::size_t n>
+double mean_of_curve(const std::array<double, n>& curve) {
   double sum = 0;
-  for (double& value : curve) sum += value /= count;
+  for (const double value : curve) sum += value;
   return sum / n;
 }
 
-// Sums over the frames after the first, for the measures of the E-Vision paper.
+// Sums over the frames that have an error, for the measures of the E-Vision paper.
 struct Offsets {
   double x = 0, y = 0, xx = 0, yy = 0, distance = 0;
   double x_most = 0, y_most = 0;
@@ -84,45 +89,75 @@ struct Offsets {
   }
 };
 
+// Sums over the frames after the first that show the target, for GOT-10k's measures.
+struct Overlaps {
+  double sum = 0;
+  std::int64_t above_50 = 0;
+  std::int64_t above_75 = 0;
+  std::int64_t count = 0;
+
+  void add(double overlap) {
+    sum += overlap;
+    above_50 += overlap > 0.5 ? 1 : 0;
+    above_75 += overlap > 0.75 ? 1 : 0;
+    ++count;
+  }
+  void write(Score& score) const {
+    if (count == 0) return;
+    const double n = static_cast<double>(count);
+    score.average_overlap = sum / n;
+    score.success_50 = static_cast<double>(above_50) / n;
+    score.success_75 = static_cast<double>(above_75) / n;
+  }
+};
+
 void add_rates(std::span<const FramePair> frames, Score& score) {
   std::vector<double> rates;
   for (const FramePair& frame : frames.subspan(std::min<std::size_t>(1, frames.size())))
     if (frame.seconds > 0) rates.push_back(1 / frame.seconds);
   if (rates.empty()) return;
   score.frames_per_second_median = median_between(rates);
-  for (const double rate : rates) score.frames_per_second += rate / double(rates.size());
+  double sum = 0;
+  for (const double rate : rates) sum += rate / double(rates.size());
+  score.frames_per_second = sum;
+}
+
+void end_curves(double count, Score& score) {
+  if (count == 0) return;
+  divide(score.success, count);
+  divide(score.precision, count);
+  divide(score.normalised, count);
 }
 
 // Separates the measures that are averaged over sequences from those over the frames of all
 // sequences.
-constexpr double Score::*kOfSequences[] = {&Score::x_mean_px,
-                                           &Score::x_rmse_px,
-                                           &Score::x_most_px,
-                                           &Score::y_mean_px,
-                                           &Score::y_rmse_px,
-                                           &Score::y_most_px,
-                                           &Score::centre_mean_px,
-                                           &Score::auc,
-                                           &Score::precision_20px,
-                                           &Score::normalised_auc};
-constexpr double Score::*kOfFrames[] = {
+constexpr std::optional<double> Score::*kOfSequences[] = {&Score::x_mean_px,
+                                                          &Score::x_rmse_px,
+                                                          &Score::x_most_px,
+                                                          &Score::y_mean_px,
+                                                          &Score::y_rmse_px,
+                                                          &Score::y_most_px,
+                                                          &Score::centre_mean_px,
+                                                          &Score::auc,
+                                                          &Score::precision_20px,
+                                                          &Score::normalised_auc,
+                                                          &Score::frames_per_second,
+                                                          &Score::frames_per_second_median};
+constexpr std::optional<double> Score::*kOfFrames[] = {
     &Score::average_overlap, &Score::success_50, &Score::success_75};
 
-// Turns the sums over frames into means. The first frame counts for the curves alone.
-void divide_sums(std::int64_t after_first, Score& score) {
-  if (score.counted > 0) {
-    const double n = static_cast<double>(score.counted);
-    score.auc = divided(score.success, n);
-    divided(score.precision, n);
-    score.precision_20px = score.precision[20];
-    score.normalised_auc = divided(score.normalised, n);
+// The mean over the sequences that have the measure, each with the weight that `weight_of` gives.
+std::optional<double> weighted_mean(std::span<const Score> scores,
+                                    std::optional<double> Score::*member,
+                                    const auto& weight_of) {
+  double sum = 0;
+  double weights = 0;
+  for (const Score& score : scores) {
+    if (!(score.*member)) continue;
+    sum += *(score.*member) * weight_of(score);
+    weights += weight_of(score);
   }
-  if (after_first > 0) {
-    const double n = static_cast<double>(after_first);
-    score.average_overlap /= n;
-    score.success_50 /= n;
-    score.success_75 /= n;
-  }
+  return weights > 0 ? std::optional(sum / weights) : std::nullopt;
 }
 
 }  // namespace
@@ -131,65 +166,50 @@ Score score(std::span<const FramePair> frames, int width, int height) {
   Score score;
   score.frames = std::ssize(frames);
   Offsets offsets;
-  std::int64_t after_first = 0;
+  Overlaps overlaps;
   add_rates(frames, score);
-  std::optional<Box> last;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FramePair& frame = frames[i];
-    if (frame.answer) last = frame.answer;
     if (!frame.truth) continue;
     ++score.counted;
     add_curves(*frame.truth, i == 0 ? frame.truth : frame.answer, score);
     if (i == 0) continue;
-    ++after_first;
-    if (last) offsets.add(offset(*frame.truth, *last));
-    const double shared = frame.answer ? overlap(*cut(*frame.truth, width, height),
-                                                 *cut(*frame.answer, width, height))
-                                       : 0;
-    score.average_overlap += shared;
-    score.success_50 += shared > 0.5 ? 1 : 0;
-    score.success_75 += shared > 0.75 ? 1 : 0;
+    if (frame.answer) offsets.add(offset(*frame.truth, *frame.answer));
+    overlaps.add(frame.answer ? overlap(*cut(*frame.truth, width, height),
+                                        *cut(*frame.answer, width, height))
+                              : 0);
   }
   offsets.write(score);
-  divide_sums(after_first, score);
+  overlaps.write(score);
+  end_curves(static_cast<double>(score.counted), score);
+  if (score.counted == 0) return score;
+  score.auc = mean_of_curve(score.success);
+  score.precision_20px = score.precision[20];
+  score.normalised_auc = mean_of_curve(score.normalised);
   return score;
 }
 
 Score mean_of(std::span<const Score> scores) {
   Score mean;
   double n = 0;
-  double frames = 0;
-  double rates = 0;
   for (const Score& s : scores) {
     if (s.counted == 0) continue;
     mean.frames += s.frames;
     mean.counted += s.counted;
     n += 1;
-    // The first frame, which GOT-10k omits, always shows the target.
-    const double after_first = static_cast<double>(s.counted - 1);
-    frames += after_first;
-    for (const auto member : kOfSequences) mean.*member += s.*member;
-    for (const auto member : kOfFrames) mean.*member += s.*member * after_first;
     for (std::size_t k = 0; k < mean.success.size(); ++k) mean.success[k] += s.success[k];
     for (std::size_t k = 0; k < mean.precision.size(); ++k) {
       mean.precision[k] += s.precision[k];
       mean.normalised[k] += s.normalised[k];
     }
-    mean.frames_per_second += s.frames_per_second;
-    mean.frames_per_second_median += s.frames_per_second_median;
-    rates += s.frames_per_second > 0 ? 1 : 0;
   }
-  if (n == 0) return mean;
-  for (const auto member : kOfSequences) mean.*member /= n;
-  if (frames > 0)
-    for (const auto member : kOfFrames) mean.*member /= frames;
-  divided(mean.success, n);
-  divided(mean.precision, n);
-  divided(mean.normalised, n);
-  if (rates > 0) {
-    mean.frames_per_second /= rates;
-    mean.frames_per_second_median /= rates;
-  }
+  end_curves(n, mean);
+  for (const auto member : kOfSequences)
+    mean.*member = weighted_mean(scores, member, [](const Score&) { return 1.0; });
+  // The first frame, which GOT-10k omits, always shows the target.
+  for (const auto member : kOfFrames)
+    mean.*member = weighted_mean(
+        scores, member, [](const Score& s) { return static_cast<double>(s.counted - 1); });
   return mean;
 }
 

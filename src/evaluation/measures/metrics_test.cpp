@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,7 @@ TEST(Score, ExactAnswersGainNothingByRounding) {
   for (const auto& [width, height] : {std::pair(0, 0), std::pair(1280, 960)}) {
     const Score s = score(frames, width, height);
     EXPECT_EQ(s.success[20], 0);
-    EXPECT_DOUBLE_EQ(s.auc, 20.0 / 21);
+    EXPECT_DOUBLE_EQ(s.auc.value(), 20.0 / 21);
     EXPECT_EQ(s.average_overlap, 1);
   }
 }
@@ -55,12 +56,12 @@ TEST(Score, ExactAnswersGainNothingByRounding) {
 TEST(Score, PerfectTracking) {
   const Box box{10, 20, 30, 40};
   const Score s = score(std::vector<FramePair>(5, {box, box, 0.01}), 640, 480);
-  EXPECT_DOUBLE_EQ(s.auc, 20.0 / 21);
+  EXPECT_DOUBLE_EQ(s.auc.value(), 20.0 / 21);
   EXPECT_EQ(s.precision[0], 1);
   EXPECT_EQ(s.average_overlap, 1);
   EXPECT_EQ(s.success_75, 1);
   EXPECT_EQ(s.centre_mean_px, 0);
-  EXPECT_DOUBLE_EQ(s.frames_per_second, 100);
+  EXPECT_DOUBLE_EQ(s.frames_per_second.value(), 100);
 }
 
 TEST(Score, ByHand) {
@@ -75,21 +76,20 @@ TEST(Score, ByHand) {
   EXPECT_EQ(s.frames, 4);
   EXPECT_EQ(s.counted, 3);
   const double shared = 17.0 * 6 / (400 - 17 * 6);
-  EXPECT_DOUBLE_EQ(s.average_overlap, shared / 2);
+  EXPECT_DOUBLE_EQ(s.average_overlap.value(), shared / 2);
   EXPECT_DOUBLE_EQ(s.precision[4], 1.0 / 3);
   EXPECT_DOUBLE_EQ(s.precision[5], 2.0 / 3);
-  EXPECT_DOUBLE_EQ(s.precision_20px, 2.0 / 3);
-  // The frame without an answer counts with the last answer, which is that of the frame without a
-  // target.
-  EXPECT_DOUBLE_EQ(s.x_mean_px, 1.5);
-  EXPECT_DOUBLE_EQ(s.y_most_px, 4);
-  EXPECT_DOUBLE_EQ(s.centre_mean_px, 2.5);
-  EXPECT_DOUBLE_EQ(s.frames_per_second, (2 + 4 + 4) / 3.0);
+  EXPECT_DOUBLE_EQ(s.precision_20px.value(), 2.0 / 3);
+  // The frame without an answer has no centre error.
+  EXPECT_DOUBLE_EQ(s.x_mean_px.value(), 3);
+  EXPECT_DOUBLE_EQ(s.y_most_px.value(), 4);
+  EXPECT_DOUBLE_EQ(s.centre_mean_px.value(), 5);
+  EXPECT_DOUBLE_EQ(s.frames_per_second.value(), (2 + 4 + 4) / 3.0);
   // An overlap of 0.427 exceeds 9 of the thresholds (0 to 0.4). Each frame has a weight of a third,
   // and the first one reaches 20 thresholds.
   EXPECT_GT(shared, 0.34);
   EXPECT_LT(shared, 0.35);
-  EXPECT_DOUBLE_EQ(s.auc, (20 + 7) / 3.0 / 21);
+  EXPECT_DOUBLE_EQ(s.auc.value(), (20 + 7) / 3.0 / 21);
 }
 
 // The rates after the first frame are 2, 4 and 16 frames/s. The first frame's time is the start-up,
@@ -98,13 +98,34 @@ TEST(Score, MedianAndMeanOfTheRates) {
   const Box box{0, 0, 10, 10};
   std::vector<FramePair> frames;
   for (const double seconds : {9.0, 0.5, 0.0, 0.25, 0.0625}) frames.push_back({box, box, seconds});
-  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second, 22.0 / 3);
-  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median, 4);
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second.value(), 22.0 / 3);
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median.value(), 4);
   frames.push_back({box, box, 1e-6});
-  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median, 10);
+  EXPECT_DOUBLE_EQ(score(frames, 0, 0).frames_per_second_median.value(), 10);
   const std::vector<Score> scores = {score(frames, 0, 0), score({frames.data(), 1}, 0, 0)};
-  EXPECT_EQ(scores[1].frames_per_second_median, 0);
-  EXPECT_DOUBLE_EQ(mean_of(scores).frames_per_second_median, 10);
+  EXPECT_EQ(scores[1].frames_per_second_median, std::nullopt);
+  EXPECT_DOUBLE_EQ(mean_of(scores).frames_per_second_median.value(), 10);
+}
+
+TEST(Score, WhatNothingDefinesIsEmpty) {
+  const Box box{10, 20, 30, 40};
+  // The one frame of a sequence counts for OTB's curves alone.
+  const Score one = score(std::vector<FramePair>{{box, box, 0.1}}, 0, 0);
+  EXPECT_DOUBLE_EQ(one.auc.value(), 20.0 / 21);
+  EXPECT_EQ(one.average_overlap, std::nullopt);
+  EXPECT_EQ(one.success_50, std::nullopt);
+  EXPECT_EQ(one.centre_mean_px, std::nullopt);
+  EXPECT_EQ(one.frames_per_second, std::nullopt);
+  const Score lost = score(std::vector<FramePair>{{box, box, 0}, {box, std::nullopt, 0}}, 0, 0);
+  EXPECT_EQ(lost.average_overlap, 0);
+  EXPECT_EQ(lost.centre_mean_px, std::nullopt);
+  EXPECT_EQ(score({}, 0, 0).auc, std::nullopt);
+  EXPECT_EQ(mean_of({}).auc, std::nullopt);
+  // Means are over the sequences that have the measure.
+  const Score perfect = score(std::vector<FramePair>(3, {box, box, 0}), 0, 0);
+  const Score mean = mean_of(std::vector<Score>{one, lost, perfect});
+  EXPECT_DOUBLE_EQ(mean.average_overlap.value(), 2.0 / 3);
+  EXPECT_EQ(mean.centre_mean_px, 0);
 }
 
 TEST(Mean, WeighsSequencesForOtbAndFramesForGot) {
@@ -113,8 +134,8 @@ TEST(Mean, WeighsSequencesForOtbAndFramesForGot) {
   std::vector<FramePair> bad(11, {truth, Box{100, 100, 10, 10}, 0});
   const std::vector<Score> scores = {score(good, 0, 0), score(bad, 0, 0)};
   const Score mean = mean_of(scores);
-  EXPECT_DOUBLE_EQ(mean.auc, (20.0 / 21 + 20.0 / 21 / 11) / 2);
-  EXPECT_DOUBLE_EQ(mean.average_overlap, 2.0 / 12);
+  EXPECT_DOUBLE_EQ(mean.auc.value(), (20.0 / 21 + 20.0 / 21 / 11) / 2);
+  EXPECT_DOUBLE_EQ(mean.average_overlap.value(), 2.0 / 12);
   EXPECT_EQ(mean.counted, 14);
 }
 

@@ -8,25 +8,37 @@
 #include "evaluation/statistics/bins.h"
 
 namespace airtruth::measures {
+namespace {
+
+// The mean over the outcomes that have the value.
+std::optional<double> mean(std::span<const Outcome> outcomes,
+                           std::optional<double> Outcome::*member) {
+  double sum = 0;
+  std::int64_t count = 0;
+  for (const Outcome& outcome : outcomes) {
+    sum += (outcome.*member).value_or(0);
+    count += outcome.*member ? 1 : 0;
+  }
+  return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
+}
+
+}  // namespace
+
 std::vector<Outcome> outcomes(std::span<const evaluation::FramePair> frames,
                               const lens::Lens* lens) {
   std::vector<Outcome> result;
-  std::optional<Box> last;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const evaluation::FramePair& frame = frames[i];
-    if (frame.answer) last = frame.answer;
-    if (i == 0 && !last) last = frame.truth;
-    if (i == 0 || !frame.truth || !last) continue;
-    const Box& truth = *frame.truth;
-    Outcome outcome;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (!frames[i].truth) continue;
+    Outcome& outcome = result.emplace_back();
     outcome.frame = i;
-    outcome.overlap = frame.answer ? evaluation::overlap(truth, *frame.answer) : 0;
-    outcome.x_px = matching::centre_of(*last).x() - matching::centre_of(truth).x();
-    outcome.y_px = matching::centre_of(*last).y() - matching::centre_of(truth).y();
-    outcome.centre_px = std::hypot(outcome.x_px, outcome.y_px);
-    outcome.normalised = std::hypot(outcome.x_px / truth.width, outcome.y_px / truth.height);
-    if (lens != nullptr) outcome.angle_mrad = matching::angle_mrad(*lens, truth, *last);
-    result.push_back(outcome);
+    if (!frames[i].answer) continue;
+    const Box& truth = *frames[i].truth;
+    const Box& answer = *frames[i].answer;
+    const Pixel off = matching::centre_of(answer) - matching::centre_of(truth);
+    outcome.overlap = evaluation::overlap(truth, answer);
+    outcome.centre_px = off.norm();
+    outcome.normalised = std::hypot(off.x() / truth.width, off.y() / truth.height);
+    if (lens != nullptr) outcome.angle_mrad = matching::angle_mrad(*lens, truth, answer);
   }
   return result;
 }
@@ -36,22 +48,16 @@ Bin mean_of(std::span<const Outcome> outcomes) {
   bin.to = std::numeric_limits<double>::infinity();
   bin.frames = std::ssize(outcomes);
   if (outcomes.empty()) return bin;
-  double angles = 0;
-  std::int64_t with_angle = 0;
   for (const Outcome& o : outcomes) {
     bin.overlap += o.overlap;
     bin.success_50 += o.overlap > 0.5 ? 1 : 0;
-    bin.precision_20px += o.centre_px <= 20 ? 1 : 0;
-    bin.centre_px += o.centre_px;
-    bin.normalised += o.normalised;
-    angles += o.angle_mrad.value_or(0);
-    with_angle += o.angle_mrad ? 1 : 0;
+    bin.precision_20px += o.centre_px && *o.centre_px <= 20 ? 1 : 0;
   }
   const double n = static_cast<double>(outcomes.size());
-  for (double* value :
-       {&bin.overlap, &bin.success_50, &bin.precision_20px, &bin.centre_px, &bin.normalised})
-    *value /= n;
-  if (with_angle > 0) bin.angle_mrad = angles / static_cast<double>(with_angle);
+  for (double* value : {&bin.overlap, &bin.success_50, &bin.precision_20px}) *value /= n;
+  bin.centre_px = mean(outcomes, &Outcome::centre_px);
+  bin.normalised = mean(outcomes, &Outcome::normalised);
+  bin.angle_mrad = mean(outcomes, &Outcome::angle_mrad);
   return bin;
 }
 

@@ -20,22 +20,19 @@ struct Outcome {
   std::size_t frame = 0;
   // 0 where there is no answer.
   double overlap = 0;
-  // Errors of the latest answer up to this frame; before any answer, those of the first frame's
-  // box.
-  // Centre of the answer minus centre of the truth.
-  double x_px = 0, y_px = 0;
-  double centre_px = 0;
-  // Centre error divided by the truth's width and height.
-  double normalised = 0;
-  // Angle between the rays to the two centres; empty without a lens.
+  // Distance of the answer's centre from the truth's, and the same with X divided by the truth's
+  // width and Y by its height; empty where there is no answer.
+  std::optional<double> centre_px;
+  std::optional<double> normalised;
+  // Angle between the rays to the two centres; empty without an answer or a lens.
   std::optional<double> angle_mrad;
 };
 
-// The truth of the first pair serves as its answer. `lens` may be null.
+// `lens` may be null.
 std::vector<Outcome> outcomes(std::span<const evaluation::FramePair> frames,
                               const lens::Lens* lens);
 
-// Mean values of the outcomes in one bin.
+// Mean values of the outcomes in one bin; errors are those of the frames that have one.
 struct Bin {
   // Inclusive.
   double from = 0;
@@ -47,8 +44,8 @@ struct Bin {
   double success_50 = 0;
   // Share of frames with a centre error of at most 20 px.
   double precision_20px = 0;
-  double centre_px = 0;
-  double normalised = 0;
+  std::optional<double> centre_px;
+  std::optional<double> normalised;
   std::optional<double> angle_mrad;
 };
 

@@ -12,7 +12,7 @@ const Box kTruth{100, 100, 20, 10};
 // Its columns with kTruth: 10 are shared, of 30.
 const Box kHalf{110, 100, 20, 10};
 
-TEST(Outcomes, AreOfTheLastAnswerThereWas) {
+TEST(Outcomes, AreOfFramesThatShowTheTarget) {
   const std::vector<evaluation::FramePair> pairs = {{kTruth, kTruth, 0},
                                                     {kTruth, kHalf, 0},
                                                     {std::nullopt, kTruth, 0},
@@ -20,8 +20,8 @@ TEST(Outcomes, AreOfTheLastAnswerThereWas) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(60, {640, 480});
   const auto all = outcomes(pairs, &lens);
   ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0].x_px, 10);
-  EXPECT_DOUBLE_EQ(all[0].normalised, 0.5);
+  EXPECT_EQ(all[0].centre_px, 10);
+  EXPECT_DOUBLE_EQ(all[0].normalised.value(), 0.5);
   EXPECT_DOUBLE_EQ(all[0].overlap, 1.0 / 3);
   // The angle between the rays through x = 110 and 120 (y = 105), by the law of cosines.
   const double f = 240 / std::tan(std::acos(-1.0) / 6);
@@ -30,8 +30,13 @@ TEST(Outcomes, AreOfTheLastAnswerThereWas) {
   EXPECT_NEAR(all[0].angle_mrad.value(), 1000 * std::acos(a.dot(b) / (a.norm() * b.norm())), 1e-5);
   EXPECT_EQ(all[1].frame, 3u);
   EXPECT_EQ(all[1].overlap, 0);
-  // The latest answer is the one while the target was not visible.
-  EXPECT_EQ(all[1].centre_px, 0);
+  // A lost frame has no centre error. The answer of the frame without the target is not its own.
+  EXPECT_EQ(all[1].centre_px, std::nullopt);
+  EXPECT_EQ(all[1].angle_mrad, std::nullopt);
+  const Bin mean = mean_of(all);
+  EXPECT_EQ(mean.centre_px, 10);
+  EXPECT_EQ(mean.precision_20px, 0.5);
+  EXPECT_EQ(mean_of(std::span(all).last(1)).centre_px, std::nullopt);
 }
 
 TEST(Breakdown, SortsIntoItsBins) {

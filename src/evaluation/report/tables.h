@@ -11,17 +11,14 @@
 #include <airtruth/statistics.h>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json/or_null.h"
+
 // What the tables of trackers and of detectors have in common: values of JSON, tables of CSV whose
 // cells are such values, and the files.
 namespace airtruth::report {
 
 using Json = nlohmann::ordered_json;
 
-// The value, or null where there is none.
-template <typename T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
 // [low, high], or null.
 Json json_of(const std::optional<evaluation::Interval>& interval);
 // The upper end of a bin; null for the last one, which has none.

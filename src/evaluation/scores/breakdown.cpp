@@ -74,7 +74,7 @@ const std::vector<Quantity>& quantities() {
       {"area_px",
        "pixels on target",
        {0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000},
-       [](Object object) { return Value(object.area_px()); }},
+       [](Object object) { return Value(object.area_px); }},
       {"contrast_to_noise",
        "contrast to noise",
        {0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64},

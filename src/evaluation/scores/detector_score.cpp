@@ -77,7 +77,8 @@ std::vector<measures::ScoredImage> images_of(const TruthSequence& truth,
   std::vector<measures::ScoredImage> images(scored.matches.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
     for (const TruthObject& object : truth.frames[i].objects)
-      if (object.is_aircraft()) images[i].truths.push_back({object.box_px, !object.counts, false});
+      if (object.is_aircraft())
+        images[i].truths.push_back({object.box_px, !object.counts, false, object.area_px});
     for (const Box& region : truth.frames[i].ignored_px)
       images[i].truths.push_back({region, true, false});
     for (const results::Detection& detection : scored.detections.frames[i])

@@ -27,6 +27,8 @@ struct TruthObject {
   // Type of the aircraft.
   std::string category;
   Box box_px;
+  // Area of its pixels where the set states it, else of its box (exchange::Label::area_px).
+  double area_px = 0;
   // False for an aircraft that is neither missed nor found: one that is in the picture, but too
   // faint to have a covered box. Detections on it count neither way.
   bool counts = true;
@@ -42,9 +44,8 @@ struct TruthObject {
   std::optional<double> to_closest_approach_s;
 
   bool is_aircraft() const { return object_class == "aircraft"; }
-  // The longer side of the box, and its area.
+  // The longer side of the box.
   double size_px() const { return box_px.width > box_px.height ? box_px.width : box_px.height; }
-  double area_px() const { return box_px.area(); }
 };
 
 struct TruthFrame {

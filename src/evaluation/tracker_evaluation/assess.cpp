@@ -164,8 +164,8 @@ class Scoring {
       std::vector<double> values;
       std::vector<double> weights;
       for (const Score& score : scores) {
-        if (score.counted == 0 || (measure.zero_is_unknown && score.*measure.value == 0)) continue;
-        values.push_back(score.*measure.value);
+        if (!(score.*measure.value)) continue;
+        values.push_back(*(score.*measure.value));
         if (measure.weighs_by_frames) weights.push_back(static_cast<double>(score.counted - 1));
       }
       tracker.intervals[measure.name] = evaluation::bootstrap_mean(values, weights);
@@ -208,8 +208,8 @@ TrackerPair compared(const ScoredTracker& a, const ScoredTracker& b) {
   for (const ScoredSequence& mine : a.sequences)
     for (const ScoredSequence& other : b.sequences)
       if (mine.truth == other.truth && mine.score && other.score) {
-        of_a.push_back(mine.score->auc);
-        of_b.push_back(other.score->auc);
+        of_a.push_back(*mine.score->auc);
+        of_b.push_back(*other.score->auc);
       }
   comparison.sequences = std::ssize(of_a);
   comparison.auc = evaluation::paired(of_a, of_b);
@@ -301,8 +301,8 @@ const std::vector<Measure>& measures() {
       {"y_mean_px", &Score::y_mean_px, false, false},
       {"y_rmse_px", &Score::y_rmse_px, false, false},
       {"y_most_px", &Score::y_most_px, false, false},
-      {"frames_per_second", &Score::frames_per_second, true, false, true},
-      {"frames_per_second_median", &Score::frames_per_second_median, true, false, true}};
+      {"frames_per_second", &Score::frames_per_second, true, false},
+      {"frames_per_second_median", &Score::frames_per_second_median, true, false}};
   return all;
 }
 
@@ -331,7 +331,8 @@ Assessment assess(const fs::path& set,
   std::stable_sort(assessment.trackers.begin(),
                    assessment.trackers.end(),
                    [](const ScoredTracker& a, const ScoredTracker& b) {
-                     return (a.overall ? a.overall->auc : -1) > (b.overall ? b.overall->auc : -1);
+                     return (a.overall ? a.overall->auc : std::nullopt) >
+                            (b.overall ? b.overall->auc : std::nullopt);
                    });
   for (std::size_t i = 0; i < assessment.trackers.size(); ++i)
     for (std::size_t j = i + 1; j < assessment.trackers.size(); ++j)
@@ -352,7 +353,7 @@ Agreement agreement(const Assessment& assessment, const fs::path& other) {
     for (const JsonObject& that : trackers)
       if (tracker.overall && that.text("name") == tracker.name && that.has("overall")) {
         result.trackers.push_back(tracker.name);
-        mine.push_back(tracker.overall->auc);
+        mine.push_back(*tracker.overall->auc);
         theirs.push_back(that.object("overall").number("auc"));
       }
   result.tau = evaluation::kendall_tau(mine, theirs);

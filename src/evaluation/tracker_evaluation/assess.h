@@ -25,12 +25,10 @@ namespace fs = std::filesystem;
 // One number of a sequence's score, by which trackers are compared and ranked, with an interval.
 struct Measure {
   const char* name;
-  double evaluation::Score::*value;
+  std::optional<double> evaluation::Score::*value;
   bool more_is_better;
   // Sequences are weighted by their frames, as for GOT-10k's measures.
   bool weighs_by_frames;
-  // A value of 0 means unknown; such sequences are left out.
-  bool zero_is_unknown = false;
 };
 const std::vector<Measure>& measures();
 

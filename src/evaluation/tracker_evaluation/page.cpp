@@ -159,7 +159,7 @@ Plot ranking_plot(const Assessment& assessment) {
   std::vector<report::Ranked> trackers;
   for (const ScoredTracker& tracker : assessment.trackers)
     if (tracker.overall)
-      trackers.push_back({tracker.name, tracker.overall->auc, tracker.intervals.at("auc")});
+      trackers.push_back({tracker.name, *tracker.overall->auc, tracker.intervals.at("auc")});
   return report::ranking_plot("AUC", trackers);
 }
 

@@ -12,17 +12,20 @@ namespace {
 using evaluation::Score;
 using measures::Bin;
 using report::Json;
-using report::or_null;
 
 // The format of numbers in CSV: all their digits.
 constexpr const char* kNumber = "{}";
 
-Json json_of(const Score& score) {
-  Json json = {{"frames", score.frames}, {"frames_with_target", score.counted}};
-  for (const Measure& measure : measures()) json[measure.name] = score.*measure.value;
-  json["success"] = score.success;
-  json["precision"] = score.precision;
-  json["normalised_precision"] = score.normalised;
+// All values are null without a score.
+Json json_of(const std::optional<Score>& score) {
+  const auto of = [&](const auto& value) { return score ? Json(value(*score)) : Json(); };
+  Json json = {{"frames", of([](const Score& s) { return s.frames; })},
+               {"frames_with_target", of([](const Score& s) { return s.counted; })}};
+  for (const Measure& measure : measures())
+    json[measure.name] = of([&](const Score& s) { return or_null(s.*measure.value); });
+  json["success"] = of([](const Score& s) { return s.success; });
+  json["precision"] = of([](const Score& s) { return s.precision; });
+  json["normalised_precision"] = of([](const Score& s) { return s.normalised; });
   return json;
 }
 
@@ -46,8 +49,8 @@ Json json_of(const Bin& bin) {
           {"overlap", bin.overlap},
           {"success_50", bin.success_50},
           {"precision_20px", bin.precision_20px},
-          {"centre_px", bin.centre_px},
-          {"normalised", bin.normalised},
+          {"centre_px", or_null(bin.centre_px)},
+          {"normalised", or_null(bin.normalised)},
           {"angle_mrad", or_null(bin.angle_mrad)}};
 }
 
@@ -71,6 +74,15 @@ Json breakdown_of(const ScoredTracker& tracker) {
   for (const auto& [name, bin] : tracker.backgrounds) backgrounds[name] = json_of(bin);
   json["background"] = backgrounds;
   return json;
+}
+
+Json overall_of(const ScoredTracker& tracker) {
+  Json overall = json_of(tracker.overall);
+  overall["angle_mrad"] = or_null(tracker.angle_mrad);
+  overall["sequences_lost"] = tracker.lost;
+  for (const Measure& measure : measures())
+    overall["intervals_95"][measure.name] = report::json_of(tracker.intervals.at(measure.name));
+  return overall;
 }
 
 // The columns of a score that lies at a place.
@@ -131,32 +143,20 @@ std::string breakdown_csv(const Assessment& assessment) {
 
 Json json_of(const ScoredSequence& sequence) {
   Json json = {{"name", sequence.name}};
-  if (sequence.score) {
-    json.update(json_of(*sequence.score));
-    json["angle_mrad"] = or_null(measures::mean_of(sequence.outcomes).angle_mrad);
-    json["first_loss"] = sequence.loss ? json_of(*sequence.loss) : Json();
-  }
-  if (sequence.restart) json["restart"] = json_of(*sequence.restart);
-  if (sequence.multistart) json["multistart"] = json_of(*sequence.multistart);
+  json.update(json_of(sequence.score));
+  json["angle_mrad"] = or_null(measures::mean_of(sequence.outcomes).angle_mrad);
+  json["first_loss"] = sequence.loss ? json_of(*sequence.loss) : Json();
+  json["restart"] = sequence.restart ? json_of(*sequence.restart) : Json();
+  json["multistart"] = sequence.multistart ? json_of(*sequence.multistart) : Json();
   return json;
 }
 
 Json json_of(const ScoredTracker& tracker) {
-  Json json = {{"name", tracker.name}};
-  if (tracker.overall) {
-    Json overall = json_of(*tracker.overall);
-    overall["angle_mrad"] = or_null(tracker.angle_mrad);
-    overall["sequences_lost"] = tracker.lost;
-    Json intervals = Json::object();
-    for (const Measure& measure : measures())
-      intervals[measure.name] = report::json_of(tracker.intervals.at(measure.name));
-    overall["intervals_95"] = intervals;
-    json["overall"] = overall;
-    json["breakdown"] = breakdown_of(tracker);
-  }
-  if (tracker.restart) json["restart"] = json_of(*tracker.restart);
-  if (tracker.multistart) json["multistart"] = json_of(*tracker.multistart);
-  return json;
+  return {{"name", tracker.name},
+          {"overall", tracker.overall ? overall_of(tracker) : Json()},
+          {"breakdown", tracker.overall ? breakdown_of(tracker) : Json()},
+          {"restart", tracker.restart ? json_of(*tracker.restart) : Json()},
+          {"multistart", tracker.multistart ? json_of(*tracker.multistart) : Json()}};
 }
 
 Json json_of(const TrackerPair& c) {

@@ -278,6 +278,8 @@ std::optional<std::string> fault(const Intruder& i) {
     return fmt::format("is {} and has a covered_box_px", enum_name(i.state));
   if (i.covered_box_px && (i.covered_box_px->width <= 0 || i.covered_box_px->height <= 0))
     return "has an empty covered_box_px";
+  if (i.covered_area_px && !(i.covered_box_px && *i.covered_area_px > 0))
+    return "has a covered_area_px and no covered pixel";
   if (i.visible_box_px && (i.visible_box_px->width <= 0 || i.visible_box_px->height <= 0))
     return "has an empty visible_box_px";
   if (i.exact_box_px && (i.exact_box_px->width < 0 || i.exact_box_px->height < 0))
@@ -340,7 +342,7 @@ OrderedJson json(const Homography& h) {
 OrderedJson json(const EncounterTruth& truth);
 
 // Adds the values of members to an object: visit of truth_fields.h. An optional member that is
-// empty is left out.
+// empty is null.
 struct Writing {
   OrderedJson& object;
 
@@ -350,7 +352,7 @@ struct Writing {
   }
   template <typename T>
   void operator()(const char* key, const std::optional<T>& value) const {
-    if (value) object[key] = json(*value);
+    object[key] = value ? json(*value) : OrderedJson();
   }
 };
 
@@ -401,10 +403,8 @@ std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
       {"attitude_yaw_pitch_roll_deg", json(frame.camera_attitude_yaw_pitch_roll_deg)}};
   object["motion"] = {{"state", frame.motion_state},
                       {"frame_from_reference", json(frame.shake.frame_from_reference)}};
-  if (frame.shake.rotation) {
-    const Quaternion& q = *frame.shake.rotation;
-    object["motion"]["rotation"] = {q.w(), q.x(), q.y(), q.z()};
-  }
+  const auto& q = frame.shake.rotation;
+  object["motion"]["rotation"] = q ? OrderedJson{q->w(), q->x(), q->y(), q->z()} : OrderedJson();
   if (!frame.shake.rate_radps.isZero(0))
     object["motion"]["rate_radps"] = json(frame.shake.rate_radps);
   if (!frame.shake.frame_from_reference_per_s.isZero(0))

@@ -83,6 +83,8 @@ struct Intruder {
   // sharpening, noise and the codec on the samples do not count. Present only where the state is
   // kVisible; empty where no pixel reaches that alpha.
   std::optional<PixelBox> covered_box_px;
+  // Number of those pixels; empty without that box, and in older files.
+  std::optional<std::int64_t> covered_area_px;
   // Bounds of the pixels that changed; present exactly where the state is kVisible.
   std::optional<PixelBox> visible_box_px;
   // Number of pixels that changed.

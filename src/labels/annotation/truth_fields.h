@@ -42,6 +42,7 @@ void each_field(const Visit& visit, Intruders&... of) {
   visit("encounter", of.encounter...);
   visit("exact_box_px", of.exact_box_px...);
   visit("covered_box_px", of.covered_box_px...);
+  visit("covered_area_px", of.covered_area_px...);
   visit("visible_box_px", of.visible_box_px...);
   visit("visible_area_px", of.visible_area_px...);
   visit("alpha_sum_px", of.alpha_sum_px...);

@@ -38,6 +38,7 @@ Intruder visible_intruder() {
   intruder.nominal_azimuth_deg = -53;
   intruder.nominal_elevation_deg = 10.1;
   intruder.covered_box_px = PixelBox{10, 340, 30, 9};
+  intruder.covered_area_px = 170;
   intruder.visible_box_px = PixelBox{10, 339, 31, 10};
   intruder.visible_area_px = 120;
   intruder.alpha_sum_px = 77.5;
@@ -87,7 +88,7 @@ TEST(Truth, ALineHoldsWhatTheFrameHolds) {
   EXPECT_EQ(json["intruders"][0]["state"], "visible");
   EXPECT_EQ(json["intruders"][0]["exact_box_px"], Json::parse("[10.25, 339.5, 30.125, 9]"));
   EXPECT_EQ(json["intruders"][0]["visible_box_px"], Json::parse("[10, 339, 31, 10]"));
-  EXPECT_FALSE(json["intruders"][1].contains("range_m"));
+  EXPECT_TRUE(json["intruders"][1].at("range_m").is_null());
 }
 
 TEST(Truth, ALineBeginsAsDocumentedAndHasNoNewline) {
@@ -135,6 +136,7 @@ TEST(Truth, InconsistentTruthIsOurMistake) {
   refused([](Frame& f) { f.intruders[0].elevation_deg.reset(); });
   refused([](Frame& f) { f.intruders[0].nominal_elevation_deg.reset(); });
   refused([](Frame& f) { f.intruders[0].covered_box_px->width = 0; });
+  refused([](Frame& f) { f.intruders[0].covered_area_px = 0; });
   refused([](Frame& f) {
     f.intruders[0].state = State::kHidden;
     f.intruders[0].visible_box_px.reset();
@@ -192,6 +194,7 @@ TEST(Truth, TheOneBearingOfAnOlderFileIsReadAsWhatItWas) {
     json["intruders"][0].erase("nominal_azimuth_deg");
     json["intruders"][0].erase("nominal_elevation_deg");
     json["intruders"][0].erase("covered_box_px");
+    json["intruders"][0].erase("covered_area_px");
     change(json);
     return parse_jsonl_line(json.dump(), "truth.jsonl", 1).intruders[0];
   };
@@ -251,14 +254,21 @@ class Schema {
     if (type == "string") return value.is_string();
     if (type == "boolean") return value.is_boolean();
     if (type == "integer") return value.is_number_integer();
+    if (type == "null") return value.is_null();
     return type == "number" && value.is_number();
+  }
+  static bool has_any_type(const Json& value, const Json& types) {
+    if (types.is_string()) return has_type(value, types);
+    return std::any_of(
+        types.begin(), types.end(), [&](const Json& type) { return has_type(value, type); });
   }
   std::string fault(const Json& schema, const Json& value, const std::string& at) const {
     if (schema.contains("$ref")) {
       const std::string pointer = schema["$ref"].get<std::string>().substr(1);
       return fault(root_.at(Json::json_pointer(pointer)), value, at);
     }
-    if (schema.contains("type") && !has_type(value, schema["type"])) return at + ": type";
+    if (schema.contains("type") && !has_any_type(value, schema["type"])) return at + ": type";
+    if (value.is_null()) return "";
     if (schema.contains("enum") && schema["enum"].get<std::set<Json>>().count(value) == 0)
       return at + ": enum";
     if (schema.contains("minimum") && value < schema["minimum"]) return at + ": minimum";

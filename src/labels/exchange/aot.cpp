@@ -154,7 +154,9 @@ class AotWriter : public Writer {
       const Box& b = label.box_px;
       entity["id"] = fmt::format("{}{}", kind, label.track);
       entity["bb"] = {b.x, b.y, b.width, b.height};
-      if (label.range_m) entity["blob"]["range_distance_m"] = *label.range_m;
+      // A range marks an object as planned to the metrics, which ask it of their encounters.
+      if (label.range_m && annotation::is_aircraft(label.object_class))
+        entity["blob"]["range_distance_m"] = *label.range_m;
       entity["blob"]["category"] = label.category;
       const int above = label.above_horizon ? (*label.above_horizon ? 1 : -1) : 0;
       entity["labels"] = {{"is_above_horizon", above}};

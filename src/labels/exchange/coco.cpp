@@ -147,6 +147,9 @@ class CocoReader {
       return std::nullopt;
     }
     label.box_px = *box;
+    // Where the object's pixels are unknown, writers put the area of the box.
+    const auto area_px = annotation.maybe_number("area");
+    if (area_px && *area_px != box->area()) label.area_px = area_px;
     if (!is_in_picture(*box, picture.width, picture.height)) {
       left_out_.add(kOutside, annotation.place());
       return std::nullopt;
@@ -334,7 +337,7 @@ class CocoWriter : public FolderWriter {
                    {"category_id", class_of(label.category) + 1},
                    {"track_id", label.track},
                    {"bbox", {b.x, b.y, b.width, b.height}},
-                   {"area", label.mask ? double(label.mask->area_px) : b.area()},
+                   {"area", label.area_px.value_or(b.area())},
                    {"segmentation", segmentation_of(label)},
                    {"iscrowd", 0}};
       put_known(json, label, "visibility");

@@ -38,7 +38,7 @@ constexpr std::array<About, 11> kAll = {{
      "COCO, with videos and tracks",
      read_coco,
      coco_writer,
-     "box, class, track, frame and time; visibility, occluded, truncated, range_m and "
+     "box, class, track, area, frame and time; visibility, occluded, truncated, range_m and "
      "above_horizon "
      "as further keys, which COCO's readers pass over",
      ""},
@@ -82,7 +82,9 @@ constexpr std::array<About, 11> kAll = {{
      "key "
      "of `blob`",
      "visibility, occlusion, truncation; the id of every aircraft is an `Airplane`, that of a "
-     "bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; what is on the lens"},
+     "bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; the range of what is "
+     "no "
+     "aircraft (a range marks an aircraft as planned); what is on the lens"},
     {Format::kOtb,
      "otb",
      "OTB",

@@ -11,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
+#include "foundation/json/or_null.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/python_json.h"
 
@@ -43,7 +44,12 @@ Json json_of(const Label& label) {
                {"category", label.category},
                {"box_px", {b.x, b.y, b.width, b.height}}};
   if (!annotation::is_aircraft(label.object_class)) json["class"] = label.object_class;
-  put_known(json, label, "visible");
+  json["visible"] = or_null(label.visible);
+  json["occluded"] = or_null(label.occluded);
+  json["truncated"] = or_null(label.truncated);
+  json["range_m"] = or_null(label.range_m);
+  json["above_horizon"] = or_null(label.above_horizon);
+  json["area_px"] = or_null(label.area_px);
   return json;
 }
 
@@ -57,6 +63,7 @@ Label label_of(const JsonObject& json) {
   if (!annotation::is_object_class(label.object_class) && label.object_class != kIgnore)
     json.fail("class", "aircraft, bird, multirotor, balloon, glint, dirt, insect or ignore");
   get_known(json, label, "visible");
+  label.area_px = json.maybe_number("area_px");
   return label;
 }
 
@@ -92,18 +99,18 @@ std::string text_of(const Json& json) {
 
 std::string labels_jsonl(const Clip& clip) {
   Json head = {{"format", kFormat}, {"name", clip.name}};
-  if (!clip.media.empty()) head["media"] = clip.media.string();
-  if (clip.width > 0) head["width"] = clip.width;
-  if (clip.height > 0) head["height"] = clip.height;
-  put(head, "frame_rate_hz", clip.frame_rate_hz);
+  head["media"] = clip.media.empty() ? Json() : Json(clip.media.string());
+  head["width"] = clip.width > 0 ? Json(clip.width) : Json();
+  head["height"] = clip.height > 0 ? Json(clip.height) : Json();
+  head["frame_rate_hz"] = or_null(clip.frame_rate_hz);
   for (const auto& [id, name] : clip.category_ids)
     head["category_ids"].push_back({{"id", id}, {"name", name}});
   std::string text = text_of(head);
   for (const LabelledFrame& frame : clip.frames) {
     Json json = {{"frame", frame.frame}};
-    put(json, "time_s", frame.time_s);
-    if (!frame.picture.empty()) json["picture"] = frame.picture;
-    put(json, "image_id", frame.image_id);
+    json["time_s"] = or_null(frame.time_s);
+    json["picture"] = frame.picture.empty() ? Json() : Json(frame.picture);
+    json["image_id"] = or_null(frame.image_id);
     json["labels"] = Json::array();
     for (const Label& label : frame.labels) json["labels"].push_back(json_of(label));
     text += text_of(json);

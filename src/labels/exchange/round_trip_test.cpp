@@ -57,6 +57,7 @@ class Draw {
         label.truncated = often(0.3);
         label.range_m = number(10, 3000);
         label.above_horizon = often(0.5);
+        label.area_px = number(0.3, 0.9) * label.box_px.area();
         frame.labels.push_back(label);
       }
       clip.frames.push_back(frame);
@@ -88,6 +89,7 @@ Clip held(Format format, Clip clip) {
         label.box_px = {
             double(pixels.x), double(pixels.y), double(pixels.width), double(pixels.height)};
       }
+      if (format != Format::kCoco) label.area_px.reset();
       if (is_single_object(format)) label.track = 1;
       if (format == Format::kOtb) label.category = "aircraft";
       if (format != Format::kCoco && format != Format::kMot && format != Format::kCvat &&
@@ -143,6 +145,7 @@ void expect_same(const Clip& read, const Clip& expected) {
       EXPECT_EQ(a.occluded, b.occluded);
       EXPECT_EQ(a.truncated, b.truncated);
       expect_near(a.range_m, b.range_m, 1e-12);
+      expect_near(a.area_px, b.area_px, 1e-9);
       EXPECT_EQ(a.above_horizon, b.above_horizon);
     }
   }

@@ -118,7 +118,7 @@ TEST(Codec, ReplacesWhatIsHiddenAndShiftsWhatIsNotAndLeavesTheOtherBlocksAlone) 
       }
     EXPECT_EQ(seen.box, block);
     EXPECT_EQ(seen.pixels, 64);
-    EXPECT_EQ(seen.covered, solid);
+    EXPECT_EQ(seen.covered, (Covered{solid, 12}));
     if (chroma == image::Chroma::kNone) continue;
     const int log2 = image::log2_chroma_width(chroma);
     // The layer hides the sample's whole block.

@@ -36,25 +36,28 @@ AlphaMask alpha_mask(const image::Layer& layer,
   return mask;
 }
 
-std::optional<PixelBox> covered_box(const AlphaMask& mask) {
+std::optional<Covered> covered(const AlphaMask& mask) {
   int left = mask.patch.width, right = -1, top = mask.patch.height, bottom = -1;
   std::size_t i = 0;
+  std::int64_t area_px = 0;
   for (int y = 0; y < mask.patch.height; ++y)
     for (int x = 0; x < mask.patch.width; ++x, ++i) {
       if (mask.alpha[i] < kCoveredAlpha) continue;
+      ++area_px;
       left = std::min(left, x);
       right = std::max(right, x);
       top = std::min(top, y);
       bottom = y;
     }
   if (right < 0) return std::nullopt;
-  return PixelBox{mask.patch.x + left, mask.patch.y + top, right - left + 1, bottom - top + 1};
+  return Covered{{mask.patch.x + left, mask.patch.y + top, right - left + 1, bottom - top + 1},
+                 area_px};
 }
 
-std::optional<PixelBox> covered_box(const image::Layer& layer,
-                                    std::size_t intruder,
-                                    const image::Mask* own_aircraft) {
-  return covered_box(alpha_mask(layer, intruder, own_aircraft));
+std::optional<Covered> covered(const image::Layer& layer,
+                               std::size_t intruder,
+                               const image::Mask* own_aircraft) {
+  return covered(alpha_mask(layer, intruder, own_aircraft));
 }
 
 void find_free_area(image::Layer& layer, const image::Mask& own_aircraft) {

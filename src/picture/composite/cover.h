@@ -36,11 +36,18 @@ AlphaMask alpha_mask(const image::Layer& layer,
                      std::size_t intruder,
                      const image::Mask* own_aircraft);
 
-// The bounds of the pixels with kCoveredAlpha or more; empty where there are none.
-std::optional<PixelBox> covered_box(const AlphaMask& mask);
-std::optional<PixelBox> covered_box(const image::Layer& layer,
-                                    std::size_t intruder,
-                                    const image::Mask* own_aircraft);
+// The pixels with kCoveredAlpha or more: their bounds and their number.
+struct Covered {
+  PixelBox box;
+  std::int64_t area_px = 0;
+  bool operator==(const Covered&) const = default;
+};
+
+// Empty where there are none.
+std::optional<Covered> covered(const AlphaMask& mask);
+std::optional<Covered> covered(const image::Layer& layer,
+                               std::size_t intruder,
+                               const image::Mask* own_aircraft);
 
 // Removes the area behind the own aircraft from layer.area_free_px. Call it before the layer's
 // point spread.

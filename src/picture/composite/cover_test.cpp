@@ -73,22 +73,22 @@ TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
       for (const double shift : {0.0, 0.25, 0.5, 0.9}) {
         const Box box{30 + shift, 25 + 0.7 * shift, width, 0.4 * width + 0.5};
         const image::Layer layer = spread(rectangle(box), sigma, 0, kCoverWidth, kCoverHeight);
-        const auto covered = covered_box(layer, 0, nullptr);
+        const auto found = covered(layer, 0, nullptr);
         const double effective = sigma > 0 ? std::sqrt(sigma * sigma + 1.0 / 12) : 0;
         const auto most = bounds_in_closed_form(box, effective, kAlpha - kOff);
         const auto least = bounds_in_closed_form(box, effective, kAlpha + kOff);
         SCOPED_TRACE(testing::Message() << sigma << ' ' << width << ' ' << shift);
         if (!most) {
-          EXPECT_FALSE(covered);
+          EXPECT_FALSE(found);
           continue;
         }
         if (least) {
-          ASSERT_TRUE(covered);
-          EXPECT_EQ(bounds(*covered, *least), *covered);
+          ASSERT_TRUE(found);
+          EXPECT_EQ(bounds(found->box, *least), found->box);
           ++compared;
         }
-        if (covered) {
-          EXPECT_EQ(bounds(*most, *covered), *most);
+        if (found) {
+          EXPECT_EQ(bounds(*most, found->box), *most);
         }
       }
   EXPECT_GT(compared, 50);
@@ -102,9 +102,13 @@ TEST(Cover, TheMaskHoldsTheSumAndTheBoxOfTheCoverage) {
   int pixels = 0;
   for (const std::uint8_t a : mask.alpha) sum += a / 255.0, pixels += a > 0 ? 1 : 0;
   EXPECT_NEAR(sum, 17 * 5, pixels * 0.5 / 255);
-  EXPECT_EQ(covered_box(mask), covered_box(layer, 0, nullptr));
+  const auto found = covered(mask);
+  EXPECT_EQ(found, covered(layer, 0, nullptr));
+  EXPECT_EQ(found->area_px, std::count_if(mask.alpha.begin(), mask.alpha.end(), [](std::uint8_t a) {
+              return a >= kCoveredAlpha;
+            }));
   EXPECT_TRUE(alpha_mask(layer, 1, nullptr).empty());
-  EXPECT_FALSE(covered_box(AlphaMask{}));
+  EXPECT_FALSE(covered(AlphaMask{}));
 }
 
 TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
@@ -118,12 +122,12 @@ TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
   EXPECT_NEAR(sharp.area_seen_px[0], 20 * 10, 1e-9);
   const image::Layer layer = spread(sharp, 1, 0, kCoverWidth, kCoverHeight);
   EXPECT_NEAR(layer.area_free_px[0], 15 * 10, 1e-3);
-  const auto covered = covered_box(layer, 0, &own);
-  ASSERT_TRUE(covered);
-  EXPECT_EQ(covered->x, 30);
+  const auto found = covered(layer, 0, &own);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->box.x, 30);
   // The first pixel beyond the edge at 45 has 0.31, the next 0.07.
-  EXPECT_EQ(covered->right(), 46);
-  EXPECT_TRUE(covered_box(layer, 0, nullptr)->x < 25);
+  EXPECT_EQ(found->box.right(), 46);
+  EXPECT_TRUE(covered(layer, 0, nullptr)->box.x < 25);
 }
 
 // The documented alpha: 20 of 255.
@@ -133,8 +137,8 @@ TEST(Cover, IsCoveredFromTheStatedAlphaOn) {
   EXPECT_EQ(alpha_code(0.076F), 19);
   EXPECT_EQ(alpha_code(1.5F), 255);
   EXPECT_EQ(alpha_code(-1), 0);
-  EXPECT_FALSE(covered_box(rectangle({10, 10, 0.3, 0.25}), 0, nullptr));
-  EXPECT_EQ(covered_box(rectangle({10, 10, 0.3, 0.3}), 0, nullptr), (PixelBox{10, 10, 1, 1}));
+  EXPECT_FALSE(covered(rectangle({10, 10, 0.3, 0.25}), 0, nullptr));
+  EXPECT_EQ(covered(rectangle({10, 10, 0.3, 0.3}), 0, nullptr), (Covered{{10, 10, 1, 1}, 1}));
 }
 
 // A codec that leaves ripple in every sample of its input.
@@ -172,7 +176,7 @@ TEST(Cover, ACodecsRippleMovesTheVisibleBoxAlone) {
   const Visible plain = composed(nullptr);
   const Visible coded = composed(&codec);
   EXPECT_EQ(plain.covered, coded.covered);
-  EXPECT_EQ(plain.covered, covered_box(layer, 0, nullptr));
+  EXPECT_EQ(plain.covered, covered(layer, 0, nullptr));
   EXPECT_NE(plain.box, coded.box);
 }
 

@@ -427,7 +427,7 @@ void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
       bottom = std::max(bottom, y);
     }
   }
-  visible.covered = covered_box(layer_, intruder, options_.own_aircraft);
+  visible.covered = composite::covered(layer_, intruder, options_.own_aircraft);
   if (visible.alpha_sum_px > 0) visible.centroid = sum / visible.alpha_sum_px;
   if (visible.pixels > 0) visible.box = PixelBox{left, top, right - left + 1, bottom - top + 1};
 }

@@ -8,6 +8,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
+#include "picture/composite/cover.h"
 #include "picture/composite/sensor.h"
 
 // Composites a layer over a frame in the frame's own samples (Porter and Duff 1984, "over", in
@@ -28,8 +29,8 @@ namespace airtruth::composite {
 // The effect of one intruder on the frame. A pixel counts as changed where alpha > 0 and its luma
 // sample, or the chroma sample of its block, differs from the input.
 struct Visible {
-  // Bounds of the pixels that it covers (cover.h); empty: none.
-  std::optional<PixelBox> covered;
+  // The pixels that it covers; empty: none.
+  std::optional<Covered> covered;
   // Bounds of the changed pixels that this intruder covers; empty: none.
   std::optional<PixelBox> box;
   // The number of those changed pixels.

@@ -268,7 +268,7 @@ void compare_covered(const image::Layer& layer,
   constexpr double kLimit = (composite::kCoveredAlpha - 0.5) / 255;
   // Within this distance from the limit, either answer is correct.
   constexpr double kOff = 0.01;
-  const auto covered = composite::covered_box(
+  const auto covered = composite::covered(
       composite::spread(layer, kSigmaPx, 0, view.width, view.height), 0, nullptr);
   std::optional<PixelBox> surely, perhaps;
   const PixelBox& p = layer.patch;
@@ -282,7 +282,7 @@ void compare_covered(const image::Layer& layer,
       if (alpha > kLimit - kOff) perhaps = perhaps ? bounds(*perhaps, one) : one;
     }
   ASSERT_TRUE(covered && surely && perhaps) << where;
-  EXPECT_EQ(bounds(*covered, *surely), *covered) << where;
+  EXPECT_EQ(bounds(covered->box, *surely), covered->box) << where;
   EXPECT_EQ(bounds(*perhaps, *covered), *perhaps) << where;
 }
 

@@ -27,7 +27,7 @@ constexpr int kMaxSide = 65'536;  // px, of a picture
 // 46 hours at 30 frames/s.
 constexpr std::int64_t kMaxFramesOfRun = 5'000'000;
 
-// To 1/1000 px: what is written and read back is written again as the same text.
+// To 1/1000 px.
 double rounded_px(double coordinate_px) { return std::round(coordinate_px * 1000) / 1000; }
 
 constexpr std::int64_t kMaxTrack = 1'000'000'000'000;  // an id; a double holds it exactly
@@ -45,7 +45,7 @@ void read_mot_text(const fs::path& file, FrameList& frames) {
     const auto track = exchange::whole_in(n[1], -1, kMaxTrack);
     if (!track) throw Error("the id is no whole number from -1 on", where);
     Detection detection;
-    detection.box_px = {rounded_px(n[2] - 1), rounded_px(n[3] - 1), n[4], n[5]};
+    detection.box_px = {n[2] - 1, n[3] - 1, n[4], n[5]};
     detection.score = n[6];
     if (*track >= 0) detection.track = *track;
     frames.add(*frame - 1, std::move(detection), where);

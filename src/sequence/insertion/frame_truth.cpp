@@ -88,7 +88,10 @@ void add_pixels(annotation::Intruder& truth,
                 const image::Layer& layer,
                 const composite::Visible& visible) {
   truth.visible_box_px = visible.box;
-  if (visible.box) truth.covered_box_px = visible.covered;
+  if (visible.box && visible.covered) {
+    truth.covered_box_px = visible.covered->box;
+    truth.covered_area_px = visible.covered->area_px;
+  }
   truth.visible_area_px = visible.pixels;
   truth.alpha_sum_px = visible.alpha_sum_px;
   truth.centroid_px = visible.centroid;

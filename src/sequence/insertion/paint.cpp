@@ -101,7 +101,7 @@ std::vector<composite::Visible> changed(const image::Picture& before,
         if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
     }
     if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
-    visible[i].covered = composite::covered_box(layer, i, own_aircraft);
+    visible[i].covered = composite::covered(layer, i, own_aircraft);
     for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
       for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
         const double coverage = layer.coverage[i][layer.index(x, y)];

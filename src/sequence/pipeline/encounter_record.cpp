@@ -58,35 +58,38 @@ EncounterRecord record_of(const setup::World& world,
 }
 
 template <typename Enum>
-void add_name(Json& object, const char* key, const std::optional<Enum>& value) {
-  if (value) object[key] = enum_name(*value);
+Json name_or_null(const std::optional<Enum>& value) {
+  return value ? Json(enum_name(*value)) : Json();
+}
+
+Json json_of(const passage::Approach& closest) {
+  return {{"time_s", closest.time_s},
+          {"distance_m", closest.distance_m},
+          {"horizontal_m", closest.horizontal_m},
+          {"ahead_m", closest.offset.ahead_m},
+          {"right_m", closest.offset.right_m},
+          {"above_m", closest.offset.above_m}};
+}
+
+Json json_of(const FirstSeen& seen, const EncounterRecord& record) {
+  return {{"frame", seen.frame},
+          {"time_s", seen.time_s},
+          {"range_m", seen.range_m},
+          {"width_px", seen.exact_box_px.width},
+          {"height_px", seen.exact_box_px.height},
+          {"to_closest_approach_s",
+           record.closest ? Json(record.closest->time_s - seen.time_s) : Json()},
+          {"horizon", name_or_null(record.horizon_when_first_seen)}};
 }
 
 Json json_of(const EncounterRecord& record) {
-  Json object;
-  object["id"] = record.id;
-  if (record.closest)
-    object["closest_approach"] = {{"time_s", record.closest->time_s},
-                                  {"distance_m", record.closest->distance_m},
-                                  {"horizontal_m", record.closest->horizontal_m},
-                                  {"ahead_m", record.closest->offset.ahead_m},
-                                  {"right_m", record.closest->offset.right_m},
-                                  {"above_m", record.closest->offset.above_m}};
-  add_name(object, "meeting", record.meeting);
-  add_name(object, "vertical_motion", record.vertical_motion);
-  add_name(object, "horizon", record.horizon);
-  if (record.first_seen) {
-    const FirstSeen& seen = *record.first_seen;
-    Json& first = object["first_seen"];
-    first = {{"frame", seen.frame},
-             {"time_s", seen.time_s},
-             {"range_m", seen.range_m},
-             {"width_px", seen.exact_box_px.width},
-             {"height_px", seen.exact_box_px.height}};
-    if (record.closest) first["to_closest_approach_s"] = record.closest->time_s - seen.time_s;
-    add_name(first, "horizon", record.horizon_when_first_seen);
-  }
-  object["violations"] = Json::array();
+  Json object = {{"id", record.id},
+                 {"closest_approach", record.closest ? json_of(*record.closest) : Json()},
+                 {"meeting", name_or_null(record.meeting)},
+                 {"vertical_motion", name_or_null(record.vertical_motion)},
+                 {"horizon", name_or_null(record.horizon)},
+                 {"first_seen", record.first_seen ? json_of(*record.first_seen, record) : Json()},
+                 {"violations", Json::array()}};
   for (const NamedInterval& violation : record.violations)
     object["violations"].push_back({{"volume", violation.volume},
                                     {"begin_s", violation.time.begin_s},

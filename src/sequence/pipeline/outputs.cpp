@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/or_null.h"
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
 #include "sequence/setup/from_scene.h"
@@ -148,7 +149,7 @@ void Outputs::write_record(const scene::Scene& scene,
   record["version"] = kVersion;
   record["name"] = scene.name;
   record["seed"] = scene.seed;
-  if (scene.weight) record["weight"] = *scene.weight;
+  record["weight"] = or_null(scene.weight);
   record["encoder"] = writer_.encoder();
   record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
   record["scene_toml"] = scene::toml_from_scene(scene);

@@ -60,6 +60,7 @@ std::string picture_fault(const image::Picture& made,
 void as_older_truth(annotation::Frame& truth) {
   for (annotation::Intruder& intruder : truth.intruders) {
     intruder.covered_box_px.reset();
+    intruder.covered_area_px.reset();
     if (!truth.shake.rotation && truth.shake.frame_from_reference != Homography::Identity()) {
       intruder.azimuth_deg.reset();
       intruder.elevation_deg.reset();

@@ -213,9 +213,11 @@ TEST_F(TruthOf, AnAircraftThatCoversNoPixelFarEnoughHasNoCoveredBox) {
       rendered(replayed_intruder("far", "c172/news", "[[1500, 0, -250], [1600, 0, -250]]"),
                kStill + "[optics]\npoint_spread_px = 2\n");
   const std::string text = read_file(finished.folder / "truth.jsonl");
-  EXPECT_EQ(text.find("covered_box_px"), std::string::npos);
-  for (const annotation::Frame& frame : finished.truth.frames)
+  EXPECT_NE(text.find("\"covered_box_px\":null,\"covered_area_px\":null"), std::string::npos);
+  for (const annotation::Frame& frame : finished.truth.frames) {
     EXPECT_TRUE(frame.intruders[0].exact_box_px);
+    EXPECT_FALSE(frame.intruders[0].covered_box_px);
+  }
 }
 
 TEST_F(TruthOf, TheEvisionRectangleIsTheCoveredBox) {
@@ -261,6 +263,7 @@ TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
       ASSERT_EQ(grey.height, kReplayHeight);
       double sum = 0;
       std::optional<PixelBox> covered;
+      std::int64_t covered_area_px = 0;
       for (int y = 0; y < kReplayHeight; ++y)
         for (int x = 0; x < kReplayWidth; ++x) {
           const int a = grey.samples[static_cast<std::size_t>(y * kReplayWidth + x)];
@@ -269,8 +272,10 @@ TEST_F(TruthOf, MasksHoldThePixelsOfEachIntruder) {
           EXPECT_TRUE(a == 0 || x >= 70);
           const PixelBox pixel{x, y, 1, 1};
           if (a >= 20) covered = covered ? bounds(*covered, pixel) : pixel;
+          covered_area_px += a >= 20 ? 1 : 0;
         }
       EXPECT_EQ(covered, one.covered_box_px);
+      EXPECT_EQ(covered_area_px, one.covered_area_px.value_or(0));
       // Half a step of 8 bits for each pixel that the spread can reach.
       const Box& e = *one.exact_box_px;
       EXPECT_NEAR(sum, one.alpha_sum_px, 0.5 / 255 * (e.width + 8) * (e.height + 8));
