@@ -26,9 +26,9 @@ def overlap(a, b):
 
 
 def within(box):
-    x0, x1 = (min(max(v, 0), WIDTH) for v in (box[0], box[0] + box[2]))
-    y0, y1 = (min(max(v, 0), HEIGHT) for v in (box[1], box[1] + box[3]))
-    return x0, y0, x1 - x0, y1 - y0
+    """As GOT-10k's toolkit bounds boxes, whose first pixel is 1."""
+    x, y = (min(max(v + 1, 0), size) for v, size in zip(box, (WIDTH, HEIGHT)))
+    return x, y, min(box[2], WIDTH - x), min(box[3], HEIGHT - y)
 
 
 def mean(values):
@@ -41,7 +41,6 @@ def reference(truth, answers, seconds):
     ious, distances, relatives, dx, dy = [], [], [], [], []
     for i in shown:
         answer = truth[0] if i == 0 else answers[i]
-        last = next((answers[k] for k in range(i, -1, -1) if answers[k]), None)
         centre = lambda b: (b[0] + b[2] / 2, b[1] + b[3] / 2)
         tx, ty = centre(truth[i])
         if answer:
@@ -53,10 +52,9 @@ def reference(truth, answers, seconds):
             ious.append(0.0)
             distances.append(math.inf)
             relatives.append(math.inf)
-        if i > 0 and last:
-            lx, ly = centre(last)
-            dx.append(lx - tx)
-            dy.append(ly - ty)
+        if i > 0 and answers[i]:
+            dx.append(ax - tx)
+            dy.append(ay - ty)
     success = [mean([iou > 0.05 * k for iou in ious]) for k in range(21)]
     precision = [mean([d <= k for d in distances]) for k in range(51)]
     normalised = [mean([d <= 0.01 * k for d in relatives]) for k in range(51)]

@@ -70,7 +70,7 @@ struct Score {
   std::optional<double> normalised_auc;
 
   // GOT-10k's measures (Huang, Zhao and Huang 2019, section 4.1): without the first frame, and with
-  // boxes clipped to the picture.
+  // boxes bounded to the picture as its toolkit does it.
   std::optional<double> average_overlap;
   std::optional<double> success_50;
   std::optional<double> success_75;

@@ -10,13 +10,14 @@
 namespace airtruth::evaluation {
 namespace {
 
-std::optional<Box> cut(const Box& box, int width, int height) {
+// The box within the picture as GOT-10k's toolkit (0.1.3, rect_iou) bounds it: its coordinates
+// count from 1 and are bounded to 0..width, and what a box loses on the left is not taken from its
+// width.
+Box bounded(const Box& box, int width, int height) {
   if (width <= 0 || height <= 0) return box;
-  const double x0 = std::clamp(box.x, 0.0, double(width));
-  const double y0 = std::clamp(box.y, 0.0, double(height));
-  const double x1 = std::clamp(box.right(), 0.0, double(width));
-  const double y1 = std::clamp(box.bottom(), 0.0, double(height));
-  return Box{x0, y0, x1 - x0, y1 - y0};
+  const double x = std::clamp(box.x + 1, 0.0, double(width));
+  const double y = std::clamp(box.y + 1, 0.0, double(height));
+  return {x, y, std::clamp(box.width, 0.0, width - x), std::clamp(box.height, 0.0, height - y)};
 }
 
 struct Offset {
@@ -175,8 +176,8 @@ Score score(std::span<const FramePair> frames, int width, int height) {
     add_curves(*frame.truth, i == 0 ? frame.truth : frame.answer, score);
     if (i == 0) continue;
     if (frame.answer) offsets.add(offset(*frame.truth, *frame.answer));
-    overlaps.add(frame.answer ? overlap(*cut(*frame.truth, width, height),
-                                        *cut(*frame.answer, width, height))
+    overlaps.add(frame.answer ? overlap(bounded(*frame.truth, width, height),
+                                        bounded(*frame.answer, width, height))
                               : 0);
   }
   offsets.write(score);

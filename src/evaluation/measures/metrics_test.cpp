@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,19 @@ TEST(Overlap, AsTheGot10kToolkitHasIt) {
   EXPECT_NEAR(overlap({100, 100, 20, 10}, {103, 104, 20, 10}), 0.3422818791946309, 1e-12);
   EXPECT_NEAR(overlap({103.5, 98.25, 18, 12.5}, {100, 100, 20, 10}), 0.6346153846153846, 1e-12);
   EXPECT_NEAR(overlap({0.1, 0.2, 0.3, 0.4}, {0.1, 0.2, 0.3, 0.4}), 0.9999999999999989, 1e-12);
+}
+
+// Overlaps of the second frame as rect_iou gives them with a bound of (480, 360), for boxes over
+// the left and the right edge.
+TEST(Score, BoundsBoxesAsTheGot10kToolkit) {
+  const Box left{-6, 100, 20, 10}, left_answer{-3, 101, 22, 9};
+  const Box right{470, 340, 20, 30}, right_answer{468, 338, 20, 30};
+  for (const auto& [truth, answer, expected] :
+       {std::tuple(left, left_answer, 0.8256880733944955),
+        std::tuple(right, right_answer, 0.7402597402597403)}) {
+    const Score s = score(std::vector<FramePair>{{truth, truth, 0}, {truth, answer, 0}}, 480, 360);
+    EXPECT_NEAR(s.average_overlap.value(), expected, 1e-12);
+  }
 }
 
 // No overlap exceeds the threshold of 1, so exact answers reach 20 of the 21 thresholds.

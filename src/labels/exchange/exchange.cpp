@@ -48,7 +48,7 @@ constexpr std::array<About, 11> kAll = {{
      read_yolo,
      yolo_writer,
      "box (as shares of the picture), class",
-     "track, time, visibility, occlusion, range"},
+     "track, time, visibility, occlusion, range, area"},
     {Format::kMot,
      "mot",
      "MOTChallenge",
@@ -58,21 +58,21 @@ constexpr std::array<About, 11> kAll = {{
      "the "
      "class of a track in tracks.txt, and as the number of the class where that was asked for; "
      "otherwise what is no aircraft is marked as not to be considered",
-     "time stamps (a frame rate alone), occlusion and truncation as such"},
+     "time stamps (a frame rate alone), occlusion and truncation as such, area"},
     {Format::kVoc,
      "voc",
      "Pascal VOC",
      read_voc,
      voc_writer,
      "box (the whole pixels that it touches), class, truncated, occluded",
-     "track, time, visibility, range"},
+     "track, time, visibility, range, area"},
     {Format::kCvat,
      "cvat",
      "CVAT for video 1.1",
      read_cvat,
      cvat_writer,
      "box, class, track, occluded; visible, truncated, range_m and above_horizon as attributes",
-     "time stamps, frame rate"},
+     "time stamps, frame rate, area"},
     {Format::kAot,
      "aot",
      "Airborne Object Tracking",
@@ -81,7 +81,8 @@ constexpr std::array<About, 11> kAll = {{
      "box, track, time in nanoseconds, range, above or below the horizon; the class as a further "
      "key "
      "of `blob`",
-     "visibility, occlusion, truncation; the id of every aircraft is an `Airplane`, that of a "
+     "visibility, occlusion, truncation, area; the id of every aircraft is an `Airplane`, that of "
+     "a "
      "bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; the range of what is "
      "no "
      "aircraft (a range marks an aircraft as planned); what is on the lens"},
@@ -91,7 +92,8 @@ constexpr std::array<About, 11> kAll = {{
      read_single_object,
      single_object_writer,
      "box",
-     "class, time, visibility, occlusion, range; of a sequence all before the first frame that "
+     "class, time, visibility, occlusion, range, area; of a sequence all before the first frame "
+     "that "
      "shows the object whole and after the "
      "last that shows it; where it begins in the video"},
     {Format::kGot10k,
@@ -100,7 +102,7 @@ constexpr std::array<About, 11> kAll = {{
      read_single_object,
      single_object_writer,
      "box, class, absence, truncation, visibility in eighths (steps of 15 %)",
-     "time stamps, occlusion, range; of a sequence all before the first frame that shows the "
+     "time stamps, occlusion, range, area; of a sequence all before the first frame that shows the "
      "object whole and after the "
      "last that shows it; where it begins in the video"},
     {Format::kVot,
@@ -109,7 +111,8 @@ constexpr std::array<About, 11> kAll = {{
      read_single_object,
      single_object_writer,
      "box, class, occlusion and range by frame",
-     "time stamps, visibility, truncation; of a sequence all before the first frame that shows the "
+     "time stamps, visibility, truncation, area; of a sequence all before the first frame that "
+     "shows the "
      "object whole and after the "
      "last that shows it; where it begins in the video"},
     {Format::kEvision, "evision", "E-Vision", read_evision, nullptr},

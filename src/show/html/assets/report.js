@@ -266,7 +266,8 @@
     card.append(element('p',
       `${sequence.aircraft.join(', ') || (sequence.visible ? 'nothing labelled' : 'no intruder (a negative)')} over ${sequence.background} · ${counted(sequence.frames, 'frame')}, ${number(sequence.seconds, 1)} s, ` +
       `${sequence.width}×${sequence.height} · seen in ${number(sequence.visible)}, hidden in ${number(sequence.hidden)} · ` +
-      (sequence.visible ? `range ${number(sequence.nearest)}–${number(sequence.farthest)} m · box ${number(sequence.smallest)}–${number(sequence.largest)} px · ` : '') +
+      (sequence.visible && sequence.nearest !== null ? `range ${number(sequence.nearest)}–${number(sequence.farthest)} m · ` : '') +
+      (sequence.visible ? `box ${number(sequence.smallest)}–${number(sequence.largest)} px · ` : '') +
       `contrast ${number(sequence.contrast, 1)}${light}${sequence.motion_model ? ` · motion: ${sequence.motion_model}` : ''}`));
     const table = encounters.tableOf(sequence, colours);
     if (table) card.append(table);
