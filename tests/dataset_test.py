@@ -112,6 +112,27 @@ class Slurm(unittest.TestCase):
             self.assertGreater(lines.index("#SBATCH --time=20:00"), lines.index("#SBATCH --time=1-02:30:00"))
             self.assertIn("#SBATCH --exclude=node[1-3]", lines)
 
+    def test_an_array_is_read_as_sbatch_states_it(self):
+        catalogue = write("array.toml", SKY + RANDOM)
+        count = self.scripts("array-all", catalogue)[0].split("--array=0-")[1].split("\n")[0]
+        for number, (options, array) in enumerate((
+                (("--array-size", "2"), "0-1"), (("--array-size", "2%1"), "0-1%1"), (("--array-size", "%4"), f"0-{count}%4"),
+                (("--sbatch", "--array=0-1%4"), "0-1%4"), (("--sbatch", "--array %3"), f"0-{count}%3"),
+                (("--sbatch", "--array=0"), "0-0"), (("--array-size", "2", "--sbatch", "--array=%4"), "0-1%4"))):
+            work, verify = self.scripts(f"array{number}", catalogue, *options)
+            self.assertEqual([line for line in work.splitlines() if "--array" in line], ["#SBATCH --array=" + array], options)
+            self.assertIn(f"--of {int(array.split('-')[1].split('%')[0]) + 1} ", work)
+            self.assertNotIn("--array", verify)
+        work, _ = self.scripts("array-table", write("array2.toml", '[slurm]\nsbatch = ["--array=%7"]\n' + SKY + RANDOM))
+        self.assertIn(f"#SBATCH --array=0-{count}%7\n", work)
+        for option, value in (("--array-size", "0"), ("--array-size", "2%"), ("--array-size", "%0"), ("--array-size", "a%4"),
+                              ("--sbatch", "--array=1,3"), ("--sbatch", "--array=0-9:2"), ("--sbatch", "--array=0-9%0"),
+                              ("--sbatch", "--array")):
+            done = run("dataset", "submit", catalogue, "--out", path("never"), "--slurm", "--dry-run", option, value)
+            self.assertEqual(done.returncode, 2, value)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertFalse(os.path.exists(path("never")))
+
     def test_values_are_checked(self):
         for line, word in (("time = \"soon\"", "time"), ("time = \"1:2:3:4\"", "time"), ("memory = \"4 G\"", "memory"),
                            ("memory = \"lots\"", "memory"), ("partition = \"a b\"", "partition"),

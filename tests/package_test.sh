@@ -179,7 +179,7 @@ check_completion() { # check_completion PREFIX
   expect_completion "estimate" "$1" airtruth lens e
   expect_completion "--zoom" "$1" airtruth inspect --z
   expect_completion "--array-size" "$1" airtruth dataset submit --arr
-  expect_completion "homography rotation" "$1" airtruth motion clip.mp4 --model ''
+  expect_completion "auto homography rotation" "$1" airtruth motion clip.mp4 --model ''
   expect_completion "--json-log" "$1" airtruth evaluate --js
   touch "$place/scene one.toml"
   expect_completion "$place/scene one.toml" "$1" airtruth render "$place/sce"

@@ -8,6 +8,7 @@ cannot go stale.
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -296,6 +297,18 @@ video = "mkv"
 """
 
 
+CATALOGUE = """name = "c"
+[[background]]
+name = "sky"
+video = "v.mp4"
+lens = { vertical_fov_deg = 45 }
+[[random]]
+count = 3
+frame_count = 2
+aircraft = ["738/738-Delta"]
+"""
+
+
 def rendered(it, video, lens="vertical_fov_deg = 45", more="", code=0):
     with open(os.path.join(it.scratch, "s.toml"), "w", encoding="utf-8") as file:
         file.write(SCENE.format(video=it.path(video), lens=lens, more=more))
@@ -340,6 +353,46 @@ def pixel_shape(it):
     with open(os.path.join(it.scratch, "out", "s", "truth.jsonl"), encoding="utf-8") as file:
         text = file.read()
     assert "217.27" in text and "289.70" in text, text[:600]
+
+
+def network(it, name, output, classes, side, code=0):
+    """Runs a network over a made video; returns what was said, and the detections of its first frame."""
+    model = shutil.copy(it.path(name), it.scratch)
+    with open(os.path.splitext(model)[0] + ".json", "w", encoding="utf-8") as file:
+        json.dump({"format": "airtruth detector model 1", "output": output, "score_threshold": 0.01,
+                   "classes": [f"class{i}" for i in range(classes)],
+                   "input": {"layout": "rgb", "scale": 1 / 255, "fit": "letterbox", "width": side, "height": side}}, file)
+    it.run("synth", "-o", "v.mp4", "--frames", "2", "--width", str(side), "--height", str(side), "--overwrite")
+    shutil.rmtree(os.path.join(it.scratch, "found"), ignore_errors=True)
+    return it.run("detect", "v.mp4", "--detector", "onnx:" + model, "-o", "found", code=code)
+
+
+def external_data(it):
+    said = network(it, "v5_external.onnx", {"kind": "yolov5", "boxes": "output0"}, 2, 64, code=2)
+    assert "second file, 'v5_external.onnx.data'" in said, said
+
+
+def yolov8(it):
+    output = {"kind": "yolov8", "boxes": "output0"}
+    network(it, "v8simple_op12.onnx", output, 2, 64)
+    with open(os.path.join(it.scratch, "found", "v8simple_op12", "v.detections.json"), encoding="utf-8") as file:
+        found = json.load(file)
+    # The network ends with a sigmoid: numbers from 0 to 1, the score the highest of the two classes.
+    assert found and all(0 < value < 1 for one in found for value in (one["score"], *one["bbox"][2:])), found
+    assert "1 x 7 x boxes" in network(it, "v8simple_op12.onnx", output, 3, 64, code=2)
+    said = network(it, "v8simple_op12.onnx", {"kind": "yolov5", "boxes": "output0"}, 2, 64, code=2)
+    assert 'kind "yolov8"' in said, said
+
+
+def throttle(it):
+    with open(os.path.join(it.scratch, "c.toml"), "w", encoding="utf-8") as file:
+        file.write(CATALOGUE)
+    it.run("synth", "-o", "v.mp4", "--frames", "2", "--width", "160", "--height", "120")
+    for option, array in (("--sbatch=--array=0-399%4", "0-2%4"), ("--array-size=2%1", "0-1%1"), ("--array-size=%2", "0-2%2")):
+        shutil.rmtree(os.path.join(it.scratch, "set"), ignore_errors=True)
+        it.run("dataset", "submit", "c.toml", "--out", "set", "--slurm", "--dry-run", option)
+        with open(os.path.join(it.scratch, "set", "slurm", "work.sh"), encoding="utf-8") as file:
+            assert f"#SBATCH --array={array}\n" in file.read(), option
 
 
 CASES = {
@@ -395,6 +448,9 @@ CASES = {
     "mod-texture-transform-real": model("textureTransform/TextureTransformTest.gltf", "turned or scaled"),
     "mod-vertex-colours-glb": model("vcol_f32.glb", "vertices"),
     "mod-vertex-colours-u8": model("vcol_u8.glb", "vertices"),
+    "onnx-external-data": external_data,
+    "onnx-yolov8-layout": yolov8,
+    "slurm-throttle": throttle,
     "vid-edit-list": edit_list,
     "vid-hlg": high_range,
     "vid-image-folder-rate": picture_rate,

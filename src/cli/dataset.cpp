@@ -207,6 +207,7 @@ struct DatasetArguments {
   std::vector<std::string> backgrounds;  // NAME=VIDEO
   build::BuildOptions build;
   build::SlurmOptions slurm;
+  std::string array_size;
   bool on_slurm = false;
   bool finish = false;
   bool deep = false;
@@ -382,6 +383,11 @@ void submit(DatasetArguments arguments, Context& context) {
   if (!arguments.on_slurm) throw Error("no engine is named; expected --slurm");
   const catalogue::Catalogue catalogue = catalogue::read_catalogue(arguments.catalogue);
   build::SlurmOptions& options = arguments.slurm;
+  if (!arguments.array_size.empty()) try {
+      options.array = catalogue::array_size_of(arguments.array_size);
+    } catch (const Error& error) {
+      throw Error("--array-size: " + error.message());
+    }
   options.videos = videos_of(arguments.backgrounds);
   options.program = std::filesystem::read_symlink("/proc/self/exe");
   const build::Submitted submitted = build::submit(catalogue, arguments.folder, options);
@@ -510,11 +516,11 @@ void add_submit(CLI::App& group, Context& context) {
       ->required();
   command->add_flag(
       "--slurm", arguments->on_slurm, "As a Slurm job array, with a job after it that verifies");
-  command
-      ->add_option("--array-size",
-                   arguments->slurm.array_size,
-                   "Tasks (default: one per sequence, at most 1,000)")
-      ->check(CLI::Range(1, 100000));
+  command->add_option(
+      "--array-size",
+      arguments->array_size,
+      "Tasks N (default: one per sequence, at most 1,000), and how many of them run "
+      "at a time: N, N%M or %M");
   add_folder_size(*command, arguments->slurm.max_in_a_folder);
   command->add_option("--partition", arguments->slurm.partition, "Slurm partition");
   command

@@ -23,20 +23,12 @@ struct EstimateArguments {
   bool overwrite = false;
 };
 
-lens::Lens lens_of(const focal_length::LensEstimator::Result& found, lens::ImageSize size) {
-  const Pixel focal(found.focal_px, found.focal_px);
-  const Pixel middle(size.width / 2.0, size.height / 2.0);
-  if (found.fisheye) return lens::Lens(lens::Fisheye{focal, middle, {0, 0, 0, 0}}, size);
-  return lens::Lens(lens::Pinhole{focal, middle}, size);
-}
-
 std::string words_of(const focal_length::LensEstimator::Result& found) {
   return fmt::format(
-      "{}, focal_px {:.1f} +- {:.1f}, {:.0f} to {:.0f} fit as well ({} turns of the camera; "
-      "{:.2f} px left over, {:.2f} as a {})",
+      "{}, focal_px {:.1f}, {:.0f} to {:.0f} at 95 % ({} turns of the camera; {:.2f} px left over, "
+      "{:.2f} as a {})",
       found.fisheye ? "fisheye (equidistant)" : "pinhole",
       found.focal_px,
-      found.sigma_px,
       found.low_px,
       found.high_px,
       found.pairs,
@@ -51,7 +43,7 @@ void hand_over(const focal_length::LensEstimator::Result& found,
                lens::ImageSize size,
                const EstimateArguments& arguments,
                Console& console) {
-  const lens::Lens lens = lens_of(found, size);
+  const lens::Lens lens = focal_length::undistorted(found.fisheye, found.focal_px, size);
   console.result(words_of(found) + "\nfor a scene:\n" + lens::scene_table(lens));
   if (!found.is_certain && !arguments.out.empty() && !arguments.uncertain)
     throw Error("is not written: " + why + "; --uncertain writes the estimate all the same",
@@ -63,7 +55,7 @@ void hand_over(const focal_length::LensEstimator::Result& found,
         lens::opencv_calibration(
             lens,
             fmt::format("estimated by airtruth lens estimate: focal length {:.1f} px, {:.0f} "
-                        "to {:.0f} px fit as well{}",
+                        "to {:.0f} px at 95 %{}",
                         found.focal_px,
                         found.low_px,
                         found.high_px,

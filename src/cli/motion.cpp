@@ -30,23 +30,24 @@ struct MotionArguments {
   std::string mask;
   std::string plot;
   std::string stabilised;
-  std::string model = "homography";
+  std::string model = "auto";
   std::string lens;
   std::string reference = "first_frame";
   double smoothing_s = 1;
   bool overwrite = false;
 };
 
-// The lens for the model "rotation"; empty for "homography".
+// The lens for a rotation; empty for a homography. The default is that of scenes, a rotation,
+// where a lens is stated: without one no rotation can be measured.
 std::optional<lens::Lens> lens_of(const MotionArguments& arguments,
                                   const lens::ImageSize& size,
                                   const Warn& warn) {
-  if (enum_named<scene::MotionModel>(arguments.model) == scene::MotionModel::kHomography) {
-    if (!arguments.lens.empty())
-      throw Error("--lens is for --model rotation; a homography knows no lens");
-    return std::nullopt;
-  }
-  if (arguments.lens.empty()) throw Error("--model rotation needs --lens, a calibration file");
+  const auto model = enum_named<scene::MotionModel>(arguments.model);
+  if (model == scene::MotionModel::kHomography && !arguments.lens.empty())
+    throw Error("--lens is for --model rotation; a homography knows no lens");
+  if (model == scene::MotionModel::kRotation && arguments.lens.empty())
+    throw Error("--model rotation needs --lens, a calibration file");
+  if (arguments.lens.empty()) return std::nullopt;
   return lens::read_calibration(arguments.lens, size, warn);
 }
 
@@ -93,7 +94,7 @@ void report_gyro(const std::optional<gyro::GyroFit>& fit, bool has_gyro, Console
 }
 
 void report_frames(const std::vector<motion::FrameMotion>& all,
-                   const std::string& out,
+                   const MotionArguments& arguments,
                    Console& console) {
   std::size_t measured = 0;
   std::size_t away = 0;
@@ -107,7 +108,13 @@ void report_frames(const std::vector<motion::FrameMotion>& all,
                     "holds both (turned_away); --reference smoothed and --model rotation have no "
                     "such limit",
                     away));
-  console.result(fmt::format("{}: {} frames, measured in {}", out, all.size(), measured));
+  const bool is_chosen = arguments.model == "auto" && arguments.lens.empty();
+  console.result(
+      fmt::format("{}: {} frames, measured in {}{}",
+                  arguments.out,
+                  all.size(),
+                  measured,
+                  is_chosen ? " (homography; with --lens rotation, the default of scenes)" : ""));
 }
 
 void measure(const MotionArguments& arguments, Context& context) {
@@ -141,7 +148,7 @@ void measure(const MotionArguments& arguments, Context& context) {
                           .height = 12,
                           .legend = plot::Legend::kAbove}));
   if (!arguments.stabilised.empty()) stabilise(arguments, all, lens, context);
-  report_frames(all, arguments.out, console);
+  report_frames(all, arguments, console);
 }
 
 }  // namespace
@@ -159,11 +166,11 @@ void add_motion(CLI::App& app, Context& context) {
   command
       ->add_option("--model",
                    arguments->model,
-                   "homography: one plane; rotation: on the sphere, through a known lens")
-      ->check(CLI::IsMember({"homography", "rotation"}))
+                   "rotation: on the sphere, through a known lens; homography: one plane; auto: "
+                   "rotation with --lens, homography without")
+      ->check(CLI::IsMember({"auto", "rotation", "homography"}))
       ->capture_default_str();
-  command->add_option(
-      "--lens", arguments->lens, "Calibration (OpenCV or Gyroflow), for --model rotation");
+  command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow), for rotation");
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("--plot", arguments->plot, "Draw the motion here (.png)");
   command->add_option(

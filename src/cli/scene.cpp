@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -17,17 +19,19 @@ struct NewArguments {
   std::string video;
   std::string out;
   std::string lens;
+  std::optional<double> frame_rate_hz;
   bool overwrite = false;
 };
 
 void new_scene(const NewArguments& arguments, Context& context) {
-  const std::string out = !arguments.out.empty()
-                              ? arguments.out
-                              : std::filesystem::path(arguments.video).stem().string() + ".toml";
+  const auto video = std::filesystem::absolute(arguments.video).lexically_normal();
+  const std::string stem = (video.has_filename() ? video : video.parent_path()).stem().string();
+  const std::string out = !arguments.out.empty() ? arguments.out : stem + ".toml";
   check_output_file(out, arguments.overwrite);
   Console& console = context.console();
   new_scene::NewSceneOptions options;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
+  options.picture_rate_hz = arguments.frame_rate_hz;
   follow(options, context, "looking for lens and motion");
   const std::string text = new_scene::scene_text(arguments.video, options);
   console.end_progress();
@@ -46,11 +50,18 @@ void add_scene(CLI::App& app, Context& context) {
                   "new",
                   "Write a commented scene for a video, with a first encounter",
                   new_scene);
-  command->add_option("VIDEO", arguments->video, "The onboard video")->required();
+  command
+      ->add_option("VIDEO", arguments->video, "The onboard video, or a folder of numbered pictures")
+      ->required();
   command->add_option("-o,--out",
                       arguments->out,
                       "Scene file to write (default: the video's name with .toml, here)");
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
+  command
+      ->add_option("--frame-rate",
+                   arguments->frame_rate_hz,
+                   "Frames a second of numbered pictures, which state none")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
 }
 

@@ -2,7 +2,11 @@
 #include "camera/focal_length/lens_estimator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "camera/motion/corners.h"
@@ -10,6 +14,14 @@
 #include "foundation/base/median.h"
 
 namespace airtruth::focal_length {
+
+lens::Lens undistorted(bool fisheye, double focal_px, const lens::ImageSize& size) {
+  const Pixel focal(focal_px, focal_px);
+  const Pixel centre(size.width / 2.0, size.height / 2.0);
+  if (fisheye) return lens::Lens(lens::Fisheye{focal, centre, {0, 0, 0, 0}}, size);
+  return lens::Lens(lens::Pinhole{focal, centre}, size);
+}
+
 namespace {
 
 // The limits below are chosen by judgement, but for kMaxMisfitRatio (docs/lenses.md).
@@ -18,23 +30,30 @@ namespace {
 constexpr double kMinCornerShiftShare = 0.09;
 // The largest number of frames between the two of a pair.
 constexpr int kMaxPairSpanFrames = 40;
-// The number of pairs: at most, which bounds the time, and at least, since two halves of two pairs
-// give the uncertainty.
-constexpr std::size_t kMaxPairs = 40;
+// The number of pairs: at most, which bounds the time, and at least, which is one for each stretch.
+constexpr std::size_t kMaxPairs = 80;
 constexpr std::size_t kMinPairs = 4;
+// The number of stretches of the clip that are estimated on their own: at least, at most, and the
+// number of pairs in each between the two.
+constexpr std::size_t kMinStretches = kMinPairs;
+constexpr std::size_t kMaxStretches = 8;
+constexpr std::size_t kStretchPairs = 5;
+// The 97.5 % points of Student's t with 3 to 7 degrees of freedom, one less than the stretches.
+constexpr std::array<double, 5> kStudentT = {3.182, 2.776, 2.571, 2.447, 2.365};
 // The least number of corners that are tracked through a pair.
 constexpr int kMinPairCorners = 30;
 // The residual at which a corner is cut off, px: beyond it a corner does not turn with the far
 // scene.
 constexpr double kOutlierPx = 2.5;
-// The shortest and longest focal length that is tried, in widths of the image.
+// The shortest and longest focal length that is tried, in widths of the image, and the number of
+// focal lengths between them, evenly spaced in their logarithm: by 4.6 %.
 constexpr double kShortest = 0.25;
 constexpr double kLongest = 6.0;
+constexpr std::size_t kTried = 72;
+const double kLogStep = std::log(kLongest / kShortest) / double(kTried - 1);
 // A lens fits as well as the best where its mean squared misfit is below this multiple of the
 // least.
 constexpr double kMaxMisfitRatio = 1.02;
-// The ratio of two focal lengths that are tried for the ends of that interval: 5 %.
-constexpr double kIntervalStep = 1.05;
 // The limits of a certain estimate, as shares of the focal length: its uncertainty, and the excess
 // of the longest focal length that fits as well.
 constexpr double kMaxSigmaShare = 0.12;
@@ -44,13 +63,6 @@ struct Match {
   Pixel before, after;  // pixels with the corner origin
 };
 using Pair = std::vector<Match>;
-
-lens::Lens candidate(bool fisheye, double focal_px, const lens::ImageSize& size) {
-  const Pixel focal(focal_px, focal_px);
-  const Pixel centre(size.width / 2.0, size.height / 2.0);
-  if (fisheye) return lens::Lens(lens::Fisheye{focal, centre, {0, 0, 0, 0}}, size);
-  return lens::Lens(lens::Pinhole{focal, centre}, size);
-}
 
 // The mean squared residual of a pair's points, px^2, each cut off at kOutlierPx.
 double miss_of(const Pair& pair, const lens::Lens& lens) {
@@ -74,51 +86,78 @@ double miss_of(const Pair& pair, const lens::Lens& lens) {
   return sum / double(pair.size());
 }
 
-double miss_of(const std::vector<Pair>& pairs,
-               std::size_t from,
-               std::size_t step,
-               const lens::Lens& lens) {
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = from; i < pairs.size(); i += step) sum += miss_of(pairs[i], lens), ++count;
-  return sum / std::max(1, count);
+// The focal length at a place among those that are tried.
+double focal_at(double place, const lens::ImageSize& size) {
+  return kShortest * size.width * std::exp(place * kLogStep);
+}
+
+// The mean squared residual of a pair with each of the focal lengths that are tried.
+using Profile = std::array<double, kTried>;
+
+std::vector<Profile> profiles_of(const std::vector<Pair>& pairs,
+                                 bool fisheye,
+                                 const lens::ImageSize& size) {
+  std::vector<Profile> profiles(pairs.size());
+  for (std::size_t k = 0; k < kTried; ++k) {
+    const lens::Lens lens = undistorted(fisheye, focal_at(double(k), size), size);
+    for (std::size_t i = 0; i < pairs.size(); ++i) profiles[i][k] = miss_of(pairs[i], lens);
+  }
+  return profiles;
+}
+
+Profile mean_of(std::span<const Profile> profiles) {
+  Profile mean{};
+  for (const Profile& one : profiles)
+    for (std::size_t k = 0; k < kTried; ++k) mean[k] += one[k] / double(profiles.size());
+  return mean;
 }
 
 struct Best {
-  double focal_px = 0;
-  double miss = 1e300;
+  double place = 0;  // among the focal lengths that are tried
+  double miss = 0;
 };
 
-Best search(const std::vector<Pair>& pairs,
-            std::size_t from,
-            std::size_t step,
-            bool fisheye,
-            const lens::ImageSize& size) {
-  Best best;
-  const double low = kShortest * size.width, high = kLongest * size.width;
-  const auto look = [&](double f) {
-    const double m = miss_of(pairs, from, step, candidate(fisheye, f, size));
-    if (m < best.miss) best = {f, m};
-  };
-  for (double f = low; f <= high; f *= 1.12) look(f);
-  for (double width = 0.06; width > 0.002; width *= 0.5) {
-    const double middle = best.focal_px;
-    look(middle * (1 - width));
-    look(middle * (1 + width));
-  }
-  return best;
+// The least of a profile, by the parabola through it and its neighbours.
+Best best_of(const Profile& profile) {
+  const auto least = std::ranges::min_element(profile);
+  const double k = double(least - profile.begin());
+  if (least == profile.begin() || least + 1 == profile.end()) return {k, *least};
+  const double bend = least[-1] - 2 * *least + least[1];
+  return {bend > 0 ? k + 0.5 * (least[-1] - least[1]) / bend : k, *least};
 }
 
-// The end of the interval of focal lengths that fit as well: steps from the best focal length by
-// `factor` while the lens fits, within the range of the search.
-template <typename Fits>
-double end_of_fit(double focal_px, double factor, const lens::ImageSize& size, const Fits& fits) {
-  const double low = kShortest * size.width;
-  const double high = kLongest * size.width;
-  double end = focal_px;
-  while (end * factor >= low && end * factor <= high && fits(end * factor)) end *= factor;
-  if (end * factor < low) return low;
-  return end * factor > high ? high : end;
+// How far the estimate of another stretch of the clip may lie from the whole one, as a difference
+// of places: its standard deviation, and the half-width of its 95 % interval.
+struct Spread {
+  double sigma = 0;
+  double half_width = 0;
+};
+
+Spread spread_of(std::span<const Profile> profiles) {
+  const std::size_t stretches =
+      std::clamp(profiles.size() / kStretchPairs, kMinStretches, kMaxStretches);
+  std::vector<double> places;
+  for (std::size_t s = 0; s < stretches; ++s) {
+    const std::size_t from = profiles.size() * s / stretches;
+    const std::size_t to = profiles.size() * (s + 1) / stretches;
+    places.push_back(best_of(mean_of(profiles.subspan(from, to - from))).place);
+  }
+  const double count = double(stretches);
+  const double mean = std::accumulate(places.begin(), places.end(), 0.0) / count;
+  double squares = 0;
+  for (const double place : places) squares += (place - mean) * (place - mean);
+  const double sigma = std::sqrt(squares / (count - 1) * (1 + 1 / count));
+  return {sigma, kStudentT[stretches - kMinStretches] * sigma};
+}
+
+// The ends of the places about the least that fit as well.
+std::pair<double, double> fitting(const Profile& profile, const Best& best) {
+  const auto fits = [&](std::size_t k) { return profile[k] < kMaxMisfitRatio * best.miss; };
+  std::size_t low = static_cast<std::size_t>(std::lround(best.place));
+  std::size_t high = low;
+  while (low > 0 && fits(low - 1)) --low;
+  while (high + 1 < kTried && fits(high + 1)) ++high;
+  return {double(low), double(high)};
 }
 
 }  // namespace
@@ -131,6 +170,18 @@ struct LensEstimator::Impl {
   std::vector<cv::Point2f> begun, now;
   int frames = 0;
   std::vector<Pair> pairs;
+  std::size_t turns = 0;
+  std::size_t every = 1;  // of the turns, one is kept
+
+  // Keeps at most kMaxPairs pairs, evenly over the clip.
+  void keep(Pair pair) {
+    if (turns++ % every != 0) return;
+    pairs.push_back(std::move(pair));
+    if (pairs.size() < kMaxPairs) return;
+    for (std::size_t i = 1; 2 * i < pairs.size(); ++i) pairs[i] = std::move(pairs[2 * i]);
+    pairs.resize(kMaxPairs / 2);
+    every *= 2;
+  }
 
   void begin(const cv::Mat& grey) {
     begun = now = motion::spread_corners(grey, allowed, options);
@@ -138,7 +189,6 @@ struct LensEstimator::Impl {
   }
 
   void add(const cv::Mat& grey, bool begins_shot) {
-    if (pairs.size() >= kMaxPairs) return;
     motion::Pyramid pyramid = motion::pyramid_of(grey);
     if (previous.empty() || begins_shot) {
       begin(grey);
@@ -166,7 +216,7 @@ struct LensEstimator::Impl {
     Pair pair;
     for (std::size_t i = 0; i < now.size(); ++i)
       pair.push_back({{begun[i].x + 0.5, begun[i].y + 0.5}, {now[i].x + 0.5, now[i].y + 0.5}});
-    pairs.push_back(std::move(pair));
+    keep(std::move(pair));
     begin(grey);
   }
 };
@@ -190,31 +240,30 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
           " times; it takes " + std::to_string(kMinPairs);
     return std::nullopt;
   }
-  const Best pinhole = search(pairs, 0, 1, false, size);
-  const Best fisheye = search(pairs, 0, 1, true, size);
+  const std::vector<Profile> as_pinhole = profiles_of(pairs, false, size);
+  const std::vector<Profile> as_fisheye = profiles_of(pairs, true, size);
+  const Profile pinhole = mean_of(as_pinhole);
+  const Profile fisheye = mean_of(as_fisheye);
   Result result;
-  result.fisheye = fisheye.miss < pinhole.miss;
-  const Best& best = result.fisheye ? fisheye : pinhole;
-  result.focal_px = best.focal_px;
+  result.fisheye = best_of(fisheye).miss < best_of(pinhole).miss;
+  const Profile& whole = result.fisheye ? fisheye : pinhole;
+  const Best best = best_of(whole);
+  result.focal_px = focal_at(best.place, size);
   result.rms_px = std::sqrt(best.miss);
-  result.other_rms_px = std::sqrt(result.fisheye ? pinhole.miss : fisheye.miss);
+  result.other_rms_px = std::sqrt(best_of(result.fisheye ? pinhole : fisheye).miss);
   result.pairs = static_cast<int>(pairs.size());
-  // The difference between the estimates of two halves of the pairs gives the uncertainty.
-  const Best odd = search(pairs, 1, 2, result.fisheye, size);
-  const Best even = search(pairs, 0, 2, result.fisheye, size);
-  result.sigma_px = std::max(0.004 * best.focal_px, std::abs(odd.focal_px - even.focal_px) / 2);
-  const auto fits = [&](double focal_px) {
-    return miss_of(pairs, 0, 1, candidate(result.fisheye, focal_px, size)) <
-           kMaxMisfitRatio * best.miss;
+  const Spread spread = spread_of(result.fisheye ? as_fisheye : as_pinhole);
+  result.sigma_px = spread.sigma * kLogStep * result.focal_px;
+  const auto [low, high] = fitting(whole, best);
+  const auto tried_px = [&](double place) {
+    return focal_at(std::clamp(place, 0.0, double(kTried - 1)), size);
   };
-  result.low_px = std::min(end_of_fit(best.focal_px, 1 / kIntervalStep, size, fits),
-                           best.focal_px - result.sigma_px);
-  result.high_px = std::max(end_of_fit(best.focal_px, kIntervalStep, size, fits),
-                            best.focal_px + result.sigma_px);
-  result.is_certain = result.sigma_px <= kMaxSigmaShare * best.focal_px &&
-                      result.high_px < (1 + kMaxExcessShare) * best.focal_px;
+  result.low_px = tried_px(std::min(low, best.place - spread.half_width));
+  result.high_px = tried_px(std::max(high, best.place + spread.half_width));
+  result.is_certain = result.sigma_px <= kMaxSigmaShare * result.focal_px &&
+                      result.high_px < (1 + kMaxExcessShare) * result.focal_px;
   if (!result.is_certain)
-    why = "the way the picture turns fits every focal length from " +
+    why = "the way the picture turns fits focal lengths from " +
           std::to_string(static_cast<int>(result.low_px)) + " to " +
           std::to_string(static_cast<int>(result.high_px)) + " px";
   return result;

@@ -11,11 +11,24 @@
 
 namespace airtruth::focal_length {
 
+// A lens of this focal length about the picture's middle, without distortion.
+lens::Lens undistorted(bool fisheye, double focal_px, const lens::ImageSize& size);
+
 // Estimates the focal length of a lens without distortion from a video alone. While the camera
 // turns, the angles between far points stay constant; through a wrong lens they would appear to
 // change. Corners are tracked until the camera has turned by some degrees. For every candidate lens
 // the rotation between the two frames is fitted (rotation_fit.h); the candidate with the least
 // residual is the result.
+//
+// What is in view, near ground above all, moves the estimates of neighbouring turns the same way,
+// by more than their noise: halves that interleave agree with one another and not with the next ten
+// seconds. So the clip is cut into stretches (4 to 8, each of turns that follow one another), each
+// is estimated on its own, and the uncertainty is that of one more stretch: with the standard
+// deviation s of the logarithms of n estimates, the interval is the estimate times
+// exp(+- t s sqrt(1 + 1/n)), where t is the 97.5 % point of Student's t with n - 1 degrees of
+// freedom (the prediction interval of a further observation: Hahn and Meeker 1991, "Statistical
+// Intervals", section 4.7). It takes no credit for the number of stretches, because an error that
+// they share does not average out. docs/lenses.md has how often it holds the other parts of a clip.
 class LensEstimator {
  public:
   LensEstimator(int width, int height, const image::Mask* own_aircraft = nullptr);
@@ -28,10 +41,10 @@ class LensEstimator {
   struct Result {
     bool fisheye = false;  // equidistant; else pinhole
     double focal_px = 0;
-    // The uncertainty, from two estimates with one half of the pairs each.
+    // The standard deviation of the estimate of a stretch about focal_px.
     double sigma_px = 0;
-    // Every focal length from low_px to high_px fits equally well: its mean squared residual is
-    // within 2 % of the least. The search ends at 0.25 and 6 widths of the picture.
+    // The 95 % interval, widened to all focal lengths that fit equally well, whose mean squared
+    // residual is within 2 % of the least. The search ends at 0.25 and 6 widths of the picture.
     double low_px = 0;
     double high_px = 0;
     // Whether that interval is narrow enough to use focal_px as the camera's focal length.

@@ -13,7 +13,6 @@
 
 #include "dataset/build/check.h"
 #include "dataset/catalogue/expand.h"
-#include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
@@ -51,6 +50,24 @@ std::vector<std::string> options_of(const catalogue::Catalogue& catalogue,
   return result;
 }
 
+constexpr std::string_view kArray = "--array=";
+
+// Takes the arrays out of `given`, because only one of the two scripts is an array. What `stated`
+// leaves open is as the last of them has it.
+catalogue::TaskArray taken_array(std::vector<std::string>& given, catalogue::TaskArray stated) {
+  catalogue::TaskArray array;
+  for (const std::string& option : given) {
+    if (!option.starts_with(kArray)) continue;
+    const auto one = catalogue::task_array_of(std::string_view(option).substr(kArray.size()));
+    if (one.tasks > 0) array.tasks = one.tasks;
+    if (one.at_once > 0) array.at_once = one.at_once;
+  }
+  std::erase_if(given, [](const std::string& option) { return option.starts_with(kArray); });
+  if (stated.tasks > 0) array.tasks = stated.tasks;
+  if (stated.at_once > 0) array.at_once = stated.at_once;
+  return array;
+}
+
 std::string head(const std::string& name,
                  const std::string& log,
                  const std::vector<std::string>& options) {
@@ -63,29 +80,31 @@ std::string head(const std::string& name,
 std::string work_script(const catalogue::Catalogue& catalogue,
                         const fs::path& out,
                         const SlurmOptions& options,
-                        std::int64_t tasks) {
-  std::string text = head("airtruth",
-                          catalogue::sbatch_log((out / "slurm").string(), "work-%a.log"),
-                          options_of(catalogue, options));
-  text += fmt::format("#SBATCH --array=0-{}\n#SBATCH --requeue\n", tasks - 1);
+                        const std::vector<std::string>& given,
+                        const catalogue::TaskArray& array) {
+  std::string text =
+      head("airtruth", catalogue::sbatch_log((out / "slurm").string(), "work-%a.log"), given);
+  text += fmt::format("#SBATCH --array=0-{}{}\n#SBATCH --requeue\n",
+                      array.tasks - 1,
+                      array.at_once > 0 ? fmt::format("%{}", array.at_once) : "");
   text += fmt::format(
       "exec {} dataset work {} --out {} --index \"$SLURM_ARRAY_TASK_ID\" --of {} --jobs "
       "\"${{SLURM_CPUS_ON_NODE:-1}}\"",
       quoted(options.program.string()),
       quoted(fs::absolute(catalogue.file).string()),
       quoted(out.string()),
-      tasks);
+      array.tasks);
   for (const auto& [name, video] : options.videos)
     text += " --background " + quoted(name + "=" + video.string());
   return text + "\n";
 }
 
-std::string verify_script(const catalogue::Catalogue& catalogue,
-                          const fs::path& out,
-                          const SlurmOptions& options) {
+std::string verify_script(const fs::path& out,
+                          const SlurmOptions& options,
+                          const std::vector<std::string>& given) {
   return head("airtruth-verify",
               catalogue::sbatch_log((out / "slurm").string(), "verify.log"),
-              options_of(catalogue, options)) +
+              given) +
          fmt::format("exec {} dataset verify {} --finish --jobs \"${{SLURM_CPUS_ON_NODE:-1}}\"\n",
                      quoted(options.program.string()),
                      quoted(out.string()));
@@ -122,12 +141,13 @@ Submitted submit(const catalogue::Catalogue& catalogue,
     throw Error("'" + options.partition + "' is no name of a Slurm partition");
   check_sources(with_videos(catalogue, options.videos));
   const std::int64_t sequences = catalogue::Expansion(catalogue).size();
-  const std::int64_t tasks = options.array_size > 0
-                                 ? std::min<std::int64_t>(options.array_size, sequences)
-                                 : std::min(kMaxTasks, sequences);
+  std::vector<std::string> given = options_of(catalogue, options);
+  catalogue::TaskArray array = taken_array(given, options.array);
+  array.tasks = static_cast<int>(
+      std::min<std::int64_t>(array.tasks > 0 ? array.tasks : kMaxTasks, sequences));
   // All checks come before the folder is made.
-  const std::string work = work_script(catalogue, root, options, tasks);
-  const std::string verify = verify_script(catalogue, root, options);
+  const std::string work = work_script(catalogue, root, options, given, array);
+  const std::string verify = verify_script(root, options, given);
   catalogue::open_folder(catalogue, root, options.max_in_a_folder);
   fs::create_directories(root / "slurm");
   Submitted submitted{root / "slurm" / "work.sh", root / "slurm" / "verify.sh", {}, {}};

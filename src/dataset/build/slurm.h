@@ -6,12 +6,14 @@
 #include <vector>
 
 #include "dataset/catalogue/folder.h"
+#include "dataset/catalogue/slurm_options.h"
 
 namespace airtruth::build {
 
 struct SlurmOptions {
-  // Number of tasks; 0 means one per sequence, at most 1,000.
-  int array_size = 0;
+  // Where the number of tasks is not stated it is one per sequence, at most 1,000. What is stated
+  // here takes precedence over an --array among the options below.
+  catalogue::TaskArray array;
   // As BuildOptions::max_in_a_folder.
   std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder;
   std::string partition;

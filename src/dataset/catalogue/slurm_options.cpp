@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -13,8 +15,7 @@ namespace {
 
 // Options that a job script of airtruth sets itself, or that would make sbatch do something other
 // than submit that script (sbatch(1) of Slurm 22.05).
-constexpr std::array<std::string_view, 16> kOwnOptions = {"array",
-                                                          "output",
+constexpr std::array<std::string_view, 15> kOwnOptions = {"output",
                                                           "open-mode",
                                                           "requeue",
                                                           "no-requeue",
@@ -81,6 +82,34 @@ bool is_memory(std::string_view text) {
   return is_digits(text);
 }
 
+constexpr int kMostTasks = 100'000;
+
+// A whole number from 1 to kMostTasks.
+std::optional<int> count_of(std::string_view text) {
+  int count = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return is_digits(text) && count >= 1 && count <= kMostTasks ? std::optional(count) : std::nullopt;
+}
+
+// "TASKS", "TASKS%M" or "%M"; `tasks_of` reads the first.
+std::optional<TaskArray> array_of(std::string_view text,
+                                  std::optional<int> (*tasks_of)(std::string_view)) {
+  const auto percent = text.find('%');
+  TaskArray array;
+  if (percent != 0) {
+    const auto tasks = tasks_of(text.substr(0, percent));
+    if (!tasks) return std::nullopt;
+    array.tasks = *tasks;
+  }
+  if (percent != std::string_view::npos) {
+    const auto at_once = count_of(text.substr(percent + 1));
+    if (!at_once) return std::nullopt;
+    array.at_once = *at_once;
+  }
+  return array;
+}
+
 using ValueRule = bool (*)(std::string_view);
 
 struct SlurmKey {
@@ -103,6 +132,29 @@ constexpr std::array<SlurmKey, 5> kSlurmKeys = {{
 
 }  // namespace
 
+TaskArray array_size_of(std::string_view text) {
+  if (const auto array = array_of(text, count_of)) return *array;
+  throw Error(
+      fmt::format("{} is no number of tasks; expected N, N%M or %M, for N tasks of which M "
+                  "run at a time, each from 1 to {}",
+                  shown_text(text),
+                  kMostTasks));
+}
+
+TaskArray task_array_of(std::string_view text) {
+  const auto array = array_of(text, [](std::string_view range) -> std::optional<int> {
+    if (range == "0" || range == "0-0") return 1;
+    if (!range.starts_with("0-")) return std::nullopt;
+    const auto last = count_of(range.substr(2));
+    return last ? std::optional(*last + 1) : std::nullopt;
+  });
+  if (array) return *array;
+  throw Error(
+      fmt::format("{} is no array of a set's tasks; expected 0-L, 0-L%M or %M, for tasks 0 "
+                  "to L of which M run at a time",
+                  shown_text(text)));
+}
+
 std::string sbatch_option(const std::string& given, const Where& where) {
   const auto refuse = [&](const std::string& why) {
     throw Error(shown_text(given) + " is no option for sbatch: " + why, where);
@@ -114,10 +166,16 @@ std::string sbatch_option(const std::string& given, const Where& where) {
   const auto own = std::find(kOwnOptions.begin(), kOwnOptions.end(), name.substr(2));
   if (own != kOwnOptions.end())
     refuse("--" + std::string(*own) + " is set by airtruth's own job scripts");
+  if (name == "--array" && break_at == std::string::npos) refuse("it has no value");
   if (break_at == std::string::npos) return name;
   const std::string value = given.substr(break_at + 1);
   if (!is_value(value))
     refuse("its value is not one word of letters, digits and " + std::string(kValueMarks));
+  if (name == "--array") try {
+      task_array_of(value);
+    } catch (const Error& error) {
+      refuse(error.message());
+    }
   return name + "=" + value;
 }
 

@@ -73,7 +73,7 @@ std::string boxes_text(dataset::Boxes boxes) {
          "aircraft.\n";
 }
 
-// The folder of an export while the export is under way.
+// The folder of an export while the export is under way. It is made by begin().
 class Place {
  public:
   Place(fs::path root, const Json& options) : root_(std::move(root)), options_(options) {
@@ -94,6 +94,9 @@ class Place {
           {root_.string()});
     if (!begun && fs::exists(root_) && !holds_only_own_folder())
       throw Error("exists and is not empty; expected a new folder", {root_.string()});
+  }
+
+  void begin() const {
     std::error_code failed;
     fs::create_directories(done_folder(), failed);
     if (failed) throw Error("cannot create: " + failed.message(), {root_.string()});
@@ -136,8 +139,12 @@ class Export {
   Export(const LabelledSet& set, const Place& place, const ExportOptions& options)
       : set_(set), place_(place), options_(options) {}
 
+  // Every check of the set comes before the folder is made.
   ExportSummary run() {
     survey();
+    expect_held();
+    place_.begin();
+    writer_ = exchange::make_writer(options_.format, place_.root(), write_);
     if (*options_.images != Images::kNone) write_images();
     write_labels();
     write_file(place_.root() / "LOSS.md", exchange::loss(options_.format) + about_boxes());
@@ -175,7 +182,17 @@ class Export {
     for (const std::string& part : order)
       if (std::any_of(parts_.begin(), parts_.end(), [&](auto& p) { return p.second == part; }))
         write_.parts.push_back(part);
-    writer_ = exchange::make_writer(options_.format, place_.root(), write_);
+  }
+
+  // A rendered sequence has its video and its size.
+  void expect_held() const {
+    for (const std::string& name : set_.names()) {
+      if (!set_.is_imported(name)) continue;
+      const exchange::Clip clip = clip_of(name);
+      exchange::expect_held(options_.format, clip);
+      if (*options_.images != Images::kNone && !place_.has_images_of(name))
+        check_has_video(name, clip);
+    }
   }
 
   exchange::Clip clip_of(const std::string& name, bool with_masks = false) const {
@@ -192,10 +209,6 @@ class Export {
   }
 
   void write_images() {
-    for (const std::string& name : set_.names())
-      // A rendered sequence has its video.
-      if (set_.is_imported(name) && !place_.has_images_of(name))
-        check_has_video(name, clip_of(name));
     in_parallel(
         set_.names().size(),
         options_.jobs,
@@ -207,12 +220,14 @@ class Export {
   static void check_has_video(const std::string& name, const exchange::Clip& clip) {
     if (clip.media.empty())
       throw Error(name + " has no video to take pictures from; expected --images none");
+    if (!fs::exists(clip.media))
+      throw Error("the video of " + name + " is not there; expected it, or --images none",
+                  {clip.media.string()});
   }
 
   void write_images_of(const std::string& name) {
     if (place_.has_images_of(name)) return;
     const exchange::Clip clip = clip_of(name);
-    check_has_video(name, clip);
     const std::string& part = parts_.at(name);
     const std::map<std::int64_t, std::vector<fs::path>> wanted = places_of(clip, part);
     video::Reader reader(clip.media, {.threads = 1});
@@ -325,6 +340,7 @@ class Export {
 }  // namespace
 
 ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& wanted) {
+  exchange::expect_written(wanted.format);
   ExportOptions options = wanted;
   options.images = images_of(wanted);
   if (options.mot_classes && options.format != exchange::Format::kMot)

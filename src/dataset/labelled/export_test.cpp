@@ -378,6 +378,36 @@ TEST_F(Made, WhatIsImportedCanBeLookedAt) {
   EXPECT_THROW(import_set(csv, out, options), Error);
 }
 
+// What a format cannot hold, and what the set lacks, is said before a folder is made.
+TEST_F(Made, AnErrorLeavesNoFolder) {
+  const auto refused = [&](const fs::path& from, exchange::Format format, const char* words) {
+    const fs::path out = fresh();
+    ExportOptions options;
+    options.format = format;
+    try {
+      export_set(from, out, options);
+      ADD_FAILURE() << words;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.message(), HasSubstr(words));
+    }
+    EXPECT_FALSE(fs::exists(out)) << words;
+  };
+  refused(
+      set(), exchange::Format::kCsv, "csv is a format that is read alone; expected one of coco");
+  refused(set(), exchange::Format::kEvision, "read alone");
+  const fs::path csv = root_ / "sizeless.csv";
+  write_file(csv, "frame,x,y,w,h\n0,10,20,30,40\n5,11.5,20,30,40\n");
+  const fs::path imported = fresh();
+  ImportOptions import_options;
+  import_options.format = exchange::Format::kCsv;
+  import_set(csv, imported, import_options);
+  refused(imported, exchange::Format::kYolo, "has no known size");
+  for (const exchange::Format format : kAll) {
+    if (format == exchange::Format::kYolo) continue;
+    refused(imported, format, "no video to take pictures from");
+  }
+}
+
 TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
   build::VerifyOptions options;
   options.deep_every = 1;

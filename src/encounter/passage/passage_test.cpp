@@ -93,6 +93,30 @@ TEST(Passage, AShortViolationIsFoundAtTheClosestApproach) {
   EXPECT_NEAR(found[0].end_s - found[0].begin_s, 2.0 / 300, 1e-4);
 }
 
+// 609.6 m apart in a turn around one centre, f3442's distance: rounding has them now inside and now
+// outside. Nearer by 1 mm they are inside all along, and farther by 1 mm never.
+TEST(Passage, WhatKeepsExactlyAThresholdIsOneViolation) {
+  const separation::Volume& volume = separation::named_volume("f3442")->volume;
+  const auto circle = [](double radius_m) {
+    return trajectory::steady(
+        {.position_ned_m = {1e5 + radius_m * std::cos(0.3), 2e5 + radius_m * std::sin(0.3), -100},
+         .course_deg = degrees(0.3) + 90,
+         .ground_speed_mps = radius_m * radians(5),
+         .turn_rate_dps = 5});
+  };
+  const auto found = [&](double apart_m) {
+    return violations(volume, circle(400), circle(400 + apart_m), 0, 70);
+  };
+  const auto exact = found(609.6);
+  ASSERT_EQ(exact.size(), 1u);
+  EXPECT_LT(exact[0].begin_s, 1);
+  EXPECT_GT(exact[0].end_s, 69);
+  const auto nearer = found(609.599);
+  ASSERT_EQ(nearer.size(), 1u);
+  EXPECT_EQ(nearer[0].end_s, 70);
+  EXPECT_TRUE(found(609.601).empty());
+}
+
 separation::Mover flying(double course_deg, double speed_mps, double climb_mps = 0) {
   const double course = radians(course_deg);
   return {{0, 0, 0}, {speed_mps * std::cos(course), speed_mps * std::sin(course), -climb_mps}};

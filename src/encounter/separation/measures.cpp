@@ -48,7 +48,8 @@ void add_horizontal(Measures& result, const Relative& between, const MeasureOpti
       tcpa_s <= options.lookahead_s ? *result.dcpa_m : (r + options.lookahead_s * v).norm();
   const double beyond_m2 = (result.horizontal_m - options.tau_distance_m) *
                            (result.horizontal_m + options.tau_distance_m);
-  if (beyond_m2 >= 0 && tcpa_s > 0) result.tau_mod_s = beyond_m2 / -opening;
+  if (beyond_m2 >= 0 && -opening > kStillMps * result.horizontal_m)
+    result.tau_mod_s = beyond_m2 / -opening;
 }
 
 void add_vertical(Measures& result, const Relative& between, const MeasureOptions& options) {

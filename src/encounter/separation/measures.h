@@ -31,8 +31,10 @@ inline Relative relative(const Mover& own, const Mover& intruder) {
           intruder.velocity_ned_mps - own.velocity_ned_mps};
 }
 
-// Slower relative motion counts as none, in m/s: it changes a separation by less than 1 mm in ten
-// days, and it is what rounding leaves of equal velocities.
+// Slower relative motion, and slower closing, counts as none, in m/s: it changes a separation by
+// less than 1 mm in ten days, and it is what rounding leaves of equal velocities, and of the
+// closing speed of aircraft that pass abeam (1e-13 m/s at 300 m/s). A time to come is then at most
+// that of the separation at this speed.
 constexpr double kStillMps = 1e-9;
 
 struct MeasureOptions {
@@ -68,7 +70,7 @@ struct Measures {
   double hmd_m = 0;
   double vmd_m = 0;
   // Modified tau: (DMOD^2 - horizontal^2) / (offset . velocity). Empty unless the aircraft converge
-  // from beyond DMOD.
+  // over the ground, by more than kStillMps, from beyond DMOD.
   std::optional<double> tau_mod_s;
   // Time to the same height. Empty unless the aircraft converge in height.
   std::optional<double> tcoa_s;

@@ -77,6 +77,19 @@ TEST(Measures, InsideTheTauDistanceThereIsNoModifiedTau) {
   EXPECT_TRUE(measures(own, {{1300, 0, -500}, {-40, 0, 0}}).tau_mod_s);
 }
 
+// Abeam, what rounding leaves of the closing speed gives no tau: 1e-12 m/s would be 1e16 s.
+TEST(Measures, AClosingSpeedOfRoundingGivesNoTau) {
+  for (const double closing_mps : {1e-16, 1e-13, 1e-12, 1e-10}) {
+    const Measures abeam =
+        measures({{0, 0, -500}, {0, 0, 0}}, {{3000, 0, -500}, {-closing_mps, 40, 0}});
+    EXPECT_FALSE(abeam.tau_mod_s) << closing_mps;
+    EXPECT_TRUE(abeam.dcpa_m) << closing_mps;
+  }
+  const Measures slow = measures({{0, 0, -500}, {0, 0, 0}}, {{3000, 0, -500}, {-1e-3, 40, 0}});
+  const double dmod_m = 0.66 * 1852;
+  EXPECT_NEAR(slow.tau_mod_s.value(), (3000.0 * 3000 - dmod_m * dmod_m) / (3000 * 1e-3), 1e-3);
+}
+
 TEST(Measures, MissDistancesLookNoFurtherThanTheLookahead) {
   const Mover own{{0, 0, -1000}, {100, 0, 0}};
   const Mover intruder{{4000, 200, -1300}, {-100, 0, 5}};

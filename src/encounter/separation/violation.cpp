@@ -42,6 +42,13 @@ std::optional<Interval> vertical_violation(const Volume& volume, const Relative&
 
 }  // namespace
 
+Volume with_rounding(const Volume& volume) {
+  return {volume.horizontal_m + kRoundingM,
+          volume.vertical_m + kRoundingM,
+          volume.tau_s + kRoundingS,
+          volume.coaltitude_s + kRoundingS};
+}
+
 bool is_inside(const Volume& volume, const Mover& own, const Mover& intruder) {
   const Measures now =
       measures(own, intruder, {.lookahead_s = 0, .tau_distance_m = volume.horizontal_m});

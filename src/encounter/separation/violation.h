@@ -46,6 +46,14 @@ std::span<const NamedVolume> named_volumes();
 const NamedVolume* named_volume(std::string_view name);
 std::vector<std::string> volume_names();
 
+// A state that is outside a volume by no more than this has not left it: it is what rounding adds
+// to a separation and to a time at positions of up to 10,000 km (2e-9 m), with room for the
+// arithmetic of a path, and far below what any threshold states. Chosen.
+constexpr double kRoundingM = 1e-6;
+constexpr double kRoundingS = 1e-6;
+// The volume with its thresholds so much larger.
+Volume with_rounding(const Volume& volume);
+
 // True where the present state violates the volume, by the definition of Volume.
 bool is_inside(const Volume& volume, const Mover& own, const Mover& intruder);
 

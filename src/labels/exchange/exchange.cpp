@@ -184,11 +184,25 @@ std::vector<Clip> arranged(Format format, const Clip& clip) {
   return clips;
 }
 
+void expect_written(Format format) {
+  if (can_write(format)) return;
+  std::vector<std::string> names;
+  for (const About& a : kAll)
+    if (a.write != nullptr) names.emplace_back(a.name);
+  throw Error(fmt::format("{} is a format that is read alone; expected one of {}",
+                          name(format),
+                          fmt::join(names, ", ")));
+}
+
+void expect_held(Format format, const Clip& clip) {
+  if (format == Format::kYolo && (clip.width <= 0 || clip.height <= 0))
+    throw Error(clip.name + " has no known size, of which YOLO's boxes are shares");
+}
+
 std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options) {
-  if (!can_write(format))
-    throw Error(std::string("'") + name(format) + "' can be read, not written");
+  expect_written(format);
   return about(format).write(format, root, options);
 }
 

@@ -38,6 +38,11 @@ class Writer {
   virtual void add(const Clip& clip, const std::string& part) = 0;
   virtual void finish() = 0;
 };
+// Throws Error where the format can only be read.
+void expect_written(Format format);
+// Throws Error where a clip lacks what the format needs.
+void expect_held(Format format, const Clip& clip);
+
 std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options);

@@ -35,8 +35,7 @@ class YoloWriter : public FolderWriter {
   }
 
   void add(const Clip& clip, const std::string& part) override {
-    if (clip.width <= 0 || clip.height <= 0)
-      throw Error(clip.name + " has no known size, of which YOLO's boxes are shares");
+    expect_held(Format::kYolo, clip);
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
       std::string text;
       for (const Label& label : clip.frames[i].labels) text += line_of(label, clip);

@@ -40,7 +40,7 @@ std::string words_of(const cv::Exception& error) {
 }
 
 // Calls `work`; what OpenCV throws becomes an Error with these words after OpenCV's own.
-auto guarded(const auto& work, const std::string& hint = "") {
+auto guarded(const auto& work, const std::string& hint = kOtherLibraries) {
   try {
     return work();
   } catch (const cv::Exception& error) {
@@ -84,7 +84,9 @@ Inference::~Inference() = default;
 void Inference::load(const std::string& onnx, std::vector<std::string> outputs) {
   cv::dnn::Net& net = library_->net;
   net = guarded([&] { return cv::dnn::readNetFromONNX(onnx.data(), onnx.size()); },
-                " (it reads networks of opset 12 and less, with a batch of 1 and fixed sizes)");
+                std::string(" (it reads networks of opset 12 and less, with a batch of 1 and fixed "
+                            "sizes)") +
+                    kOtherLibraries);
   if (net.empty()) throw Error("it holds no network");
   guarded([&] {
     net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);

@@ -136,11 +136,24 @@ HeatMapOutput heat_map_of(const JsonObject& json) {
   return output;
 }
 
-std::variant<HeatMapOutput, Yolov5Output> output_of(const JsonObject& json) {
-  enum class Kind { kHeatMap, kYolov5 };
-  const Kind kind =
-      word<Kind>(json, "kind", {{"heat_map", Kind::kHeatMap}, {"yolov5", Kind::kYolov5}});
+Yolov8Output yolov8_of(const JsonObject& json) {
+  using Order = Yolov8Output::Order;
+  json.expect_keys_among({"kind", "boxes", "order"});
+  return {json.text("boxes"),
+          word<Order>(json,
+                      "order",
+                      {{"values_first", Order::kValuesFirst}, {"boxes_first", Order::kBoxesFirst}},
+                      Order::kFromShape)};
+}
+
+decltype(ModelDescription::output) output_of(const JsonObject& json) {
+  enum class Kind { kHeatMap, kYolov5, kYolov8 };
+  const Kind kind = word<Kind>(
+      json,
+      "kind",
+      {{"heat_map", Kind::kHeatMap}, {"yolov5", Kind::kYolov5}, {"yolov8", Kind::kYolov8}});
   if (kind == Kind::kHeatMap) return heat_map_of(json);
+  if (kind == Kind::kYolov8) return yolov8_of(json);
   json.expect_keys_among({"kind", "boxes"});
   return Yolov5Output{json.text("boxes")};
 }
@@ -163,6 +176,7 @@ std::vector<std::string> output_names(const ModelDescription& description) {
   if (const auto* map = std::get_if<HeatMapOutput>(&description.output)) {
     return {map->heat, map->offset, map->size};
   }
+  if (const auto* yolo = std::get_if<Yolov8Output>(&description.output)) return {yolo->boxes};
   return {std::get<Yolov5Output>(description.output).boxes};
 }
 

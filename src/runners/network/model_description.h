@@ -56,9 +56,18 @@ struct Yolov5Output {
   std::string boxes;
 };
 
+// One output of 1 x (4 + classes) x n, as YOLOv8 to YOLO12 write it: the centre's x and y, width
+// and height in pixels of the input, and each class's probability. There is no objectness.
+struct Yolov8Output {
+  std::string boxes;
+  // kFromShape: the shape decides whether the values of a box or the boxes come first.
+  enum class Order { kFromShape, kValuesFirst, kBoxesFirst };
+  Order order = Order::kFromShape;
+};
+
 struct ModelDescription {
   NetworkInput input;
-  std::variant<HeatMapOutput, Yolov5Output> output;
+  std::variant<HeatMapOutput, Yolov5Output, Yolov8Output> output;
   std::vector<std::string> classes;
   double score_threshold = 0.1;
   // A detection at or above it may begin a track.

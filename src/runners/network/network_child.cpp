@@ -122,7 +122,9 @@ std::vector<Tensor> NetworkChild::run(const Samples& samples) {
 
 std::string NetworkChild::answer(NetworkMessage wanted, const std::string& did_not) {
   sandbox::Channel::Received received = process_.receive(kMostAnswerBytes);
-  if (received.closed) throw Error(did_not + ": " + sandbox::end_in_words(process_.end()));
+  if (received.closed) {
+    throw Error(did_not + ": " + sandbox::end_in_words(process_.end()) + kOtherLibraries);
+  }
   if (received.is(NetworkMessage::kError)) {
     throw Error(did_not + ": " + sandbox::error_from_bytes(received.bytes).message());
   }

@@ -52,6 +52,10 @@ enum class NetworkMessage : std::uint8_t {
   kError,     // from the child: an Error
 };
 
+// Goes on after what a library cannot load or run: another one may.
+constexpr const char* kOtherLibraries =
+    "; a program of yours with another library can run it: exec:COMMAND";
+
 // The preparation of samples and the network itself.
 struct NetworkJob {
   int channels = 1;

@@ -144,30 +144,93 @@ class HeatMap {
   int cell_px_ = 0;
 };
 
-std::vector<results::Detection> of_yolov5(const Tensor& boxes,
-                                          const ModelDescription& description) {
-  const std::string& name = std::get<Yolov5Output>(description.output).boxes;
-  const auto columns = static_cast<int>(5 + description.classes.size());
-  if (boxes.shape.size() != 3 || boxes.shape[0] != 1 || boxes.shape[2] != columns) {
-    wrong_shape(name, boxes, fmt::format("1 x boxes x {}, for the classes", columns));
+// The boxes of a network of the YOLO family: value v of box i is values[i * box + v * value].
+struct YoloBoxes {
+  const std::string& name;
+  const Tensor& tensor;
+  int boxes = 0;
+  std::ptrdiff_t box = 0;
+  std::ptrdiff_t value = 0;
+  int classes_from = 0;  // the first class's value; objectness is the one before where it is 5
+
+  double at(int i, int v) const {
+    return tensor.values[static_cast<std::size_t>(i * box + v * value)];
   }
+};
+
+YoloBoxes yolov5_boxes(const Tensor& tensor, const std::string& name, int classes) {
+  const int values = 5 + classes;
+  const std::vector<int>& shape = tensor.shape;
+  if (shape.size() != 3 || shape[0] != 1 || shape[2] != values) {
+    const bool as_yolov8 =
+        shape.size() == 3 && shape[0] == 1 && (shape[1] == values - 1 || shape[2] == values - 1);
+    wrong_shape(name,
+                tensor,
+                fmt::format("1 x boxes x {}, for the classes{}",
+                            values,
+                            as_yolov8 ? "; this is the shape of kind \"yolov8\"" : ""));
+  }
+  return {name, tensor, shape[1], values, 1, 5};
+}
+
+// Both orders fit where there are as many boxes as values. A shape of 1 x boxes x 6 is also that of
+// networks that leave out duplicates themselves (YOLOv10, YOLO26): two corners, score and class.
+YoloBoxes yolov8_boxes(const Tensor& tensor, const Yolov8Output& output, int classes) {
+  using Order = Yolov8Output::Order;
+  const int values = 4 + classes;
+  const std::vector<int>& shape = tensor.shape;
+  const bool flat = shape.size() == 3 && shape[0] == 1;
+  const bool values_first = flat && output.order != Order::kBoxesFirst && shape[1] == values;
+  const bool boxes_first = flat && output.order != Order::kValuesFirst && shape[2] == values;
+  if (!values_first && !boxes_first) {
+    wrong_shape(output.boxes,
+                tensor,
+                output.order == Order::kValuesFirst ? fmt::format("1 x {} x boxes", values)
+                : output.order == Order::kBoxesFirst
+                    ? fmt::format("1 x boxes x {}", values)
+                    : fmt::format("1 x {0} x boxes or 1 x boxes x {0}, "
+                                  "for the classes",
+                                  values));
+  }
+  if (output.order == Order::kFromShape && boxes_first && (values_first || values == 6)) {
+    wrong_shape(
+        output.boxes,
+        tensor,
+        "\"order\" in its description, \"values_first\" or \"boxes_first\": the shape alone "
+        "does not say what its numbers are");
+  }
+  if (values_first) return {output.boxes, tensor, shape[2], 1, shape[2], 4};
+  return {output.boxes, tensor, shape[1], values, 1, 4};
+}
+
+YoloBoxes yolo_boxes(const Tensor& tensor, const ModelDescription& description) {
+  const auto classes = static_cast<int>(description.classes.size());
+  if (const auto* yolov8 = std::get_if<Yolov8Output>(&description.output)) {
+    return yolov8_boxes(tensor, *yolov8, classes);
+  }
+  return yolov5_boxes(tensor, std::get<Yolov5Output>(description.output).boxes, classes);
+}
+
+std::vector<results::Detection> of_yolo(const YoloBoxes& all, const ModelDescription& description) {
   std::vector<results::Detection> found;
-  for (auto row = boxes.values.begin(); row != boxes.values.end(); row += columns) {
-    const auto best = std::max_element(row + 5, row + columns);
-    const double score = static_cast<double>(row[4]) * *best;
+  for (int i = 0; i < all.boxes; ++i) {
+    int best = 0;
+    for (int c = 1; c < static_cast<int>(description.classes.size()); ++c) {
+      if (all.at(i, all.classes_from + c) > all.at(i, all.classes_from + best)) best = c;
+    }
+    const double objectness = all.classes_from == 5 ? all.at(i, 4) : 1;
+    const double score = objectness * all.at(i, all.classes_from + best);
     if (!std::isfinite(score)) {
-      throw Error(fmt::format("gives a score that is not finite ({}), in row {} of '{}'",
-                              score,
-                              (row - boxes.values.begin()) / columns,
-                              name));
+      throw Error(fmt::format(
+          "gives a score that is not finite ({}), in row {} of '{}'", score, i, all.name));
     }
     if (score < description.score_threshold) continue;
-    found.push_back(detection_about(row[0],
-                                    row[1],
-                                    row[2],
-                                    row[3],
+    found.push_back(detection_about(all.at(i, 0),
+                                    all.at(i, 1),
+                                    all.at(i, 2),
+                                    all.at(i, 3),
                                     score,
-                                    description.classes[static_cast<std::size_t>(best - row - 5)]));
+                                    description.classes[static_cast<std::size_t>(best)]));
   }
   keep_strongest(found);
   return found;
@@ -205,7 +268,7 @@ std::vector<results::Detection> decoded(const std::vector<Tensor>& outputs,
   std::vector<results::Detection> found =
       std::holds_alternative<HeatMapOutput>(description.output)
           ? HeatMap(outputs, description, width, height).detections()
-          : of_yolov5(outputs[0], description);
+          : of_yolo(yolo_boxes(outputs[0], description), description);
   std::erase_if(found, [](const results::Detection& d) {
     return d.box_px.width <= 0 || d.box_px.height <= 0;
   });

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/network/network_output.h"
 
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
@@ -58,6 +61,55 @@ TEST(HeatMap, CellsThatDoNotDivideTheInputAreRefused) {
                Error);
   EXPECT_THROW(decoded({zeros(1, 12, 16), zeros(2, 12, 15), zeros(2, 12, 16)}, heat_map(1), 64, 48),
                Error);
+}
+
+ModelDescription yolov8(int classes, Yolov8Output::Order order = {}) {
+  ModelDescription description = heat_map(classes);
+  description.output = Yolov8Output{"output0", order};
+  return description;
+}
+
+// Two boxes: (10, 20) of 4 x 6 px with probabilities 0.1, 0.7, 0.2, and one below the threshold.
+const Tensor kValuesFirst{{1, 7, 2}, {10, 5, 20, 5, 4, 2, 6, 2, 0.1f, 0, 0.7f, 0, 0.2f, 0}};
+const Tensor kBoxesFirst{{1, 2, 7}, {10, 20, 4, 6, 0.1f, 0.7f, 0.2f, 5, 5, 2, 2, 0, 0, 0}};
+
+TEST(Yolov8, BothOrdersGiveTheSameBox) {
+  for (const Tensor& tensor : {kValuesFirst, kBoxesFirst}) {
+    const auto found = decoded({tensor}, yolov8(3), 64, 64);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].box_px, (Box{8, 17, 4, 6}));
+    EXPECT_FLOAT_EQ(static_cast<float>(found[0].score), 0.7f);
+    EXPECT_EQ(found[0].category, "c1");
+  }
+}
+
+std::string fault_of(const Tensor& tensor, const ModelDescription& description) {
+  try {
+    decoded({tensor}, description, 64, 64);
+  } catch (const Error& error) {
+    return error.message();
+  }
+  return "";
+}
+
+TEST(Yolov8, AShapeThatFitsTwiceIsAsked) {
+  using Order = Yolov8Output::Order;
+  const Tensor square{{1, 5, 5}, std::vector<float>(25, 0.5f)};
+  EXPECT_NE(fault_of(square, yolov8(1)).find("expected \"order\""), std::string::npos);
+  EXPECT_EQ(fault_of(square, yolov8(1, Order::kValuesFirst)), "");
+  EXPECT_EQ(fault_of(square, yolov8(1, Order::kBoxesFirst)), "");
+  // Two corners, score and class have the shape of two classes' boxes.
+  const Tensor six{{1, 300, 6}, std::vector<float>(1800, 0.5f)};
+  EXPECT_NE(fault_of(six, yolov8(2)).find("expected \"order\""), std::string::npos);
+  EXPECT_EQ(fault_of(six, yolov8(2, Order::kBoxesFirst)), "");
+}
+
+TEST(Yolov8, AnotherNumberOfClassesIsAnError) {
+  EXPECT_NE(fault_of(kValuesFirst, yolov8(4)).find("expected 1 x 8 x boxes or 1 x boxes x 8"),
+            std::string::npos);
+  ModelDescription yolov5 = yolov8(3);
+  yolov5.output = Yolov5Output{"output0"};
+  EXPECT_NE(fault_of(kBoxesFirst, yolov5).find("kind \"yolov8\""), std::string::npos);
 }
 
 PieceDetection in_piece(int piece, const Box& box, double score, bool cut = false) {

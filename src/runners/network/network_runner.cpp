@@ -18,6 +18,7 @@
 #include "foundation/sandbox/child.h"
 #include "foundation/sandbox/confine.h"
 #include "foundation/sandbox/messages.h"
+#include "runners/network/external_data.h"
 #include "runners/network/inference.h"
 #include "runners/network/network_child.h"
 
@@ -39,6 +40,14 @@ class Network {
  public:
   Network(Inference& inference, const NetworkJob& job)
       : inference_(inference), channels_(job.channels), mean_(job.mean), scale_(job.scale) {
+    if (const auto other = external_data_of(job.onnx)) {
+      std::string name = other->substr(0, 100);
+      std::ranges::replace_if(
+          name, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
+      throw Error("its weights lie in a second file, '" + name +
+                  "'; expected one file, as Python's onnx.save(onnx.load(\"MODEL.onnx\"), "
+                  "\"MODEL.onnx\") makes of both");
+    }
     inference_.load(job.onnx, job.outputs);
   }
 

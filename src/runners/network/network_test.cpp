@@ -236,7 +236,7 @@ TEST_F(Networks, OutputsUnlikeTheDescriptionAreOneLine) {
   EXPECT_THAT(
       fault(whole,
             description(R"({"layout": "rgb", "fit": "frame", "multiple_px": 8})", kHeatOutput)),
-      HasSubstr("a.onnx: cannot be run on an input of 256 x 256 px"));
+      AllOf(HasSubstr("a.onnx: cannot be run on an input of 256 x 256 px"), HasSubstr("exec:")));
 }
 
 TEST_F(Networks, NumbersThatAreNoneAreOneLine) {
@@ -249,6 +249,19 @@ TEST_F(Networks, NumbersThatAreNoneAreOneLine) {
               HasSubstr("a.onnx: gives a score that is not finite (nan), in row 0 of 'output'"));
   EXPECT_THAT(fault(onnx::constant_yolo_model(32, {16, 1e30f, 8, 4, 1, 0.5f}), json),
               HasSubstr("a.onnx: gives a box of 8 x 4 px at (16, 1e+30)"));
+}
+
+// A tensor of onnx.proto whose data_location (14) is EXTERNAL and whose external_data (13) names a
+// file.
+TEST_F(Networks, WeightsInASecondFileAreNamed) {
+  onnx::Graph graph;
+  const std::string entry = onnx::message(1, "location") + onnx::message(2, "a.onnx.data");
+  graph.tensors = {onnx::number(1, 4) + onnx::number(2, 1) + onnx::message(8, "w") +
+                   onnx::message(13, entry) + onnx::number(14, 1)};
+  graph.inputs = {onnx::value("images", {1, 3, 32, 32})};
+  EXPECT_THAT(fault(onnx::model(graph), description(kWholeFrame, kHeatOutput)),
+              HasSubstr("a.onnx: cannot be loaded as an ONNX network: its weights lie in a second "
+                        "file, 'a.onnx.data'"));
 }
 
 TEST_F(Networks, AMissingDescriptionIsNamed) {

@@ -297,14 +297,30 @@ TEST(LensYardstick, AFlightInTurnsTellsItsLens) {
     options.roll_deg = 25;
     const Flight flight(options);
     focal_length::LensEstimator estimator(640, 480, &flight.own_aircraft());
-    for (int k = 0; k < options.frame_count; ++k) estimator.add(flight.frame(k));
+    focal_length::LensEstimator first(640, 480, &flight.own_aircraft());
+    focal_length::LensEstimator second(640, 480, &flight.own_aircraft());
+    for (int k = 0; k < options.frame_count; ++k) {
+      const image::Picture frame = flight.frame(k);
+      estimator.add(frame);
+      (2 * k < options.frame_count ? first : second).add(frame);
+    }
     std::string why;
     const auto found = estimator.result(why);
     ASSERT_TRUE(found) << lens.name() << ": " << why;
-    std::printf("%s: %.1f +- %.1f px, true %.1f, %d pairs, %.2f px (other kind %.2f)\n",
+    // Each half's interval holds what the other half gives, and the true value.
+    const auto one = first.result(why);
+    const auto other = second.result(why);
+    ASSERT_TRUE(one && other) << lens.name() << ": " << why;
+    const auto holds = [](const focal_length::LensEstimator::Result& interval, double focal_px) {
+      return interval.low_px <= focal_px && focal_px <= interval.high_px;
+    };
+    EXPECT_TRUE(holds(*one, other->focal_px) && holds(*other, one->focal_px)) << lens.name();
+    EXPECT_TRUE(holds(*one, lens.focal_px()) && holds(*other, lens.focal_px())) << lens.name();
+    std::printf("%s: %.1f px, %.1f to %.1f, true %.1f, %d pairs, %.2f px (other kind %.2f)\n",
                 found->fisheye ? "fisheye" : "pinhole",
                 found->focal_px,
-                found->sigma_px,
+                found->low_px,
+                found->high_px,
                 lens.focal_px(),
                 found->pairs,
                 found->rms_px,

@@ -81,9 +81,31 @@ std::optional<LensWords> lens_from_files(const fs::path& video, lens::ImageSize 
                   *mm));
 }
 
-std::optional<LensWords> estimated_lens(const fs::path& video, const NewSceneOptions& options) {
+// A usual view, or an estimate that is not certain where that view is outside its interval.
+LensWords guessed_lens(lens::ImageSize size,
+                       const std::string& why,
+                       const std::optional<focal_length::LensEstimator::Result>& within) {
+  const std::string origin = fmt::format(
+      "A GUESS: no file states the lens, and {}; put the camera's view here, or a calibration as "
+      "file = \"camera.yml\"",
+      why);
+  const lens::Lens usual = within && within->fisheye
+                               ? lens::fisheye_from_vertical_fov(kGuessedViewDeg, size)
+                               : lens::pinhole_from_vertical_fov(kGuessedViewDeg, size);
+  if (!within)
+    return {usual,
+            fmt::format("[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = {}\n", kGuessedViewDeg),
+            origin};
+  const bool is_possible =
+      usual.focal_px() >= within->low_px && usual.focal_px() <= within->high_px;
+  const double focal_px = is_possible ? usual.focal_px() : within->focal_px;
+  return in_words(focal_length::undistorted(within->fisheye, focal_px, size), origin);
+}
+
+LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) {
   video::ReaderOptions reader_options;
   reader_options.frame_count = kMaxEstimateFrames;
+  reader_options.picture_rate_hz = options.picture_rate_hz;
   reader_options.with_cuts = true;
   video::Reader reader(video, reader_options, options.warn);
   const lens::ImageSize size{reader.info().width, reader.info().height};
@@ -96,28 +118,30 @@ std::optional<LensWords> estimated_lens(const fs::path& video, const NewSceneOpt
   }
   std::string why;
   const auto found = estimator.result(why);
-  if (!found || !found->is_certain) return std::nullopt;
-  const Pixel focal(found->focal_px, found->focal_px), middle(size.width / 2.0, size.height / 2.0);
-  const lens::Lens lens = found->fisheye
-                              ? lens::Lens(lens::Fisheye{focal, middle, {0, 0, 0, 0}}, size)
-                              : lens::Lens(lens::Pinhole{focal, middle}, size);
-  return in_words(
-      lens,
-      fmt::format(
-          "estimated from the video: {:.0f} +- {:.0f} px", found->focal_px, found->sigma_px));
+  if (!found || !found->is_certain) return guessed_lens(size, why, found);
+  return in_words(focal_length::undistorted(found->fisheye, found->focal_px, size),
+                  fmt::format("estimated from the video: a focal length of {:.0f} px, {:.0f} to "
+                              "{:.0f} px at 95 % (airtruth lens estimate); a calibration is better",
+                              found->focal_px,
+                              found->low_px,
+                              found->high_px));
+}
+
+// What airtruth lens estimate has written of its doubt into a calibration, as opencv_calibration()
+// has it; empty for any other.
+std::string note_in(const fs::path& calibration) {
+  const std::string text = read_file(calibration, kMaxSubtitleBytes);
+  const std::size_t at = text.find("# estimated by airtruth lens estimate");
+  return at == std::string::npos ? "" : ", " + text.substr(at + 2, text.find('\n', at) - at - 2);
 }
 
 LensWords lens_for(const fs::path& video, lens::ImageSize size, const NewSceneOptions& options) {
   if (options.lens)
     return {lens::read_calibration(*options.lens, size, options.warn),
             fmt::format("[lens]\nfile = \"{}\"\n", fs::absolute(*options.lens).string()),
-            "the stated calibration"};
+            "the stated calibration" + note_in(*options.lens)};
   if (auto found = lens_from_files(video, size)) return *found;
-  if (auto found = estimated_lens(video, options)) return *found;
-  return {lens::pinhole_from_vertical_fov(kGuessedViewDeg, size),
-          fmt::format("[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = {}\n", kGuessedViewDeg),
-          "A GUESS: no file states the lens, and the video turns too little to show it; put the "
-          "camera's vertical view here, or a calibration as file = \"camera.yml\""};
+  return estimated_lens(video, options);
 }
 
 // Pitch and roll of the camera in a picture with a horizon.
@@ -201,6 +225,7 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
                                            const NewSceneOptions& options) {
   video::ReaderOptions reader_options;
   reader_options.frame_count = kMaxMotionFrames;
+  reader_options.picture_rate_hz = options.picture_rate_hz;
   reader_options.with_cuts = true;
   video::Reader reader(video, reader_options, options.warn);
   const std::int64_t total = std::min(kMaxMotionFrames, reader.info().frame_count_estimate);
@@ -238,8 +263,12 @@ Part part_of(const fs::path& video,
   return part;
 }
 
-std::string background_words(const fs::path& video, const Part& part, double duration_s) {
+std::string background_words(const fs::path& video,
+                             const Part& part,
+                             double duration_s,
+                             const std::optional<double>& picture_rate_hz) {
   std::string words = fmt::format("[background]\nvideo = {}\n", quoted(fs::absolute(video)));
+  if (picture_rate_hz) words += fmt::format("frame_rate_hz = {}\n", *picture_rate_hz);
   if (!part.is_whole)
     words += fmt::format(
         "first_frame = {:<25}# the camera turns away from where it looks; for these {:.1f} s it "
@@ -250,10 +279,26 @@ std::string background_words(const fs::path& video, const Part& part, double dur
   return words;
 }
 
+// Throws Error where the rate is not stated, or stated twice.
+video::StreamInfo info_of(const fs::path& video, const NewSceneOptions& options) {
+  video::StreamInfo info = video::Reader(video, {.frame_count = 1}, options.warn).info();
+  if (info.is_rate_stated && options.picture_rate_hz)
+    throw Error("is a video, which states its own rate; --frame-rate is for numbered pictures",
+                {video.string()});
+  if (info.is_rate_stated) return info;
+  if (!options.picture_rate_hz)
+    throw Error(
+        "holds numbered pictures, which state no rate; expected --frame-rate, their frames "
+        "a second",
+        {video.string()});
+  return video::Reader(video, {.frame_count = 1, .picture_rate_hz = options.picture_rate_hz})
+      .info();
+}
+
 }  // namespace
 
 std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
-  const video::StreamInfo info = video::Reader(video, {}, options.warn).info();
+  const video::StreamInfo info = info_of(video, options);
   const lens::ImageSize size{info.width, info.height};
   const LensWords lens = lens_for(video, size, options);
   const Part part = part_of(video, info, lens.lens, options);
@@ -285,7 +330,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       info.height,
       rate_hz,
       seconds_of(info.frame_count_estimate),
-      background_words(video, part, duration_s),
+      background_words(video, part, duration_s, options.picture_rate_hz),
       lens.origin,
       lens.table,
       camera.table,

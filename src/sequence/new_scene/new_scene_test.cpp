@@ -5,10 +5,15 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "camera/lens/calibration_file.h"
+#include "foundation/base/error.h"
+#include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/new_scene/first_encounter.h"
 #include "sequence/new_scene/lens_hint.h"
@@ -98,6 +103,67 @@ TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
         return row.box_px.has_value();
       });
   EXPECT_GE(2 * seen, std::ssize(made.rows));
+}
+
+std::string fault_of(const fs::path& video, const NewSceneOptions& options) {
+  try {
+    scene_text(video, options);
+  } catch (const Error& error) {
+    return error.message();
+  }
+  return "";
+}
+
+TEST(NewScene, PicturesAskForTheirRate) {
+  const test_support::TemporaryFolder folder;
+  synthetic::FlightOptions options;
+  options.frame_count = 4;
+  options.width = 160;
+  options.height = 120;
+  const synthetic::Flight flight(options);
+  fs::create_directories(folder / "frames");
+  for (int k = 0; k < options.frame_count; ++k)
+    video::write_still(folder / "frames" / ("000" + std::to_string(k) + ".png"), flight.frame(k));
+  EXPECT_THAT(fault_of(folder / "frames", {}), testing::HasSubstr("expected --frame-rate"));
+  NewSceneOptions stated;
+  stated.picture_rate_hz = 12.5;
+  const std::string text = scene_text(folder / "frames", stated);
+  EXPECT_THAT(text, testing::HasSubstr("frame_rate_hz = 12.5\n"));
+  // The camera hardly turns in four frames: the lens is a guess, and the reason is there.
+  EXPECT_THAT(text, testing::HasSubstr("A GUESS: no file states the lens, and the camera turns"));
+  EXPECT_EQ(scene::parse_scene(text, folder / "s.toml").background.frame_rate_hz, 12.5);
+  demo::write_flight(flight, folder / "flight.mp4", {});
+  EXPECT_THAT(fault_of(folder / "flight.mp4", stated), testing::HasSubstr("states its own rate"));
+}
+
+// A camera in turns shows its lens: the scene has the interval of the estimate, which holds the
+// true focal length.
+TEST(NewScene, TheEstimatesIntervalIsInTheScene) {
+  const test_support::TemporaryFolder folder;
+  synthetic::FlightOptions options;
+  options.lens = lens::pinhole_from_vertical_fov(60, {320, 240});
+  options.frame_count = 200;
+  options.width = 320;
+  options.height = 240;
+  options.roll_deg = 25;
+  options.own_aircraft = false;
+  demo::write_flight(synthetic::Flight(options), folder / "flight.mp4", {});
+  const std::string text = scene_text(folder / "flight.mp4", {});
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(
+      text, found, std::regex("focal length of ([0-9]+) px, ([0-9]+) to ([0-9]+) px at 95 %")))
+      << text;
+  EXPECT_LT(std::stod(found[2]), options.lens->focal_px());
+  EXPECT_GT(std::stod(found[3]), options.lens->focal_px());
+  EXPECT_NEAR(std::stod(found[1]), options.lens->focal_px(), 0.1 * options.lens->focal_px());
+  // An estimate that was written into a calibration keeps its doubt.
+  std::ofstream(folder / "lens.yml") << lens::opencv_calibration(
+      *options.lens, "estimated by airtruth lens estimate: 9 to 10 px at 95 %; not certain");
+  NewSceneOptions stated;
+  stated.lens = folder / "lens.yml";
+  EXPECT_THAT(scene_text(folder / "flight.mp4", stated),
+              testing::HasSubstr("# the stated calibration, estimated by airtruth lens estimate: 9 "
+                                 "to 10 px at 95 %; not certain."));
 }
 
 }  // namespace
