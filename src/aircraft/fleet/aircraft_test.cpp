@@ -53,6 +53,9 @@ TEST_F(Models, NoseUpAndRightWingPointWhereTheyShould) {
   const model::Extents size = model::extents(load_aircraft((folder_ / "a.ac").string()).mesh);
   EXPECT_TRUE(size.high_in_body.isApprox(Vector3(10, 2, 0))) << size.high_in_body.transpose();
   EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, 0, -4))) << size.low_in_body.transpose();
+  // A byte order mark before the text is none of it.
+  write_file(folder_ / "b.ac", "\xEF\xBB\xBF" + asymmetric_ac());
+  EXPECT_NEAR(model::extents(load_aircraft((folder_ / "b.ac").string()).mesh).length_m(), 10, 1e-4);
 }
 
 TEST_F(Models, TheWrapperLiesAsTheBareFileAndIsShifted) {

@@ -105,6 +105,12 @@ TEST_F(Formats, AGltfWithoutNormalsIsFlat) {
           << mesh.normals[vertex].transpose();
 }
 
+TEST_F(Formats, WhatIsWhollyTransparentIsRefused) {
+  write_file(folder_ / "g.mtl", "newmtl m\nKd 1 0 0\nd 0\n");
+  EXPECT_THAT(fault("g.obj", "mtllib g.mtl\nusemtl m\nv 0 0 0\nv 3 0 0\nv 0 2 0\nf 1 2 3\n"),
+              testing::HasSubstr("g.obj: is wholly transparent"));
+}
+
 TEST_F(Formats, ASizeThatNoAircraftHasIsSaid) {
   load("mm.obj", "v 0 0 0\nv 9700 0 0\nv 0 2840 0\nf 1 2 3\n");
   EXPECT_THAT(warnings_, testing::HasSubstr("mm.obj: is 9700 m long and 2840 m wide"));

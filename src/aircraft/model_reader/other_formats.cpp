@@ -128,6 +128,7 @@ class SceneReader {
     read_node(*scene_.mRootNode, root, 0);
     if (has_vertex_colours_)
       warn("the colours of its vertices are not read; materials and textures show");
+    if (is_inverted_) warn("a material that states that nothing of it is seen is shown opaque");
   }
 
  private:
@@ -211,6 +212,11 @@ class SceneReader {
     float value = 0;
     if (material.Get(AI_MATKEY_OPACITY, value) == aiReturn_SUCCESS && value >= 0)
       batch.srgb.opacity = std::min(value, 1.0f);
+    // Exporters of COLLADA state for opaque materials that they are wholly transparent.
+    if (ending_ == ".dae" && batch.srgb.opacity == 0) {
+      batch.srgb.opacity = 1;
+      is_inverted_ = true;
+    }
     if (material.Get(AI_MATKEY_SHININESS, value) == aiReturn_SUCCESS && value >= 0)
       batch.srgb.shininess =
           std::min(ending_ == ".obj" ? value / 4 : value, 128.0f);  // it takes 4 Ns
@@ -256,6 +262,7 @@ class SceneReader {
   std::vector<std::string> names_;
   std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
   bool has_vertex_colours_ = false;
+  bool is_inverted_ = false;
 };
 
 // Removes all importers except those of the ending, so that the content of a file cannot choose
