@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG, JPEG, SGI and TGA: anything but an Error is a finding.
+// PNG, JPEG, WebP, BMP, SGI and TGA: anything but an Error is a finding.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

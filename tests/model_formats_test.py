@@ -209,6 +209,15 @@ class EveryFormat(Case):
                     self.assertEqual(len(shown.stderr.strip().splitlines()), 1, shown.stderr)
                     self.assertIn("bad" + ending, shown.stderr)
 
+    def test_collada_that_is_transparent_by_mistake_is_opaque_and_said(self):
+        with open(dae(), encoding="utf-8") as whole:
+            text = whole.read()
+        clear = text.replace("</diffuse>", "</diffuse><transparent><color>1 1 1 1</color></transparent><transparency><float>0</float></transparency>")
+        self.assertNotEqual(text, clear)
+        shown = run("aircraft", "show", write("clear.dae", clear), "--forward", "x", "--up", "z")
+        self.assertEqual((shown.returncode, size_of(shown.stdout)), (0, (3, 2, 1)), shown.stderr)
+        self.assertIn("is shown opaque", shown.stderr)
+
     def test_files_outside_of_its_folder_are_not_read(self):
         scene, data = gltf_parts()
         write("outside.bin", data)

@@ -152,6 +152,10 @@ struct ReadOptions {
   // (YOLO, GOT-10k, OTB, VOT). Without this function and without `size`, the labels of YOLO cannot
   // be read, and boxes of the others are not clipped.
   std::function<std::pair<int, int>(const std::filesystem::path& picture)> size_of_picture = {};
+  // OTB, GOT-10k and VOT: the number of the picture that the first box belongs to, by the name of
+  // the sequence; "" stands for every other one. Without it, a sequence with more pictures than
+  // boxes is an Error, but for those of OTB-100 whose start is known (David: 300).
+  std::map<std::string, std::int64_t> start_frames = {};
 };
 
 // Reads every clip of a set. `source` is the folder that write_clips() or `airtruth dataset export`

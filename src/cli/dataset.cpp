@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <charconv>
 #include <memory>
 
 #include <fmt/format.h>
@@ -72,8 +73,21 @@ struct Import {
   std::vector<std::string> videos;
   std::vector<std::string> classes;
   std::vector<std::string> classes_of_categories;
+  std::vector<std::string> start_frames;
   labelled::ImportOptions options;
 };
+
+// "[CLIP=]N".
+std::pair<std::string, std::int64_t> start_frame_from(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  const std::size_t digits = equals == std::string::npos ? 0 : equals + 1;
+  std::int64_t number = -1;
+  const char* end = text.data() + text.size();
+  const auto [rest, failed] = std::from_chars(text.data() + digits, end, number);
+  if (failed != std::errc() || rest != end || number < 0)
+    throw Error("--start-frame is '" + text + "'; expected N or CLIP=N, a picture's number");
+  return {digits == 0 ? std::string() : text.substr(0, equals), number};
+}
 
 void run_import(Import arguments, Context& context) {
   Console& console = context.console();
@@ -87,6 +101,10 @@ void run_import(Import arguments, Context& context) {
     else
       options.videos[given.substr(0, equals)] = given.substr(equals + 1);
   }
+  for (const std::string& given : arguments.start_frames)
+    options.read.start_frames.insert(start_frame_from(given));
+  if (!arguments.start_frames.empty() && !exchange::is_single_object(options.format))
+    throw Error("--start-frame is for otb, got10k and vot");
   for (const std::string& given : arguments.classes)
     options.classes.push_back(labelled::object_class_from(given));
   for (const std::string& given : arguments.classes_of_categories)
@@ -177,6 +195,10 @@ void add_import(CLI::App& group, Context& context) {
   command->add_option("--out,-o", in->out, "A new folder")->required();
   command->add_option(
       "--video", in->videos, "CLIP=VIDEO, or VIDEO where there is one clip: where it is not found");
+  command->add_option("--start-frame",
+                      in->start_frames,
+                      "[CLIP=]N, of otb, got10k and vot: the number of the first box's picture, "
+                      "where there are more pictures than boxes");
   command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
   command
       ->add_option("--origin",

@@ -77,7 +77,7 @@ TEST_F(Strangers, NothingIsRunAndNoPluginIsChosenByAName) {
   write_file(lua, "os.execute(\"touch " + sign.string() + "\")");
   write_file(folder_ / "tex.ac", with_texture("e.lua"));
   EXPECT_THAT(said("tex.ac"), testing::HasSubstr("tex.ac:6: wants the texture"));
-  EXPECT_THAT(said("tex.ac"), testing::HasSubstr("expected PNG, JPEG, SGI or TGA"));
+  EXPECT_THAT(said("tex.ac"), testing::HasSubstr("expected PNG, JPEG, WebP, BMP, SGI or TGA"));
   write_file(folder_ / "w.xml", "<PropertyList><path>e.lua</path></PropertyList>");
   EXPECT_THAT(said("w.xml"), testing::HasSubstr("e.lua: is no 3D model that can be read"));
   for (const char* scene : {"p.osgt", "p.osgb", "p.ive", "p.OSG"}) {

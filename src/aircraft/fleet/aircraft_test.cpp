@@ -53,6 +53,9 @@ TEST_F(Models, NoseUpAndRightWingPointWhereTheyShould) {
   const model::Extents size = model::extents(load_aircraft((folder_ / "a.ac").string()).mesh);
   EXPECT_TRUE(size.high_in_body.isApprox(Vector3(10, 2, 0))) << size.high_in_body.transpose();
   EXPECT_TRUE(size.low_in_body.isApprox(Vector3(0, 0, -4))) << size.low_in_body.transpose();
+  // A byte order mark before the text is none of it.
+  write_file(folder_ / "b.ac", "\xEF\xBB\xBF" + asymmetric_ac());
+  EXPECT_NEAR(model::extents(load_aircraft((folder_ / "b.ac").string()).mesh).length_m(), 10, 1e-4);
 }
 
 TEST_F(Models, TheWrapperLiesAsTheBareFileAndIsShifted) {
@@ -132,6 +135,32 @@ TEST_F(Models, SelectRotateAndSpinAreHonoured) {
   // A quarter turn about up, right-handed: the nose goes from forward to the
   // right (x back, y right, z up).
   EXPECT_NEAR(model::extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10, 1e-4);
+}
+
+// A helicopter's file holds every blade in one place, and the flight model turns blade k of n to
+// 360 k / n degrees: with two blades that point aft (x back), one stays and one points forward.
+TEST_F(Models, TheBladesOfARotorStandEvenlyAboutIt) {
+  fs::create_directories(folder_ / "AI/Aircraft/t");
+  const auto turned = [](const std::string& property) {
+    return "<animation><type>rotate</type><object-name>body</object-name><property>" + property +
+           "</property><axis><z>1</z></axis></animation>";
+  };
+  const auto low_x = [&](const std::string& animations) {
+    write_file(folder_ / "AI/Aircraft/t/a.ac", asymmetric_ac());
+    write_file(folder_ / "AI/Aircraft/t/a.xml",
+               "<PropertyList><path>a.ac</path>" + animations + "</PropertyList>");
+    return model::extents(load_aircraft((folder_ / "AI/Aircraft/t/a.xml").string()).mesh)
+        .low_in_body;
+  };
+  const std::string last =
+      "<animation><type>rotate</type><object-name>none</object-name>"
+      "<property>rotors/main/blade[3]/position-deg</property></animation>";
+  // The arm of 10 m points forward; blade 1 of 4 takes it to the right-handed side, -y in body.
+  EXPECT_NEAR(low_x(turned("rotors/main/blade[1]/position-deg") + last).y(), -10, 1e-4);
+  EXPECT_NEAR(low_x(turned("/rotors/main/blade[2]/position-deg") + last).x(), -10, 1e-4);
+  // A rotor of its own, the first blade and other properties stay at rest.
+  EXPECT_NEAR(low_x(turned("rotors/tail/blade[0]/position-deg") + last).x(), 0, 1e-4);
+  EXPECT_NEAR(low_x(turned("rotors/main/blade[2]/flap-deg") + last).x(), 0, 1e-4);
 }
 
 TEST_F(Models, SaysWhatIsWrong) {

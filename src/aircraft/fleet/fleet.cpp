@@ -344,6 +344,25 @@ double scale_of(const std::string& name,
   return scale_to_published(model::extents(mesh), *published);
 }
 
+// Longer than any aircraft: the airship Hindenburg had 245 m.
+constexpr double kLongest_m = 250;
+
+// Many models are in centimetres or millimetres, and most files do not state their unit.
+void warn_of_size(const std::string& name, const model::Mesh& mesh, const Warn& warn_to) {
+  model::Extents size = {mesh.positions.at(0).cast<double>(), mesh.positions.at(0).cast<double>()};
+  for (const Eigen::Vector3f& position : mesh.positions) {
+    size.low_in_body = size.low_in_body.cwiseMin(position.cast<double>());
+    size.high_in_body = size.high_in_body.cwiseMax(position.cast<double>());
+  }
+  if (std::max(size.length_m(), size.span_m()) <= kLongest_m) return;
+  warn(warn_to,
+       fmt::format("{}: is {:.0f} m long and {:.0f} m wide; where the file is in other units than "
+                   "metres, model_scale (of `aircraft show`: --scale) has the metres of one",
+                   name,
+                   size.length_m(),
+                   size.span_m()));
+}
+
 }  // namespace
 
 Aircraft load_aircraft(const std::string& name,
@@ -373,6 +392,8 @@ Aircraft load_aircraft(const std::string& name,
   aircraft.mesh = model::mesh_of(std::move(model));
   aircraft.catalogue_scale = scale_of(name, options, aircraft.mesh);
   if (aircraft.catalogue_scale != 1) scale_mesh(aircraft.mesh, aircraft.catalogue_scale);
+  if (wrapper::is_model_file(name) && wrapper::ending_of(name) != ".xml")
+    warn_of_size(name, aircraft.mesh, warn_to);
   std::sort(aircraft.sources.begin(), aircraft.sources.end());
   aircraft.sources.erase(std::unique(aircraft.sources.begin(), aircraft.sources.end()),
                          aircraft.sources.end());

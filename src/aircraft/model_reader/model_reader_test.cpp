@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -73,6 +74,50 @@ TEST_F(Formats, StlAndPlyAreRead) {
                    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
                    "property float z\nelement face 2\nproperty list uchar int vertex_indices\n"
                    "end_header\n0 0 0\n3 0 0\n0 2 0\n0 0 1\n3 0 1 2\n3 0 2 3\n"));
+}
+
+// Two triangles share the edge from the origin along x, and their planes differ by 27 degrees. The
+// specification asks for flat normals (glTF 2.0, section 3.7.2.1): those of the planes, which no
+// vertex mixes.
+TEST_F(Formats, AGltfWithoutNormalsIsFlat) {
+  // The positions (0, 0, 0), (3, 0, 0), (0, 2, 0), (0, 0, 1), then the indices 0 1 2, 0 1 3,
+  // base64.
+  const std::string data =
+      "AAAAAAAAAAAAAAAAAABAQAAAAAAAAAAAAAAAAAAAAEAAAAAAAAAAAAAAAMAAAIA/AAABAAIAAAADAAEA";
+  const fleet::Aircraft loaded = load("a.gltf",
+                                      R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
+                   "min": [0, -2, 0], "max": [3, 2, 1]},
+                  {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 48},
+                    {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+    "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)" +
+                                          data + "\"}]}");
+  const model::Mesh& mesh = loaded.mesh;
+  ASSERT_EQ(mesh.triangle_count(), 2u);
+  // In body axes z is down and y right.
+  const Eigen::Vector3f expected[] = {{0, 0, -1}, {0, -std::sqrt(0.2f), -std::sqrt(0.8f)}};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const std::uint32_t vertex : mesh.parts.at(0).triangles.at(i).vertex)
+      EXPECT_TRUE(mesh.normals.at(vertex).isApprox(expected[i]))
+          << mesh.normals[vertex].transpose();
+}
+
+TEST_F(Formats, WhatIsWhollyTransparentIsRefused) {
+  write_file(folder_ / "g.mtl", "newmtl m\nKd 1 0 0\nd 0\n");
+  EXPECT_THAT(fault("g.obj", "mtllib g.mtl\nusemtl m\nv 0 0 0\nv 3 0 0\nv 0 2 0\nf 1 2 3\n"),
+              testing::HasSubstr("g.obj: is wholly transparent"));
+}
+
+TEST_F(Formats, ASizeThatNoAircraftHasIsSaid) {
+  load("mm.obj", "v 0 0 0\nv 9700 0 0\nv 0 2840 0\nf 1 2 3\n");
+  EXPECT_THAT(warnings_, testing::HasSubstr("mm.obj: is 9700 m long and 2840 m wide"));
+  EXPECT_THAT(warnings_, testing::HasSubstr("model_scale"));
+  warnings_.clear();
+  load("far.obj", "v 5000 0 0\nv 5040 0 0\nv 5000 36 0\nf 1 2 3\n");
+  EXPECT_EQ(warnings_, "");
 }
 
 TEST_F(Formats, FaultsAreOneLine) {

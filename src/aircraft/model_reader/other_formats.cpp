@@ -128,6 +128,7 @@ class SceneReader {
     read_node(*scene_.mRootNode, root, 0);
     if (has_vertex_colours_)
       warn("the colours of its vertices are not read; materials and textures show");
+    if (is_inverted_) warn("a material that states that nothing of it is seen is shown opaque");
   }
 
  private:
@@ -158,24 +159,40 @@ class SceneReader {
     aiMatrix3x3 normals_from_node(file_from_node);
     normals_from_node.Inverse().Transpose();
     if (mesh.HasVertexColors(0)) has_vertex_colours_ = true;
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const auto add_vertex = [&](unsigned i, const aiVector3D& normal) {
       const aiVector3D p = file_from_node * mesh.mVertices[i];
       batch.positions.emplace_back(p.x, p.y, p.z);
-      const aiVector3D n =
-          mesh.HasNormals() ? normals_from_node * mesh.mNormals[i] : aiVector3D(0, 0, 0);
+      const aiVector3D n = normals_from_node * normal;
       batch.normals.emplace_back(n.x, n.y, n.z);
       const aiVector3D uv = mesh.HasTextureCoords(uv_channel) ? mesh.mTextureCoords[uv_channel][i]
                                                               : aiVector3D(0, 0, 0);
       batch.uvs.emplace_back(uv.x, uv.y);
-    }
+    };
+    for (unsigned i = 0; i < mesh.mNumVertices && mesh.HasNormals(); ++i)
+      add_vertex(i, mesh.mNormals[i]);
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
       const aiFace& face = mesh.mFaces[i];
       if (face.mNumIndices != 3) continue;  // points and lines
-      batch.triangles.push_back({face.mIndices[0], face.mIndices[1], face.mIndices[2]});
-      for (const std::uint32_t vertex : batch.triangles.back())
+      std::array<std::uint32_t, 3> triangle = {
+          face.mIndices[0], face.mIndices[1], face.mIndices[2]};
+      for (const std::uint32_t vertex : triangle)
         if (vertex >= mesh.mNumVertices) throw Error("has a triangle without its vertex");
+      if (!mesh.HasNormals()) {
+        const aiVector3D normal = normal_of(mesh, triangle);
+        for (std::uint32_t& vertex : triangle) {
+          add_vertex(vertex, normal);
+          vertex = static_cast<std::uint32_t>(batch.positions.size() - 1);
+        }
+      }
+      batch.triangles.push_back(triangle);
     }
     return batch;
+  }
+
+  // The normal of a flat triangle, of no certain length.
+  static aiVector3D normal_of(const aiMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+    const aiVector3D& a = mesh.mVertices[triangle[0]];
+    return (mesh.mVertices[triangle[1]] - a) ^ (mesh.mVertices[triangle[2]] - a);
   }
 
   void read_material(const aiMaterial& material, ac3d::Batch& batch, unsigned& uv_channel) {
@@ -195,6 +212,11 @@ class SceneReader {
     float value = 0;
     if (material.Get(AI_MATKEY_OPACITY, value) == aiReturn_SUCCESS && value >= 0)
       batch.srgb.opacity = std::min(value, 1.0f);
+    // Exporters of COLLADA state for opaque materials that they are wholly transparent.
+    if (ending_ == ".dae" && batch.srgb.opacity == 0) {
+      batch.srgb.opacity = 1;
+      is_inverted_ = true;
+    }
     if (material.Get(AI_MATKEY_SHININESS, value) == aiReturn_SUCCESS && value >= 0)
       batch.srgb.shininess =
           std::min(ending_ == ".obj" ? value / 4 : value, 128.0f);  // it takes 4 Ns
@@ -226,7 +248,7 @@ class SceneReader {
     if (known != picture_of_texture_.end()) return known->second;
     const std::string_view bytes(reinterpret_cast<const char*>(texture.pcData), texture.mWidth);
     if (texture.mHeight != 0)
-      throw Error("has a texture inside that is no file; expected PNG or JPEG");
+      throw Error("has a texture inside that is no file; expected PNG, JPEG, WebP or BMP");
     const int index = assembly_.add_picture(
         texture_file::read_picture(bytes, assembly_.picture_limits()), repeat_u, repeat_v);
     picture_of_texture_[key] = index;
@@ -240,6 +262,7 @@ class SceneReader {
   std::vector<std::string> names_;
   std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
   bool has_vertex_colours_ = false;
+  bool is_inverted_ = false;
 };
 
 // Removes all importers except those of the ending, so that the content of a file cannot choose
@@ -276,18 +299,22 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
   const std::string shown = assembly.files().shown(file.path).string();
   if (assembly.files().kind(file.path) != wrapper::ModelFiles::Kind::kFile)
     throw Error("does not exist; expected a 3D model", {shown});
+  const std::string ending = wrapper::ending_of(file.path);
   auto* files = new AssimpFiles(assembly.files());
   Assimp::Importer importer;
   importer.SetIOHandler(files);  // the importer deletes it
-  keep_importers_of(importer, wrapper::ending_of(file.path));
+  keep_importers_of(importer, ending);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(
-      file.path.string(),
-      aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-          aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+  // Without normals a glTF is flat (glTF 2.0, section 3.7.2.1): its triangles keep their own.
+  const unsigned smooth =
+      ending == ".gltf" || ending == ".glb" ? 0u : unsigned{aiProcess_GenSmoothNormals};
+  const aiScene* scene =
+      importer.ReadFile(file.path.string(),
+                        smooth | aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+                            aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
   if (scene == nullptr || scene->mRootNode == nullptr)
     throw Error("cannot be read as a 3D model: " + one_sentence(importer.GetErrorString()),
                 {shown});

@@ -6,7 +6,9 @@
 
 #include <png.h>
 #include <turbojpeg.h>
+#include <webp/decode.h>
 
+#include "aircraft/texture_file/picture_bmp.h"
 #include "aircraft/texture_file/picture_sgi.h"
 #include "aircraft/texture_file/picture_tga.h"
 #include "foundation/base/error.h"
@@ -75,6 +77,25 @@ Picture read_jpeg(std::string_view bytes, const PictureLimits& limits) {
   return picture;
 }
 
+Picture read_webp(std::string_view bytes, const PictureLimits& limits) {
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  WebPDecoderConfig config;
+  if (WebPInitDecoderConfig(&config) == 0 ||
+      WebPGetFeatures(data, bytes.size(), &config.input) != VP8_STATUS_OK)
+    throw Error("is a WebP file with a fault");
+  if (config.input.has_animation != 0) throw Error("is a moving WebP file; expected one picture");
+  Picture picture = blank_picture(static_cast<std::uint64_t>(config.input.width),
+                                  static_cast<std::uint64_t>(config.input.height),
+                                  limits);
+  config.options.flip = 1;  // the last row of the file comes first
+  config.output.colorspace = MODE_RGBA;
+  config.output.is_external_memory = 1;
+  config.output.u.RGBA = {picture.rgba.data(), 4 * picture.width, picture.rgba.size()};
+  if (WebPDecode(data, bytes.size(), &config) != VP8_STATUS_OK)
+    throw Error("is a WebP file with a fault");
+  return picture;
+}
+
 }  // namespace
 
 Picture blank_picture(std::uint64_t width, std::uint64_t height, const PictureLimits& limits) {
@@ -98,8 +119,11 @@ Picture read_picture(std::string_view bytes, const PictureLimits& limits) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return read_png(bytes, limits);
   if (bytes.starts_with("\xff\xd8\xff")) return read_jpeg(bytes, limits);
   if (bytes.starts_with("\x01\xda")) return read_sgi(bytes, limits);
+  if (bytes.starts_with("BM")) return read_bmp(bytes, limits);
+  if (bytes.starts_with("RIFF") && bytes.size() > 12 && bytes.substr(8, 4) == "WEBP")
+    return read_webp(bytes, limits);
   if (auto picture = read_tga(bytes, limits)) return *std::move(picture);
-  throw Error("is no picture that can be read; expected PNG, JPEG, SGI or TGA");
+  throw Error("is no picture that can be read; expected PNG, JPEG, WebP, BMP, SGI or TGA");
 }
 
 }  // namespace airtruth::texture_file

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 #include <turbojpeg.h>
+#include <webp/encode.h>
 
 #include "foundation/base/error.h"
 
@@ -180,9 +181,61 @@ TEST(Pictures, TgaOfColourGrayAndPalette) {
   EXPECT_THAT(fault_of(tga_header(3, 4, 1, 8, 0) + "\x01"), testing::HasSubstr("ends inside"));
 }
 
+std::string little_endian(std::uint32_t value) {
+  return {static_cast<char>(value),
+          static_cast<char>(value >> 8),
+          static_cast<char>(value >> 16),
+          static_cast<char>(value >> 24)};
+}
+
+// A file header, an information header of 40 bytes and `more`; `height` is below 0 from the top.
+std::string bmp(int width, int height, int bits, int compression, const std::string& more) {
+  const std::size_t pixels = more.size() - 8;  // two pixels, each filled up to four bytes
+  return "BM" + std::string(8, '\0') + little_endian(static_cast<std::uint32_t>(54 + pixels)) +
+         little_endian(40) + little_endian(static_cast<std::uint32_t>(width)) +
+         little_endian(static_cast<std::uint32_t>(height)) +
+         little_endian(static_cast<std::uint32_t>(1 | bits << 16)) +
+         little_endian(static_cast<std::uint32_t>(compression)) + std::string(20, '\0') + more;
+}
+
+TEST(Pictures, BmpOfColourAndPalette) {
+  // One column of two pixels, blue first, from the bottom.
+  const std::string two("\x03\x02\x01\x00\x06\x05\x04\x00", 8);
+  const Picture up = read_picture(bmp(1, 2, 24, 0, two));
+  EXPECT_EQ(at(up, 0, 0), (Pixel{1, 2, 3, 255}));
+  EXPECT_EQ(at(up, 0, 1), (Pixel{4, 5, 6, 255}));
+  const Picture down = read_picture(bmp(1, -2, 32, 0, two));
+  EXPECT_EQ(at(down, 0, 0), (Pixel{4, 5, 6, 255}));
+  const std::string palette("\x03\x02\x01\x00\x06\x05\x04\x00", 8);
+  const Picture mapped =
+      read_picture(bmp(1, 2, 8, 0, palette + std::string("\x01\0\0\0\0\0\0\0", 8)));
+  EXPECT_EQ(at(mapped, 0, 0), (Pixel{4, 5, 6, 255}));
+  EXPECT_EQ(at(mapped, 0, 1), (Pixel{1, 2, 3, 255}));
+  EXPECT_THAT(fault_of(bmp(1, 2, 8, 1, two)), testing::HasSubstr("8 bits with compression 1"));
+  EXPECT_THAT(fault_of(bmp(1, 2, 4, 0, two)), testing::HasSubstr("4 bits"));
+  EXPECT_THAT(fault_of(bmp(70000, 2, 24, 0, two)), testing::HasSubstr("70000 x 2"));
+  const std::string whole = bmp(1, 2, 24, 0, two);
+  for (std::size_t length = 0; length + 1 < whole.size(); ++length)
+    EXPECT_NE(fault_of(whole.substr(0, length)), "no error") << length;
+}
+
+TEST(Pictures, WebpKeepsItsAlpha) {
+  const std::uint8_t rgba[] = {1, 2, 3, 255, 4, 5, 6, 128};  // one column: top, bottom
+  std::uint8_t* webp = nullptr;
+  const std::size_t size = WebPEncodeLosslessRGBA(rgba, 1, 2, 4, &webp);
+  const std::string bytes(reinterpret_cast<const char*>(webp), size);
+  WebPFree(webp);
+  const Picture picture = read_picture(bytes);
+  EXPECT_EQ(at(picture, 0, 0), (Pixel{4, 5, 6, 128}));
+  EXPECT_EQ(at(picture, 0, 1), (Pixel{1, 2, 3, 255}));
+  EXPECT_THAT(fault_of(bytes.substr(0, bytes.size() / 2)), testing::HasSubstr("with a fault"));
+  EXPECT_THAT(fault_of(bytes, {.side_px = 1, .pixels = 9}), testing::HasSubstr("at most 1"));
+}
+
 TEST(Pictures, RefusesWhatIsNoneOrTooLarge) {
   EXPECT_THAT(fault_of(""), testing::HasSubstr("no picture that can be read"));
-  EXPECT_THAT(fault_of("os.execute('touch pwned')"), testing::HasSubstr("PNG, JPEG, SGI or TGA"));
+  EXPECT_THAT(fault_of("os.execute('touch pwned')"),
+              testing::HasSubstr("PNG, JPEG, WebP, BMP, SGI or TGA"));
   EXPECT_THAT(fault_of(sgi_header(1, 1, 65535, 65535, 4)), testing::HasSubstr("65535 x 65535"));
   const unsigned char rgba[4 * 6] = {};
   const std::string file = png(3, 2, PNG_FORMAT_RGBA, rgba);

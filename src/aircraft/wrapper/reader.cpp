@@ -280,6 +280,14 @@ model::RawModel read_model(ModelFiles& files,
   if (model.mesh.triangle_count() == 0)
     throw Error("holds no triangles; expected a 3D model", {files.shown(file).string()});
   model::check_model(model);
+  const auto is_seen = [&](const model::Triangle& triangle) {
+    return model.mesh.materials[triangle.material].opacity > 0;
+  };
+  if (std::none_of(model.mesh.parts.begin(), model.mesh.parts.end(), [&](const model::Part& part) {
+        return std::any_of(part.triangles.begin(), part.triangles.end(), is_seen);
+      }))
+    throw Error("is wholly transparent; expected a material that is seen",
+                {files.shown(file).string()});
   return model;
 }
 

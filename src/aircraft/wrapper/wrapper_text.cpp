@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <pugixml.hpp>
 
@@ -14,6 +16,8 @@ namespace airtruth::wrapper {
 namespace {
 
 using Node = pugi::xml_node;
+
+constexpr int kMostBlades = 32;  // of a rotor; a bound for untrusted files
 
 std::string text_of(const Node& node) { return std::string(trimmed(node.child_value())); }
 std::string text_of(const Node& node, const char* child) { return text_of(node.child(child)); }
@@ -104,6 +108,43 @@ std::optional<bool> condition_of(const Node& node, const Cruise& cruise) {
   return condition ? std::optional(holds(condition, cruise)) : std::nullopt;
 }
 
+// A blade of a rotor in "rotors/main/blade[1]/position-deg"; empty for another property.
+std::optional<std::pair<std::string, int>> blade_of(std::string_view property) {
+  constexpr std::string_view kRotors = "rotors/", kBlade = "/blade[", kPlace = "]/position-deg";
+  const std::size_t rotor = property.find(kRotors);
+  const std::size_t blade = property.find(kBlade);
+  if (rotor == std::string_view::npos || blade == std::string_view::npos ||
+      blade < rotor + kRotors.size() || !property.ends_with(kPlace))
+    return std::nullopt;
+  const std::size_t begin = blade + kBlade.size();
+  int number = 0;
+  const char* end = property.data() + property.size() - kPlace.size();
+  const auto [rest, failed] = std::from_chars(property.data() + begin, end, number);
+  if (failed != std::errc() || rest != end || number < 0 || number >= kMostBlades)
+    return std::nullopt;
+  const std::size_t name = rotor + kRotors.size();
+  return std::pair(std::string(property.substr(name, blade - name)), number);
+}
+
+// The number of blades of each rotor that a wrapper turns.
+std::map<std::string, int> blades_in(const Node& root) {
+  std::map<std::string, int> blades;
+  for (const Node node : root.children("animation"))
+    if (const auto blade = blade_of(text_of(node, "property")))
+      blades[blade->first] = std::max(blades[blade->first], blade->second + 1);
+  return blades;
+}
+
+// The place of a blade, in degrees, as the flight models set it: the blades of a rotor stand evenly
+// about it.
+std::optional<double> place_of_blade(const std::string& property,
+                                     const std::map<std::string, int>& blades) {
+  const auto blade = blade_of(property);
+  const auto all = blade ? blades.find(blade->first) : blades.end();
+  if (all == blades.end()) return std::nullopt;
+  return 360.0 * blade->second / all->second;
+}
+
 double interpolated(const Table& table, double x) {
   if (x <= table.front().first) return table.front().second;
   for (std::size_t i = 1; i < table.size(); ++i) {
@@ -128,7 +169,10 @@ struct Driven {
       return plain ? plain : number(text_of(node, (prefix + name + suffix).c_str()));
     };
     const std::string property = text_of(node, "property");
-    const double x = property.empty() ? 0 : property_value(property, cruise);
+    const double x =
+        property.empty()
+            ? 0
+            : place_of_blade(property, cruise.blades).value_or(property_value(property, cruise));
     if (!table.empty()) return interpolated(table, x);
     const double factor = field("factor").value_or(prefix.empty() ? 1 : 0);
     double value = factor * x + field("offset").value_or(offset);
@@ -211,10 +255,12 @@ Node load(pugi::xml_document& document, std::string_view text, const fs::path& n
 
 Wrapper parse_wrapper(std::string_view text,
                       const fs::path& name,
-                      const Cruise& cruise,
+                      const Cruise& stated,
                       const ReadTable& read_table) {
   pugi::xml_document document;
   const Node root = load(document, text, name);
+  Cruise cruise = stated;
+  cruise.blades = blades_in(root);
   Wrapper result;
   result.include = root.attribute("include").value();
   result.path = text_of(root, "path");

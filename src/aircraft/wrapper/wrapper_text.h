@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,8 @@ constexpr std::size_t kMaxWrapperBytes = 8u << 20;
 struct Cruise {
   double airspeed_kt = 250;
   double altitude_agl_ft = 3000;
+  // The number of blades of each rotor, by its name; parse_wrapper() takes it from the file.
+  std::map<std::string, int> blades = {};
 };
 
 struct Animation {

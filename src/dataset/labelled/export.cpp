@@ -174,11 +174,15 @@ class Export {
     if (options_.format == exchange::Format::kGot10k)
       for (auto& [name, part] : parts_)
         if (part == "all") part = "val";
+    // torchvision asserts that an image set of VOC is train, val or trainval.
+    if (options_.format == exchange::Format::kVoc)
+      for (auto& [name, part] : parts_)
+        if (part == "all") part = "trainval";
     write_.categories = {categories.begin(), categories.end()};
     write_.image_extension = extension_of(*options_.images);
     write_.with_images = *options_.images != Images::kNone;
     write_.mot_classes = options_.mot_classes;
-    const std::vector<std::string> order = {"train", "val", "test", "all"};
+    const std::vector<std::string> order = {"train", "val", "test", "trainval", "all"};
     for (const std::string& part : order)
       if (std::any_of(parts_.begin(), parts_.end(), [&](auto& p) { return p.second == part; }))
         write_.parts.push_back(part);

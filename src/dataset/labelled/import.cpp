@@ -77,17 +77,12 @@ void expect_size(exchange::Clip& clip, int width, int height, const fs::path& fi
   }
 }
 
-std::pair<int, int> size_of_picture(const fs::path& file) {
-  const image::Rgb8 picture = video::read_still(file);
-  return {picture.width, picture.height};
-}
-
 // Fills in sizes, rates and times that the labels lack and the video states.
 void ask_video(exchange::Clip& clip, const Warn& warn) {
   if (clip.media.empty() || clip.frames.empty()) return;
   if (has_pictures(clip)) {
     const fs::path first = clip.media / clip.frames.front().picture;
-    const auto [width, height] = size_of_picture(first);
+    const auto [width, height] = video::size_of_still(first);
     return expect_size(clip, width, height, first);
   }
   const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}, warn).info();
@@ -174,6 +169,15 @@ void classify(std::vector<exchange::Clip>& clips, const ImportOptions& options) 
   }
 }
 
+// The list of pictures has a path on each line.
+void expect_one_line(const exchange::Clip& clip) {
+  for (const exchange::LabelledFrame& frame : clip.frames)
+    if (const std::string path = (clip.media / frame.picture).string();
+        path.find_first_of("\n\r") != std::string::npos)
+      throw Error("the picture " + Json(path).dump() + " of " + clip.name +
+                  " has a line end in its name; expected a name without");
+}
+
 // Gives each clip its video, its numbers of frames and a name of its own.
 void complete(std::vector<exchange::Clip>& clips,
               const fs::path& source,
@@ -186,7 +190,10 @@ void complete(std::vector<exchange::Clip>& clips,
     if (!clip.media.empty()) clip.media = fs::absolute(clip.media).lexically_normal();
     require_utf8(clip.media);
     if (video != options.videos.end()) join_given_pictures(clip, options.warn);
-    if (has_pictures(clip)) number_by_place(clip);
+    if (has_pictures(clip)) {
+      number_by_place(clip);
+      expect_one_line(clip);
+    }
     ask_video(clip, options.warn);
     if (!clip.frame_rate_hz) clip.frame_rate_hz = options.frame_rate_hz;
     clip.name = free_name(clip.name, taken);
@@ -259,7 +266,7 @@ ImportSummary import_set(const fs::path& source,
     throw Error("exists and is not empty; expected a new folder", {out.string()});
   check_output_folder(out);
   exchange::ReadOptions read = options.read;
-  read.size_of_picture = size_of_picture;
+  read.size_of_picture = video::size_of_still;
   std::vector<exchange::Clip> clips =
       exchange::read_clips(options.format, source, read, options.warn);
   complete(clips, source, options);

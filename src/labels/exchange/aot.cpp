@@ -211,7 +211,10 @@ class FlightReader {
     const std::int64_t number = blob.whole("frame");
     if (number < 0 || number > kMaxFrames) blob.fail("frame is out of range");
     LabelledFrame& frame = frame_at(clip_, static_cast<std::size_t>(number));
-    if (const auto name = entity.maybe_text("img_name")) frame.picture = *name;
+    if (const auto name = entity.maybe_text("img_name")) {
+      expect_inside(*name, {file_.string()});
+      frame.picture = *name;
+    }
     const auto time = entity.maybe_integer("time");
     if (time && has_times_) frame.time_s = static_cast<double>(*time - *origin_ns_) / 1e9;
     if (!entity.has("id") || !entity.has("bb")) return;

@@ -75,7 +75,7 @@ class CocoReader {
       LabelledPicture& picture = image.picture;
       picture.image_id = json.whole("id");
       picture.name = json.text("file_name");
-      picture.folder = folder_of_picture(folders, picture.name);
+      picture.folder = folder_of_picture(folders, picture.name, {file_.string()});
       picture.width = side_of(json.number("width"));
       picture.height = side_of(json.number("height"));
       picture.time_s = json.maybe_number("time_s");
@@ -87,14 +87,15 @@ class CocoReader {
     }
   }
 
-  // The folders near the annotations in which the pictures may lie: images/PART as this program
-  // and CVAT write them, PART and images as COCO is published, and the annotations' own folder, as
-  // Roboflow writes them.
+  // The folders near the annotations in which the pictures may lie: the annotations' own folder, as
+  // Roboflow writes them, and images in it; images/PART as this program and CVAT write them; PART
+  // and images as COCO is published.
   std::vector<fs::path> folders_of_pictures() const {
     const std::string stem = file_.stem().string();
     const std::string part = stem.substr(stem.rfind('_') + 1);
     const fs::path root = file_.parent_path().parent_path();
-    return {root / "images" / part, root / "images", root / part, root, file_.parent_path()};
+    const fs::path own = file_.parent_path();
+    return {own, own / "images", root / "images" / part, root / "images", root / part, root};
   }
 
   // The track of an annotation, where it has one; CVAT writes it as an attribute.

@@ -342,8 +342,11 @@ class TrackReader {
     const fs::path images = file_.parent_path() / "images";
     if (pictures_in(images).empty()) return;
     if (!top.child("image")) return join_by_number(clip_, images, 0, in_.warn);
-    for (const pugi::xml_node& image : top.children("image"))
-      clip_.frames.at(place_of(frame_of(image, "id"))).picture = image.attribute("name").value();
+    for (const pugi::xml_node& image : top.children("image")) {
+      const std::string name = image.attribute("name").value();
+      expect_inside(name, {file_.string()});
+      clip_.frames.at(place_of(frame_of(image, "id"))).picture = name;
+    }
     join_by_name(clip_, images, in_.warn);
   }
 
@@ -370,7 +373,7 @@ Clips read_images(const fs::path& file,
     LabelledPicture picture;
     picture.name = image.attribute("name").value();
     if (picture.name.empty()) xml.fail(image, "has no name");
-    picture.folder = folder_of_picture(folders, picture.name);
+    picture.folder = folder_of_picture(folders, picture.name, {file.string()});
     picture.width = side_of(number_in(image.attribute("width").value()));
     picture.height = side_of(number_in(image.attribute("height").value()));
     for (const pugi::xml_node& shape : image.children()) {

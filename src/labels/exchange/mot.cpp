@@ -151,9 +151,10 @@ class SequenceFolder {
     if (fs::exists(folder_ / "seqinfo.ini")) about(folder_ / "seqinfo.ini");
     if (fs::exists(folder_ / "tracks.txt")) tracks(folder_ / "tracks.txt");
     const fs::path file = folder_ / "gt" / "gt.txt";
-    std::vector<std::pair<std::vector<double>, Where>> rows;
+    Rows rows;
     for (const Line& line : lines_of(file))
       rows.emplace_back(numbers_of(line, file), Where{file.string(), line.number});
+    expect_no_visdrone(rows);
     for (const auto& [numbers, where] : rows) look_at_columns(numbers, where);
     for (const auto& [numbers, where] : rows) add(numbers, where);
     if (!pictures_in(folder_ / "img1").empty())
@@ -162,6 +163,25 @@ class SequenceFolder {
   }
 
  private:
+  using Rows = std::vector<std::pair<std::vector<double>, Where>>;
+
+  // VisDrone's lines end in score, category (1 to 11), truncation (0 or 1) and occlusion (0 to 2).
+  // As MOTChallenge's the last two would be a visibility and a range of at most 2 m.
+  static void expect_no_visdrone(const Rows& rows) {
+    const auto is_visdrone = [](const auto& row) {
+      const std::vector<double>& n = row.first;
+      return n.size() == 10 && whole_in(n[7], 0, 11) && whole_in(n[8], 0, 1) &&
+             whole_in(n[9], 0, 2);
+    };
+    const auto has_category = [](const auto& row) { return row.first.at(7) > 0; };
+    if (!rows.empty() && std::all_of(rows.begin(), rows.end(), is_visdrone) &&
+        std::any_of(rows.begin(), rows.end(), has_category))
+      throw Error(
+          "has VisDrone's columns (score, category, truncation, occlusion); expected those of "
+          "MOTChallenge, in which the last ones are class, visibility and range in metres",
+          rows.front().second);
+  }
+
   void about(const fs::path& file) {
     const auto about = settings_of(file);
     if (const auto named = about.find("name"); named != about.end()) clip_.name = named->second;

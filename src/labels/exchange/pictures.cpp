@@ -96,7 +96,18 @@ std::string first_of(const std::string& a, const std::string& b, const std::stri
 
 }  // namespace
 
-fs::path folder_of_picture(std::span<const fs::path> folders, const std::string& name) {
+void expect_inside(const std::string& name, const Where& where) {
+  const fs::path path(name);
+  if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end())
+    throw Error("names the picture '" + name +
+                    "', which leads out of the set's folder; expected a name below it",
+                where);
+}
+
+fs::path folder_of_picture(std::span<const fs::path> folders,
+                           const std::string& name,
+                           const Where& where) {
+  expect_inside(name, where);
   std::error_code ignored;
   for (const fs::path& folder : folders)
     if (fs::is_regular_file(folder / name, ignored)) return folder;

@@ -10,6 +10,7 @@
 
 #include <airtruth/labels.h>
 
+#include "foundation/base/error.h"
 #include "foundation/base/log.h"
 
 // Pictures with labels become clips. A picture is known by its file name, and labels belong to the
@@ -33,8 +34,15 @@ struct LabelledPicture {
   std::vector<Label> labels;
 };
 
-// The first of the folders that holds a file of that name; empty: none.
-fs::path folder_of_picture(std::span<const fs::path> folders, const std::string& name);
+// Throws Error for a picture's name that leads out of its set's folder: an absolute path, or one
+// with "..". `where` names it.
+void expect_inside(const std::string& name, const Where& where);
+
+// The first of the folders that holds a file of that name; empty: none. Throws Error as
+// expect_inside() does.
+fs::path folder_of_picture(std::span<const fs::path> folders,
+                           const std::string& name,
+                           const Where& where);
 
 // The clip of pictures that are one video by the set's own word. They are ordered by their stated
 // numbers where all have one, else by name. A frame has its stated number, or else the last number

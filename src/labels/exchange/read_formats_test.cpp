@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "labels/exchange/exchange.h"
@@ -253,6 +257,114 @@ TEST(Errors, NameTheFileAndThePlace) {
   ends(error_of(Format::kCsv, folder.file("t.csv", "frame,x,y,w,h\n0,1,2,3\n")),
        "t.csv:2: has 4 columns; expected frame,x,y,w,h");
   ends(error_of(Format::kYolo, folder.path() / "nowhere"), "nowhere: does not exist");
+}
+
+// A sequence of OTB with as many boxes as stated, box k at x = k, and pictures numbered from 1 (or
+// from `first`).
+void otb_sequence(
+    const Folder& folder, const std::string& name, int boxes, int pictures, int first) {
+  std::string text;
+  for (int k = 0; k < boxes; ++k) text += fmt::format("{},1,3,4\n", k + 1);
+  folder.file(name + "/groundtruth_rect.txt", text);
+  for (int number = first; number < first + pictures; ++number)
+    folder.file(fmt::format("{}/img/{:04}.jpg", name, number), "no picture");
+}
+
+// The toolkit's list (configSeqs.m): David's 471 boxes are of the pictures 300 to 770, the 74 of
+// Football1 of the first ones; BlurCar1's pictures begin with 247.
+TEST(Otb, BoxesBelongToThePicturesFromTheStartFrameOn) {
+  const Folder folder;
+  otb_sequence(folder, "David", 471, 770, 1);
+  otb_sequence(folder, "Football1", 74, 362, 1);
+  otb_sequence(folder, "BlurCar1", 742, 742, 247);
+  otb_sequence(folder, "Tiger1", 354, 354, 1);
+  std::map<std::string, std::pair<std::string, std::string>> ends;
+  for (const Clip& clip : read_clips(Format::kOtb, folder.path(), {}, {}))
+    ends[clip.name] = {clip.frames.front().picture, clip.frames.back().picture};
+  EXPECT_EQ(ends["David"], std::pair(std::string("0300.jpg"), std::string("0770.jpg")));
+  EXPECT_EQ(ends["Football1"], std::pair(std::string("0001.jpg"), std::string("0074.jpg")));
+  EXPECT_EQ(ends["BlurCar1"], std::pair(std::string("0247.jpg"), std::string("0988.jpg")));
+  EXPECT_EQ(ends["Tiger1"], std::pair(std::string("0001.jpg"), std::string("0354.jpg")));
+}
+
+TEST(Otb, AStartFrameThatIsNotKnownIsAskedFor) {
+  const Folder folder;
+  otb_sequence(folder, "mine", 3, 10, 1);
+  EXPECT_TRUE(
+      error_of(Format::kOtb, folder.path())
+          .ends_with("mine: holds 10 pictures and 3 lines of boxes; state the number of the "
+                     "first box's picture: --start-frame mine=N"));
+  ReadOptions options;
+  options.start_frames = {{"mine", 5}};
+  const Clip clip = read_clips(Format::kOtb, folder.path(), options, {}).at(0);
+  EXPECT_EQ(clip.frames.at(0).picture, "0005.jpg");
+  EXPECT_EQ(clip.frames.at(2).picture, "0007.jpg");
+  EXPECT_EQ(clip.frames.at(2).labels.at(0).box_px.x, 2);
+  options.start_frames = {{"his", 5}};
+  EXPECT_THROW(read_clips(Format::kOtb, folder.path(), options, {}), Error);
+}
+
+// The two forms of the VisDrone toolkit (README of VisDrone2018-VID-toolkit and -DET-toolkit).
+TEST(VisDrone, ItsColumnsAreNoneOfMotOrCsv) {
+  const Folder folder;
+  folder.file("v/gt/gt.txt", "1,0,593,43,174,190,0,0,0,0\n1,1,10,20,30,40,1,4,0,1\n");
+  EXPECT_TRUE(error_of(Format::kMot, folder.path()).find("gt.txt:1: has VisDrone's columns") !=
+              std::string::npos);
+  // This program's own tenth column is a range in metres.
+  folder.file("v/gt/gt.txt", "1,1,10,20,30,40,1,4,1,712.5\n2,1,10,20,30,40,1,4,0,1\n");
+  EXPECT_EQ(error_of(Format::kMot, folder.path()), "no error");
+  for (const char* line : {"684,8,273,116,1,4,0,0\n", "1,1,10,20,30,40,1,4,0,1\n"})
+    EXPECT_TRUE(error_of(Format::kCsv, folder.file("d.txt", line)).find("which no header names") !=
+                std::string::npos);
+}
+
+TEST(Pictures, OutsideOfTheirSetAreRefused) {
+  const Folder folder;
+  folder.file("secret.png", "x");
+  const auto refused = [](const std::string& text) {
+    return text.find("secret.png', which leads out of the set's folder") != std::string::npos;
+  };
+  const std::string absolute = (folder.path() / "secret.png").string();
+  for (const std::string& name :
+       {std::string("../../secret.png"), absolute, std::string("a/../../secret.png")}) {
+    EXPECT_TRUE(refused(error_of(
+        Format::kCoco,
+        folder.file("c/annotations/instances_a.json",
+                    R"({"categories": [], "annotations": [], "images": [{"id": 1, "file_name": ")" +
+                        name + R"(", "width": 4, "height": 4}]})"))));
+    EXPECT_TRUE(refused(error_of(
+        Format::kCvat,
+        folder.file("v/annotations.xml",
+                    "<annotations><image id=\"0\" name=\"" + name + "\"/></annotations>"))));
+    folder.file("o/Annotations/a.xml",
+                "<annotation><filename>" + name + "</filename></annotation>");
+    EXPECT_TRUE(refused(error_of(Format::kVoc, folder.path() / "o")));
+    EXPECT_TRUE(refused(error_of(
+        Format::kAot,
+        folder.file("a/ImageSets/groundtruth.json",
+                    R"({"samples": {"f": {"metadata": {}, "entities": [{"blob": {"frame": 0}, )"
+                    R"("img_name": ")" +
+                        name + R"("}]}}})"))));
+  }
+}
+
+// A set without parts: its pictures lie in images/ beside the annotations, or beside them.
+TEST(Coco, PicturesOfASetWithoutPartsAreFound) {
+  for (const std::string where : {"s/images/a/1.png", "s/a/1.png"}) {
+    const Folder folder;
+    folder.file(where, "x");
+    // The pictures of another set beside it are not these.
+    folder.file("images/a/1.png", "x");
+    const Clip clip =
+        read_clips(Format::kCoco,
+                   folder.file("s/labels.json",
+                               R"({"categories": [], "annotations": [], "images": [{"id": 1,
+                               "file_name": "a/1.png", "width": 4, "height": 4}]})"),
+                   {},
+                   {})
+            .at(0);
+    EXPECT_EQ(clip.media / clip.frames.at(0).picture, folder.path() / where);
+  }
 }
 
 TEST(Labels, NumbersOutOfRangeAreOneLine) {

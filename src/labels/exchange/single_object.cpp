@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include <airtruth/vot.h>
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "foundation/geometry/box.h"
 #include "labels/exchange/parts.h"
 #include "labels/exchange/pictures.h"
@@ -31,6 +34,18 @@ namespace {
 
 // A side of a picture, in pixels, that no camera reaches.
 constexpr std::int64_t kLongestSide = 1'000'000;
+
+// The sequences of OTB-100 whose folders hold more pictures than boxes, and the picture of their
+// first box (the toolkit's configSeqs.m).
+constexpr std::pair<std::string_view, std::int64_t> kStartFrames[] = {{"blurcar1", 247},
+                                                                      {"blurcar3", 3},
+                                                                      {"blurcar4", 18},
+                                                                      {"david", 300},
+                                                                      {"diving", 1},
+                                                                      {"football1", 1},
+                                                                      {"freeman3", 1},
+                                                                      {"freeman4", 1},
+                                                                      {"tiger1", 6}};
 
 const char* boxes_in(Format format) {
   return format == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt";
@@ -117,11 +132,38 @@ class SequenceReader {
     about();
     boxes();
     columns();
-    join_in_order(clip_, pictures_of_sequence(format_, folder_), in_.warn);
+    join();
     return clip_;
   }
 
  private:
+  // The first box belongs to the first picture, or to the one with the number of the start frame.
+  void join() {
+    const fs::path pictures = pictures_of_sequence(format_, folder_);
+    if (const auto first = start_frame(std::ssize(pictures_in(pictures))))
+      join_by_number(clip_, pictures, *first, in_.warn);
+    else
+      join_in_order(clip_, pictures, in_.warn);
+  }
+
+  // Empty where each picture has a box.
+  std::optional<std::int64_t> start_frame(std::int64_t pictures) const {
+    const auto& stated = in_.options.start_frames;
+    for (const std::string& name : {clip_.name, std::string()})
+      if (const auto found = stated.find(name); found != stated.end()) return found->second;
+    if (pictures <= std::ssize(clip_.frames)) return std::nullopt;
+    if (format_ == Format::kOtb)
+      for (const auto& [name, first] : kStartFrames)
+        if (lower_case(clip_.name) == name) return first;
+    throw Error(
+        fmt::format("holds {} pictures and {} lines of boxes; state the number of the first "
+                    "box's picture: --start-frame {}=N",
+                    pictures,
+                    clip_.frames.size(),
+                    clip_.name),
+        {folder_.string()});
+  }
+
   void about() {
     const fs::path pictures = pictures_of_sequence(format_, folder_);
     const ReadOptions& options = in_.options;
@@ -247,6 +289,12 @@ Clips read_single_object(const Reading& in) {
   for (const fs::path& folder : two_levels(in.source))
     if (!files_of_boxes(in.format, folder).empty())
       clips.push_back(SequenceReader(folder, in).read());
+  for (const auto& [name, first] : in.options.start_frames)
+    if (!name.empty() && std::none_of(clips.begin(), clips.end(), [&](const Clip& clip) {
+          return clip.name == name;
+        }))
+      throw Error("no sequence is named '" + name + "', for which a start frame is given",
+                  {in.source.string()});
   if (clips.empty())
     throw Error(std::string("holds no sequence of ") + name(in.format), {in.source.string()});
   return clips;

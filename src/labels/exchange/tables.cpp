@@ -80,6 +80,9 @@ struct Columns {
   std::size_t last() const { return std::max({frame, x, y, third, fourth}); }
 };
 
+// Of a table without a header.
+constexpr std::size_t kPlainColumns = 5;
+
 Columns columns_of(const Line& header, const fs::path& file) {
   const std::vector<std::string> cells = cells_of(header.text);
   const auto find = [&](std::initializer_list<const char*> names) {
@@ -118,14 +121,21 @@ Clips read_csv(const Reading& in) {
     clip.media = video_beside(file);
     if (in.options.size) std::tie(clip.width, clip.height) = *in.options.size;
     bool first = true;
+    bool has_header = false;
     Columns columns;
     for (const Line& line : lines_of(file)) {
       const bool is_header = first && line.text.find_first_of("0123456789") != 0;
       first = false;
+      has_header = has_header || is_header;
       if (is_header) columns = columns_of(line, file);
       if (is_header) continue;
       const Where where{file.string(), line.number};
       const std::vector<double> n = numbers_of(line, file);
+      if (!has_header && n.size() > kPlainColumns)
+        throw Error(fmt::format("has {} columns, which no header names; expected frame,x,y,w,h, or "
+                                "a first line with the columns' names",
+                                n.size()),
+                    where);
       if (n.size() <= columns.last())
         throw Error(fmt::format("has {} columns; expected {}", n.size(), columns.text), where);
       const auto i = whole_in(n[columns.frame], 0, kMaxFrames);

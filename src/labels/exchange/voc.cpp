@@ -119,7 +119,8 @@ LabelledPicture picture_of(const fs::path& file,
                            const ByStem& stems) {
   LabelledPicture picture;
   picture.name = stated;
-  picture.folder = stated.empty() ? fs::path() : folder_of_picture(folders, stated);
+  picture.folder =
+      stated.empty() ? fs::path() : folder_of_picture(folders, stated, {file.string()});
   if (!picture.folder.empty()) return picture;
   if (const auto found = stems.find(file.stem().string()); found != stems.end())
     std::tie(picture.folder, picture.name) = found->second;

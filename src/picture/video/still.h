@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "foundation/base/files.h"
@@ -15,6 +16,9 @@ namespace airtruth::video {
 // Reads a still image (png, jpg, bmp, tif, ...) as packed sRGB. An alpha channel is dropped. Throws
 // Error.
 image::Rgb8 read_still(const std::filesystem::path& path);
+
+// Width and height of a still image, from its header where libav finds them there. Throws Error.
+std::pair<int, int> size_of_still(const std::filesystem::path& path);
 
 // Throws Error where write_still() would fail for a reason that does not depend on the picture: the
 // path's ending, and what check_output_file() refuses. An empty path means no output and is no

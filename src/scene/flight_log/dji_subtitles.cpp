@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "scene/flight_log/builder.h"
 #include "scene/flight_log/formats.h"
 
@@ -171,6 +172,11 @@ class SubtitleReader {
           throw Error(fmt::format("time is '{}'; expected one such as 00:01:02,033",
                                   printable(line.substr(0, arrow))),
                       {file_, number});
+      } else if (is_counter(line)) {
+        add(block, time_s, line_of_time);
+        block.clear();
+        line_of_time = number;
+        time_s.reset();
       } else {
         block.append(line).push_back(' ');
       }
@@ -181,7 +187,16 @@ class SubtitleReader {
 
  private:
   void add(std::string_view block, std::optional<double> time_s, int line) {
-    if (time_s) add_block(log_, block, *time_s, {file_, line});
+    if (time_s)
+      add_block(log_, block, *time_s, {file_, line});
+    else if (fix_of_keys(block) || fix_of_gps(block))
+      leave_out(log_, "the block has no line with -->, which states its time", {file_, line});
+  }
+
+  // The number with which a block begins.
+  static bool is_counter(std::string_view line) {
+    line = trimmed(line);
+    return !line.empty() && line.find_first_not_of("0123456789") == std::string_view::npos;
   }
 
   std::string_view text_;

@@ -68,6 +68,25 @@ TEST(DjiSubtitles, OlderTextsStateLongitudeFirst) {
   EXPECT_DOUBLE_EQ(phantom.fixes[1].altitude_m, 91.4);
 }
 
+// The second block lost the line of its time: it is left out and named, and is not taken for a part
+// of the first.
+TEST(DjiSubtitles, ABlockWithoutATimeIsLeftOut) {
+  const auto block = [](int number, const std::string& time, double latitude) {
+    return fmt::format("{}\n{}[latitude: {}] [longitude: 8.5] [rel_alt: 30 abs_alt: 500]\n\n",
+                       number,
+                       time,
+                       latitude);
+  };
+  const FlightLog log =
+      parse_flight_log(block(1, "00:00:00,000 --> 00:00:01,000\n", 47.0) + block(2, "", 47.00001) +
+                           block(3, "00:00:02,000 --> 00:00:03,000\n", 47.00002),
+                       "a.srt");
+  ASSERT_EQ(log.fixes.size(), 2u);
+  EXPECT_DOUBLE_EQ(log.fixes[1].latitude_deg, 47.00002);
+  EXPECT_EQ(log.left_out, 1);
+  EXPECT_EQ(log.first_fault, "a.srt:5: the block has no line with -->, which states its time");
+}
+
 TEST(DjiSubtitles, AHeightInBracketsComesWithLatitudeFirstAndTheGimbalAsPitchRollYaw) {
   const FlightLog matrice = parse_flight_log(
       "1\n00:00:00,000 --> 00:00:01,000\n2022.06.21 16:06:17\nGPS(36.6,-6.1,0.0M) "
