@@ -322,11 +322,13 @@ class Export {
         summary_.masks > 0
             ? fmt::format(
                   "\n`segmentation` of {} of {} boxes holds the run lengths of the pixels with an "
-                  "alpha of 0.08 or more, and `area` their number; any other is its box.\n",
+                  "alpha of 0.08 or more; any other is its box.\n",
                   summary_.masks,
                   boxes_)
             : "\n`segmentation` is the box as a polygon, no outline: the set has no masks "
               "([output] masks = true makes them).\n";
+    text +=
+        "`area` is the number of those pixels where the truth states it, else that of the box.\n";
     return text;
   }
 
