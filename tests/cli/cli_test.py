@@ -371,6 +371,14 @@ class Others(Case):
         self.assertEqual(refused.returncode, 2)
         self.assertIn(f"was made for 320x180, but the video is 160x120", refused.stderr)
         self.assertIn(f"airtruth lens crop {wide} --size 160x120", refused.stderr)
+        # A stated lens makes the motion a rotation, as in a scene.
+        turned = os.path.join(self.out, "turned.csv")
+        measured = run("motion", "flight.mkv", "-o", turned, "--lens", profile)
+        self.assertEqual(measured.returncode, 0, measured.stderr)
+        with open(turned) as file:
+            self.assertTrue(file.readline().startswith("frame,time_s,qw"))
+        plain = run("motion", "flight.mkv", "-o", turned, "--overwrite")
+        self.assertIn("homography; with --lens rotation", plain.stdout)
         refused = run("lens", "crop", profile, "--size", "wide")
         self.assertEqual(refused.returncode, 2)
 

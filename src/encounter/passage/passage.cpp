@@ -117,20 +117,15 @@ std::vector<separation::Interval> violations(const separation::Volume& volume,
   if (const auto nearest = closest_approach(own, intruder, begin_s, end_s))
     times_s.insert(std::upper_bound(times_s.begin(), times_s.end(), nearest->time_s),
                    nearest->time_s);
-  const auto is_in = [&](const separation::Volume& of, double time_s) {
+  const auto inside = [&](double time_s) {
     const auto both = both_at(own, intruder, time_s);
-    return both && separation::is_inside(of, mover_of(both->own), mover_of(both->intruder));
+    return both && separation::is_inside(volume, mover_of(both->own), mover_of(both->intruder));
   };
-  const auto inside = [&](double time_s) { return is_in(volume, time_s); };
-  const separation::Volume larger = separation::with_rounding(volume);
   std::vector<separation::Interval> result;
   bool was_inside = false;
-  bool has_left = true;  // by more than rounding, since the last interval
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const bool is_now = inside(times_s[i]);
-    if (!is_now && !has_left) has_left = !is_in(larger, times_s[i]);
-    if (is_now && !was_inside && !has_left) result.back().end_s = times_s.back();
-    if (is_now && !was_inside && has_left) {
+    if (is_now && !was_inside) {
       const double entry_s =
           i == 0 ? times_s[0]
                  : turning_point(times_s[i - 1], times_s[i], [&](double t) { return !inside(t); });
@@ -138,7 +133,6 @@ std::vector<separation::Interval> violations(const separation::Volume& volume,
     }
     if (!is_now && was_inside)
       result.back().end_s = turning_point(times_s[i - 1], times_s[i], inside);
-    if (is_now) has_left = false;
     was_inside = is_now;
   }
   return result;

@@ -43,9 +43,7 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
 
 // The intervals between begin_s and end_s in which the states of the paths violate the volume
 // (is_inside), in order. A violation that is shorter than kStep_s, or a pause in one, may be
-// missed, unless it holds the closest approach. A pause in which the states are outside by no more
-// than rounding (separation::with_rounding) is none: aircraft that keep exactly a threshold's
-// distance violate the volume once.
+// missed, unless it holds the closest approach.
 std::vector<separation::Interval> violations(const separation::Volume& volume,
                                              const trajectory::Path& own,
                                              const trajectory::Path& intruder,

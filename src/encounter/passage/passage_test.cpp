@@ -109,8 +109,8 @@ TEST(Passage, WhatKeepsExactlyAThresholdIsOneViolation) {
   };
   const auto exact = found(609.6);
   ASSERT_EQ(exact.size(), 1u);
-  EXPECT_LT(exact[0].begin_s, 1);
-  EXPECT_GT(exact[0].end_s, 69);
+  EXPECT_EQ(exact[0].begin_s, 0);
+  EXPECT_EQ(exact[0].end_s, 70);
   const auto nearer = found(609.599);
   ASSERT_EQ(nearer.size(), 1u);
   EXPECT_EQ(nearer[0].end_s, 70);

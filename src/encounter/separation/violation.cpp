@@ -13,6 +13,12 @@ using Vector2 = Eigen::Vector2d;
 constexpr Interval kAlways{-std::numeric_limits<double>::infinity(),
                            std::numeric_limits<double>::infinity()};
 
+Volume with_rounding(Volume volume) {
+  volume.horizontal_m += kRoundingM;
+  volume.vertical_m += kRoundingM;
+  return volume;
+}
+
 // Time is counted from the closest approach, where the quadratic of the header becomes
 // v^2 t^2 + tau v^2 t + dcpa^2 - D^2 = 0.
 std::optional<Interval> horizontal_violation(const Volume& volume, const Relative& between) {
@@ -42,14 +48,8 @@ std::optional<Interval> vertical_violation(const Volume& volume, const Relative&
 
 }  // namespace
 
-Volume with_rounding(const Volume& volume) {
-  return {volume.horizontal_m + kRoundingM,
-          volume.vertical_m + kRoundingM,
-          volume.tau_s + kRoundingS,
-          volume.coaltitude_s + kRoundingS};
-}
-
-bool is_inside(const Volume& volume, const Mover& own, const Mover& intruder) {
+bool is_inside(const Volume& stated, const Mover& own, const Mover& intruder) {
+  const Volume volume = with_rounding(stated);
   const Measures now =
       measures(own, intruder, {.lookahead_s = 0, .tau_distance_m = volume.horizontal_m});
   const bool soon_near = now.dcpa_m && *now.dcpa_m <= volume.horizontal_m && now.tau_mod_s &&
@@ -59,10 +59,11 @@ bool is_inside(const Volume& volume, const Mover& own, const Mover& intruder) {
          (std::abs(now.above_m) <= volume.vertical_m || soon_level);
 }
 
-std::optional<Interval> violation(const Volume& volume,
+std::optional<Interval> violation(const Volume& stated,
                                   const Mover& own,
                                   const Mover& intruder,
                                   double lookahead_s) {
+  const Volume volume = with_rounding(stated);
   const Relative between = relative(own, intruder);
   const auto horizontal = horizontal_violation(volume, between);
   const auto vertical = vertical_violation(volume, between);

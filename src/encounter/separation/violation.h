@@ -46,15 +46,14 @@ std::span<const NamedVolume> named_volumes();
 const NamedVolume* named_volume(std::string_view name);
 std::vector<std::string> volume_names();
 
-// A state that is outside a volume by no more than this has not left it: it is what rounding adds
-// to a separation and to a time at positions of up to 10,000 km (2e-9 m), with room for the
-// arithmetic of a path, and far below what any threshold states. Chosen.
+// A distance that is larger than a threshold by no more than this does not exceed it, so that
+// aircraft which keep exactly a threshold's distance violate the volume all along, and not at every
+// other instant. It is what rounding adds to a separation at positions of up to 10,000 km (2e-9 m),
+// with room for the arithmetic of a path, and far below what any threshold states. Chosen.
 constexpr double kRoundingM = 1e-6;
-constexpr double kRoundingS = 1e-6;
-// The volume with its thresholds so much larger.
-Volume with_rounding(const Volume& volume);
 
-// True where the present state violates the volume, by the definition of Volume.
+// True where the present state violates the volume, by the definition of Volume, but for
+// kRoundingM.
 bool is_inside(const Volume& volume, const Mover& own, const Mover& intruder);
 
 // Times from now, in seconds.
@@ -68,7 +67,8 @@ struct Interval {
 //   v^2 t^2 + (2 s.v + tau_s v^2) t + s^2 + tau_s s.v - D^2 = 0
 // to the exit from the circle of D (Munoz et al. 2014, section 4), and the vertical part from the
 // earlier of the entry into the slab and the co-altitude threshold to the exit from the slab. Empty
-// where the volume is not violated within the lookahead. A volume that is only touched is violated.
+// where the volume is not violated within the lookahead. A volume that is only touched is violated,
+// and thresholds of distance are larger by kRoundingM.
 std::optional<Interval> violation(const Volume& volume,
                                   const Mover& own,
                                   const Mover& intruder,

@@ -36,8 +36,8 @@ TEST(Violation, HeadOnThroughTheNearMidAirCollision) {
   const Mover intruder{{4000, 0, -1000}, {-100, 0, 0}};
   const auto nmac = violation(volume("nmac"), own, intruder, 180);
   ASSERT_TRUE(nmac);
-  EXPECT_DOUBLE_EQ(nmac->begin_s, 20 - 152.4 / 200);
-  EXPECT_DOUBLE_EQ(nmac->end_s, 20 + 152.4 / 200);
+  EXPECT_NEAR(nmac->begin_s, 20 - 152.4 / 200, 1e-8);
+  EXPECT_NEAR(nmac->end_s, 20 + 152.4 / 200, 1e-8);
   EXPECT_FALSE(is_inside(volume("nmac"), own, intruder));
   EXPECT_FALSE(violation(volume("nmac"), own, intruder, 19));
   EXPECT_DOUBLE_EQ(violation(volume("nmac"), own, intruder, 20)->end_s, 20);
@@ -51,8 +51,8 @@ TEST(Violation, TheTauBeginsBeforeTheCircle) {
   const double begins_m = 3500 + std::sqrt(3500.0 * 3500 + d_m * d_m);
   const auto lost = violation(volume("do365-phase1"), own, intruder, 180);
   ASSERT_TRUE(lost);
-  EXPECT_NEAR(lost->begin_s, (20000 - begins_m) / 200, 1e-9);
-  EXPECT_NEAR(lost->end_s, (20000 + d_m) / 200, 1e-9);
+  EXPECT_NEAR(lost->begin_s, (20000 - begins_m) / 200, 1e-8);
+  EXPECT_NEAR(lost->end_s, (20000 + d_m) / 200, 1e-8);
 }
 
 // 400 m above and sinking at 10 m/s onto one that keeps its height, side by side: the co-altitude
@@ -63,9 +63,26 @@ TEST(Violation, TheCoAltitudeThresholdBeginsBeforeTheSlab) {
   const auto lost = violation(volume("do365-buffered"), own, intruder, 180);
   ASSERT_TRUE(lost);
   EXPECT_DOUBLE_EQ(lost->begin_s, 20);
-  EXPECT_DOUBLE_EQ(lost->end_s, (400 + 450 * 0.3048) / 10);
+  EXPECT_NEAR(lost->end_s, (400 + 450 * 0.3048) / 10, 1e-6);
   const auto without = violation(volume("do365-phase1"), own, intruder, 180);
-  EXPECT_DOUBLE_EQ(without->begin_s, (400 - 450 * 0.3048) / 10);
+  EXPECT_NEAR(without->begin_s, (400 - 450 * 0.3048) / 10, 1e-6);
+}
+
+// 609.6 m abeam on any course: rounding of the distance does not decide, 1 mm does.
+TEST(Violation, WhatKeepsExactlyAThresholdIsInside) {
+  for (int course_deg = 0; course_deg < 360; ++course_deg) {
+    const double course = radians(course_deg + 0.3);
+    const Vector3 ahead(std::cos(course), std::sin(course), 0);
+    const Vector3 right(-std::sin(course), std::cos(course), 0);
+    const Mover own{{1e5, -2e5, -1000}, 40 * ahead};
+    const auto abeam = [&](double distance_m) {
+      return Mover{own.position_ned_m + distance_m * right, own.velocity_ned_mps};
+    };
+    EXPECT_TRUE(is_inside(volume("f3442"), own, abeam(609.6))) << course_deg;
+    EXPECT_TRUE(violation(volume("f3442"), own, abeam(609.6), 60)) << course_deg;
+    EXPECT_FALSE(is_inside(volume("f3442"), own, abeam(609.601))) << course_deg;
+    EXPECT_FALSE(violation(volume("f3442"), own, abeam(609.601), 60)) << course_deg;
+  }
 }
 
 TEST(Violation, WhatStaysStaysInsideOrOutside) {
