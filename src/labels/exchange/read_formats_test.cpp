@@ -256,6 +256,9 @@ TEST(Errors, NameTheFileAndThePlace) {
        "p_1.xml: holds no Annotations/*.xml");
   ends(error_of(Format::kCsv, folder.file("t.csv", "frame,x,y,w,h\n0,1,2,3\n")),
        "t.csv:2: has 4 columns; expected frame,x,y,w,h");
+  // A cell that is empty would move those behind it.
+  ends(error_of(Format::kCsv, folder.file("e.csv", "frame,score,x,y,w,h\n0,,1,2,3,4\n")),
+       "e.csv:2: has 5 columns; expected frame,score,x,y,w,h");
   ends(error_of(Format::kYolo, folder.path() / "nowhere"), "nowhere: does not exist");
 }
 

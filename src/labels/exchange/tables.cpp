@@ -76,12 +76,8 @@ struct Columns {
   // False: width and height. True: the right and the bottom edge.
   bool are_corners = false;
   std::string text = "frame,x,y,w,h";
-
-  std::size_t last() const { return std::max({frame, x, y, third, fourth}); }
+  std::size_t count = 5;
 };
-
-// Of a table without a header.
-constexpr std::size_t kPlainColumns = 5;
 
 Columns columns_of(const Line& header, const fs::path& file) {
   const std::vector<std::string> cells = cells_of(header.text);
@@ -110,7 +106,8 @@ Columns columns_of(const Line& header, const fs::path& file) {
           has_size ? *width : *right,
           has_size ? *height : *bottom,
           !has_size,
-          header.text};
+          header.text,
+          cells.size()};
 }
 
 Clips read_csv(const Reading& in) {
@@ -131,12 +128,12 @@ Clips read_csv(const Reading& in) {
       if (is_header) continue;
       const Where where{file.string(), line.number};
       const std::vector<double> n = numbers_of(line, file);
-      if (!has_header && n.size() > kPlainColumns)
+      if (!has_header && n.size() > columns.count)
         throw Error(fmt::format("has {} columns, which no header names; expected frame,x,y,w,h, or "
                                 "a first line with the columns' names",
                                 n.size()),
                     where);
-      if (n.size() <= columns.last())
+      if (n.size() != columns.count)
         throw Error(fmt::format("has {} columns; expected {}", n.size(), columns.text), where);
       const auto i = whole_in(n[columns.frame], 0, kMaxFrames);
       if (!i) throw Error("the frame is no whole number from 0 on", where);
