@@ -283,7 +283,7 @@ void compare_covered(const image::Layer& layer,
     }
   ASSERT_TRUE(covered && surely && perhaps) << where;
   EXPECT_EQ(bounds(covered->box, *surely), covered->box) << where;
-  EXPECT_EQ(bounds(*perhaps, *covered), *perhaps) << where;
+  EXPECT_EQ(bounds(*perhaps, covered->box), *perhaps) << where;
 }
 
 // Compares every pixel of the patch, the box of the visible pixels and the centroid. Returns the
