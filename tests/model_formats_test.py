@@ -209,6 +209,17 @@ class EveryFormat(Case):
                     self.assertEqual(len(shown.stderr.strip().splitlines()), 1, shown.stderr)
                     self.assertIn("bad" + ending, shown.stderr)
 
+    def test_an_extension_of_gltf_that_is_not_read_is_named(self):
+        scene, data = gltf_parts()
+        scene["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+        scene["images"] = [{"uri": "a.webp"}]
+        scene["textures"] = [{"extensions": {"EXT_texture_webp": {"source": 0}}}]
+        scene["extensionsUsed"] = ["EXT_texture_webp"]
+        scene["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+        shown = run("aircraft", "show", write("webp.gltf", json.dumps(scene)), "--forward", "x", "--up", "z")
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        self.assertIn("EXT_texture_webp of glTF is not read", shown.stderr)
+
     def test_collada_that_is_transparent_by_mistake_is_opaque_and_said(self):
         with open(dae(), encoding="utf-8") as whole:
             text = whole.read()

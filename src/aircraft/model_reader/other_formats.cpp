@@ -287,6 +287,23 @@ void warn_of_missing(wrapper::Assembly& assembly, const AssimpFiles& files) {
                                         names + (shown > kNamedFiles ? ", ..." : ""));
 }
 
+// Extensions of glTF by which a file states pictures or vertices otherwise, and which assimp passes
+// over in silence.
+constexpr std::array<const char*, 5> kUnreadExtensions = {"EXT_texture_webp",
+                                                          "KHR_texture_basisu",
+                                                          "MSFT_texture_dds",
+                                                          "EXT_meshopt_compression",
+                                                          "KHR_mesh_quantization"};
+
+void warn_of_extensions(wrapper::Assembly& assembly, const fs::path& file) {
+  const std::string text = assembly.files().read(file, model::kMaxModelBytes);
+  for (const char* extension : kUnreadExtensions)
+    if (text.find('"' + std::string(extension) + '"') != std::string::npos &&
+        assembly.model().warnings.size() < model::kMaxWarnings)
+      assembly.model().warnings.push_back(std::string("the extension ") + extension +
+                                          " of glTF is not read; what it states is missing");
+}
+
 std::string one_sentence(const char* message) {
   std::string text = message;
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -309,8 +326,9 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   // Without normals a glTF is flat (glTF 2.0, section 3.7.2.1): its triangles keep their own.
-  const unsigned smooth =
-      ending == ".gltf" || ending == ".glb" ? 0u : unsigned{aiProcess_GenSmoothNormals};
+  const bool is_gltf = ending == ".gltf" || ending == ".glb";
+  const unsigned smooth = is_gltf ? 0u : unsigned{aiProcess_GenSmoothNormals};
+  if (is_gltf) warn_of_extensions(assembly, file.path);
   const aiScene* scene =
       importer.ReadFile(file.path.string(),
                         smooth | aiProcess_ValidateDataStructure | aiProcess_Triangulate |
