@@ -81,8 +81,8 @@ TEST(ModelDescription, FaultsAreNamedAtTheirLine) {
               HasSubstr("input.fit is \"tile\"; expected one of frame, tiles, letterbox"));
   EXPECT_THAT(fault("\"tiles\"", "\"frame\""),
               HasSubstr("input: unknown key \"width\"; expected one of layout"));
-  EXPECT_THAT(fault("heat_map", "yolov8"),
-              HasSubstr("output.kind is \"yolov8\"; expected one of heat_map, yolov5"));
+  EXPECT_THAT(fault("heat_map", "yolov9000"),
+              HasSubstr("output.kind is \"yolov9000\"; expected one of heat_map, yolov5, yolov8"));
   EXPECT_THAT(fault("[1, 2, 3]", "[1, 2]"), HasSubstr("input.mean"));
   EXPECT_THAT(fault("64}", "400}"), HasSubstr("input.overlap_px is 400"));
   EXPECT_THAT(fault("model 1", "model 2"), HasSubstr("format is"));
