@@ -26,10 +26,10 @@ std::optional<exchange::PixelMask> pixels_of_mask(const replay::Finished& finish
   const auto mask = insertion::read_alpha_mask(finished.folder, finished.truth.lens, id, frame);
   const auto covered = mask ? composite::covered(*mask) : std::nullopt;
   if (!covered) return std::nullopt;
-  const auto width = static_cast<std::size_t>(mask->patch.width);
-  const auto& [patch, alpha] = *mask;
+  const PixelBox& patch = mask->patch;
+  const auto width = static_cast<std::size_t>(patch.width);
   return pixel_mask::pixel_mask_of(patch.width, patch.height, covered->box, [&](int x, int y) {
-    return alpha[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] >=
+    return mask->alpha[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] >=
            composite::kCoveredAlpha;
   });
 }

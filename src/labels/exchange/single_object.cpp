@@ -289,12 +289,13 @@ Clips read_single_object(const Reading& in) {
   for (const fs::path& folder : two_levels(in.source))
     if (!files_of_boxes(in.format, folder).empty())
       clips.push_back(SequenceReader(folder, in).read());
-  for (const auto& [name, first] : in.options.start_frames)
-    if (!name.empty() && std::none_of(clips.begin(), clips.end(), [&](const Clip& clip) {
-          return clip.name == name;
-        }))
+  for (const auto& start : in.options.start_frames) {
+    const std::string& name = start.first;
+    const auto is_named = [&](const Clip& clip) { return clip.name == name; };
+    if (!name.empty() && std::none_of(clips.begin(), clips.end(), is_named))
       throw Error("no sequence is named '" + name + "', for which a start frame is given",
                   {in.source.string()});
+  }
   if (clips.empty())
     throw Error(std::string("holds no sequence of ") + name(in.format), {in.source.string()});
   return clips;
