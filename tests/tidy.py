@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs clang-tidy over sources of src/ but the tests: tidy.py BUILD [--all]
 
-BUILD holds compile_commands.json. Without --all the sources are those that the work tree and the commits of the last day before HEAD touch, or
+BUILD holds compile_commands.json. Without --all the sources are those that the work tree and the commits of the last hours before HEAD touch, or
 those since the commit that AIRTRUTH_TIDY_BASE names; a header counts for the source of its name. Most of clang-tidy's time goes into headers, so
 that up to sixteen sources are read as one, which takes less than a third of the time. Where they do not compile as one, for example because
 private names clash, each half of them is read as one.
@@ -19,6 +19,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_SOURCES = 16
+CHANGE_HOURS = 4  # the work of one change; the commits of a whole day can touch nearly all sources
 
 
 def git(*arguments):
@@ -26,11 +27,11 @@ def git(*arguments):
 
 
 def touched():
-    """The paths, without their ending, that differ from the base: AIRTRUTH_TIDY_BASE, or else the newest commit that is a day older than HEAD."""
+    """The paths, without their ending, that differ from the base: AIRTRUTH_TIDY_BASE, or else the newest commit that is CHANGE_HOURS older than HEAD."""
     base = os.environ.get("AIRTRUTH_TIDY_BASE", "")
     if not base:
-        a_day_before = int(git("log", "-1", "--format=%ct")) - 24 * 3600
-        base = git("rev-list", "-1", f"--before={a_day_before}", "HEAD").strip()
+        before = int(git("log", "-1", "--format=%ct")) - CHANGE_HOURS * 3600
+        base = git("rev-list", "-1", f"--before={before}", "HEAD").strip()
     if not base:
         return None  # a history that is younger, or shallow: everything
     names = git("diff", "--name-only", base).split() + git("ls-files", "--others", "--exclude-standard").split()
