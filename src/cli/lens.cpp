@@ -50,16 +50,15 @@ void hand_over(const focal_length::LensEstimator::Result& found,
                 {arguments.out});
   if (!found.is_certain) console.warning("this lens is not certain: " + why);
   if (!arguments.out.empty())
-    write_file(
-        arguments.out,
-        lens::opencv_calibration(
-            lens,
-            fmt::format("estimated by airtruth lens estimate: focal length {:.1f} px, {:.0f} "
-                        "to {:.0f} px at 95 %{}",
-                        found.focal_px,
-                        found.low_px,
-                        found.high_px,
-                        found.is_certain ? "" : "; not certain")));
+    write_file(arguments.out,
+               lens::opencv_calibration(
+                   lens,
+                   fmt::format("{}: focal length {:.1f} px, {:.0f} to {:.0f} px at 95 %{}",
+                               focal_length::kEstimatedNote,
+                               found.focal_px,
+                               found.low_px,
+                               found.high_px,
+                               found.is_certain ? "" : "; not certain")));
 }
 
 void estimate(const EstimateArguments& arguments, Context& context) {

@@ -349,11 +349,7 @@ constexpr double kLongest_m = 250;
 
 // Many models are in centimetres or millimetres, and most files do not state their unit.
 void warn_of_size(const std::string& name, const model::Mesh& mesh, const Warn& warn_to) {
-  model::Extents size = {mesh.positions.at(0).cast<double>(), mesh.positions.at(0).cast<double>()};
-  for (const Eigen::Vector3f& position : mesh.positions) {
-    size.low_in_body = size.low_in_body.cwiseMin(position.cast<double>());
-    size.high_in_body = size.high_in_body.cwiseMax(position.cast<double>());
-  }
+  const model::Extents size = model::extents(mesh);
   if (std::max(size.length_m(), size.span_m()) <= kLongest_m) return;
   warn(warn_to,
        fmt::format("{}: is {:.0f} m long and {:.0f} m wide; where the file is in other units than "

@@ -14,6 +14,9 @@ namespace airtruth::focal_length {
 // A lens of this focal length about the picture's middle, without distortion.
 lens::Lens undistorted(bool fisheye, double focal_px, const lens::ImageSize& size);
 
+// The beginning of the note in a calibration that holds such an estimate.
+constexpr const char* kEstimatedNote = "estimated by airtruth lens estimate";
+
 // Estimates the focal length of a lens without distortion from a video alone. While the camera
 // turns, the angles between far points stay constant; through a wrong lens they would appear to
 // change. Corners are tracked until the camera has turned by some degrees. For every candidate lens

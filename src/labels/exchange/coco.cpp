@@ -332,16 +332,18 @@ class CocoWriter : public FolderWriter {
       const Box& b = label.box_px;
       const std::int64_t number = lists.next_annotation++;
       lists.masks += label.mask ? 1 : 0;
-      Json json = {{"id", number},
-                   {"image_id", id},
-                   {"video_id", video},
-                   {"category_id", class_of(label.category) + 1},
-                   {"track_id", label.track},
-                   {"bbox", {b.x, b.y, b.width, b.height}},
-                   {"area", label.area_px.value_or(b.area())},
-                   {"segmentation", segmentation_of(label)},
-                   {"iscrowd", 0}};
-      put_known(json, label, "visibility");
+      Json json = {
+          {"id", number},
+          {"image_id", id},
+          {"video_id", video},
+          {"category_id", class_of(label.category) + 1},
+          {"track_id", label.track},
+          {"bbox", {b.x, b.y, b.width, b.height}},
+          {"area", label.area_px.value_or(label.mask ? double(label.mask->area_px) : b.area())},
+          {"segmentation", segmentation_of(label)},
+          {"iscrowd", 0}};
+      each_known(
+          label, "visibility", [&](const char* key, const auto& value) { put(json, key, value); });
       lists.annotations << (number > 1 ? ",\n" : "") << json.dump();
     }
   }

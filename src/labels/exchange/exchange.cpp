@@ -82,10 +82,8 @@ constexpr std::array<About, 11> kAll = {{
      "key "
      "of `blob`",
      "visibility, occlusion, truncation, area; the id of every aircraft is an `Airplane`, that of "
-     "a "
-     "bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; the range of what is "
-     "no "
-     "aircraft (a range marks an aircraft as planned); what is on the lens"},
+     "a bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; the range of what is "
+     "no aircraft (a range marks an aircraft as planned); what is on the lens"},
     {Format::kOtb,
      "otb",
      "OTB",
@@ -93,8 +91,7 @@ constexpr std::array<About, 11> kAll = {{
      single_object_writer,
      "box",
      "class, time, visibility, occlusion, range, area; of a sequence all before the first frame "
-     "that "
-     "shows the object whole and after the "
+     "that shows the object whole and after the "
      "last that shows it; where it begins in the video"},
     {Format::kGot10k,
      "got10k",
@@ -112,8 +109,7 @@ constexpr std::array<About, 11> kAll = {{
      single_object_writer,
      "box, class, occlusion and range by frame",
      "time stamps, visibility, truncation, area; of a sequence all before the first frame that "
-     "shows the "
-     "object whole and after the "
+     "shows the object whole and after the "
      "last that shows it; where it begins in the video"},
     {Format::kEvision, "evision", "E-Vision", read_evision, nullptr},
     {Format::kCsv, "csv", "frame,x,y,w,h", read_csv, nullptr},

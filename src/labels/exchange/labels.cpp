@@ -44,11 +44,8 @@ Json json_of(const Label& label) {
                {"category", label.category},
                {"box_px", {b.x, b.y, b.width, b.height}}};
   if (!annotation::is_aircraft(label.object_class)) json["class"] = label.object_class;
-  json["visible"] = or_null(label.visible);
-  json["occluded"] = or_null(label.occluded);
-  json["truncated"] = or_null(label.truncated);
-  json["range_m"] = or_null(label.range_m);
-  json["above_horizon"] = or_null(label.above_horizon);
+  each_known(
+      label, "visible", [&](const char* key, const auto& value) { json[key] = or_null(value); });
   json["area_px"] = or_null(label.area_px);
   return json;
 }

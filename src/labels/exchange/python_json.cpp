@@ -49,20 +49,19 @@ JsonDocument python_json(const std::filesystem::path& file) {
   return {without_python_words(read_file(file, kLargestFile_bytes)), Where{file.string()}};
 }
 
-void put_known(nlohmann::ordered_json& json, const Label& label, const char* visible_key) {
-  put(json, visible_key, label.visible);
-  put(json, "occluded", label.occluded);
-  put(json, "truncated", label.truncated);
-  put(json, "range_m", label.range_m);
-  put(json, "above_horizon", label.above_horizon);
+namespace {
+
+void get(const JsonObject& json, const char* key, std::optional<double>& value) {
+  value = json.maybe_number(key);
+}
+void get(const JsonObject& json, const char* key, std::optional<bool>& value) {
+  value = json.maybe_truth(key);
 }
 
+}  // namespace
+
 void get_known(const JsonObject& json, Label& label, const char* visible_key) {
-  label.visible = json.maybe_number(visible_key);
-  label.occluded = json.maybe_truth("occluded");
-  label.truncated = json.maybe_truth("truncated");
-  label.range_m = json.maybe_number("range_m");
-  label.above_horizon = json.maybe_truth("above_horizon");
+  each_known(label, visible_key, [&](const char* key, auto& value) { get(json, key, value); });
 }
 
 }  // namespace airtruth::exchange

@@ -21,9 +21,16 @@ void put(nlohmann::ordered_json& json, const char* key, const std::optional<T>& 
   if (value) json[key] = *value;
 }
 
-// The fields of a label that may be unknown, except its mask: visible share, occluded, truncated,
-// range_m and above_horizon. `visible_key` is the key of the visible share.
-void put_known(nlohmann::ordered_json& json, const Label& label, const char* visible_key);
+// Calls visit(key, member) for the fields of a label that may be unknown, except its area and mask.
+// `visible_key` is the key of the visible share.
+template <typename AnyLabel, typename Visit>
+void each_known(AnyLabel& label, const char* visible_key, const Visit& visit) {
+  visit(visible_key, label.visible);
+  visit("occluded", label.occluded);
+  visit("truncated", label.truncated);
+  visit("range_m", label.range_m);
+  visit("above_horizon", label.above_horizon);
+}
 void get_known(const JsonObject& json, Label& label, const char* visible_key);
 
 }  // namespace airtruth::exchange

@@ -36,7 +36,7 @@ namespace {
 constexpr std::int64_t kLongestSide = 1'000'000;
 
 // The sequences of OTB-100 whose folders hold more pictures than boxes, and the picture of their
-// first box (the toolkit's configSeqs.m).
+// first box (VOT's toolkit, vot/dataset/otb.py).
 constexpr std::pair<std::string_view, std::int64_t> kStartFrames[] = {{"blurcar1", 247},
                                                                       {"blurcar3", 3},
                                                                       {"blurcar4", 18},
@@ -44,8 +44,7 @@ constexpr std::pair<std::string_view, std::int64_t> kStartFrames[] = {{"blurcar1
                                                                       {"diving", 1},
                                                                       {"football1", 1},
                                                                       {"freeman3", 1},
-                                                                      {"freeman4", 1},
-                                                                      {"tiger1", 6}};
+                                                                      {"freeman4", 1}};
 
 const char* boxes_in(Format format) {
   return format == Format::kOtb ? "groundtruth_rect.txt" : "groundtruth.txt";

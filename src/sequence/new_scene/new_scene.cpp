@@ -35,7 +35,7 @@ constexpr std::int64_t kMaxMotionFrames = 1800;  // a minute at 30 frames/s
 constexpr double kEncounterS = 13.2;
 // A camera that turns by less than this share of its view keeps what is in the middle in view.
 constexpr double kSteadyShare = 0.2;
-constexpr std::size_t kMaxSubtitleBytes = std::size_t{64} << 20;  // chosen
+constexpr std::size_t kMaxTextBytes = std::size_t{64} << 20;  // chosen
 
 // What is known of the lens: the words for the scene, and the lens itself.
 struct LensWords {
@@ -68,7 +68,7 @@ std::optional<LensWords> lens_from_files(const fs::path& video, lens::ImageSize 
   std::optional<double> mm;
   std::string origin = "the video's tags";
   if (const auto subtitles = subtitles_of(video)) {
-    mm = equivalent_mm_in_subtitles(read_file(*subtitles, kMaxSubtitleBytes));
+    mm = equivalent_mm_in_subtitles(read_file(*subtitles, kMaxTextBytes));
     if (mm) origin = subtitles->filename().string();
   }
   if (!mm) mm = equivalent_mm_in_tags(video::read_tags(video));
@@ -130,8 +130,8 @@ LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) 
 // What airtruth lens estimate has written of its doubt into a calibration, as opencv_calibration()
 // has it; empty for any other.
 std::string note_in(const fs::path& calibration) {
-  const std::string text = read_file(calibration, kMaxSubtitleBytes);
-  const std::size_t at = text.find("# estimated by airtruth lens estimate");
+  const std::string text = read_file(calibration, kMaxTextBytes);
+  const std::size_t at = text.find(fmt::format("# {}", focal_length::kEstimatedNote));
   return at == std::string::npos ? "" : ", " + text.substr(at + 2, text.find('\n', at) - at - 2);
 }
 
