@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <new>
 #include <string>
@@ -74,6 +75,9 @@ void describe(AVCodecContext& codec, const EncoderInput& input, const WriterOpti
                                  : input.stored.siting == image::Siting::kTopLeft
                                      ? AVCHROMA_LOC_TOPLEFT
                                      : AVCHROMA_LOC_LEFT;
+  if (options.format == Format::kMp4)
+    codec.gop_size =
+        static_cast<int>(std::max(1L, std::lround(options.keyframe_s * info.frame_rate.value())));
   codec.thread_count = options.format == Format::kMp4 ? kX264Threads : std::max(0, options.threads);
   codec.flags |= AV_CODEC_FLAG_BITEXACT;
   if (input.has_global_header) codec.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "foundation/base/error.h"
 #include "picture/video/libav.h"
+#include "picture/video/media_file.h"
 
 extern "C" {
 #include <libavutil/dict.h>
@@ -16,12 +16,8 @@ namespace {
 
 // Empty where the path is no regular file.
 InputPtr opened_file(const std::filesystem::path& path) {
-  keep_libav_quiet();
   if (!std::filesystem::is_regular_file(path)) return nullptr;
-  AVFormatContext* input = nullptr;
-  if (const int result = avformat_open_input(&input, path.c_str(), nullptr, nullptr); result < 0)
-    throw Error("cannot be opened as a video: " + reason(result), {path.string()});
-  return InputPtr(input);
+  return open_media(path, Media::kAny);
 }
 
 void add_tags(const AVDictionary* tags, std::map<std::string, std::string>& result) {
@@ -61,7 +57,7 @@ std::vector<TelemetryPacket> packets_of(const std::filesystem::path& path,
   // A file whose header lists all streams need not be decoded to know that it has none.
   const bool all_are_listed = (input->ctx_flags & AVFMTCTX_NOHEADER) == 0;
   if (all_are_listed && stream_in(*input) < 0) return {};
-  avformat_find_stream_info(input.get(), nullptr);
+  find_streams(*input);
   const int wanted = stream_in(*input);
   if (wanted < 0) return {};
   double start_s = 0;

@@ -17,7 +17,9 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/image/cuts.h"
+#include "picture/video/frame_index.h"
 #include "picture/video/libav.h"
+#include "picture/video/media_file.h"
 #include "picture/video/numbered_images.h"
 
 namespace airtruth::video {
@@ -108,6 +110,10 @@ struct Reader::State {
   // Number of frames that the decoder has returned.
   std::int64_t decoded = 0;
   std::int64_t handed = 0;
+  // True where `frame` holds a frame that next() has not yet taken.
+  bool is_pending = false;
+  // True where `packet` holds one that is not yet decoded.
+  bool is_packet_held = false;
   std::int64_t last_pts = AV_NOPTS_VALUE;
   std::int64_t pts_step = 1;
   std::optional<std::int64_t> first_pts;
@@ -123,15 +129,27 @@ struct Reader::State {
     throw Error(message, {path.string()});
   }
 
+  static std::unique_ptr<State> opened(const std::filesystem::path& path,
+                                       const ReaderOptions& options,
+                                       Warn warn);
   void open_input();
   void open_codec();
   void warn_of_fields(const AVStream& stream) const;
   void describe_stream(const AVStream& stream);
   void describe(const AVFrame& first);
+  // Goes to `first_frame` without the frames before it; false where they have to be decoded.
+  bool go_to_first_frame();
+  // Decodes from a key packet up to a frame of the index; false where what is decoded is not what
+  // the index says, or refers to what is before the key packet.
+  bool decode_from(const KeyPacket& key, const FrameIndex& index, std::size_t target);
   // Goes to the key frame at or before a time stamp; false where the file cannot.
   bool seek(std::int64_t time_stamp);
   // Fills `packet`. Returns a negative number at the end, as libav does.
   int read_packet();
+  // Reads packets up to the key packet, which `packet` then holds; false where it does not come.
+  bool find_packet(const KeyPacket& key);
+  // Finds a key packet anywhere in the file.
+  bool go_to_packet(const KeyPacket& key);
   // Fills `frame`; false at the end.
   bool decode_one();
   std::optional<Decoded> next();
@@ -144,11 +162,8 @@ struct Reader::State {
 };
 
 void Reader::State::open_input() {
-  keep_libav_quiet();
   std::error_code ignored;
-  AVDictionary* settings = nullptr;
-  const AVInputFormat* format = nullptr;
-  std::string url = path.string();
+  std::string rate;
   if (auto images = numbered_images(path)) {
     if (images->has_gaps)
       airtruth::warn(warn,
@@ -158,11 +173,9 @@ void Reader::State::open_input() {
     pictures = std::move(images->files);
     info.is_rate_stated = options.picture_rate_hz.has_value();
     if (options.picture_rate_hz) {
-      const AVRational rate = av_d2q(*options.picture_rate_hz, kMaxRateTerm);
-      av_dict_set(&settings, "framerate", fmt::format("{}/{}", rate.num, rate.den).c_str(), 0);
+      const AVRational stated = av_d2q(*options.picture_rate_hz, kMaxRateTerm);
+      rate = fmt::format("{}/{}", stated.num, stated.den);
     }
-    format = av_find_input_format("image2");
-    url = pictures.front().string();
   } else if (!std::filesystem::exists(path, ignored)) {
     fail("does not exist; expected a video");
   } else if (std::filesystem::is_directory(path, ignored)) {
@@ -170,15 +183,13 @@ void Reader::State::open_input() {
   } else if (std::filesystem::file_size(path, ignored) == 0 && !ignored) {
     fail("is empty; expected a video");
   }
-  AVFormatContext* raw = nullptr;
-  // A % in the name of a picture or folder is an ordinary character. Videos ignore the setting.
-  av_dict_set(&settings, "pattern_type", "none", 0);
-  const int opened = avformat_open_input(&raw, url.c_str(), format, &settings);
-  av_dict_free(&settings);
-  if (opened < 0) fail("cannot be read as a video: " + reason(opened));
-  input.reset(raw);
+  input = pictures.empty() ? open_media(path, Media::kAny)
+                           : open_media(pictures.front(), Media::kNumberedImage, rate);
+  for (unsigned i = 0; i < input->nb_streams; ++i)
+    check_picture_size(
+        input->streams[i]->codecpar->width, input->streams[i]->codecpar->height, path);
   const bool is_known = !options.with_timing && is_picture_file(*input);
-  if (const int found = is_known ? 0 : avformat_find_stream_info(input.get(), nullptr); found < 0)
+  if (const int found = is_known ? 0 : find_streams(*input); found < 0)
     fail("cannot be read as a video: " + reason(found));
   stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (stream_index < 0) fail("holds no video stream; expected a video");
@@ -189,13 +200,7 @@ void Reader::State::open_input() {
 
 void Reader::State::open_codec() {
   const AVStream& stream = *input->streams[stream_index];
-  const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
-  if (decoder == nullptr)
-    fail(std::string("is ") + avcodec_get_name(stream.codecpar->codec_id) +
-         ", which cannot be decoded");
-  codec.reset(avcodec_alloc_context3(decoder));
-  avcodec_parameters_to_context(codec.get(), stream.codecpar);
-  codec->pkt_timebase = stream.time_base;
+  codec = decoder_of(stream, path);
   codec->thread_count = options.threads > 0
                             ? options.threads
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -203,11 +208,11 @@ void Reader::State::open_codec() {
   codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
   if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
   codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
-  if (const int opened = avcodec_open2(codec.get(), decoder, nullptr); opened < 0)
-    fail(std::string("cannot be decoded (") + decoder->name + "): " + reason(opened));
+  if (const int opened = avcodec_open2(codec.get(), nullptr, nullptr); opened < 0)
+    fail(std::string("cannot be decoded (") + codec->codec->name + "): " + reason(opened));
   packet.reset(av_packet_alloc());
   frame.reset(av_frame_alloc());
-  info.codec = decoder->name;
+  info.codec = codec->codec->name;
   describe_stream(stream);
 }
 
@@ -242,6 +247,7 @@ void Reader::State::describe_stream(const AVStream& stream) {
 }
 
 void Reader::State::describe(const AVFrame& first) {
+  check_picture_size(first.width, first.height, path);
   const auto format = static_cast<AVPixelFormat>(first.format);
   const char* name = av_get_pix_fmt_name(format);
   const auto known = layout_of(format);
@@ -293,6 +299,29 @@ int Reader::State::read_packet() {
   return 0;
 }
 
+bool Reader::State::find_packet(const KeyPacket& key) {
+  while (read_packet() >= 0) {
+    if (packet->stream_index == stream_index) {
+      const auto times = times_of(*packet, *input->streams[stream_index]->codecpar);
+      if (!times || times->dts > key.dts) break;
+      is_packet_held = times->pts == key.pts && times->dts == key.dts;
+      if (is_packet_held) return true;
+    }
+    av_packet_unref(packet.get());
+  }
+  av_packet_unref(packet.get());
+  return false;
+}
+
+bool Reader::State::go_to_packet(const KeyPacket& key) {
+  if (av_seek_frame(input.get(), stream_index, key.dts, AVSEEK_FLAG_BACKWARD) >= 0 &&
+      find_packet(key))
+    return true;
+  // Some containers seek to a later packet. All packets from the first on are read instead.
+  input = open_media(path, Media::kAny);
+  return find_streams(*input) >= 0 && find_packet(key);
+}
+
 bool Reader::State::decode_one() {
   for (;;) {
     av_frame_unref(frame.get());
@@ -312,7 +341,7 @@ bool Reader::State::decode_one() {
       if (draining) continue;
     }
     if (draining) continue;
-    const int read = read_packet();
+    const int read = std::exchange(is_packet_held, false) ? 0 : read_packet();
     if (read < 0) {
       read_failed = read != AVERROR_EOF || (input->pb != nullptr && input->pb->error < 0);
       draining = true;
@@ -370,7 +399,7 @@ void Reader::State::make_plain() {
   const auto format = static_cast<AVPixelFormat>(frame->format);
   const AVPixelFormat plain = plain_kin(format);
   if (plain == AV_PIX_FMT_NONE) return;
-  if (decoded == 0 && av_pix_fmt_desc_get(format)->comp[0].depth > 8)
+  if (info.pixel_format.empty() && av_pix_fmt_desc_get(format)->comp[0].depth > 8)
     airtruth::warn(warn, path.string() + ": has more than 8 bits a sample; they are taken to 8");
   frame = in_format(*frame, plain);
 }
@@ -393,14 +422,14 @@ Decoded Reader::State::with_picture(Frame result) {
 std::optional<Decoded> Reader::State::next() {
   if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
   for (;;) {
-    if (!decode_one()) {
+    if (!std::exchange(is_pending, false) && !decode_one()) {
       finished = true;
       return std::nullopt;
     }
     Frame result = to_frame();
     make_plain();
-    if (decoded++ == 0) describe(*frame);
-    if (decoded <= options.first_frame) continue;
+    if (info.pixel_format.empty()) describe(*frame);
+    if (++decoded <= options.first_frame) continue;
     const bool same =
         frame->width == (info.rotation_deg % 180 == 0 ? info.width : info.height) &&
         frame->height == (info.rotation_deg % 180 == 0 ? info.height : info.width) &&
@@ -413,6 +442,52 @@ std::optional<Decoded> Reader::State::next() {
     result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
     return with_picture(std::move(result));
   }
+}
+
+bool Reader::State::decode_from(const KeyPacket& key, const FrameIndex& index, std::size_t target) {
+  if (!go_to_packet(key)) return false;
+  avcodec_flush_buffers(codec.get());
+  draining = broken = false;
+  auto expected = static_cast<std::size_t>(
+      std::lower_bound(index.pts.begin(), index.pts.end(), key.pts) - index.pts.begin());
+  const std::int64_t corrupt_before = corrupt;
+  while (decode_one()) {
+    const std::int64_t pts = frame->best_effort_timestamp;
+    // Pictures that are shown before the key frame may refer to those before it.
+    if (pts < key.pts) continue;
+    const bool is_whole =
+        frame->decode_error_flags == 0 && (frame->flags & AV_FRAME_FLAG_CORRUPT) == 0;
+    if (!is_whole || corrupt != corrupt_before || index.frame_at(pts) != expected) return false;
+    if (expected++ == target) return true;
+  }
+  return false;
+}
+
+bool Reader::State::go_to_first_frame() {
+  if (!pictures.empty()) {
+    next_picture = std::min(pictures.size(), static_cast<std::size_t>(options.first_frame));
+    decoded = static_cast<std::int64_t>(next_picture);
+    return true;
+  }
+  if (!decode_one()) return false;
+  const std::int64_t first = frame->best_effort_timestamp;
+  make_plain();
+  describe(*frame);
+  if (first == AV_NOPTS_VALUE) return false;
+  const auto index = index_frames(path, stream_index, first, options.first_frame);
+  const auto target = static_cast<std::size_t>(options.first_frame);
+  if (!index || target >= index->pts.size()) return false;
+  // The second key packet serves where the first is no true beginning: a picture after it refers
+  // to one before it.
+  for (const std::size_t back : {0u, 1u}) {
+    const auto key = index->key_for(target, back);
+    if (!key || !decode_from(*key, *index, target)) continue;
+    is_pending = true;
+    last_pts = AV_NOPTS_VALUE;
+    decoded = options.first_frame;
+    return true;
+  }
+  return false;
 }
 
 bool Reader::State::seek(std::int64_t pts) {
@@ -455,15 +530,35 @@ bool Reader::State::begins_shot(std::int64_t index) {
   return image::is_cut(all.first(here), all[here], all.subspan(here + 1, after));
 }
 
+std::unique_ptr<Reader::State> Reader::State::opened(const std::filesystem::path& path,
+                                                     const ReaderOptions& options,
+                                                     Warn warn) {
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->options = options;
+  state->warn = std::move(warn);
+  state->open_input();
+  state->open_codec();
+  return state;
+}
+
 Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, Warn warn)
-    : state_(std::make_unique<State>()) {
-  state_->path = path;
-  state_->options = options;
-  state_->warn = std::move(warn);
-  state_->open_input();
-  state_->open_codec();
+    : state_(State::opened(path, options, warn)) {
+  if (options.first_frame > 0 && !state_->go_to_first_frame()) {
+    const bool is_known_end = state_->info.frame_count_estimate <= options.first_frame;
+    if (!is_known_end)
+      airtruth::warn(warn,
+                     fmt::format("{}: its frames cannot be found without decoding; the {} before "
+                                 "first_frame are decoded",
+                                 path.string(),
+                                 options.first_frame));
+    state_ = State::opened(path, options, {});
+  }
   if (state_->look_ahead()) return;
-  if (state_->decoded == 0) state_->fail("holds no frame that can be decoded; expected a video");
+  if (state_->decoded == 0)
+    state_->fail(
+        fmt::format("holds no frame of at most {} million px that can be decoded; expected a video",
+                    kMaxPixels / 1'000'000));
   if (!options.frame_count || *options.frame_count > 0)
     state_->fail("holds " + std::to_string(state_->decoded) + " frames; first_frame = " +
                  std::to_string(options.first_frame) + " is past its end");

@@ -59,7 +59,9 @@ struct StreamInfo {
 
 // What the reader delivers.
 struct ReaderOptions {
-  // The first frame that is handed out. Frames before it are decoded and dropped.
+  // The first frame that is handed out. Decoding begins at the key frame before it. Where the file
+  // does not say when each of its frames is shown, all frames before it are decoded, with a
+  // warning.
   std::int64_t first_frame = 0;
   // Largest number of frames; empty: to the end.
   std::optional<std::int64_t> frame_count;

@@ -14,6 +14,7 @@
 #include "foundation/image/colour.h"
 #include "foundation/image/packed.h"
 #include "picture/video/libav.h"
+#include "picture/video/media_file.h"
 #include "picture/video/reader.h"
 
 namespace airtruth::video {
@@ -173,17 +174,9 @@ image::Picture first_picture(const fs::path& path) {
 }  // namespace
 
 std::pair<int, int> size_of_still(const fs::path& path) {
-  keep_libav_quiet();
-  AVFormatContext* raw = nullptr;
-  AVDictionary* settings = nullptr;
-  av_dict_set(&settings, "pattern_type", "none", 0);
-  const int opened =
-      avformat_open_input(&raw, path.string().c_str(), av_find_input_format("image2"), &settings);
-  av_dict_free(&settings);
-  const InputPtr input(raw);
+  const InputPtr input = open_media(path, Media::kNumberedImage);
   // libav's decoders of pictures fill in the size from the header here, without the samples.
-  if (opened >= 0 && avformat_find_stream_info(input.get(), nullptr) >= 0 &&
-      input->nb_streams == 1) {
+  if (find_streams(*input) >= 0 && input->nb_streams == 1) {
     const AVCodecParameters& known = *input->streams[0]->codecpar;
     if (known.width > 0 && known.height > 0) return {known.width, known.height};
   }

@@ -13,6 +13,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/encoder.h"
 #include "picture/video/libav.h"
+#include "picture/video/media_file.h"
 #include "picture/video/still.h"
 #include "picture/video/stored_colour.h"
 
@@ -66,8 +67,9 @@ void Writer::State::open() {
   const char* muxer = options.format == Format::kMp4   ? "mp4"
                       : options.format == Format::kMkv ? "matroska"
                                                        : "avi";
+  const std::string url = file_url(part);
   AVFormatContext* raw = nullptr;
-  check_av(avformat_alloc_output_context2(&raw, nullptr, muxer, part.c_str()), "cannot create");
+  check_av(avformat_alloc_output_context2(&raw, nullptr, muxer, url.c_str()), "cannot create");
   output.reset(raw);
   output->flags |= AVFMT_FLAG_BITEXACT;
   const bool has_global_header = (output->oformat->flags & AVFMT_GLOBALHEADER) != 0;
@@ -80,7 +82,7 @@ void Writer::State::open() {
   stream->time_base = codec->time_base;
   stream->avg_frame_rate = codec->framerate;
   stream->sample_aspect_ratio = codec->sample_aspect_ratio;
-  if (const int opened = avio_open(&output->pb, part.c_str(), AVIO_FLAG_WRITE); opened < 0)
+  if (const int opened = avio_open(&output->pb, url.c_str(), AVIO_FLAG_WRITE); opened < 0)
     fail("cannot create: " + reason(opened));
   AVDictionary* settings = nullptr;
   if (options.format == Format::kMp4) av_dict_set(&settings, "movflags", "+faststart", 0);

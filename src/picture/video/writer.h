@@ -44,6 +44,9 @@ struct WriterOptions {
   // H.264: CRF 0..51. MJPEG: its qscale 1..31 is derived from the same scale. Lossless formats
   // ignore it.
   int quality = 18;
+  // For mp4: the longest time between two key frames, in seconds. A reader that wants one frame
+  // decodes all since the key frame before it.
+  double keyframe_s = 0.5;
   // Number of encoder threads of FFV1 and MJPEG; 0: one for each core. The bytes do not depend on
   // it. H.264 has a number of its own, on which its bytes do depend.
   int threads = 0;

@@ -53,6 +53,8 @@ inline constexpr Limits kClimb{
 inline constexpr Limits kThreshold{.expected = "metres from 0 to 1e5", .low = 0, .high = 1e5};
 inline constexpr Limits kThresholdTime{
     .expected = "seconds from 0 to 3600", .low = 0, .high = 3600};
+inline constexpr Limits kKeyframeSpacing{
+    .expected = "seconds from 0.001 to 60", .low = 0.001, .high = 60};
 inline constexpr Limits kLookahead{.expected = "seconds from 1 to 3600", .low = 1, .high = 3600};
 inline constexpr Limits kTurnRate{
     .expected = "degrees a second from -90 to 90", .low = -90, .high = 90};

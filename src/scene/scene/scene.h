@@ -263,6 +263,8 @@ struct Composite {
 struct Output {
   OutputVideo video = OutputVideo::kMp4;
   int quality = 18;
+  // For kMp4: the longest time between two key frames, from which alone a reader can begin.
+  double keyframe_s = 0.5;
   // For kMp4.
   OutputEncoder encoder = OutputEncoder::kX264;
   Where encoder_where;

@@ -225,6 +225,7 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "lookahead_s",
                                 "quality",
                                 "method",
+                                "keyframe_s",
                                 "encoder",
                                 "masks"}) {
     EXPECT_NE(manual.find(std::string("`") + key + "`"), std::string::npos) << key;

@@ -280,10 +280,12 @@ Truth truth_in(const TableReader& parent) {
 }
 
 Output output_in(const TableReader& parent) {
-  const TableReader table = parent.table("output", {"video", "quality", "encoder", "masks"});
+  const TableReader table =
+      parent.table("output", {"video", "quality", "keyframe_s", "encoder", "masks"});
   Output output;
   output.video = table.choice<OutputVideo>("video").value_or(output.video);
   output.quality = static_cast<int>(table.whole("quality", 0, 51).value_or(output.quality));
+  output.keyframe_s = table.number("keyframe_s", kKeyframeSpacing).value_or(output.keyframe_s);
   take_encoder(output, table);
   output.masks = table.truth("masks").value_or(output.masks);
   return output;

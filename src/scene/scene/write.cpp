@@ -288,6 +288,7 @@ std::string toml_from_scene(const Scene& scene) {
   text.heading("[output]");
   text.add("video", scene.output.video);
   text.add("quality", scene.output.quality);
+  text.add("keyframe_s", scene.output.keyframe_s);
   text.add("encoder", scene.output.encoder);
   text.add("masks", scene.output.masks);
   return text.take();

@@ -24,6 +24,7 @@ video::WriterOptions writer_options(const scene::Output& output, int threads) {
   video::WriterOptions options;
   options.format = setup::format_of(output.video);
   options.quality = output.quality;
+  options.keyframe_s = output.keyframe_s;
   options.threads = threads;
   options.encoder = setup::encoder_of(output.encoder);
   options.encoder_where = output.encoder_where;

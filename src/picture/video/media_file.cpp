@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture/video/media_file.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+
+namespace airtruth::video {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kContainers = {
+    "mov",      "matroska",     "avi",       "mpegts",   "mpeg",      "mxf",
+    "ogg",      "flv",          "ivf",       "dv",       "h264",      "hevc",
+    "m4v",      "yuv4mpegpipe", "png_pipe",  "bmp_pipe", "jpeg_pipe", "pgm_pipe",
+    "ppm_pipe", "tiff_pipe",    "webp_pipe", "image2"};
+
+constexpr std::array kCodecs = {
+    "h264",       "hevc",       "libdav1d", "libaom-av1", "vp8",     "vp9",      "mpeg4",
+    "mpeg2video", "mpeg1video", "mjpeg",    "prores",     "dnxhd",   "cfhd",     "dvvideo",
+    "theora",     "ffv1",       "huffyuv",  "ffvhuff",    "utvideo", "magicyuv", "rawvideo",
+    "v210",       "png",        "bmp",      "pgm",        "ppm",     "tiff",     "webp"};
+
+// libav's names of one demuxer are separated by commas: "mov,mp4,m4a,3gp,3g2,mj2".
+bool is_listed(std::string_view name, std::span<const char* const> list) {
+  const std::string_view first = name.substr(0, name.find(','));
+  return std::find(list.begin(), list.end(), first) != list.end();
+}
+
+std::string joined(std::span<const char* const> list) {
+  return fmt::format("{}", fmt::join(list, ","));
+}
+
+struct Settings {
+  AVDictionary* entries = nullptr;
+  ~Settings() { av_dict_free(&entries); }
+};
+
+struct CloseIo {
+  void operator()(AVIOContext* p) const { avio_closep(&p); }
+};
+
+// The container of the file's bytes; never a guess from its name.
+const AVInputFormat* container_of(const std::string& url, const fs::path& path) {
+  Settings settings;
+  av_dict_set(&settings.entries, "protocol_whitelist", "file", 0);
+  AVIOContext* raw = nullptr;
+  int result = avio_open2(&raw, url.c_str(), AVIO_FLAG_READ, nullptr, &settings.entries);
+  const std::unique_ptr<AVIOContext, CloseIo> io(raw);
+  const AVInputFormat* found = nullptr;
+  if (result >= 0) result = av_probe_input_buffer2(io.get(), &found, "", nullptr, 0, 0);
+  if (result < 0) throw Error("cannot be read as a video: " + reason(result), {path.string()});
+  if (!is_listed(found->name, kContainers))
+    throw Error(fmt::format("is a file of the kind '{}'; expected a video (mp4, mov, mkv, webm, "
+                            "avi, ts, mpg, ...) or a picture (png, jpg, bmp, tif, ppm, webp)",
+                            found->name),
+                {path.string()});
+  return found;
+}
+
+}  // namespace
+
+std::span<const char* const> readable_containers() { return kContainers; }
+std::span<const char* const> readable_codecs() { return kCodecs; }
+
+std::string file_url(const fs::path& path) { return "file:" + path.string(); }
+
+InputPtr open_media(const fs::path& path, Media media, const std::string& rate) {
+  keep_libav_quiet();
+  const std::string url = file_url(path);
+  const AVInputFormat* format =
+      media == Media::kAny ? container_of(url, path) : av_find_input_format("image2");
+  Settings settings;
+  av_dict_set(&settings.entries, "protocol_whitelist", "file", 0);
+  av_dict_set(&settings.entries, "format_whitelist", joined(kContainers).c_str(), 0);
+  av_dict_set(&settings.entries, "codec_whitelist", joined(kCodecs).c_str(), 0);
+  // A % in the name of a picture or folder is an ordinary character. Videos ignore the setting.
+  av_dict_set(&settings.entries, "pattern_type", "none", 0);
+  if (!rate.empty()) av_dict_set(&settings.entries, "framerate", rate.c_str(), 0);
+  AVFormatContext* raw = nullptr;
+  const int opened = avformat_open_input(&raw, url.c_str(), format, &settings.entries);
+  if (opened < 0) throw Error("cannot be read as a video: " + reason(opened), {path.string()});
+  return InputPtr(raw);
+}
+
+int find_streams(AVFormatContext& input) {
+  std::vector<AVDictionary*> of_each(input.nb_streams);
+  for (AVDictionary*& one : of_each) av_dict_set_int(&one, "max_pixels", kMaxPixels, 0);
+  const int found = avformat_find_stream_info(&input, of_each.data());
+  for (AVDictionary*& one : of_each) av_dict_free(&one);
+  return found;
+}
+
+CodecPtr decoder_of(const AVStream& stream, const fs::path& path) {
+  const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
+  if (decoder == nullptr || !is_listed(decoder->name, kCodecs))
+    throw Error(fmt::format("is {}, which is not decoded; expected H.264, HEVC, AV1, VP9, MPEG-4, "
+                            "MJPEG, ProRes, FFV1 or another codec of cameras (convert it: ffmpeg "
+                            "-i IN OUT.mp4)",
+                            avcodec_get_name(stream.codecpar->codec_id)),
+                {path.string()});
+  check_picture_size(stream.codecpar->width, stream.codecpar->height, path);
+  CodecPtr codec(avcodec_alloc_context3(decoder));
+  if (!codec) throw std::bad_alloc();
+  avcodec_parameters_to_context(codec.get(), stream.codecpar);
+  codec->pkt_timebase = stream.time_base;
+  codec->max_pixels = kMaxPixels;
+  return codec;
+}
+
+void check_picture_size(int width, int height, const fs::path& path) {
+  if (std::int64_t{width} * height <= kMaxPixels && std::max(width, height) <= kMaxSidePx) return;
+  throw Error(fmt::format("has pictures of {}x{} px; expected at most {} px a side and {} million "
+                          "px in all",
+                          width,
+                          height,
+                          kMaxSidePx,
+                          kMaxPixels / 1'000'000),
+              {path.string()});
+}
+
+}  // namespace airtruth::video
