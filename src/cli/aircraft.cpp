@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/aircraft_sheet.h"
 #include "show/drawing/tiles.h"
@@ -136,6 +137,7 @@ void show(const ShowArguments& arguments, Context& context) {
   Console& console = context.console();
   const fleet::Aircraft loaded =
       fleet::load_aircraft(arguments.name, load_options(arguments, context), console.warn());
+  RunFiles().reads(loaded.file).writes(arguments.out, arguments.overwrite).check();
   const model::Extents size = model::extents(loaded.mesh);
   const auto liveries = fleet::liveries(arguments.name);
   console.result(fmt::format(

@@ -17,8 +17,8 @@
 #include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/insertion/masks.h"
@@ -117,8 +117,26 @@ camera_file::Options options_of(const CalibrateArguments& arguments,
   return options;
 }
 
+void write_results(const CalibrateArguments& arguments,
+                   const camera_file::Calibration& found,
+                   RunFiles& files) {
+  files.write(arguments.out,
+              [&](const fs::path& at) { write_file(at, camera_file::toml_from(found)); });
+  files.write(arguments.plot, [&](const fs::path& at) {
+    video::write_still(at,
+                       plot::picture_of({.plots = camera_file::plots_of(found),
+                                         .columns = 2,
+                                         .height = 10,
+                                         .legend = plot::Legend::kAbove}));
+  });
+  files.commit();
+}
+
 void calibrate(const CalibrateArguments& arguments, Context& context) {
-  check_output_file(arguments.out, arguments.overwrite);
+  RunFiles files;
+  for (const std::string& video : arguments.videos) files.reads(video);
+  files.reads(arguments.lens).reads(arguments.mask);
+  files.writes(arguments.out, arguments.overwrite).writes(arguments.plot, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
   if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
   const camera_file::CameraProfile profile = arguments.profile.empty()
@@ -127,6 +145,7 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   const std::vector<fs::path> clips(arguments.videos.begin(), arguments.videos.end());
   if (clips.size() > 1 && !arguments.plot.empty())
     throw Error("--plot draws one clip; expected one video beside it");
+  files.begin();
   camera_file::check_joinable(clips, {});
   const video::StreamInfo info = video::Reader(clips[0], {.threads = 1}).info();
   camera_file::check_size(profile, info.width, info.height);
@@ -140,13 +159,7 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   console.end_progress();
   const camera_file::Calibration found =
       camera_file::with_profile(camera_file::joined(std::move(measured)), profile);
-  write_file(arguments.out, camera_file::toml_from(found));
-  if (!arguments.plot.empty())
-    video::write_still(arguments.plot,
-                       plot::picture_of({.plots = camera_file::plots_of(found),
-                                         .columns = 2,
-                                         .height = 10,
-                                         .legend = plot::Legend::kAbove}));
+  write_results(arguments, found, files);
   report_missing(found, console);
   report_sources(found, console);
   report_count(found, arguments.out, console);
@@ -160,6 +173,7 @@ struct MaskArguments {
 
 void find_mask(const MaskArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, arguments.overwrite);
+  RunFiles().reads(arguments.video).writes(arguments.out, arguments.overwrite).check();
   Console& console = context.console();
   own_aircraft::MaskOptions options;
   follow(options, context, "looking");

@@ -8,8 +8,8 @@
 #include "comparison/comparison/comparison.h"
 #include "comparison/judge/judge.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 
 namespace airtruth::cli {
@@ -30,6 +30,12 @@ struct CompareArguments {
 };
 
 void compare(const CompareArguments& arguments, Context& context) {
+  RunFiles()
+      .reads(arguments.real)
+      .reads(arguments.boxes)
+      .reads(arguments.scene)
+      .replaces(arguments.out)
+      .check();
   Console& console = context.console();
   comparison::Options options;
   options.overwrite = arguments.overwrite;
@@ -70,13 +76,17 @@ struct JudgeArguments {
 
 void judge_all(const JudgeArguments& arguments, Context& context) {
   video::check_still_output(arguments.figure, arguments.overwrite);
-  check_output_file(arguments.json, arguments.overwrite);
+  RunFiles files;
+  for (const std::string& folder : arguments.comparisons) files.reads(folder);
+  files.writes(arguments.figure, arguments.overwrite).writes(arguments.json, arguments.overwrite);
+  files.begin();
   const std::vector<std::filesystem::path> folders(arguments.comparisons.begin(),
                                                    arguments.comparisons.end());
   const judge::Verdict verdict =
       judge::verdict_on(folders, arguments.seed, arguments.chance_draws, context.stop);
-  if (!arguments.figure.empty()) comparison::write_figure(folders, arguments.figure);
-  if (!arguments.json.empty()) write_file(arguments.json, judge::json_of(verdict));
+  files.write(arguments.figure, [&](const fs::path& at) { comparison::write_figure(folders, at); });
+  files.write(arguments.json, [&](const fs::path& at) { write_file(at, judge::json_of(verdict)); });
+  files.commit();
   context.console().result(judge::text_of(verdict));
 }
 

@@ -14,6 +14,7 @@
 #include "dataset/labelled/import.h"
 #include "dataset/set_report/report.h"
 #include "foundation/base/error.h"
+#include "foundation/run_files/run_files.h"
 
 namespace airtruth::cli {
 namespace {
@@ -127,6 +128,7 @@ struct Report {
 
 void run_report(Report arguments, Context& context) {
   Console& console = context.console();
+  RunFiles().reads(arguments.set).writes(arguments.out, arguments.options.overwrite).check();
   follow(arguments.options, context, "looking", "sequences");
   set_report::write_report(arguments.set, arguments.out, arguments.options);
   console.result(arguments.out);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -13,7 +14,7 @@
 #include "encounter/sets/write_set.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
+#include "foundation/run_files/run_files.h"
 
 namespace airtruth::cli {
 namespace {
@@ -135,7 +136,10 @@ std::string words_of(const Sample& arguments, const sets::SetSummary& summary, d
 }
 
 void sample(const Sample& arguments, Context& context) {
-  check_output_file(arguments.out, arguments.overwrite);
+  RunFiles files;
+  if (!arguments.is_geometric()) files.reads(arguments.model);
+  files.reads(arguments.own).writes(arguments.out, arguments.overwrite);
+  files.begin();
   const tracks_file::TracksFormat format = tracks_file::tracks_format_of(arguments.out);
   if (arguments.is_geometric() && arguments.own.empty())
     throw Error("--own is missing; geometric encounters are placed about an own track");
@@ -156,7 +160,11 @@ void sample(const Sample& arguments, Context& context) {
   options.count = static_cast<std::uint64_t>(arguments.count);
   options.jobs = arguments.jobs;
   follow(options, context, "drawing", "encounters");
-  const sets::SetSummary summary = sets::write_set(arguments.out, draw, options);
+  sets::SetSummary summary;
+  files.write(arguments.out, [&](const std::filesystem::path& at) {
+    summary = sets::write_set(at, draw, options);
+  });
+  files.commit();
   if (own && !arguments.is_geometric() && format != tracks_file::TracksFormat::kCsv)
     console.warning(arguments.out + ": a file of this format holds no weights; .csv does");
   console.result(words_of(arguments, summary, share));
@@ -261,7 +269,9 @@ void warn_of_losses(const std::vector<track::Encounter>& encounters,
 }
 
 void convert(const Convert& arguments, Context& context) {
-  check_output_file(arguments.out, arguments.overwrite);
+  RunFiles files;
+  files.reads(arguments.in).writes(arguments.out, arguments.overwrite);
+  files.begin();
   const tracks_file::TracksFormat format = tracks_file::tracks_format_of(arguments.out);
   Console& console = context.console();
   std::vector<track::Encounter> encounters = tracks_file::read_encounters(arguments.in);
@@ -275,7 +285,10 @@ void convert(const Convert& arguments, Context& context) {
   const std::size_t count = encounters.size();
   encounters = tracks_file::fitted(std::move(encounters), format, arguments.out);
   warn_of_losses(encounters, format, arguments.out, console);
-  tracks_file::write_encounters(arguments.out, encounters);
+  files.write(arguments.out, [&](const std::filesystem::path& at) {
+    tracks_file::write_encounters(at, encounters);
+  });
+  files.commit();
   console.result(
       fmt::format("{}: {} {}", arguments.out, count, count == 1 ? "encounter" : "encounters"));
 }

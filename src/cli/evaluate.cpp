@@ -18,7 +18,7 @@
 #include "evaluation/tracker_evaluation/page.h"
 #include "evaluation/tracker_evaluation/tables.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
+#include "foundation/run_files/run_files.h"
 
 namespace airtruth::cli {
 namespace {
@@ -341,6 +341,7 @@ void set_options(Evaluate& arguments, Context& context) {
 
 void evaluate_trackers(const Evaluate& arguments,
                        const std::vector<fs::path>& results,
+                       const RunFiles& files,
                        Console& console) {
   const tracker_evaluation::AssessOptions& options = arguments.options;
   const tracker_evaluation::Assessment assessment =
@@ -348,10 +349,12 @@ void evaluate_trackers(const Evaluate& arguments,
   std::optional<tracker_evaluation::Agreement> agreement;
   if (!arguments.against.empty())
     agreement = tracker_evaluation::agreement(assessment, arguments.against);
-  tracker_evaluation::write_tables(assessment, arguments.out);
-  if (options.with_film) tracker_evaluation::write_page(assessment, arguments.out);
-  if (!arguments.figures.empty())
-    tracker_evaluation::write_figures(assessment, arguments.out, arguments.figures);
+  files.write(arguments.out, [&](const fs::path& out) {
+    tracker_evaluation::write_tables(assessment, out);
+    if (options.with_film) tracker_evaluation::write_page(assessment, out);
+    if (!arguments.figures.empty())
+      tracker_evaluation::write_figures(assessment, out, arguments.figures);
+  });
   console.end_progress();
   print_one_pass(assessment, console);
   print_vot(assessment, console);
@@ -361,18 +364,21 @@ void evaluate_trackers(const Evaluate& arguments,
 
 void evaluate_detectors(const Evaluate& arguments,
                         const std::vector<fs::path>& results,
+                        const RunFiles& files,
                         Console& console) {
   const scores::Assessment assessment =
       detector_evaluation::assess(arguments.set, results, arguments.detections.options);
-  detector_evaluation::write_tables(assessment, arguments.out);
-  if (arguments.options.with_film)
-    detector_evaluation::write_page(assessment,
-                                    arguments.out,
-                                    {.jobs = arguments.options.jobs,
-                                     .progress = arguments.options.progress,
-                                     .stop = arguments.options.stop});
-  if (!arguments.figures.empty())
-    detector_evaluation::write_figures(assessment, arguments.out, arguments.figures);
+  files.write(arguments.out, [&](const fs::path& out) {
+    detector_evaluation::write_tables(assessment, out);
+    if (arguments.options.with_film)
+      detector_evaluation::write_page(assessment,
+                                      out,
+                                      {.jobs = arguments.options.jobs,
+                                       .progress = arguments.options.progress,
+                                       .stop = arguments.options.stop});
+    if (!arguments.figures.empty())
+      detector_evaluation::write_figures(assessment, out, arguments.figures);
+  });
   console.end_progress();
   print_detections(assessment, console);
 }
@@ -380,7 +386,11 @@ void evaluate_detectors(const Evaluate& arguments,
 void run_evaluate(Evaluate arguments, Context& context) {
   if (!arguments.figures.empty()) report::check_figures(arguments.figures);
   if (!arguments.against.empty()) tracker_evaluation::check_evaluation(arguments.against);
-  check_output_folder(arguments.out);
+  RunFiles files;
+  files.reads(arguments.against).reads(arguments.detections.ignore).writes_into(arguments.out);
+  for (const std::string& results : arguments.results)
+    if (!fs::is_directory(results)) files.reads(results);
+  files.begin();
   set_options(arguments, context);
   std::vector<fs::path> of_trackers;
   std::vector<fs::path> of_detectors;
@@ -388,8 +398,9 @@ void run_evaluate(Evaluate arguments, Context& context) {
     (arguments.detections.holds(results) ? of_detectors : of_trackers).emplace_back(results);
   if (!arguments.against.empty() && of_trackers.empty())
     throw Error("--against compares rankings of trackers, and there are no trackers' results");
-  if (!of_detectors.empty()) evaluate_detectors(arguments, of_detectors, context.console());
-  if (!of_trackers.empty()) evaluate_trackers(arguments, of_trackers, context.console());
+  if (!of_detectors.empty()) evaluate_detectors(arguments, of_detectors, files, context.console());
+  if (!of_trackers.empty()) evaluate_trackers(arguments, of_trackers, files, context.console());
+  files.commit();
 }
 
 // The options that change what is measured.

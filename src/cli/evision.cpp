@@ -5,8 +5,8 @@
 
 #include "cli/commands.h"
 #include "comparison/evision/evision_table.h"
-#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 
 namespace airtruth::cli {
 namespace {
@@ -58,7 +58,7 @@ std::string csv_line(const evision::EvisionFramePair& pair) {
 }
 
 void evision(EvisionArguments arguments, Context& context) {
-  check_output_file(arguments.frames, arguments.overwrite);
+  RunFiles().reads(arguments.folder).writes(arguments.frames, arguments.overwrite).check();
   Console& console = context.console();
   arguments.options.bank = !arguments.level;
   arguments.options.recover_motion = !arguments.still;

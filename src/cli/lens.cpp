@@ -7,8 +7,8 @@
 #include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
@@ -62,7 +62,11 @@ void hand_over(const focal_length::LensEstimator::Result& found,
 }
 
 void estimate(const EstimateArguments& arguments, Context& context) {
-  check_output_file(arguments.out, arguments.overwrite);
+  RunFiles()
+      .reads(arguments.video)
+      .reads(arguments.mask)
+      .writes(arguments.out, arguments.overwrite)
+      .check();
   Console& console = context.console();
   video::Reader reader(arguments.video, {.with_cuts = true}, console.warn());
   const video::StreamInfo info = reader.info();
@@ -89,7 +93,7 @@ struct CropArguments {
 };
 
 void crop(const CropArguments& arguments, Context& context) {
-  check_output_file(arguments.out, arguments.overwrite);
+  RunFiles().reads(arguments.file).writes(arguments.out, arguments.overwrite).check();
   const auto [width, height] = size_from(arguments.size);
   const lens::Lens whole = lens::read_calibration(arguments.file);
   const lens::Lens lens = lens::cropped(whole, {width, height});

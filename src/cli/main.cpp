@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -95,6 +96,9 @@ int run(CLI::App& app,
   } catch (const std::filesystem::filesystem_error& error) {
     say(Error(error.code().message(), {error.path1().string()}).what());
     return kBadInput;
+  } catch (const std::bad_alloc&) {
+    say("out of memory; the input asks for more than the machine, or its limit (ulimit -v), has");
+    return kOurFailure;
   } catch (const std::exception& error) {
     say(std::string(error.what()) +
         " (this is a fault of airtruth; please report it with what you ran)");

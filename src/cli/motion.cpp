@@ -12,8 +12,8 @@
 #include "camera/motion/stabilise.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
 #include "scene/scene/choices.h"
@@ -52,10 +52,10 @@ std::optional<lens::Lens> lens_of(const MotionArguments& arguments,
 }
 
 void stabilise(const MotionArguments& arguments,
+               const fs::path& out,
                const std::vector<motion::FrameMotion>& all,
                const std::optional<lens::Lens>& lens,
                Context& context) {
-  const fs::path out = arguments.stabilised;
   video::WriterOptions options;
   options.format = video::format_of_file(out);
   video::Reader reader(arguments.video);
@@ -73,12 +73,15 @@ void stabilise(const MotionArguments& arguments,
   writer.finish();
 }
 
-void check_outputs(const MotionArguments& arguments) {
-  for (const std::string& file : {arguments.out, arguments.stabilised})
-    check_output_file(file, arguments.overwrite);
+void check_files(const MotionArguments& arguments, RunFiles& files) {
+  for (const std::string& file : {arguments.video, arguments.mask, arguments.lens})
+    files.reads(file);
+  for (const std::string& file : {arguments.out, arguments.stabilised, arguments.plot})
+    files.writes(file, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
   if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
   if (!arguments.stabilised.empty()) video::format_of_file(arguments.stabilised);
+  files.begin();
 }
 
 void report_gyro(const std::optional<gyro::GyroFit>& fit, bool has_gyro, Console& console) {
@@ -118,7 +121,8 @@ void report_frames(const std::vector<motion::FrameMotion>& all,
 }
 
 void measure(const MotionArguments& arguments, Context& context) {
-  check_outputs(arguments);
+  RunFiles files;
+  check_files(arguments, files);
   Console& console = context.console();
   video::Reader reader(arguments.video, {.with_cuts = true}, console.warn());
   const video::StreamInfo info = reader.info();
@@ -140,14 +144,18 @@ void measure(const MotionArguments& arguments, Context& context) {
   all = enum_named<scene::MotionReference>(arguments.reference) == scene::MotionReference::kSmoothed
             ? motion::smoothed(all, options)
             : motion::within_reach(std::move(all), info.width, info.height);
-  write_file(arguments.out, motion::csv_from_motion(all));
-  if (!arguments.plot.empty())
+  files.write(arguments.out,
+              [&](const fs::path& at) { write_file(at, motion::csv_from_motion(all)); });
+  files.write(arguments.plot, [&](const fs::path& at) {
     video::write_still(
-        arguments.plot,
+        at,
         plot::picture_of({.plots = motion_plot::plots_of(all, info.width, info.height),
                           .height = 12,
                           .legend = plot::Legend::kAbove}));
-  if (!arguments.stabilised.empty()) stabilise(arguments, all, lens, context);
+  });
+  files.write(arguments.stabilised,
+              [&](const fs::path& at) { stabilise(arguments, at, all, lens, context); });
+  files.commit();
   report_frames(all, arguments, console);
 }
 

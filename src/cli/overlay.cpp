@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 #include "sequence/replay/finished.h"
 
@@ -19,12 +20,16 @@ struct OverlayArguments {
 };
 
 void overlay(const OverlayArguments& arguments, Context& context) {
+  RunFiles files;
+  files.reads(arguments.folder).writes(arguments.out, arguments.overwrite);
   const replay::Finished finished = replay::open_finished(arguments.folder);
+  files.begin();
   Console& console = context.console();
   replay::OverlayOptions options;
-  options.overwrite = arguments.overwrite;
   follow(options, context, "overlay");
-  replay::write_overlay(finished, arguments.out, options);
+  files.write(arguments.out,
+              [&](const fs::path& at) { replay::write_overlay(finished, at, options); });
+  files.commit();
   console.result(fmt::format("{}: {} frames", arguments.out, finished.truth.frames.size()));
 }
 
@@ -39,6 +44,7 @@ struct InspectArguments {
 
 void inspect(const InspectArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, arguments.overwrite);
+  RunFiles().reads(arguments.folder).writes(arguments.out, arguments.overwrite).check();
   const replay::Finished finished = replay::open_finished(arguments.folder);
   video::write_still(
       arguments.out,

@@ -10,6 +10,7 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/resolved_scene.h"
@@ -30,6 +31,10 @@ void draw(const PreviewArguments& arguments, Context& context) {
   options.warn = console.warn();
   options.stop = context.stop;
   const scene::Scene scene = scene::read_scene(arguments.scene);
+  RunFiles files;
+  files.reads(arguments.scene);
+  for (const std::filesystem::path& file : scene::stated_files(scene)) files.reads(file);
+  files.writes(arguments.out, true).check();
   if (arguments.motion) {
     options.progress = [&console](const pipeline::Progress& progress) {
       console.progress(
@@ -56,6 +61,8 @@ std::filesystem::file_time_type changed(const std::string& file) {
 // said, and the picture stays as it was.
 void watch(const PreviewArguments& arguments, Context& context) {
   using namespace std::chrono_literals;
+  if (!std::filesystem::is_regular_file(arguments.scene))
+    throw Error("is not there; expected a scene file to watch", {arguments.scene});
   std::filesystem::file_time_type drawn{};
   while (!context.stop.stop_requested()) {
     const auto now = changed(arguments.scene);

@@ -2,12 +2,14 @@
 #include "sequence/pipeline/render.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
+#include "foundation/run_files/run_files.h"
 #include "scene/scene/scene.h"
 
 namespace airtruth::cli {
@@ -75,6 +77,10 @@ std::string timings(const pipeline::Summary& summary) {
 
 void render(const RenderArguments& arguments, Context& context) {
   const scene::Scene scene = scene::read_scene(arguments.scene);
+  RunFiles()
+      .reads(arguments.scene)
+      .replaces(std::filesystem::path(arguments.out) / scene.name)
+      .check();
   const pipeline::Summary summary =
       pipeline::render(scene, arguments.out, options_from(arguments, context));
   context.console().result(

@@ -8,8 +8,8 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 #include "sequence/new_scene/new_scene.h"
 
 namespace airtruth::cli {
@@ -27,7 +27,7 @@ void new_scene(const NewArguments& arguments, Context& context) {
   const auto video = std::filesystem::absolute(arguments.video).lexically_normal();
   const std::string stem = (video.has_filename() ? video : video.parent_path()).stem().string();
   const std::string out = !arguments.out.empty() ? arguments.out : stem + ".toml";
-  check_output_file(out, arguments.overwrite);
+  RunFiles().reads(arguments.video).reads(arguments.lens).writes(out, arguments.overwrite).check();
   Console& console = context.console();
   new_scene::NewSceneOptions options;
   if (!arguments.lens.empty()) options.lens = arguments.lens;

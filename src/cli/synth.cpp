@@ -6,8 +6,8 @@
 #include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/insertion/masks.h"
@@ -29,8 +29,10 @@ struct SynthArguments {
 };
 
 void synth(SynthArguments arguments, Context& context) {
-  for (const std::string& file : {arguments.out, arguments.truth})
-    check_output_file(file, arguments.overwrite);
+  RunFiles files;
+  files.reads(arguments.lens_file);
+  for (const std::string& file : {arguments.out, arguments.truth, arguments.mask})
+    files.writes(file, arguments.overwrite);
   video::check_still_output(arguments.mask, arguments.overwrite);
   synthetic::FlightOptions& options = arguments.flight;
   if (arguments.duration_s > 0)
@@ -47,10 +49,14 @@ void synth(SynthArguments arguments, Context& context) {
   how.quality = arguments.quality;
   follow(how, context, "flying");
   const synthetic::Flight flight(options);
-  demo::write_flight(flight, out, how);
-  if (!arguments.truth.empty()) write_file(arguments.truth, synthetic::csv_from_flight(flight));
-  if (!arguments.mask.empty())
-    video::write_still(arguments.mask, insertion::picture_of(flight.own_aircraft()));
+  files.begin();
+  files.write(out, [&](const fs::path& at) { demo::write_flight(flight, at, how); });
+  files.write(arguments.truth,
+              [&](const fs::path& at) { write_file(at, synthetic::csv_from_flight(flight)); });
+  files.write(arguments.mask, [&](const fs::path& at) {
+    video::write_still(at, insertion::picture_of(flight.own_aircraft()));
+  });
+  files.commit();
   console.result(fmt::format(
       "{}: {} frames of {}x{}", arguments.out, options.frame_count, options.width, options.height));
 }

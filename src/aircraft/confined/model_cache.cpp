@@ -51,7 +51,7 @@ bool still_answered(DiskFiles& files, const std::vector<DiskFiles::Asked>& asked
   return true;
 }
 
-disk_cache::Cache models() { return disk_cache::Cache(disk_cache::user_folder() / "models"); }
+disk_cache::Cache models() { return disk_cache::Cache(disk_cache::user_folder("models")); }
 
 }  // namespace
 

@@ -87,7 +87,7 @@ class Comparing {
             const scene::Scene& scene,
             const fs::path& out,
             const Options& options)
-      : real_(real), options_(options), staged_(out, options.overwrite) {
+      : real_(real), options_(options), staged_(out, options.overwrite, options.warn) {
     require_utf8(fs::absolute(real));
     if (scene.intruders.empty() || !is_aircraft(scene.intruders[0]))
       throw Error("has no intruder to compare", {scene.file.string()});

@@ -224,7 +224,8 @@ BuildSummary build_set(const catalogue::Catalogue& given,
   const catalogue::Catalogue catalogue = with_videos(given, options.videos);
   check_sources(catalogue);
   const catalogue::Folder folder = catalogue::open_folder(catalogue, out, options.max_in_a_folder);
-  const catalogue::FolderLock lock(folder, options.shares > 1);
+  const catalogue::FolderLock lock(
+      folder, options.shares > 1 ? Sharing::kShared : Sharing::kAlone, options.warn);
   BuildSummary summary = Work(catalogue, folder, options).run();
   write_failures(folder.failed(options.share, options.shares), summary.failures);
   // With several workers none can know that it is the last, so `finish` writes their manifest.
@@ -236,7 +237,7 @@ BuildSummary build_set(const catalogue::Catalogue& given,
 bool finish(const fs::path& root) {
   const catalogue::Folder folder{root};
   const catalogue::Catalogue catalogue = catalogue::read_catalogue(folder.catalogue());
-  const catalogue::FolderLock lock(folder, false);
+  const catalogue::FolderLock lock(folder, Sharing::kAlone);
   return write_manifest(catalogue, folder);
 }
 

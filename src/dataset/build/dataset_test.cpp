@@ -226,7 +226,7 @@ TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   EXPECT_THAT(error_of_build(other), HasSubstr("catalogue"));
   EXPECT_EQ(error_of_build(catalogue), "no error");
   // While another process is at work in it: flock() counts two openings of one file as two.
-  const catalogue::FolderLock elsewhere(catalogue::Folder{root_ / "set"}, false);
+  const catalogue::FolderLock elsewhere(catalogue::Folder{root_ / "set"}, Sharing::kAlone);
   EXPECT_THAT(error_of_build(catalogue), HasSubstr("at work"));
 }
 

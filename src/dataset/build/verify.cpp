@@ -35,7 +35,7 @@ catalogue::Catalogue catalogue_of(const catalogue::Folder& folder) {
 
 bool is_at_work(const catalogue::Folder& folder) {
   try {
-    const catalogue::FolderLock lock(folder, false);
+    const catalogue::FolderLock lock(folder, Sharing::kAlone);
     return false;
   } catch (const Error&) {
     return true;

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include "dataset/catalogue/encounter_rule.h"
@@ -54,12 +53,14 @@ Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_
   return folder;
 }
 
-FolderLock::FolderLock(const Folder& folder, bool shared) {
+FolderLock::FolderLock(const Folder& folder, Sharing sharing, const Warn& to) {
   const fs::path name = folder.root / ".lock";
   file_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (file_ < 0)
     throw Error(std::string("cannot create: ") + std::strerror(errno), {name.string()});
-  if (::flock(file_, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) == 0) return;
+  const Lock lock = try_lock(file_, name, sharing);
+  if (lock == Lock::kUnsupported) warn_of_no_locks(folder.root, to);
+  if (lock != Lock::kBusy) return;
   ::close(file_);
   throw Error("another build is at work in this folder", {folder.root.string()});
 }

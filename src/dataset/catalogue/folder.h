@@ -9,6 +9,8 @@
 #include "dataset/catalogue/catalogue.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/sequences/layout.h"
+#include "foundation/base/file_state.h"
+#include "foundation/base/log.h"
 
 namespace airtruth::catalogue {
 
@@ -49,7 +51,9 @@ Folder open_folder(const Catalogue& catalogue,
 // each make their own share hold it together (`shared`); a whole build holds it alone.
 class FolderLock {
  public:
-  FolderLock(const Folder& folder, bool shared);  // throws Error where another process holds it
+  // Throws Error where another process holds it. Where the file system has no locks that is not
+  // seen, and said.
+  FolderLock(const Folder& folder, Sharing sharing, const Warn& to = {});
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
   ~FolderLock();

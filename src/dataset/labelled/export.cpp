@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
@@ -77,27 +79,17 @@ std::string boxes_text(dataset::Boxes boxes) {
 class Place {
  public:
   Place(fs::path root, const Json& options) : root_(std::move(root)), options_(options) {
-    if (fs::exists(record())) {
-      const Json found = Json::parse(read_file(record()), nullptr, false);
-      if (!found.is_object() || found.value("options", Json()) != options_)
-        throw Error("holds an export made with other options; expected a new folder",
-                    {root_.string()});
-      complete_ = true;
-      // A run that ended between its last two steps leaves this folder.
-      fs::remove_all(root_ / ".export");
-      return;
-    }
-    const bool begun = fs::exists(begun_file());
-    if (begun && Json::parse(read_file(begun_file()), nullptr, false) != options_)
-      throw Error(
-          "holds an unfinished export with other options; expected the same, or a new folder",
-          {root_.string()});
-    if (!begun && fs::exists(root_) && !holds_only_own_folder())
-      throw Error("exists and is not empty; expected a new folder", {root_.string()});
+    examine();
   }
 
-  void begin() const {
+  // Another run may have come first since the folder was examined.
+  void begin(const Warn& to) {
     std::error_code failed;
+    fs::create_directories(root_, failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {root_.string()});
+    lock_.emplace(root_, root_, to);
+    examine();
+    if (complete_) throw Error("was written by another run meanwhile", {root_.string()});
     fs::create_directories(done_folder(), failed);
     if (failed) throw Error("cannot create: " + failed.message(), {root_.string()});
     write_file(begun_file(), options_.dump());
@@ -118,6 +110,26 @@ class Place {
   fs::path record() const { return root_ / "export.json"; }
 
  private:
+  void examine() {
+    if (fs::exists(record())) {
+      const Json found = Json::parse(read_file(record()), nullptr, false);
+      if (!found.is_object() || found.value("options", Json()) != options_)
+        throw Error("holds an export made with other options; expected a new folder",
+                    {root_.string()});
+      complete_ = true;
+      // A run that ended between its last two steps leaves this folder.
+      fs::remove_all(root_ / ".export");
+      return;
+    }
+    const bool begun = fs::exists(begun_file());
+    if (begun && Json::parse(read_file(begun_file()), nullptr, false) != options_)
+      throw Error(
+          "holds an unfinished export with other options; expected the same, or a new folder",
+          {root_.string()});
+    if (!begun && fs::exists(root_) && !holds_only_own_folder())
+      throw Error("exists and is not empty; expected a new folder", {root_.string()});
+  }
+
   // A run that is killed between its first two steps leaves its own folder without the options in
   // it. Nothing is exported by then.
   bool holds_only_own_folder() const {
@@ -132,18 +144,19 @@ class Place {
   fs::path root_;
   Json options_;
   bool complete_ = false;
+  std::optional<RunLock> lock_;
 };
 
 class Export {
  public:
-  Export(const LabelledSet& set, const Place& place, const ExportOptions& options)
+  Export(const LabelledSet& set, Place& place, const ExportOptions& options)
       : set_(set), place_(place), options_(options) {}
 
   // Every check of the set comes before the folder is made.
   ExportSummary run() {
     survey();
     expect_held();
-    place_.begin();
+    place_.begin(options_.warn);
     writer_ = exchange::make_writer(options_.format, place_.root(), write_);
     if (*options_.images != Images::kNone) write_images();
     write_labels();
@@ -333,7 +346,7 @@ class Export {
   }
 
   const LabelledSet& set_;
-  const Place& place_;
+  Place& place_;
   const ExportOptions& options_;
   exchange::WriteOptions write_;
   std::unique_ptr<exchange::Writer> writer_;
@@ -359,7 +372,7 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
   if (options.boxes == dataset::Boxes::kCovered)
     for (const std::string& name : labelled.names()) labelled.expect_covered_boxes(name);
-  const Place place(out, options_json(set, options));
+  Place place(out, options_json(set, options));
   if (place.is_complete()) {
     ExportSummary summary;
     const JsonDocument file(place.record());

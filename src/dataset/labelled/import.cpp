@@ -13,6 +13,7 @@
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
+#include "foundation/run_files/run_files.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/pictures.h"
 #include "picture/video/numbered_images.h"
@@ -262,9 +263,10 @@ std::pair<std::string, std::string> class_of_category_from(const std::string& te
 ImportSummary import_set(const fs::path& source,
                          const fs::path& out,
                          const ImportOptions& options) {
-  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
+  if (fs::exists(out) && (!fs::is_directory(out) || !RunFiles::is_empty(out)))
     throw Error("exists and is not empty; expected a new folder", {out.string()});
-  check_output_folder(out);
+  RunFiles files;
+  files.reads(source).writes_into(out);
   exchange::ReadOptions read = options.read;
   read.size_of_picture = video::size_of_still;
   std::vector<exchange::Clip> clips =
@@ -272,20 +274,29 @@ ImportSummary import_set(const fs::path& source,
   complete(clips, source, options);
   classify(clips, options);
   // All input is read before the first file is written.
-  const fs::path sequences = out / "sequences";
+  files.begin();
+  const RunLock lock(out, out, options.warn);
   const sequences::Layout layout =
       sequences::layout_for(std::ssize(clips), options.max_in_a_folder);
-  std::error_code reported_below;
-  fs::create_directories(sequences, reported_below);
-  write_layout(sequences, layout);
   ImportSummary summary;
-  for (const exchange::Clip& clip : clips) {
-    const Json record =
-        write_clip(clip, options, sequences / layout.folder_of(summary.clips) / clip.name);
-    ++summary.clips;
-    summary.frames += std::ssize(clip.frames);
-    summary.labels += record.at("labels").get<std::int64_t>();
-  }
+  files.write(out, [&](const fs::path& at) {
+    const fs::path sequences = at / "sequences";
+    std::error_code reported_below;
+    fs::create_directories(sequences, reported_below);
+    write_layout(sequences, layout);
+    for (const exchange::Clip& clip : clips) {
+      const Json record =
+          write_clip(clip, options, sequences / layout.folder_of(summary.clips) / clip.name);
+      ++summary.clips;
+      summary.frames += std::ssize(clip.frames);
+      summary.labels += record.at("labels").get<std::int64_t>();
+    }
+    flush_files(at);
+  });
+  // Another run may have come first.
+  if (!RunFiles::is_empty(out))
+    throw Error("is not empty any more; expected a new folder", {out.string()});
+  files.commit();
   flush_files(out);
   return summary;
 }

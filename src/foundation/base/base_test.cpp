@@ -2,6 +2,9 @@
 #include <cstdint>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,12 +12,14 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/huge_pages.h"
 #include "foundation/base/median.h"
 #include "foundation/base/names.h"
 #include "foundation/base/seed.h"
 #include "foundation/base/text.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth {
 namespace {
@@ -161,6 +166,47 @@ TEST(Median, IsTheUpperOfTwoMiddleValues) {
 
 TEST(PartPath, HidesAndKeepsTheExtension) {
   EXPECT_EQ(part_path("out/a.mp4"), fs::path("out/.a.part.mp4"));
+}
+
+TEST(WriteFile, OfWritersAtOnceTheBytesOfOneStay) {
+  const test_support::TemporaryFolder folder;
+  const fs::path file = folder / "a.txt";
+  for (int round = 0; round < 50; ++round) {
+    std::vector<std::thread> writers;
+    for (char letter = 'a'; letter < 'i'; ++letter)
+      writers.emplace_back([&, letter] {
+        write_file(file, std::string(static_cast<std::size_t>(letter) * 1000, letter));
+      });
+    for (std::thread& writer : writers) writer.join();
+    const std::string found = read_file(file);
+    EXPECT_EQ(found, std::string(static_cast<std::size_t>(found.at(0)) * 1000, found.at(0)));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder / "."), fs::directory_iterator()), 1);
+  }
+}
+
+TEST(WriteFile, APartOfADeadWriterIsReplacedAndThatOfALivingOneIsNot) {
+  const test_support::TemporaryFolder folder;
+  const fs::path file = folder / "a.txt";
+  { std::ofstream(part_path(file)) << "dead"; }
+  write_file(file, "one");
+  EXPECT_FALSE(fs::exists(part_path(file)));
+  { std::ofstream(part_path(file)) << "living"; }
+  const RunLock living(part_path(file), file, {});
+  write_file(file, "two");
+  EXPECT_EQ(read_file(file), "two");
+  EXPECT_EQ(read_file(part_path(file)), "living");
+}
+
+TEST(RunLock, KeepsASecondRunAway) {
+  const test_support::TemporaryFolder folder;
+  const fs::path place = folder / ".";
+  {
+    const RunLock one(place, place, {});
+    EXPECT_THROW(RunLock(place, place, {}), Error);
+  }
+  const RunLock shared(place, place, {}, Sharing::kShared);
+  EXPECT_NO_THROW(RunLock(place, place, {}, Sharing::kShared));
+  EXPECT_THROW(RunLock(place, place, {}), Error);
 }
 
 // Whether the kernel notes for the mapping of an address that huge pages are asked for.

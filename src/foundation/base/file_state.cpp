@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/base/file_state.h"
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -17,6 +18,49 @@
 
 namespace airtruth {
 
+Lock try_lock(int file, const std::filesystem::path& path, Sharing sharing) {
+  const int how = sharing == Sharing::kShared ? LOCK_SH : LOCK_EX;
+  while (::flock(file, how | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno == EWOULDBLOCK) return Lock::kBusy;
+    if (errno == ENOLCK || errno == EOPNOTSUPP || errno == ENOSYS || errno == EINVAL)
+      return Lock::kUnsupported;
+    throw Error(std::string("cannot lock: ") + std::strerror(errno), {path.string()});
+  }
+  return Lock::kTaken;
+}
+
+void warn_of_no_locks(const std::filesystem::path& path, const Warn& to) {
+  static std::atomic<bool> is_said{false};
+  if (!is_said.exchange(true))
+    warn(to,
+         path.string() +
+             ": the file system has no locks; two runs that write one folder at the same time are "
+             "not kept apart");
+}
+
+RunLock::RunLock(const std::filesystem::path& locked,
+                 const std::filesystem::path& folder,
+                 const Warn& to,
+                 Sharing sharing) {
+  const bool is_folder = fs::is_directory(locked);
+  file_ =
+      ::open(locked.c_str(), is_folder ? O_RDONLY | O_CLOEXEC : O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (file_ < 0)
+    throw Error(std::string("cannot open: ") + std::strerror(errno), {locked.string()});
+  try {
+    const Lock lock = try_lock(file_, locked, sharing);
+    if (lock == Lock::kBusy)
+      throw Error("another run is writing this folder now", {folder.string()});
+    if (lock == Lock::kUnsupported) warn_of_no_locks(folder, to);
+  } catch (const Error&) {
+    ::close(file_);
+    throw;
+  }
+}
+
+RunLock::~RunLock() { ::close(file_); }
+
 WaitingLock::WaitingLock(const std::filesystem::path& file, const std::stop_token& stop) {
   constexpr std::chrono::milliseconds kBetweenTries(100);
   std::error_code ignored;
@@ -24,17 +68,14 @@ WaitingLock::WaitingLock(const std::filesystem::path& file, const std::stop_toke
   file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (file_ < 0)
     throw Error(std::string("cannot create: ") + std::strerror(errno), {file.string()});
-  while (::flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) {
-      const std::string why = std::strerror(errno);
-      ::close(file_);
-      throw Error("cannot lock: " + why, {file.string()});
+  try {
+    while (try_lock(file_, file) == Lock::kBusy) {
+      if (stop.stop_requested()) throw Interrupted();
+      std::this_thread::sleep_for(kBetweenTries);
     }
-    if (stop.stop_requested()) {
-      ::close(file_);
-      throw Interrupted();
-    }
-    std::this_thread::sleep_for(kBetweenTries);
+  } catch (...) {
+    ::close(file_);
+    throw;
   }
 }
 

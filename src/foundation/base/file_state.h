@@ -5,16 +5,48 @@
 #include <filesystem>
 #include <stop_token>
 
+#include "foundation/base/log.h"
+
 // The state of files: who works on one, whether its content is still the same, and whether an
 // output may be written.
 namespace airtruth {
 
+// What flock() answers at once. kUnsupported: the file system has no locks (Lustre and NFS by how
+// they are mounted, some of FUSE), so nothing is known about others.
+enum class Lock { kTaken, kBusy, kUnsupported };
+// Throws Error with the name `path` for every other answer.
+enum class Sharing { kAlone, kShared };
+Lock try_lock(int file, const std::filesystem::path& path, Sharing sharing = Sharing::kAlone);
+
+// Says once a process that files are not locked.
+void warn_of_no_locks(const std::filesystem::path& path, const Warn& to);
+
+// Keeps a second run away from a folder that a run goes on in, until it is destroyed; the kernel
+// releases the lock when the process dies. `locked` is a folder that exists, which is locked
+// itself, or a file, which is made where it is missing. Throws Error "another run is writing this
+// folder now" with the name `folder` where another process holds it; where the file system has no
+// locks the run goes on, with a warning.
+class RunLock {
+ public:
+  RunLock(const std::filesystem::path& locked,
+          const std::filesystem::path& folder,
+          const Warn& to,
+          Sharing sharing = Sharing::kAlone);
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+  ~RunLock();
+
+ private:
+  int file_ = -1;
+};
+
 // An advisory lock (flock) on a file, for work that only one thread or process should do at a time,
 // for example filling a cache. The constructor creates the file and its folders where they are
-// missing and waits, checking ten times a second, until the lock is free. The destructor releases
+// missing and waits, checking ten times a second, until the lock is free, or goes on without one
+// where the file system has no locks: the work is done more than once then. The destructor releases
 // the lock, and the kernel releases it when the process dies; the empty file stays. The constructor
-// throws Error where the file cannot be created or locked, and Interrupted where `stop` is
-// requested while it waits.
+// throws Error where the file cannot be created, and Interrupted where `stop` is requested while it
+// waits.
 //
 //   const WaitingLock lock(folder / "b737.lock", stop);
 //   if (!exists(result)) make(result);  // one process makes it, the others find it

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <utility>
 
 #include <fcntl.h>
 #include <openssl/evp.h>
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth {
@@ -25,15 +27,11 @@ class Descriptor {
   explicit Descriptor(int fd) : fd_(fd) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
   }
   int get() const { return fd_; }
-  bool close() {
-    const int fd = fd_;
-    fd_ = -1;
-    return ::close(fd) == 0;
-  }
 
  private:
   int fd_;
@@ -108,16 +106,58 @@ void refuse_existing(const fs::path& path, bool overwrite) {
     throw Error("exists already; give --overwrite to replace it", {path.string()});
 }
 
+namespace {
+
+// True where the descriptor is of the file that has this name now.
+bool is_named(const Descriptor& file, const fs::path& name) {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(file.get(), &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+// Removes a part whose writer is dead: nobody holds its lock.
+void remove_dead_part(const fs::path& part) {
+  const Descriptor file(::open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (file.get() >= 0 && try_lock(file.get(), part) == Lock::kTaken && is_named(file, part))
+    ::unlink(part.c_str());
+}
+
+std::string random_digits() {
+  std::array<unsigned char, 8> bytes{};
+  if (::getentropy(bytes.data(), bytes.size()) != 0) check(false, "random numbers can be had");
+  return sha256_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).substr(0, 12);
+}
+
+// A new file of the writer's own, locked while it is open: under part_path(), or with random digits
+// where that name is another writer's.
+Descriptor new_part(const fs::path& path, fs::path& part) {
+  part = part_path(path);
+  remove_dead_part(part);
+  for (;;) {
+    Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
+    if (file.get() < 0 && errno != EEXIST)
+      throw Error("cannot create: " + reason(), {path.string()});
+    // Another writer may have taken the new file for a dead one before it was locked.
+    if (file.get() >= 0 && try_lock(file.get(), part) != Lock::kBusy && is_named(file, part))
+      return file;
+    part.replace_filename(std::string(".").append(random_digits()).append(".part"));
+  }
+}
+
+}  // namespace
+
 void write_file(const fs::path& path, std::string_view bytes, Flush flush) {
-  const fs::path part = part_path(path);
+  fs::path part;
+  Descriptor file = new_part(path, part);
   Unfinished unfinished = Unfinished::path(part);
   try {
-    Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-    if (file.get() < 0) throw Error("cannot create: " + reason(), {path.string()});
     write_all(file, bytes, path);
     if (flush == Flush::kNow && ::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
       throw Error("cannot write: " + reason(), {path.string()});
-    if (!file.close()) throw Error("cannot write: " + reason(), {path.string()});
+    // A network's file system tells of a full disk when a descriptor is closed. The lock is held on
+    // the other one until the file has its name, so that nobody takes it for a dead writer's.
+    if (::close(::dup(file.get())) != 0) throw Error("cannot write: " + reason(), {path.string()});
     unfinished.finish([&] {
       if (::rename(part.c_str(), path.c_str()) != 0)
         throw Error("cannot create: " + reason(), {path.string()});

@@ -16,8 +16,9 @@ std::string read_file(const fs::path& path, std::size_t max_bytes = std::size_t{
 
 // Writes a temporary file beside `path`, flushes it to disk and renames it, so that `path` holds
 // either its previous content or all of `bytes`. Throws Error where that fails (folder missing, no
-// permission, disk full); no temporary file is left. kLater is for many small files: they survive a
-// power failure only after flush_files().
+// permission, disk full); no temporary file is left. Of several writers at once the last one's
+// bytes stay, whole. kLater is for many small files: they survive a power failure only after
+// flush_files().
 enum class Flush { kNow, kLater };
 void write_file(const fs::path& path, std::string_view bytes, Flush flush = Flush::kNow);
 

@@ -8,6 +8,7 @@
 
 #include <elf.h>
 #include <link.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "foundation/base/files.h"
@@ -91,12 +92,26 @@ void remove_unused(const fs::path& folder) {
 
 }  // namespace
 
-fs::path user_folder() {
+fs::path user_folder(const char* kind) {
   if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/')
-    return fs::path(xdg) / "airtruth";
+    return fs::path(xdg) / "airtruth" / kind;
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
-    return fs::path(home) / ".cache" / "airtruth";
-  return fs::temp_directory_path() / ("airtruth-cache-" + std::to_string(::getuid()));
+    return fs::path(home) / ".cache" / "airtruth" / kind;
+  return {};
+}
+
+// Entries are believed, since their checksum is their own. Only the user may have written them.
+bool Cache::is_own() const {
+  struct stat folder {};
+  return keeps() && ::lstat(folder_.c_str(), &folder) == 0 && S_ISDIR(folder.st_mode) &&
+         folder.st_uid == ::geteuid() && (folder.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
+void Cache::make() const {
+  if (!keeps()) return;
+  std::error_code ignored;
+  if (folder_.has_parent_path()) fs::create_directories(folder_.parent_path(), ignored);
+  ::mkdir(folder_.c_str(), S_IRWXU);
 }
 
 Key::Key(std::string_view kind) { add(build_id()).add(kind); }
@@ -111,7 +126,7 @@ Key& Key::add(std::string_view text) {
 std::string Key::name() const { return sha256_of(bytes_); }
 
 std::optional<std::string> Cache::find(const Key& key) const {
-  if (!keeps()) return std::nullopt;
+  if (!is_own()) return std::nullopt;
   const fs::path file = folder_ / key.name();
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::nullopt;
@@ -130,8 +145,9 @@ std::optional<std::string> Cache::find(const Key& key) const {
 
 void Cache::keep(const Key& key, std::string_view body) const {
   if (!keeps() || body.size() > kMaxEntryBytes) return;
+  make();
+  if (!is_own()) return;
   try {
-    fs::create_directories(folder_);
     write_file(folder_ / key.name(), sha256_of(body).append(body), Flush::kLater);
     remove_unused(folder_);
   } catch (const std::exception&) {  // a read-only folder or a full disk
@@ -139,7 +155,8 @@ void Cache::keep(const Key& key, std::string_view body) const {
 }
 
 std::unique_ptr<WaitingLock> Cache::lock(const Key& key, const std::stop_token& stop) const {
-  if (!keeps()) return nullptr;
+  make();
+  if (!is_own()) return nullptr;
   try {
     return std::make_unique<WaitingLock>(folder_ / ("." + key.name() + ".lock"), stop);
   } catch (const Error&) {  // a read-only folder

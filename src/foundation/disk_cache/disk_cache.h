@@ -17,7 +17,7 @@
 // motion, calibrations, converted models, ambient visibility. A result is named by a hash of all
 // that it depends on, so that an entry is never out of date: it is there, or it is missing.
 //
-//   const disk_cache::Cache cache(disk_cache::user_folder() / "motion");
+//   const disk_cache::Cache cache(disk_cache::user_folder("motion"));
 //   const auto key = disk_cache::Key("motion").add(video_sha256).add(options.seed);
 //   if (auto known = cache.find(key, motion_from_csv)) return *known;
 //   cache.keep(key, csv_from_motion(motion));
@@ -25,11 +25,13 @@
 // An entry is a file of the key's name: the SHA-256 of the body, as 64 hex digits, and the body. It
 // is written beside its place and renamed. An entry that is cut short, damaged, foreign or larger
 // than kMaxEntryBytes counts as missing, and so does one in a folder that cannot be read. A folder
-// that cannot be written costs the next run the computation, and is no error.
+// that cannot be written costs the next run the computation, and is no error. A folder that is
+// another user's, or that group or others may write, is not used: anybody's entry could lie in it.
 namespace airtruth::disk_cache {
 
-// $XDG_CACHE_HOME/airtruth, else ~/.cache/airtruth, else a folder under the temporary directory.
-std::filesystem::path user_folder();
+// The folder of one kind of results below $XDG_CACHE_HOME/airtruth, else below ~/.cache/airtruth.
+// Empty, so that nothing is kept, where the environment names neither by an absolute path.
+std::filesystem::path user_folder(const char* kind);
 
 // The largest entry. The largest that a use of the cache makes is a model at its own limits.
 constexpr std::size_t kMaxEntryBytes = std::size_t{512} << 20;
@@ -85,6 +87,9 @@ class Cache {
   std::unique_ptr<WaitingLock> lock(const Key& key, const std::stop_token& stop) const;
 
  private:
+  bool is_own() const;
+  void make() const;
+
   std::filesystem::path folder_;
 };
 

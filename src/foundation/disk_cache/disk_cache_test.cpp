@@ -2,6 +2,7 @@
 #include "foundation/disk_cache/disk_cache.h"
 
 #include <chrono>
+#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -64,6 +65,36 @@ TEST_F(DiskCache, AFolderThatCannotBeWrittenIsNoError) {
     EXPECT_FALSE(cache.find(kKey));
     EXPECT_EQ(cache.lock(kKey, {}), nullptr);
   }
+}
+
+TEST_F(DiskCache, AFolderThatOthersCanWriteIsNotUsed) {
+  cache_.keep(kKey, "body");
+  for (const fs::perms others : {fs::perms::group_write, fs::perms::others_write}) {
+    fs::permissions(folder_ / "entries", fs::perms::owner_all | others);
+    EXPECT_FALSE(cache_.find(kKey));
+    EXPECT_EQ(cache_.lock(kKey, {}), nullptr);
+  }
+  fs::permissions(folder_ / "entries", fs::perms::owner_all | fs::perms::group_read);
+  EXPECT_EQ(cache_.find(kKey), "body");
+  fs::create_directory_symlink(folder_ / "entries", folder_ / "link");
+  EXPECT_FALSE(Cache(folder_ / "link").find(kKey));
+}
+
+TEST(DiskCacheFolder, IsTheUsersOrNone) {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  const std::string kept_cache = cache == nullptr ? "" : cache;
+  const std::string kept_home = home == nullptr ? "" : home;
+  ::setenv("XDG_CACHE_HOME", "/c", 1);
+  EXPECT_EQ(user_folder("k"), "/c/airtruth/k");
+  ::setenv("XDG_CACHE_HOME", "c", 1);
+  ::setenv("HOME", "/h", 1);
+  EXPECT_EQ(user_folder("k"), "/h/.cache/airtruth/k");
+  ::unsetenv("HOME");
+  EXPECT_EQ(user_folder("k"), "");
+  kept_cache.empty() ? ::unsetenv("XDG_CACHE_HOME")
+                     : ::setenv("XDG_CACHE_HOME", kept_cache.c_str(), 1);
+  if (!kept_home.empty()) ::setenv("HOME", kept_home.c_str(), 1);
 }
 
 TEST_F(DiskCache, EntriesThatNobodyUsesAreRemoved) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/sandbox/confine.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -124,9 +125,14 @@ FilterCode filter() {
   return program;
 }
 
+// Lowers a limit; one that is lower already stays, since no plain user may raise it.
 void limit(int what, unsigned long value) {
-  const rlimit both{value, value};
-  if (::setrlimit(static_cast<__rlimit_resource_t>(what), &both) != 0)
+  const auto resource = static_cast<__rlimit_resource_t>(what);
+  rlimit now{};
+  if (::getrlimit(resource, &now) != 0) now = {RLIM_INFINITY, RLIM_INFINITY};
+  const rlimit lowered{std::min<rlim_t>(now.rlim_cur, value),
+                       std::min<rlim_t>(now.rlim_max, value)};
+  if (::setrlimit(resource, &lowered) != 0)
     throw Error(std::string("the reader of untrusted files cannot be limited: ") +
                 std::strerror(errno));
 }

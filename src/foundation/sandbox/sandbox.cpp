@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -92,6 +93,24 @@ class SpawnSetup {
   posix_spawnattr_t attributes_{};
 };
 
+// What a child needs of the environment: where its libraries lie, and the settings of the tools
+// that a build may hold (sanitizers, coverage). Everything else stays with the parent.
+std::vector<char*> childs_environment() {
+  constexpr std::array<std::string_view, 7> kPassed = {"AIRTRUTH_",
+                                                       "LD_LIBRARY_PATH=",
+                                                       "ASAN_OPTIONS=",
+                                                       "LSAN_OPTIONS=",
+                                                       "UBSAN_OPTIONS=",
+                                                       "TSAN_OPTIONS=",
+                                                       "LLVM_PROFILE_FILE="};
+  std::vector<char*> passed;
+  for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable)
+    for (const std::string_view name : kPassed)
+      if (std::string_view(*variable).starts_with(name)) passed.push_back(*variable);
+  passed.push_back(nullptr);
+  return passed;
+}
+
 bool is_program(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && ::access(path.c_str(), X_OK) == 0;
@@ -134,8 +153,13 @@ Process::Process(const Program& program,
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   const SpawnSetup setup(theirs.get());
-  const int failed = ::posix_spawn(
-      &process_, path.c_str(), setup.actions(), setup.attributes(), pointers.data(), environ);
+  const std::vector<char*> variables = childs_environment();
+  const int failed = ::posix_spawn(&process_,
+                                   path.c_str(),
+                                   setup.actions(),
+                                   setup.attributes(),
+                                   pointers.data(),
+                                   variables.data());
   if (failed != 0) {
     process_ = -1;
     fail_to_start(program, failed, path);

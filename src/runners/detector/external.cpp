@@ -8,13 +8,12 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include "foundation/base/error.h"
-#include "foundation/base/unfinished.h"
 #include "foundation/image/colour.h"
 #include "runners/detector/protocol.h"
 #include "runners/process/child.h"
+#include "runners/process/memory_place.h"
 
 namespace airtruth::detector {
 namespace {
@@ -41,8 +40,7 @@ std::string samples_of(const image::Picture& picture, SampleOrder samples) {
   return bytes;
 }
 
-// Memory that a program at this machine can map: a file in /dev/shm, or in the temporary folder
-// where that does not exist. The destructor removes it.
+// Memory that a program at this machine can map.
 class SharedSamples {
  public:
   // Throws Error where it cannot be made.
@@ -51,41 +49,28 @@ class SharedSamples {
   SharedSamples& operator=(const SharedSamples&) = delete;
   ~SharedSamples();
 
-  const std::string& path() const { return path_; }
+  std::string path() const { return place_.path().string(); }
   char* data() { return static_cast<char*>(memory_); }
 
  private:
-  std::string path_;
+  process::MemoryPlace place_{process::MemoryPlace::Kind::kFile, "a detector's frames"};
   std::size_t bytes_;
-  std::optional<Unfinished> unfinished_;
   void* memory_ = nullptr;
 };
 
 SharedSamples::SharedSamples(std::size_t bytes) : bytes_(bytes) {
-  path_ = (process::memory_folder() / "airtruth-detect-XXXXXX").string();
-  const int file = ::mkostemp(path_.data(), O_CLOEXEC);
-  if (file < 0)
-    throw Error(
-        std::string("cannot create memory for a detector's frames: ") + std::strerror(errno),
-        {path_});
-  unfinished_.emplace(Unfinished::path(path_));
+  const int file = place_.descriptor();
   // The blocks are taken now: a full disk is an error here, and no signal later.
   const int failed = ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
   memory_ = failed == 0 ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
                         : MAP_FAILED;
   const int fault = failed != 0 ? failed : errno;
-  ::close(file);
-  if (memory_ == MAP_FAILED) {
-    ::unlink(path_.c_str());
+  if (memory_ == MAP_FAILED)
     throw Error(std::string("cannot take memory for a detector's frames: ") + std::strerror(fault),
-                {path_});
-  }
+                {path()});
 }
 
-SharedSamples::~SharedSamples() {
-  ::munmap(memory_, bytes_);
-  ::unlink(path_.c_str());
-}
+SharedSamples::~SharedSamples() { ::munmap(memory_, bytes_); }
 
 class External : public Detector {
  public:

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/stopwatch.h"
 #include "foundation/sandbox/messages.h"
 
 namespace airtruth::network {
@@ -109,15 +110,25 @@ std::vector<Tensor> NetworkChild::run(const Samples& samples) {
   out.put(static_cast<std::int32_t>(samples.width));
   out.put(static_cast<std::int32_t>(samples.height));
   out.put_raw(samples.values.data(), samples.values.size());
+  const double left_s =
+      kRunSeconds * (kFreeRuns + static_cast<double>(++runs_) / kRunsPerLimit) - spent_s_;
+  if (!(left_s > 0))
+    throw Error(fmt::format("has taken {:.0f} s for {} inputs; expected {:g} s each in the mean",
+                            spent_s_,
+                            runs_ - 1,
+                            kRunSeconds / kRunsPerLimit));
+  const Stopwatch watch;
   process_.set_deadline(kRunSeconds,
                         fmt::format("gives no answer for an input of {} x {} px within {:g} s",
                                     samples.width,
                                     samples.height,
                                     kRunSeconds));
   process_.send(NetworkMessage::kRun, out.take());
-  return tensors_from_bytes(answer(
-      NetworkMessage::kOutputs,
-      fmt::format("cannot be run on an input of {} x {} px", samples.width, samples.height)));
+  const std::string bytes =
+      answer(NetworkMessage::kOutputs,
+             fmt::format("cannot be run on an input of {} x {} px", samples.width, samples.height));
+  spent_s_ += watch.seconds();
+  return tensors_from_bytes(bytes);
 }
 
 std::string NetworkChild::answer(NetworkMessage wanted, const std::string& did_not) {

@@ -72,6 +72,10 @@ NetworkJob job_from_bytes(std::string_view bytes);
 // 100 million parameters loads in a few seconds, and runs in a few.
 constexpr double kLoadSeconds = 60;
 constexpr double kRunSeconds = 60;
+// All runs of one child together: this many times the longest run, and a sixth of it for each
+// input, 600 s and 10 s an input. A network may be slow at first, and not for days.
+constexpr double kFreeRuns = 10;
+constexpr double kRunsPerLimit = 6;
 
 class NetworkChild {
  public:
@@ -87,6 +91,9 @@ class NetworkChild {
   std::string answer(NetworkMessage wanted, const std::string& did_not);
 
   sandbox::Process process_;
+  // Of all runs: how many, and how long they took.
+  std::int64_t runs_ = 0;
+  double spent_s_ = 0;
 };
 
 }  // namespace airtruth::network

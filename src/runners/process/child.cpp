@@ -139,13 +139,6 @@ Clock::time_point in(double seconds) {
          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-std::filesystem::path memory_folder() {
-  std::error_code unknown;
-  const std::filesystem::path shared = "/dev/shm";
-  return std::filesystem::is_directory(shared, unknown) ? shared
-                                                        : std::filesystem::temp_directory_path();
-}
-
 Child::Child(const std::string& command,
              Transport transport,
              std::stop_token stop,

@@ -20,10 +20,6 @@ using Clock = std::chrono::steady_clock;
 // The time so many seconds from now.
 Clock::time_point in(double seconds);
 
-// Where files for another process cost no writing to a disk: /dev/shm, or the temporary folder
-// where that does not exist.
-std::filesystem::path memory_folder();
-
 // Thrown where a runner can give no more answers: its process ended, did not answer in time, or
 // violated its protocol; its network failed. The text goes on after the runner's name.
 class Failure : public std::runtime_error {

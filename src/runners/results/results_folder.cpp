@@ -13,6 +13,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/json/json_object.h"
+#include "foundation/run_files/run_files.h"
 #include "labels/exchange/text.h"
 #include "runners/results/coco_results.h"
 
@@ -237,8 +238,15 @@ bool is_results_name(std::string_view name) {
 }
 
 void write_sequence(const fs::path& folder, const SequenceDetections& detections) {
-  write_file(text_file(folder, detections.name), mot_text_of(detections));
-  write_file(facts_file(folder, detections.name), facts_of(detections).dump() + "\n");
+  const fs::path text = text_file(folder, detections.name);
+  const fs::path facts = facts_file(folder, detections.name);
+  RunFiles files;
+  files.writes(text, true).writes(facts, true);
+  files.begin();
+  files.write(text, [&](const fs::path& at) { write_file(at, mot_text_of(detections)); });
+  files.write(facts,
+              [&](const fs::path& at) { write_file(at, facts_of(detections).dump() + "\n"); });
+  files.commit();
 }
 
 bool has_sequence(const fs::path& folder, const std::string& name) {

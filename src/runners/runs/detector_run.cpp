@@ -17,6 +17,7 @@
 #include "dataset/labelled/labelled_set.h"
 #include "dataset/sequences/sequence_folders.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/names.h"
@@ -73,7 +74,7 @@ class DetectorResults {
   DetectorResults(const DetectorName& detector, const fs::path& out, const DetectOptions& options);
 
   // Creates the folder and its record.
-  void open() const;
+  void open();
   // `part` is "" for the sequences of a set, or kBackgrounds.
   // Counts a sequence that is there.
   bool keeps(const std::string& part, const std::string& sequence);
@@ -95,6 +96,7 @@ class DetectorResults {
   const DetectOptions& options_;
   std::mutex mutex_;
   DetectSummary summary_;
+  std::optional<RunLock> lock_;
 };
 
 DetectorResults::DetectorResults(const DetectorName& detector,
@@ -111,11 +113,12 @@ bool DetectorResults::is_open() const {
   return is_record_of(summary_.folder / kRecord, settings_of(detector_, options_));
 }
 
-void DetectorResults::open() const {
-  if (is_open()) return;
+void DetectorResults::open() {
   std::error_code failed;
   fs::create_directories(summary_.folder, failed);
   if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+  lock_.emplace(summary_.folder, summary_.folder, options_.warn);
+  if (is_open()) return;
   Json record = settings_of(detector_, options_);
   record["name"] = detector_.name;
   record["format"] = "airtruth detections 1";

@@ -14,11 +14,13 @@
 #include "dataset/labelled/labelled_set.h"
 #include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
 #include "foundation/json/settings_record.h"
+#include "foundation/run_files/run_files.h"
 #include "labels/exchange/exchange.h"
 #include "picture/video/numbered_frames.h"
 #include "runners/tracking/tracker.h"
@@ -215,13 +217,15 @@ class TrackerRun {
 
   Json own_record() const { return {{"tracker", options_.tracker}, {"seed", options_.seed}}; }
 
-  void open_folder() const {
-    if (check_folder()) return;
+  void open_folder() {
+    check_folder();
     const Json mine = own_record();
     const fs::path file = summary_.folder / "tracker.json";
     std::error_code failed;
     fs::create_directories(summary_.folder, failed);
     if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+    lock_.emplace(summary_.folder, summary_.folder, options_.warn);
+    if (check_folder()) return;
     Json record = mine;
     record["format"] = "airtruth results 1";
     record["version"] = kVersion;
@@ -248,9 +252,14 @@ class TrackerRun {
       fs::create_directories(summary_.folder / "logs");
       write_file(summary_.folder / "logs" / (file.stem().string() + ".log"), log);
     }
-    // The boxes are written last: their file marks the run as done.
-    write_file(results::times_file(file, protocol), results::text_of(record.seconds));
-    write_file(file, results::text_of(record.frames));
+    const fs::path times = results::times_file(file, protocol);
+    RunFiles files;
+    files.writes(times, true).writes(file, true);
+    files.begin();
+    files.write(times,
+                [&](const fs::path& at) { write_file(at, results::text_of(record.seconds)); });
+    files.write(file, [&](const fs::path& at) { write_file(at, results::text_of(record.frames)); });
+    files.commit();
     const std::lock_guard lock(mutex_);
     ++summary_.made;
     summary_.frames += follower.answers();
@@ -370,6 +379,7 @@ class TrackerRun {
   std::string command_;
   std::mutex mutex_;
   TrackSummary summary_;
+  std::optional<RunLock> lock_;
 };
 
 }  // namespace

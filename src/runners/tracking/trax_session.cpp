@@ -2,7 +2,6 @@
 #include "runners/tracking/trax_session.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -90,26 +89,11 @@ Reply reply_of(const Message& message) {
   return reply;
 }
 
-fs::path new_folder() {
-  std::string name = (process::memory_folder() / "airtruth-trax-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw Error(
-        std::string("cannot create a folder for a tracker's pictures: ") + std::strerror(errno),
-        {name});
-  return name;
-}
-
 }  // namespace
 
 Images::Images(ImageKind kind) : kind_(kind) {
-  if (kind_ == ImageKind::kMemory) return;
-  folder_ = new_folder();
-  unfinished_.emplace(Unfinished::path(folder_));
-}
-
-Images::~Images() {
-  std::error_code ignored;
-  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  if (kind_ != ImageKind::kMemory)
+    folder_.emplace(process::MemoryPlace::Kind::kFolder, "a tracker's pictures");
 }
 
 std::string Images::hand_over(const image::Picture& picture) {
@@ -121,7 +105,7 @@ std::string Images::hand_over(const image::Picture& picture) {
     return fmt::format("image:{};{};rgb;{}", rgb.width, rgb.height, base64_of(samples));
   }
   const auto path = [this](std::int64_t number) {
-    return folder_ / fmt::format("{:08d}.png", number);
+    return folder_->path() / fmt::format("{:08d}.png", number);
   };
   const fs::path file = path(count_);
   video::write_still(file, rgb, Flush::kLater);

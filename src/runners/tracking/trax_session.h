@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "foundation/base/unfinished.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 #include "runners/process/child.h"
+#include "runners/process/memory_place.h"
 #include "runners/tracking/tracker.h"
 #include "runners/tracking/trax_message.h"
 
@@ -26,21 +26,19 @@ namespace fs = std::filesystem;
 enum class ImageKind { kPath, kMemory, kBuffer };
 
 // Pictures for one tracker. Files lie in memory (/dev/shm) where that exists. The last two files
-// are kept, and the destructor removes the folder.
+// are kept.
 class Images {
  public:
   explicit Images(ImageKind kind);
   Images(const Images&) = delete;
   Images& operator=(const Images&) = delete;
-  ~Images();
 
   // Returns the text by which a message refers to the picture.
   std::string hand_over(const image::Picture& picture);
 
  private:
   ImageKind kind_;
-  fs::path folder_;
-  std::optional<Unfinished> unfinished_;
+  std::optional<process::MemoryPlace> folder_;
   std::int64_t count_ = 0;
 };
 

@@ -115,7 +115,39 @@ void add_rates(FlightLog& log, const Rates& rates, const Where& where) {
   if (follows(log, log.rates, rates.time_s)) log.rates.push_back(rates);
 }
 
+namespace {
+
+// Work and memory follow the time that a log spans: paths are walked in steps, turn rates are
+// interpolated to 100 a second. A longer span is a clock that jumps, such as a receiver's before
+// its first fix.
+constexpr double kMaxSpanS = 86'400;
+
+void expect_span(const FlightLog& log, const std::string& file) {
+  double first_s = std::numeric_limits<double>::infinity(), last_s = -first_s;
+  double before_s = 0, after_s = 0;  // the longest step
+  const auto look = [&](const auto& records) {
+    if (records.empty()) return;
+    first_s = std::min(first_s, records.front().time_s);
+    last_s = std::max(last_s, records.back().time_s);
+    for (std::size_t i = 1; i < records.size(); ++i)
+      if (records[i].time_s - records[i - 1].time_s > after_s - before_s)
+        before_s = records[i - 1].time_s, after_s = records[i].time_s;
+  };
+  look(log.fixes), look(log.attitudes), look(log.rates);
+  if (!(last_s - first_s > kMaxSpanS)) return;
+  throw Error(fmt::format("spans {:.0f} s; expected up to {:.0f} s, a day. Its longest step is "
+                          "from {:.3f} to {:.3f} s: does its clock jump there?",
+                          last_s - first_s,
+                          kMaxSpanS,
+                          before_s,
+                          after_s),
+              {file});
+}
+
+}  // namespace
+
 FlightLog without_jumps(FlightLog log, const std::string& file) {
+  expect_span(log, file);
   const std::vector<Fix>& all = log.fixes;
   std::size_t longest_begin = 0, longest = 0;
   for (std::size_t begin = 0; begin < all.size();) {

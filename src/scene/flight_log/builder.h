@@ -28,7 +28,7 @@ void leave_out(FlightLog& log, const std::string& fault, const Where& where);
 
 // The log without positions that no aircraft reaches from their neighbours: those that are kept
 // form the longest run of positions of which each is within reach of the one before, continued on
-// both sides by the positions within reach.
+// both sides by the positions within reach. Throws Error where the log spans more than a day.
 FlightLog without_jumps(FlightLog log, const std::string& file);
 
 // The receiver with the lowest number that has two positions; where none has, that with the lowest

@@ -242,5 +242,22 @@ TEST(FlightLog, OtherFilesAreRefused) {
               testing::StartsWith("a.bin: is no flight log that airtruth reads"));
 }
 
+TEST(FlightLog, AClockThatJumpsByMoreThanADayIsAnError) {
+  const auto text = [](const char* last_s) {
+    return std::string("time_s,latitude_deg,longitude_deg,altitude_m\n0,47,8,500\n1,47,8,501\n") +
+           last_s + ",47.001,8,502\n";
+  };
+  EXPECT_EQ(parse_flight_log(text("86400"), "log.csv").fixes.size(), 3u);
+  try {
+    parse_flight_log(text("1714500000"), "log.csv");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "log.csv: spans 1714500000 s; expected up to 86400 s, a day. Its longest step is from "
+        "1.000 to 1714500000.000 s: does its clock jump there?");
+  }
+}
+
 }  // namespace
 }  // namespace airtruth::flight_log

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -256,6 +258,20 @@ void add_truth(Text& text, const Truth& truth) {
 }
 
 }  // namespace
+
+std::vector<fs::path> stated_files(const Scene& scene) {
+  std::vector<fs::path> files = {scene.background.video};
+  const auto add = [&](const std::optional<fs::path>& file) {
+    if (file) files.push_back(*file);
+  };
+  add(scene.background.mask);
+  add(scene.realism.file);
+  add(scene.lens.file);
+  add(scene.camera.path_file);
+  add(scene.camera.log);
+  for (const Intruder& intruder : scene.intruders) add(intruder.path_file);
+  return files;
+}
 
 std::string toml_from_scene(const Scene& scene) {
   check(scene.seed <= static_cast<std::uint64_t>(INT64_MAX), "a seed fits TOML's 64-bit integers");

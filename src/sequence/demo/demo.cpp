@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
@@ -94,10 +95,13 @@ std::function<void(std::int64_t, std::int64_t)> staged(const pipeline::Options& 
 
 pipeline::Summary make_demo(const std::filesystem::path& out, const DemoOptions& options) {
   const pipeline::Options& run = options.run;
-  refuse_existing(out / "demo", run.overwrite);
+  for (const char* name :
+       {"demo", "flight.mp4", "flight.csv", "own_aircraft.png", "demo.toml", "overlay.mp4"})
+    refuse_existing(out / name, run.overwrite);
   std::error_code failed;
   fs::create_directories(out, failed);
   if (failed) throw Error("cannot create: " + failed.message(), {out.string()});
+  const RunLock lock(out, out, run.warn);
   const synthetic::Flight flight(flight_options(options));
   VirtualFlightOptions how;
   how.stop = run.stop;

@@ -173,13 +173,8 @@ std::vector<Checksum> input_files(const scene::Scene& scene,
   const auto add = [&](const fs::path& file) {
     result.push_back({file.string(), inputs.sha256_of_file(file)});
   };
-  if (scene.background.mask) add(*scene.background.mask);
-  if (scene.realism.file) add(*scene.realism.file);
-  if (scene.lens.file) add(*scene.lens.file);
-  if (scene.camera.path_file) add(*scene.camera.path_file);
-  if (scene.camera.log) add(*scene.camera.log);
-  for (const scene::Intruder& intruder : scene.intruders)
-    if (intruder.path_file) add(*intruder.path_file);
+  for (const fs::path& file : scene::stated_files(scene))
+    if (file != scene.background.video) add(file);
   for (const fs::path& model : model_files(world)) add(model);
   return result;
 }

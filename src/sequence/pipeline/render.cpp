@@ -13,6 +13,8 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/stopwatch.h"
+#include "foundation/run_files/run_files.h"
+#include "scene/scene/scene.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/outputs.h"
@@ -118,7 +120,10 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   Clocks clocks;
   const auto limit = thread_limit(options.threads);
   const fs::path folder = out / scene.name;
-  StagedFolder staged(folder, options.overwrite);
+  RunFiles files;
+  for (const fs::path& file : scene::stated_files(scene)) files.reads(file);
+  files.replaces(folder).check();
+  StagedFolder staged(folder, options.overwrite, options.warn);
 
   // All faults of the inputs are found before any long work, and whether they can be written.
   OpenedScene opened = open_scene(scene, options);

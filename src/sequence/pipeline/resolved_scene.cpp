@@ -450,7 +450,7 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
 
 fs::path cache_folder(const Options& options, const char* kind) {
   if (!options.use_cache) return {};
-  return (options.cache.empty() ? disk_cache::user_folder() : options.cache) / kind;
+  return options.cache.empty() ? disk_cache::user_folder(kind) : options.cache / kind;
 }
 
 bool needs_calibration(const scene::Scene& scene) {

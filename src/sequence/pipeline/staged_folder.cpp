@@ -7,10 +7,10 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 
 namespace airtruth::pipeline {
 namespace {
@@ -55,7 +55,7 @@ void clear(const fs::path& folder) {
 
 }  // namespace
 
-StagedFolder::StagedFolder(fs::path final_folder, bool overwrite)
+StagedFolder::StagedFolder(fs::path final_folder, bool overwrite, const Warn& to)
     : final_(std::move(final_folder)) {
   const fs::path parent = final_.has_parent_path() ? final_.parent_path() : fs::path(".");
   part_ = parent / ("." + final_.filename().string() + ".part");
@@ -72,10 +72,12 @@ StagedFolder::StagedFolder(fs::path final_folder, bool overwrite)
   if (lock_ < 0)
     throw Error(std::string("cannot open the output folder: ") + std::strerror(errno),
                 {part_.string()});
-  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+  const Lock lock = try_lock(lock_, part_);
+  if (lock == Lock::kBusy) {
     ::close(lock_);
     throw Error("another run is writing this folder now", {final_.string()});
   }
+  if (lock == Lock::kUnsupported) warn_of_no_locks(final_, to);
   try {
     clear(part_);
     recover();

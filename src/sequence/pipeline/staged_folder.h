@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "foundation/base/log.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth::pipeline {
@@ -13,13 +14,14 @@ namespace fs = std::filesystem;
 // A folder that appears whole or not at all. Files are written to a hidden folder beside it
 // (".NAME.part"), which commit() renames to the final name. Destruction before commit() removes the
 // hidden folder and leaves the previous contents untouched. Of two runs over one folder, the second
-// is refused at once. The kernel releases the lock when a process ends, so the next run can remove
+// is refused at once; where the file system has no locks that is not seen, and said. The kernel
+// releases the lock when a process ends, so the next run can remove
 // the files of a killed run.
 class StagedFolder {
  public:
   // Throws Error where `final` exists and overwrite is false, is a folder that this program did not
   // make, or cannot be written.
-  StagedFolder(fs::path final_folder, bool overwrite);
+  StagedFolder(fs::path final_folder, bool overwrite, const Warn& to = {});
   StagedFolder(const StagedFolder&) = delete;
   StagedFolder& operator=(const StagedFolder&) = delete;
   ~StagedFolder();

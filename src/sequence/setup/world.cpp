@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "aircraft/shapes/shapes.h"
+#include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "labels/annotation/object_class.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
@@ -24,6 +26,18 @@ struct Loaded {
   Actor actor;
 };
 
+// The aircraft as labels name it. A model file is named from the scene's folder, and one that does
+// not lie below it by its own name and content: the same scene gives the same labels wherever it
+// lies, however its path is spelt.
+std::string name_in_labels(const scene::Intruder& intruder) {
+  if (intruder.distractor || !wrapper::is_model_file(intruder.aircraft)) return intruder.aircraft;
+  const fs::path model = fs::weakly_canonical(fs::absolute(intruder.aircraft));
+  const fs::path folder = fs::weakly_canonical(fs::absolute(intruder.where.file)).parent_path();
+  const fs::path below = model.lexically_relative(folder);
+  if (!below.empty() && *below.begin() != "..") return below.string();
+  return fmt::format("{} sha256:{}", model.filename().string(), sha256_of_file(model));
+}
+
 // Of a flown intruder: its path has no `seen` left.
 Actor actor_of(const scene::Intruder& intruder,
                const World& world,
@@ -35,7 +49,7 @@ Actor actor_of(const scene::Intruder& intruder,
       at_place(intruder.where, [&] { return types.type_of(intruder, path, warn, stop); });
   const char* object_class =
       intruder.distractor ? enum_name(intruder.distractor->kind) : annotation::kAircraft.data();
-  return {intruder.id, intruder.aircraft, object_class, path, type};
+  return {intruder.id, name_in_labels(intruder), object_class, path, type};
 }
 
 // An aircraft that is to be seen at a width is placed by its usual length, loaded for the airspeed

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/run_files/run_files.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
+#include "foundation/base/unfinished.h"
+
+namespace airtruth {
+namespace {
+
+// Names of the hidden folders begin so. They do not depend on the output's name, so that any later
+// run that writes beside it finds what a killed one left.
+constexpr const char* kHiddenBegins = ".airtruth.part-";
+// Held while a set of files is moved into place.
+constexpr const char* kCommitLock = ".airtruth.lock";
+
+// The path without links and dots, as far as it exists.
+fs::path plain(const fs::path& path) {
+  std::error_code failed;
+  const fs::path result = fs::weakly_canonical(fs::absolute(path), failed);
+  return failed ? fs::absolute(path).lexically_normal() : result;
+}
+
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code failed;
+  return plain(a) == plain(b) || (fs::equivalent(a, b, failed) && !failed);
+}
+
+// True where `path` is `folder` or lies below it.
+bool is_within(const fs::path& path, const fs::path& folder) {
+  const fs::path inner = plain(path);
+  const fs::path outer = plain(folder);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+void refuse_input(const fs::path& output, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    if (is_same(output, input))
+      throw Error("is read and written by the same run; expected another name for what is written",
+                  {output.string()});
+    if (fs::is_directory(input) && fs::exists(output) && !fs::is_directory(output) &&
+        is_within(output, input))
+      throw Error("exists, and lies in " + input.string() +
+                      ", which the run reads; expected a new name, or another folder",
+                  {output.string()});
+  }
+}
+
+bool is_descriptor_of(int file, const fs::path& name) {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(file, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+// One set at a time is moved into the places of a folder. The file is removed afterwards; where the
+// file system has no locks, sets are moved without.
+class CommitLock {
+ public:
+  explicit CommitLock(const fs::path& folder) : name_(folder / kCommitLock) {
+    for (;;) {
+      file_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
+      if (file_ < 0) return;  // another user's, or no permission: the moves fail by themselves
+      const Lock lock = try_lock(file_, name_);
+      if (lock == Lock::kUnsupported || (lock == Lock::kTaken && is_descriptor_of(file_, name_)))
+        return;
+      ::close(file_);
+      std::this_thread::sleep_for(std::chrono::milliseconds(lock == Lock::kBusy ? 2 : 0));
+    }
+  }
+  CommitLock(const CommitLock&) = delete;
+  CommitLock& operator=(const CommitLock&) = delete;
+  ~CommitLock() {
+    if (file_ < 0) return;
+    ::unlink(name_.c_str());
+    ::close(file_);
+  }
+
+ private:
+  fs::path name_;
+  int file_ = -1;
+};
+
+// Removes hidden folders whose run is dead: nobody holds their lock.
+void remove_dead(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (!entry.path().filename().string().starts_with(kHiddenBegins)) continue;
+    const int file = ::open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (file < 0) continue;
+    if (try_lock(file, entry.path()) == Lock::kTaken) fs::remove_all(entry.path(), ignored);
+    ::close(file);
+  }
+}
+
+// The uppermost folder of a path that is not there yet; empty where all are.
+fs::path first_missing(fs::path folder) {
+  fs::path missing;
+  while (!folder.empty() && !fs::exists(folder)) {
+    missing = folder;
+    if (!folder.has_relative_path()) break;
+    folder = folder.parent_path();
+  }
+  return missing;
+}
+
+void remove_empty(fs::path folder, const fs::path& first) {
+  std::error_code failed;
+  while (!first.empty() && fs::remove(folder, failed) && folder != first)
+    folder = folder.parent_path();
+}
+
+}  // namespace
+
+// A hidden folder of this run, locked as long as the run lives.
+class RunFiles::Hidden {
+ public:
+  explicit Hidden(const fs::path& parent) : parent_(parent), first_made_(first_missing(parent)) {
+    std::error_code failed;
+    fs::create_directories(parent_, failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {parent.string()});
+    remove_dead(parent_);
+    unfinished_.emplace([this] { remove(); });
+    try {
+      make();
+    } catch (...) {
+      unfinished_.reset();
+      remove();
+      throw;
+    }
+  }
+  Hidden(const Hidden&) = delete;
+  Hidden& operator=(const Hidden&) = delete;
+  ~Hidden() {
+    unfinished_.reset();
+    remove();
+    if (lock_ >= 0) ::close(lock_);
+  }
+
+  const fs::path& path() const { return path_; }
+  const fs::path& parent() const { return parent_; }
+
+  // Every file, as it will be named.
+  std::vector<std::pair<fs::path, fs::path>> moves() const {
+    std::vector<std::pair<fs::path, fs::path>> all;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path_))
+      if (!entry.is_directory())
+        all.emplace_back(entry.path(), parent_ / entry.path().lexically_relative(path_));
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  void move() {
+    unfinished_->finish([this] {
+      first_made_.clear();
+      for (const auto& [from, to] : moves()) {
+        std::error_code failed;
+        fs::create_directories(to.parent_path(), failed);
+        if (!failed) fs::rename(from, to, failed);
+        if (failed) throw Error("cannot create: " + failed.message(), {to.string()});
+      }
+    });
+  }
+
+ private:
+  // A run that clears away may take the new folder for a dead one's before it is locked.
+  void make() {
+    for (;;) {
+      std::string name = (parent_ / (std::string(kHiddenBegins) + "XXXXXX")).string();
+      if (::mkdtemp(name.data()) == nullptr)
+        throw Error(std::string("cannot create: ") + std::strerror(errno), {parent_.string()});
+      path_ = name;
+      lock_ = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+      if (lock_ >= 0 && try_lock(lock_, path_) != Lock::kBusy && is_descriptor_of(lock_, path_))
+        return;
+      if (lock_ >= 0) ::close(std::exchange(lock_, -1));
+    }
+  }
+
+  void remove() const {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+    remove_empty(parent_, first_made_);
+  }
+
+  fs::path parent_;
+  fs::path first_made_;
+  fs::path path_;
+  int lock_ = -1;
+  std::optional<Unfinished> unfinished_;
+};
+
+RunFiles::RunFiles() = default;
+RunFiles::~RunFiles() = default;
+
+RunFiles& RunFiles::reads(const fs::path& input) {
+  if (!input.empty()) inputs_.push_back(input);
+  return *this;
+}
+
+RunFiles& RunFiles::writes(const fs::path& output, bool overwrite) {
+  check_output_file(output, overwrite);
+  if (!output.empty()) outputs_.push_back({output, false});
+  return *this;
+}
+
+RunFiles& RunFiles::writes_into(const fs::path& folder) {
+  check_output_folder(folder);
+  outputs_.push_back({folder, true});
+  return *this;
+}
+
+RunFiles& RunFiles::replaces(const fs::path& folder) {
+  replaced_.push_back(folder);
+  return *this;
+}
+
+bool RunFiles::is_empty(const fs::path& folder) {
+  return std::all_of(fs::directory_iterator(folder),
+                     fs::directory_iterator(),
+                     [](const fs::directory_entry& entry) {
+                       return entry.path().filename().string().starts_with(kHiddenBegins);
+                     });
+}
+
+void RunFiles::check() const {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    if (!outputs_[i].is_folder) refuse_input(outputs_[i].given, inputs_);
+    for (std::size_t k = 0; k < i; ++k)
+      if (is_same(outputs_[i].given, outputs_[k].given))
+        throw Error("is written twice by the same run; expected a name for each output",
+                    {outputs_[i].given.string()});
+  }
+  for (const fs::path& folder : replaced_)
+    for (const fs::path& input : inputs_)
+      if (is_within(input, folder))
+        throw Error("would be replaced, and holds " + input.string() +
+                        ", which the run reads; expected another folder",
+                    {folder.string()});
+}
+
+RunFiles::Hidden& RunFiles::hidden_for(const Output& output) const {
+  return *hidden_.at(plain(output.is_folder ? output.given : folder_of(output.given)));
+}
+
+void RunFiles::begin() {
+  check();
+  for (const Output& output : outputs_) {
+    const fs::path parent = output.is_folder ? output.given : folder_of(output.given);
+    std::unique_ptr<Hidden>& hidden = hidden_[plain(parent)];
+    if (!hidden) hidden = std::make_unique<Hidden>(parent);
+  }
+}
+
+void RunFiles::write(const fs::path& output,
+                     const std::function<void(const fs::path&)>& write) const {
+  const auto found = std::find_if(
+      outputs_.begin(), outputs_.end(), [&](const Output& one) { return one.given == output; });
+  if (found == outputs_.end()) return;
+  const Hidden& hidden = hidden_for(*found);
+  try {
+    write(found->is_folder ? hidden.path() : hidden.path() / output.filename());
+  } catch (const Error& error) {
+    const fs::path at = error.where().file;
+    if (!is_within(at, hidden.path())) throw;
+    throw Error(
+        error.message(),
+        {(hidden.parent() / at.lexically_relative(hidden.path())).lexically_normal().string()});
+  }
+}
+
+void RunFiles::commit() {
+  for (const auto& [folder, hidden] : hidden_)
+    for (const auto& [from, to] : hidden->moves()) refuse_input(to, inputs_);
+  // In the order of their names, as every other run takes them.
+  std::vector<std::unique_ptr<CommitLock>> locks;
+  for (const auto& [folder, hidden] : hidden_)
+    locks.push_back(std::make_unique<CommitLock>(folder));
+  for (const auto& [folder, hidden] : hidden_) hidden->move();
+  hidden_.clear();
+}
+
+}  // namespace airtruth

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foundation/run_files/run_files.h"
+
+#include <cstdlib>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "support/temporary_folder.h"
+
+namespace airtruth {
+namespace {
+
+class RunFilesTest : public testing::Test {
+ protected:
+  fs::path file(const char* name, const char* text = "old") const {
+    write_file(folder_ / name, text);
+    return folder_ / name;
+  }
+  static std::string fault(const RunFiles& files) {
+    try {
+      files.check();
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return "";
+  }
+  // Number of names in the folder, hidden ones too.
+  std::ptrdiff_t names() const {
+    return std::distance(fs::directory_iterator(folder_ / "."), fs::directory_iterator());
+  }
+
+  const test_support::TemporaryFolder folder_;
+};
+
+TEST_F(RunFilesTest, AnOutputIsNoInputUnderAnyOfItsNames) {
+  const fs::path a = file("a.mp4");
+  fs::create_symlink(a, folder_ / "link.mp4");
+  fs::create_hard_link(a, folder_ / "hard.mp4");
+  fs::create_directory(folder_ / "d");
+  for (const fs::path& name :
+       {a, folder_ / "d" / ".." / "a.mp4", folder_ / "link.mp4", folder_ / "hard.mp4"})
+    EXPECT_NE(fault(RunFiles().reads(a).writes(name, true)), "") << name;
+  EXPECT_EQ(fault(RunFiles().reads(a).writes(folder_ / "b.mp4", false)), "");
+}
+
+TEST_F(RunFilesTest, OutputsDiffer) {
+  EXPECT_NE(fault(RunFiles().writes(folder_ / "x", false).writes(folder_ / "." / "x", false)), "");
+  EXPECT_EQ(fault(RunFiles().writes(folder_ / "x", false).writes(folder_ / "y", false)), "");
+}
+
+TEST_F(RunFilesTest, WhatLiesInAFolderThatIsReadIsNotReplaced) {
+  fs::create_directory(folder_ / "set");
+  const fs::path inside = file("set/truth.jsonl");
+  EXPECT_NE(fault(RunFiles().reads(folder_ / "set").writes(inside, true)), "");
+  EXPECT_EQ(fault(RunFiles().reads(folder_ / "set").writes(folder_ / "set/new", true)), "");
+  EXPECT_NE(fault(RunFiles().reads(inside).replaces(folder_ / "set")), "");
+  EXPECT_EQ(fault(RunFiles().reads(inside).replaces(folder_ / "se")), "");
+}
+
+TEST_F(RunFilesTest, WithoutCommitNothingStays) {
+  const fs::path a = file("a");
+  {
+    RunFiles files;
+    files.writes(a, true).writes(folder_ / "b", false).writes_into(folder_ / "new" / "er");
+    files.begin();
+    files.write(a, [](const fs::path& at) { write_file(at, "new"); });
+    files.write(folder_ / "b", [](const fs::path& at) { write_file(at, "new"); });
+    EXPECT_EQ(read_file(a), "old");
+  }
+  EXPECT_EQ(read_file(a), "old");
+  EXPECT_EQ(names(), 1);
+}
+
+TEST_F(RunFilesTest, AFaultNamesTheOutput) {
+  RunFiles files;
+  const fs::path a = folder_ / "a";
+  files.writes(a, false);
+  files.begin();
+  try {
+    files.write(a, [](const fs::path& at) { throw Error("is full", {at.string()}); });
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), a.string() + ": is full");
+  }
+}
+
+// Each set is of two files, and each writer's files hold its number.
+TEST_F(RunFilesTest, ASetOfFilesIsOfOneWriter) {
+  for (int round = 0; round < 20; ++round) {
+    std::vector<std::thread> writers;
+    for (int k = 0; k < 8; ++k)
+      writers.emplace_back([&, k] {
+        RunFiles files;
+        for (const char* name : {"x", "y"}) files.writes(folder_ / name, true);
+        files.begin();
+        for (const char* name : {"x", "y"})
+          files.write(folder_ / name,
+                      [&](const fs::path& at) { write_file(at, std::to_string(k)); });
+        files.commit();
+      });
+    for (std::thread& writer : writers) writer.join();
+    EXPECT_EQ(read_file(folder_ / "x"), read_file(folder_ / "y"));
+    EXPECT_EQ(names(), 2);
+  }
+}
+
+TEST_F(RunFilesTest, WhatAKilledRunLeftIsRemovedAndALivingRunsIsNot) {
+  const fs::path a = folder_ / "a";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    RunFiles files;
+    files.writes(a, false);
+    files.begin();
+    ::_exit(0);  // as by SIGKILL: no destructor runs
+  }
+  ::waitpid(child, nullptr, 0);
+  EXPECT_EQ(names(), 1);
+  RunFiles living;
+  living.writes(a, false);
+  living.begin();
+  EXPECT_EQ(names(), 1);
+  {
+    RunFiles other;
+    other.writes(folder_ / "b", false);
+    other.begin();
+    EXPECT_EQ(names(), 2);
+  }
+  EXPECT_EQ(names(), 1);
+  living.write(a, [](const fs::path& at) { write_file(at, "whole"); });
+  living.commit();
+  EXPECT_EQ(read_file(a), "whole");
+}
+
+}  // namespace
+}  // namespace airtruth

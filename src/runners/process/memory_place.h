@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "foundation/base/unfinished.h"
+
+namespace airtruth::process {
+
+// A file or folder in memory for another process: in /dev/shm, or in the temporary folder where
+// that does not exist, so that nothing is written to a disk. The destructor removes it. A lock on
+// it tells that its run lives: the constructor removes those of runs that were killed.
+class MemoryPlace {
+ public:
+  enum class Kind { kFile, kFolder };
+  // Throws Error, which says what it is for, where it cannot be made.
+  MemoryPlace(Kind kind, const char* what_for);
+  MemoryPlace(const MemoryPlace&) = delete;
+  MemoryPlace& operator=(const MemoryPlace&) = delete;
+  ~MemoryPlace();
+
+  const std::filesystem::path& path() const { return path_; }
+  // Of a file: open to read and write.
+  int descriptor() const { return descriptor_; }
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::optional<Unfinished> unfinished_;
+};
+
+}  // namespace airtruth::process
