@@ -166,6 +166,20 @@ void add_export(CLI::App& group, Context& context) {
                     out->options.mot_classes,
                     "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
                     "one class that MOT17's evaluation counts)");
+  command
+      ->add_option("--min-contrast",
+                   out->options.min_contrast,
+                   "Boxes with a lower contrast to noise count neither way: COCO's iscrowd, VOC's "
+                   "difficult and MOT's seventh column say so; others leave them out (default: 0)")
+      ->check(CLI::Range(0.0, 1e6));
+  command
+      ->add_option("--min-size",
+                   out->options.min_size_px,
+                   "The same for boxes whose longer side has fewer pixels (default: 0)")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_flag("--drop-faint",
+                    out->options.drop_faint,
+                    "Leave out what --min-contrast and --min-size refuse, in every format");
   add_jobs(*command, out->options.jobs, "Sequences at a time (default: one per core)");
 }
 
