@@ -364,6 +364,10 @@ void say_what_is_drawn(const build::Plan& plan, Console& console) {
         fmt::format("types: {} ({} types, {} liveries)", types, plan.aircraft.size(), liveries));
   if (plan.sizes_px.count() > 0) console.result("sizes: " + spread_words(plan.sizes_px, "px"));
   if (plan.ranges_m.count() > 0) console.result("ranges: " + spread_words(plan.ranges_m, "m"));
+  if (plan.draws > 0)
+    console.result(fmt::format("in view: {} draws for the intruders of encounter models; {} never",
+                               plan.draws,
+                               plan.never_in_view));
   if (plan.not_flyable == 0) return;
   for (const std::string& words : plan.not_flyable_words) console.warning(words);
   console.warning(fmt::format("{} of {} intruders have a path that their type cannot fly",
