@@ -416,6 +416,10 @@ void status(const DatasetArguments& arguments, Context& context) {
                              status.half > 0 ? fmt::format(", {} begun", status.half) : "",
                              status.at_work ? ", a build is at work" : "",
                              status.complete ? "; complete" : ""));
+  std::string violated;
+  for (const auto& [name, sequences] : status.violated)
+    violated += fmt::format("{}{} in {}", violated.empty() ? "" : ", ", name, sequences);
+  if (!violated.empty()) console.result("  volumes violated, in sequences: " + violated);
   for (const std::string& name : status.missing) console.result("  missing: " + name);
 }
 

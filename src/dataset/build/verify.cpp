@@ -20,6 +20,7 @@
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/insertion/masks.h"
+#include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
 #include "sequence/replay/recompose.h"
 
@@ -253,6 +254,15 @@ void check_manifest(const catalogue::Folder& folder, VerifyResult& result) {
   }
 }
 
+void count_violations(const fs::path& sequence, Status& status) {
+  std::set<std::string> violated;
+  for (const pipeline::EncounterRecord& record :
+       pipeline::read_encounter_records(JsonDocument(sequence / "sequence.json")))
+    for (const pipeline::NamedInterval& violation : record.violations)
+      violated.insert(violation.volume);
+  for (const std::string& name : violated) ++status.violated[name];
+}
+
 }  // namespace
 
 Status status(const fs::path& root) {
@@ -262,12 +272,17 @@ Status status(const fs::path& root) {
   Status status;
   status.name = catalogue.name;
   status.sequences = expansion.size();
+  for (const std::string& name : catalogue.truth.volumes) status.violated[name] = 0;
+  for (const scene::TruthVolume& volume : catalogue.truth.own_volumes)
+    status.violated[volume.name] = 0;
+  const bool has_volumes = !status.violated.empty();
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     const catalogue::Item item = expansion.at(i);
     const fs::path place = folder.sequence(item);
-    if (folder.holds(item))
+    if (folder.holds(item)) {
       ++status.whole;
-    else if (status.missing.size() < kMaxNamed)
+      if (has_volumes) count_violations(place, status);
+    } else if (status.missing.size() < kMaxNamed)
       status.missing.push_back(item.name);
     if (fs::exists(place.parent_path() / ("." + item.name + ".part"))) ++status.half;
   }
