@@ -474,8 +474,10 @@ TEST_F(Made, WhatIsTooFaintOrTooSmallCountsNeitherWay) {
   options.min_size_px = 1e6;
   const fs::path yolo = fresh();
   EXPECT_EQ(export_set(set(), yolo, options).faint, std::ssize(contrasts));
-  for (const auto& entry : fs::recursive_directory_iterator(yolo / "labels"))
-    if (entry.is_regular_file()) EXPECT_EQ(fs::file_size(entry.path()), 0) << entry.path();
+  for (const auto& entry : fs::recursive_directory_iterator(yolo / "labels")) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_EQ(fs::file_size(entry.path()), 0) << entry.path();
+  }
 }
 
 TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
