@@ -51,6 +51,8 @@ struct Label {
   std::optional<bool> truncated;
   std::optional<double> range_m;
   std::optional<bool> above_horizon;
+  // As IntruderTruth::contrast_to_noise in <airtruth/truth.h>.
+  std::optional<double> contrast_to_noise;
   // Area of the object's pixels: those of the covered box with at least its coverage, or what the
   // set states (COCO's `area`). Where it is empty, an object's area is that of its box.
   std::optional<double> area_px;

@@ -102,6 +102,9 @@ struct IntruderTruth {
   std::optional<std::int64_t> covered_area_px;
   // Bounds of the pixels that changed; present exactly where the state is kVisible.
   std::optional<PixelBox> visible_box_px;
+  // Root mean square difference of the covered box (else the visible one) from its surroundings
+  // over their noise, in the picture before it is encoded; empty in older files.
+  std::optional<double> contrast_to_noise;
   // Number of pixels that changed.
   std::int64_t visible_area_px = 0;
   // Sum of the visible coverage, in pixels, and its centroid.

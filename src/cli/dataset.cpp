@@ -168,6 +168,20 @@ void add_export(CLI::App& group, Context& context) {
                     out->options.mot_classes,
                     "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
                     "one class that MOT17's evaluation counts)");
+  command
+      ->add_option("--min-contrast",
+                   out->options.min_contrast,
+                   "Boxes with a lower contrast to noise count neither way: COCO's iscrowd, VOC's "
+                   "difficult and MOT's seventh column say so; others leave them out (default: 0)")
+      ->check(CLI::Range(0.0, 1e6));
+  command
+      ->add_option("--min-size",
+                   out->options.min_size_px,
+                   "The same for boxes whose longer side has fewer pixels (default: 0)")
+      ->check(CLI::Range(0.0, 1e6));
+  command->add_flag("--drop-faint",
+                    out->options.drop_faint,
+                    "Leave out what --min-contrast and --min-size refuse, in every format");
   add_jobs(*command, out->options.jobs, "Sequences at a time (default: one per core)");
 }
 
@@ -352,6 +366,10 @@ void say_what_is_drawn(const build::Plan& plan, Console& console) {
         fmt::format("types: {} ({} types, {} liveries)", types, plan.aircraft.size(), liveries));
   if (plan.sizes_px.count() > 0) console.result("sizes: " + spread_words(plan.sizes_px, "px"));
   if (plan.ranges_m.count() > 0) console.result("ranges: " + spread_words(plan.ranges_m, "m"));
+  if (plan.draws > 0)
+    console.result(fmt::format("in view: {} draws for the intruders of encounter models; {} never",
+                               plan.draws,
+                               plan.never_in_view));
   if (plan.not_flyable == 0) return;
   for (const std::string& words : plan.not_flyable_words) console.warning(words);
   console.warning(fmt::format("{} of {} intruders have a path that their type cannot fly",
@@ -400,6 +418,10 @@ void status(const DatasetArguments& arguments, Context& context) {
                              status.half > 0 ? fmt::format(", {} begun", status.half) : "",
                              status.at_work ? ", a build is at work" : "",
                              status.complete ? "; complete" : ""));
+  std::string violated;
+  for (const auto& [name, sequences] : status.violated)
+    violated += fmt::format("{}{} in {}", violated.empty() ? "" : ", ", name, sequences);
+  if (!violated.empty()) console.result("  volumes violated, in sequences: " + violated);
   for (const std::string& name : status.missing) console.result("  missing: " + name);
 }
 

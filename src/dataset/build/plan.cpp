@@ -30,8 +30,12 @@ class Planner {
   explicit Planner(const catalogue::Catalogue& catalogue)
       : catalogue_(catalogue), facts_(catalogue.backgrounds.size()) {}
 
-  void add(const catalogue::Item& item) {
+  void add(catalogue::Item& item) {
     const Facts& facts = facts_of(item.background);
+    const catalogue::Draws draws = catalogue::draw_in_view(
+        item, {.width = facts.width, .height = facts.height, .frame_rate_hz = facts.frame_rate_hz});
+    plan_.draws += draws.drawn;
+    plan_.never_in_view += draws.unseen;
     const std::int64_t frames = frames_of(item, facts);
     ++plan_.sequences;
     plan_.frames += frames;
@@ -72,6 +76,8 @@ class Planner {
     double frame_rate_hz = 0;
     // Pixels of a frame relative to 1280x960.
     double size = 1;
+    int width = 0;
+    int height = 0;
   };
 
   // Facts of a background in use; the first call also counts the cost of the background itself.
@@ -81,7 +87,9 @@ class Planner {
     const video::StreamInfo info = stream_of(background);
     Facts& facts = facts_[i].emplace(Facts{info.frame_count_estimate,
                                            info.frame_rate.value(),
-                                           double(info.width) * info.height / kUsualPixels});
+                                           double(info.width) * info.height / kUsualPixels,
+                                           info.width,
+                                           info.height});
     const double whole = static_cast<double>(facts.frames) * facts.size;
     if (std::holds_alternative<synthetic::FlightOptions>(background.source))
       plan_.core_s += whole * kCoreSecondsPerFlownFrame;
@@ -160,7 +168,7 @@ Plan plan_of(const catalogue::Catalogue& catalogue,
   Planner planner(catalogue);
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     if (stop.stop_requested()) throw Interrupted();
-    const catalogue::Item item = expansion.at(i);
+    catalogue::Item item = expansion.at(i);
     planner.add(item);
     if (each) each(item);
   }

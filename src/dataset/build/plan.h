@@ -54,6 +54,10 @@ struct Plan {
   std::vector<std::string> not_flyable_words;
   // A number that a message can name: a choice.
   static constexpr std::size_t kMaxNamed = 5;
+  // Draws of [[encounter_model]] until an intruder was in view, and intruders that no draw brought
+  // there.
+  std::int64_t draws = 0;
+  std::int64_t never_in_view = 0;
   // Estimated time on one core, in seconds, including calibration_s.
   double core_s = 0;
   // Estimated time for measuring cameras, in seconds; each background counts once.

@@ -2,6 +2,7 @@
 #include "dataset/build/verify.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
@@ -12,11 +13,14 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
+#include "foundation/base/median.h"
+#include "foundation/image/contrast_to_noise.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/lens_facts.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/insertion/masks.h"
+#include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
 #include "sequence/replay/recompose.h"
 
@@ -26,6 +30,12 @@ namespace {
 constexpr std::size_t kMaxNamed = 100;  // of the missing sequences: what a terminal shows
 // Results that wait for their place in the order, so that memory does not grow with the set.
 constexpr std::int64_t kMaxHeldResults = 4096;
+
+// Contrasts below this are mostly noise, which a codec changes; fewer frames have no sure median;
+// and the factor that the default quality stays within (docs/formats/truth.md).
+constexpr double kSureContrast = 3;
+constexpr std::ptrdiff_t kMostlySeen = 5;
+constexpr double kCodecFactor = 2;
 
 catalogue::Catalogue catalogue_of(const catalogue::Folder& folder) {
   if (!fs::exists(folder.catalogue()))
@@ -101,10 +111,15 @@ class Check {
     const int width = reader.info().width;
     const int height = reader.info().height;
     std::size_t frames = 0;
-    while (reader.next()) ++frames;
+    while (const auto frame = reader.next()) {
+      if (frames < finished.truth.frames.size())
+        contrast(finished, finished.truth.frames[frames], frame->picture);
+      ++frames;
+    }
     if (frames != finished.truth.frames.size())
       fault("the video has " + std::to_string(frames) + " frames and truth.jsonl " +
             std::to_string(finished.truth.frames.size()));
+    contrast_of_all();
     const lens::Lens lens = annotation::lens_of(finished.truth.lens);
     for (const annotation::Frame& frame : finished.truth.frames)
       for (const annotation::Intruder& intruder : frame.intruders) {
@@ -153,6 +168,36 @@ class Check {
     return box.width > 0 && box.height > 0 && intersection(frame, box) == box;
   }
 
+  // The stated contrast to noise is of the picture before it is encoded; that of the video is
+  // measured here. A codec with loss takes noise away and adds its own: there the median decides.
+  void contrast(const replay::Finished& finished,
+                const annotation::Frame& frame,
+                const image::Picture& picture) {
+    if (!finished.scene) return;
+    const bool is_lossless = finished.scene->output.video == scene::OutputVideo::kMkv;
+    for (const annotation::Intruder& intruder : frame.intruders) {
+      const auto box = annotation::box_to_show(intruder);
+      if (!box || !intruder.contrast_to_noise) continue;
+      const auto measured = image::contrast_to_noise(picture, *box);
+      if (!measured ||
+          (is_lossless && !(std::abs(*measured - *intruder.contrast_to_noise) <= 1e-9 * *measured)))
+        fault(words_of(frame, intruder) +
+              fmt::format("a contrast to noise of {:.3g}, and the video shows {:.3g}",
+                          *intruder.contrast_to_noise,
+                          measured.value_or(0)));
+      else if (*intruder.contrast_to_noise >= kSureContrast && *measured > 0)
+        contrast_ratios_.push_back(*intruder.contrast_to_noise / *measured);
+    }
+  }
+
+  void contrast_of_all() {
+    if (std::ssize(contrast_ratios_) < kMostlySeen) return;
+    const double ratio = median(contrast_ratios_);
+    if (ratio > kCodecFactor || ratio < 1 / kCodecFactor)
+      fault(fmt::format("its contrasts to noise are {:.3g} times those of the video, in the median",
+                        ratio));
+  }
+
   // Every visible intruder has a mask, no other mask exists, and the mask's pixels are those of the
   // covered box.
   void mask(const replay::Finished& finished,
@@ -175,6 +220,7 @@ class Check {
   fs::path folder_;
   const VerifyOptions& options_;
   VerifyResult result_;
+  std::vector<double> contrast_ratios_;  // stated to measured
 };
 
 void add(const VerifyResult& one, VerifyResult& all) {
@@ -208,6 +254,15 @@ void check_manifest(const catalogue::Folder& folder, VerifyResult& result) {
   }
 }
 
+void count_violations(const fs::path& sequence, Status& status) {
+  std::set<std::string> violated;
+  for (const pipeline::EncounterRecord& record :
+       pipeline::read_encounter_records(JsonDocument(sequence / "sequence.json")))
+    for (const pipeline::NamedInterval& violation : record.violations)
+      violated.insert(violation.volume);
+  for (const std::string& name : violated) ++status.violated[name];
+}
+
 }  // namespace
 
 Status status(const fs::path& root) {
@@ -217,12 +272,17 @@ Status status(const fs::path& root) {
   Status status;
   status.name = catalogue.name;
   status.sequences = expansion.size();
+  for (const std::string& name : catalogue.truth.volumes) status.violated[name] = 0;
+  for (const scene::TruthVolume& volume : catalogue.truth.own_volumes)
+    status.violated[volume.name] = 0;
+  const bool has_volumes = !status.violated.empty();
   for (std::int64_t i = 0; i < expansion.size(); ++i) {
     const catalogue::Item item = expansion.at(i);
     const fs::path place = folder.sequence(item);
-    if (folder.holds(item))
+    if (folder.holds(item)) {
       ++status.whole;
-    else if (status.missing.size() < kMaxNamed)
+      if (has_volumes) count_violations(place, status);
+    } else if (status.missing.size() < kMaxNamed)
       status.missing.push_back(item.name);
     if (fs::exists(place.parent_path() / ("." + item.name + ".part"))) ++status.half;
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct Status {
   // True while a build is running.
   bool at_work = false;
   bool complete = false;  // dataset.json exists
+  // By the name of each volume that [truth] asks for: whole sequences in which an intruder violates
+  // it at any time, as their records say.
+  std::map<std::string, std::int64_t> violated;
 };
 Status status(const fs::path& root);
 

@@ -57,6 +57,8 @@ Background background_from(const TableReader& table) {
   background.mask = table.path("mask");
   background.first_frame = table.whole("first_frame", 0, kMost).value_or(0);
   background.frame_rate_hz = table.number("frame_rate_hz", scene::kFrameRate_hz);
+  const scene::Limits weight{.expected = "a weight from 0.001 to 1e6", .low = 0.001, .high = 1e6};
+  background.weight = table.number("weight", weight).value_or(background.weight);
   background.lens = scene::lens_in(table);
   background.motion = scene::motion_in(table);
   background.camera = scene::camera_in(table, background.motion, background.first_frame);
@@ -144,6 +146,7 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
                                                                          "mask",
                                                                          "first_frame",
                                                                          "frame_rate_hz",
+                                                                         "weight",
                                                                          "lens",
                                                                          "camera",
                                                                          "motion",

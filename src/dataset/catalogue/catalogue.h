@@ -42,6 +42,8 @@ struct Background {
   scene::CameraModel camera_model;
   scene::Realism realism;
   scene::Light light;
+  // How often rules draw it, relative to others.
+  double weight = 1;
   Where where;
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "aircraft/fleet/flight_limits.h"
+#include "dataset/catalogue/catalogue.h"
+#include "encounter/pairing/strata.h"
 #include "foundation/geometry/transform.h"
 
 namespace airtruth::catalogue {
@@ -108,13 +110,34 @@ void draw_place(Random& random, const MeetingPlace& place, Encounter& encounter)
   encounter.heading_deg = drawn(random, place.heading_deg);
 }
 
-DrawnSequence draw(const Drawn& rule, std::uint64_t seed_value, std::int64_t index) {
+std::size_t stratified_background(const std::vector<std::size_t>& among,
+                                  const std::vector<Background>& backgrounds,
+                                  std::uint64_t seed,
+                                  std::int64_t count,
+                                  std::int64_t index) {
+  const pairing::Strata strata(
+      Seed(seed).stream("background")(), static_cast<std::uint64_t>(count), 1);
+  double sum = 0;
+  for (const std::size_t place : among) sum += backgrounds[place].weight;
+  double left = sum * strata.at(static_cast<std::uint64_t>(index % count), 0);
+  for (const std::size_t place : among) {
+    left -= backgrounds[place].weight;
+    if (left < 0) return place;
+  }
+  return among.back();
+}
+
+DrawnSequence draw(const Drawn& rule,
+                   const std::vector<Background>& backgrounds,
+                   std::uint64_t seed_value,
+                   std::int64_t index) {
   const Seed seed(seed_value);
   const auto number = static_cast<std::uint64_t>(index);
   const auto stream = [&](const std::string& of) { return seed.stream(of + rule.name, number); };
   DrawnSequence result;
   Random random = stream("sequence ");
-  result.background = one_of(random, rule.backgrounds);
+  result.background = stratified_background(
+      rule.backgrounds, backgrounds, seed.stream("of " + rule.name)(), rule.count, index);
   result.encounters.push_back(
       drawn_encounter(random, {stream("bank of sequence "), stream("path of sequence ")}, rule));
   if (rule.sun_azimuth_deg) result.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);

@@ -12,6 +12,8 @@
 // The random values of a rule of [[random]] for one sequence. No file is read for them.
 namespace airtruth::catalogue {
 
+struct Background;
+
 // The geometry with which an intruder passes the camera.
 struct Encounter {
   // A name of the aircraft list.
@@ -45,11 +47,22 @@ struct DrawnSequence {
   double start_share = 0;
 };
 
-// Draws sequence `index` of a rule; the result depends on rule, seed and index alone. Types are
-// equally frequent, and so are the liveries of each type. Among any n consecutive sequences the
-// number without an intruder is within one of n times the share `negatives`. Sizes and ranges have
-// a uniform logarithm.
-DrawnSequence draw(const Drawn& rule, std::uint64_t seed, std::int64_t index);
+// Draws sequence `index` of a rule; the result depends on rule, backgrounds, seed and index alone.
+// Types are equally frequent, and so are the liveries of each type. Among any n consecutive
+// sequences the number without an intruder is within one of n times the share `negatives`. Sizes
+// and ranges have a uniform logarithm.
+DrawnSequence draw(const Drawn& rule,
+                   const std::vector<Background>& backgrounds,
+                   std::uint64_t seed,
+                   std::int64_t index);
+
+// The background of sequence `index` of `count`, one of `among`: each has its weight's share of all
+// sequences, within one.
+std::size_t stratified_background(const std::vector<std::size_t>& among,
+                                  const std::vector<Background>& backgrounds,
+                                  std::uint64_t seed,
+                                  std::int64_t count,
+                                  std::int64_t index);
 
 // True for a share of the sequences of a rule: of any n in a row for n times that, within one. The
 // seed and `what` decide for which.

@@ -55,7 +55,7 @@ TEST(Drawing, TypesComeOutEvenAndSoDoTheirLiveries) {
   std::map<std::string, int> liveries;
   int c172 = 0;
   for (std::int64_t i = 0; i < kMany; ++i) {
-    const std::string name = draw(rule, 1, i).encounters[0].aircraft;
+    const std::string name = draw(rule, catalogue.backgrounds, 1, i).encounters[0].aircraft;
     ++liveries[name];
     c172 += name.starts_with("c172/") ? 1 : 0;
   }
@@ -74,7 +74,7 @@ TEST(Drawing, NegativesAreTheShareThatWasAskedFor) {
     rule.negatives = share;
     int negatives = 0;
     for (std::int64_t i = 0; i < 1000; ++i) {
-      negatives += draw(rule, 7, i).encounters.empty() ? 1 : 0;
+      negatives += draw(rule, catalogue.backgrounds, 7, i).encounters.empty() ? 1 : 0;
       EXPECT_NEAR(negatives, share * static_cast<double>(i + 1), 1) << share;
     }
   }
@@ -87,7 +87,8 @@ TEST(Drawing, SizesAreEvenInTheirLogarithm) {
       with_random("aircraft = [\"c172/*\", \"738/*\"]\nsize_px = [8, 128]\n");
   std::array<int, 8> bins{};
   for (std::int64_t i = 0; i < kMany; ++i) {
-    const double size = *draw(rule_of(catalogue), 1, i).encounters[0].size_px;
+    const double size =
+        *draw(rule_of(catalogue), catalogue.backgrounds, 1, i).encounters[0].size_px;
     ASSERT_GE(size, 8);
     ASSERT_LT(size, 128);
     ++bins[static_cast<std::size_t>(8 * std::log(size / 8) / std::log(16.0))];
@@ -100,7 +101,7 @@ TEST(Drawing, TheNumberOfIntrudersIsEvenOverItsRange) {
   std::array<int, 4> counts{};
   std::set<double> speeds;
   for (std::int64_t i = 0; i < kMany; ++i) {
-    const DrawnSequence drawn = draw(rule_of(catalogue), 1, i);
+    const DrawnSequence drawn = draw(rule_of(catalogue), catalogue.backgrounds, 1, i);
     ASSERT_GE(drawn.encounters.size(), 1u);
     ASSERT_LE(drawn.encounters.size(), 3u);
     ++counts[drawn.encounters.size()];
@@ -196,7 +197,7 @@ TEST(Drawing, TheTimeOfDaySuitsTheTypeAndIsLight) {
       "day_of_year = 172\n");
   const double lowest_of_a_glider = sun_position(18, 50, 172).elevation_deg;
   for (std::int64_t i = 0; i < 500; ++i) {
-    const DrawnSequence drawn = draw(rule_of(catalogue), 1, i);
+    const DrawnSequence drawn = draw(rule_of(catalogue), catalogue.backgrounds, 1, i);
     EXPECT_GE(*drawn.sun_elevation_deg, kLowestSunDeg - 1e-9);
     if (drawn.encounters[0].aircraft.starts_with("centrair")) {
       EXPECT_GE(*drawn.sun_elevation_deg, lowest_of_a_glider - 1e-9);

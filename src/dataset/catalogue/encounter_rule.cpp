@@ -16,11 +16,13 @@
 #include "dataset/catalogue/folder.h"
 #include "dataset/catalogue/meeting.h"
 #include "encounter/encounter_model/sampler.h"
+#include "encounter/pairing/strata.h"
 #include "encounter/sets/draw_encounter.h"
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/moment.h"
 
 namespace airtruth::catalogue {
 namespace {
@@ -97,6 +99,7 @@ void read_geometry(const TableReader& table, EncounterRule& rule) {
   geometry.hmd_m = distribution_in(table, "hmd_m", "hmd_shares", kMiss, geometry.hmd_m);
   geometry.vmd_m = distribution_in(table, "vmd_m", "vmd_shares", kMiss, geometry.vmd_m);
   geometry.course_deg = distribution_in(table, "course_deg", "", kCourse, geometry.course_deg);
+  rule.states_speed = table.has("speed_mps");
   geometry.speed_mps =
       distribution_in(table, "speed_mps", "", kHorizontalSpeed, geometry.speed_mps);
   geometry.climb_mps = distribution_in(table, "climb_mps", "", kClimb, geometry.climb_mps);
@@ -138,6 +141,11 @@ EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   const Limits share{.expected = "a share from 0 to 1", .low = 0, .high = 1};
   rule.negatives = table.number("negatives", share).value_or(catalogue.negatives);
   rule.two_intruders = table.number("two_intruders", share).value_or(0);
+  rule.in_view = table.truth("in_view").value_or(true);
+  const Limits seen{.expected = "seconds from 0 to 3600", .low = 0, .high = 3600};
+  rule.seen_s = table.number("seen_s", seen).value_or(rule.seen_s);
+  if (!rule.in_view && table.has("seen_s"))
+    table.fail("seen_s", "seen_s is for in_view = true, and in_view is false");
   read_geometry(table, rule);
   const auto kind = table.choice("kind", {kBayes, kGeometric});
   if (!kind) throw Error("has no kind; expected \"bayes\" or \"geometric\"", table.where());
@@ -174,11 +182,11 @@ std::vector<EncounterRule> encounter_rules(const TableReader& root, const Catalo
   std::vector<EncounterRule> rules;
   for (const TableReader& table :
        root.tables("encounter_model",
-                   {"name",         "kind",      "model",      "count",         "frame_count",
-                    "backgrounds",  "aircraft",  "domains",    "airspaces",     "altitude_ft",
-                    "cpa_time_s",   "hmd_m",     "hmd_shares", "vmd_m",         "vmd_shares",
-                    "course_deg",   "speed_mps", "climb_mps",  "turn_rate_dps", "negatives",
-                    "two_intruders"}))
+                   {"name",          "kind",      "model",      "count",         "frame_count",
+                    "backgrounds",   "aircraft",  "domains",    "airspaces",     "altitude_ft",
+                    "cpa_time_s",    "hmd_m",     "hmd_shares", "vmd_m",         "vmd_shares",
+                    "course_deg",    "speed_mps", "climb_mps",  "turn_rate_dps", "negatives",
+                    "two_intruders", "in_view",   "seen_s"}))
     rules.push_back(rule_from(table, catalogue));
   refuse_same_files(rules);
   return rules;
@@ -193,6 +201,8 @@ constexpr std::uint64_t kMaxTracks = 100;  // that are drawn for one intruder: c
 // Where the indices of a next intruder and of a next attempt begin; sets are smaller.
 constexpr std::uint64_t kNextIntruder = std::uint64_t{1} << 56;
 constexpr std::uint64_t kNextAttempt = std::uint64_t{1} << 48;
+constexpr std::int64_t kMostLooks = 1000;  // at a clip, for what is in view: chosen
+constexpr std::uint64_t kNextDraw = std::uint64_t{1} << 40;
 
 // What a track asks of an aircraft.
 struct Demands {
@@ -238,6 +248,7 @@ double strain(const fleet::FlightLimits& limits, const Demands& demands) {
 struct Fitting {
   std::vector<const AircraftType*> types;
   bool can_fly = false;
+  std::vector<const AircraftType*> able;  // all that fly it
 };
 Fitting fitting_types(const EncounterRule& rule, const Demands& demands) {
   std::vector<const AircraftType*> usual, able, nearest;
@@ -254,8 +265,8 @@ Fitting fitting_types(const EncounterRule& rule, const Demands& demands) {
         demands.mean_mps <= limits->usual_high_mps)
       usual.push_back(&type);
   }
-  if (able.empty()) return {nearest, false};
-  return {usual.empty() ? able : usual, true};
+  if (able.empty()) return {nearest, false, {}};
+  return {usual.empty() ? able : usual, true, able};
 }
 
 track::Track own_track(const scene::Scene& scene, const EncounterRule& rule) {
@@ -314,11 +325,15 @@ Passage from_model(const EncounterRule& rule, const track::Track& own, std::uint
 
 Passage from_geometry(const EncounterRule& rule,
                       const track::Track& own,
+                      const AircraftType& wanted,
                       std::uint64_t index,
                       std::uint64_t intruder) {
   const std::uint64_t seed = Seed(rule.seed).stream("geometry of intruder", intruder)();
-  const pairing::GeometricSampler sampler(
-      rule.geometry, seed, static_cast<std::uint64_t>(rule.count));
+  pairing::GeometricOptions options = rule.geometry;
+  const auto* limits = fleet::flight_limits(wanted.name);
+  if (!rule.states_speed && limits != nullptr)
+    options.speed_mps = pairing::Distribution({limits->usual_low_mps, limits->usual_high_mps});
+  const pairing::GeometricSampler sampler(options, seed, static_cast<std::uint64_t>(rule.count));
   const pairing::Geometry geometry = sampler.draw(index);
   Passage passage{pairing::geometric_track(own, geometry, -kMargin_s, rule.length_s + kMargin_s),
                   1};
@@ -342,35 +357,123 @@ bool has_second(const EncounterRule& rule, std::int64_t index) {
   return std::fmod(turned, 1.0) < rule.two_intruders;
 }
 
-}  // namespace
-
-std::size_t background_of(const EncounterRule& rule, std::int64_t index) {
-  Random random = Seed(rule.seed).stream("background", static_cast<std::uint64_t>(index));
-  return one_of(random, rule.backgrounds);
+// The type of an intruder, each as often as the others within one in the whole rule.
+const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k) {
+  const pairing::Strata strata(
+      Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
+  return rule
+      .types[static_cast<std::size_t>(strata.at(index % static_cast<std::uint64_t>(rule.count), 0) *
+                                      static_cast<double>(rule.types.size()))];
 }
 
-void add_encounter(scene::Scene& scene, const EncounterRule& rule, std::int64_t index) {
-  if (is_chosen("negatives", rule.negatives, rule.seed, index)) return;
-  const bool has_two = has_second(rule, index);
-  const track::Track own = own_track(scene, rule);
+// How long the reference point of an intruder is in the view, in all.
+double seen_s(const scene::Intruder& intruder, const scene::Camera& camera, const Views& views) {
+  const trajectory::Path own = setup::camera_path(camera);
+  const trajectory::Path path = setup::path_of(intruder, own);
+  const lens::ImageSize size = views.lens.size();
+  std::int64_t frames = 0;
+  // Of a long clip not every frame is looked at.
+  const std::int64_t step = 1 + views.frames / kMostLooks;
+  for (std::int64_t i = 0; i < views.frames; i += step) {
+    const double time_s = static_cast<double>(i) / views.frame_rate_hz;
+    const auto from = own.at(time_s);
+    const auto to = path.at(time_s);
+    if (!from || !to) continue;
+    const projection::Sight sight = setup::sight_of(views.lens, {}, own, *from, time_s, {});
+    const auto pixel = views.lens.pixel_from_cam(sight.cam_from_world * to->position_in_world);
+    frames += pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < size.width &&
+                      pixel->y() < size.height
+                  ? step
+                  : 0;
+  }
+  return static_cast<double>(frames) / views.frame_rate_hz;
+}
+
+struct DrawnIntruder {
+  scene::Intruder intruder;
   double weight = 1;
-  for (std::uint64_t k = 0; k < (has_two ? 2 : 1); ++k) {
-    const std::uint64_t number = static_cast<std::uint64_t>(index) + k * kNextIntruder;
-    Passage passage = rule.tracks ? from_model(rule, own, number)
-                                  : from_geometry(rule, own, static_cast<std::uint64_t>(index), k);
-    weight *= passage.weight;
-    Random random = Seed(rule.seed).stream("aircraft", number);
-    const AircraftType& type =
-        *one_of(random, fitting_types(rule, demands_of(passage.track)).types);
-    scene::Intruder intruder;
-    intruder.id = rule.two_intruders > 0 ? fmt::format("intruder-{}", k + 1) : "intruder";
-    intruder.aircraft = one_of(random, type.liveries);
-    intruder.waypoints_ned_m = std::move(passage.track.positions_ned_m);
-    intruder.times_s = std::move(passage.track.times_s);
-    intruder.where = rule.where;
-    scene.intruders.push_back(std::move(intruder));
+};
+
+DrawnIntruder drawn_intruder(const EncounterRule& rule,
+                             const track::Track& own,
+                             std::uint64_t index,
+                             std::uint64_t k,
+                             std::uint64_t draw) {
+  const std::uint64_t number = index + k * kNextIntruder + draw * kNextDraw;
+  const AircraftType& wanted = wanted_type(rule, index, k);
+  Passage passage = rule.tracks ? from_model(rule, own, number)
+                                : from_geometry(rule, own, wanted, index, k + draw * kNextDraw);
+  Random random = Seed(rule.seed).stream("aircraft", number);
+  const Fitting fitting = fitting_types(rule, demands_of(passage.track));
+  const bool suits =
+      std::find(fitting.able.begin(), fitting.able.end(), &wanted) != fitting.able.end();
+  const AircraftType& type = suits ? wanted : *one_of(random, fitting.types);
+  DrawnIntruder drawn{{}, passage.weight};
+  scene::Intruder& intruder = drawn.intruder;
+  intruder.id = rule.two_intruders > 0 ? fmt::format("intruder-{}", k + 1) : "intruder";
+  intruder.aircraft = one_of(random, type.liveries);
+  intruder.waypoints_ned_m = std::move(passage.track.positions_ned_m);
+  intruder.times_s = std::move(passage.track.times_s);
+  intruder.where = rule.where;
+  return drawn;
+}
+
+// An intruder that is in view for as long as the rule asks, or the longest of all that were drawn.
+DrawnIntruder seen_intruder(const EncounterRule& rule,
+                            const scene::Camera& camera,
+                            const track::Track& own,
+                            std::uint64_t index,
+                            std::uint64_t k,
+                            const Views& views,
+                            Draws& draws) {
+  DrawnIntruder longest;
+  double longest_s = -1;
+  for (std::uint64_t draw = 0; draw < kMostDraws; ++draw) {
+    DrawnIntruder one = drawn_intruder(rule, own, index, k, draw);
+    const double now_s = seen_s(one.intruder, camera, views);
+    ++draws.drawn;
+    if (now_s <= longest_s) continue;
+    longest_s = now_s;
+    longest = std::move(one);
+    if (longest_s >= rule.seen_s) return longest;
+  }
+  ++draws.unseen;
+  return longest;
+}
+
+}  // namespace
+
+std::size_t background_of(const EncounterRule& rule,
+                          const std::vector<Background>& backgrounds,
+                          std::int64_t index) {
+  return stratified_background(rule.backgrounds, backgrounds, rule.seed, rule.count, index);
+}
+
+Draws add_encounter(scene::Scene& scene,
+                    const EncounterRule& rule,
+                    std::int64_t index,
+                    const Views* views) {
+  Draws draws;
+  if (is_chosen("negatives", rule.negatives, rule.seed, index)) return draws;
+  const track::Track own = own_track(scene, rule);
+  const auto number = static_cast<std::uint64_t>(index);
+  const double clip_s =
+      views == nullptr ? 0 : static_cast<double>(views->frames) / views->frame_rate_hz;
+  if (views != nullptr && rule.in_view && rule.seen_s > clip_s)
+    throw Error(fmt::format("seen_s is {:.3g}, and the clip lasts {:.3g} s; expected at most that",
+                            rule.seen_s,
+                            clip_s),
+                rule.where);
+  double weight = 1;
+  for (std::uint64_t k = 0; k < (has_second(rule, index) ? 2u : 1u); ++k) {
+    DrawnIntruder one = views != nullptr && rule.in_view
+                            ? seen_intruder(rule, scene.camera, own, number, k, *views, draws)
+                            : drawn_intruder(rule, own, number, k, 0);
+    weight *= one.weight;
+    scene.intruders.push_back(std::move(one.intruder));
   }
   if (rule.tracks) scene.weight = weight;
+  return draws;
 }
 
 }  // namespace airtruth::catalogue

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/lens/lens.h"
 #include "dataset/catalogue/drawn_rule.h"
 #include "encounter/pairing/geometric.h"
 #include "foundation/base/error.h"
@@ -23,10 +24,11 @@ namespace airtruth::catalogue {
 
 namespace fs = std::filesystem;
 
+struct Background;
 struct Catalogue;
 
 // A rule for encounters: intruders that pass the own aircraft as a model of traffic or a stated
-// geometry says, whether or not the camera sees them (encounter/pairing/pair.h).
+// geometry says (encounter/pairing/pair.h).
 struct EncounterRule {
   std::string name;  // pattern with {index}
   Where where;
@@ -47,6 +49,26 @@ struct EncounterRule {
   // Shares of the sequences, from 0 to 1: without an intruder, and of the others with two.
   double negatives = 0;
   double two_intruders = 0;
+  // True: an intruder is drawn again until its reference point is in the view of the nominal camera
+  // for `seen_s` in all.
+  bool in_view = true;
+  double seen_s = 1;
+  // False: the speed of a geometry is a usual one of the type.
+  bool states_speed = false;
+};
+
+// What the camera of a background looks through, and when.
+struct Views {
+  lens::Lens lens;
+  std::int64_t frames = 0;
+  double frame_rate_hz = 0;
+};
+
+// How often the intruders of a sequence were drawn.
+struct Draws {
+  std::int64_t drawn = 0;
+  // Intruders that no draw brought into view; the draw that brought them there longest is kept.
+  std::int64_t unseen = 0;
 };
 
 // Encounters are drawn before the frame rate of a video is known, for clips of this rate or more.
@@ -62,17 +84,26 @@ std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
                                            const Catalogue& catalogue);
 
 // The background of sequence `index`.
-std::size_t background_of(const EncounterRule& rule, std::int64_t index);
+std::size_t background_of(const EncounterRule& rule,
+                          const std::vector<Background>& backgrounds,
+                          std::int64_t index);
 
 // Gives the scene, whose camera is the own aircraft, the intruders of sequence `index` and, where
 // they come from a model, its weight: the product of those of the intruders. A negative sequence
-// gets none. The aircraft is one of the rule whose class flies the track; at its usual speed where
-// there is one. Where the own aircraft is higher than kLowestFlightM, so is every intruder.
+// gets none. Types are taken evenly in turn where their class flies the track, else one that does,
+// at its usual speed where there is one. With `views` and a rule of in_view, an intruder is drawn
+// again where the camera does not see it, at most kMostDraws times. Where the own aircraft is
+// higher than kLowestFlightM, so is every intruder.
 //
 // A track of a model that is too low, or that no aircraft of the rule flies, is drawn again; its
 // closest approach falls on a whole second. Throws Error at the rule where no draw of many is
 // possible, where a stated geometry goes too low, or where the camera's path ends before the
 // closest approach.
-void add_encounter(scene::Scene& scene, const EncounterRule& rule, std::int64_t index);
+Draws add_encounter(scene::Scene& scene,
+                    const EncounterRule& rule,
+                    std::int64_t index,
+                    const Views* views = nullptr);
+
+constexpr std::uint64_t kMostDraws = 200;  // chosen
 
 }  // namespace airtruth::catalogue

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 
@@ -212,6 +213,83 @@ TEST_F(EncounterModel, ATrackBelowTheGroundIsRefusedOrDrawnAgain) {
     for (const Vector3& position : item.scene.intruders.at(0).waypoints_ned_m)
       EXPECT_LE(position.z(), -30);
   }
+}
+
+const BackgroundFiles kFilesOfSky = {
+    .video = "sky.mkv", .width = 160, .height = 120, .frame_rate_hz = 30, .frames = 240};
+
+// The pinhole of kBackground by its angles: tan of half of 75 degrees upright, 4/3 of it across.
+double in_view_s(const Item& item) {
+  const trajectory::Path own = setup::camera_path(item.scene.camera);
+  const trajectory::Path path = setup::path_of(item.scene.intruders[0], own);
+  const double up = std::tan(radians(37.5));
+  int frames = 0;
+  for (int i = 0; i < 240; ++i) {
+    const auto camera = own.at(i / 30.0);
+    const Vector3 p = camera->world_from_body.conjugate() *
+                      (path.at(i / 30.0)->position_in_world - camera->position_in_world);
+    frames += p.x() > 0 && std::abs(p.z()) < up * p.x() && std::abs(p.y()) < up * 4 / 3 * p.x();
+  }
+  return frames / 30.0;
+}
+
+TEST_F(EncounterModel, AnIntruderIsDrawnUntilTheCameraSeesIt) {
+  for (const std::string keys : {"kind = \"geometric\"\ncount = 30\n",
+                                 "kind = \"bayes\"\nmodel = \"small.txt\"\ncount = 8\n"}) {
+    const Catalogue seen = with(keys + "seen_s = 2.5\n");
+    const Catalogue any = with(keys + "in_view = false\n");
+    std::int64_t draws = 0, unseen_of_any = 0;
+    for (std::int64_t i = 0; i < Expansion(seen).size(); ++i) {
+      Item item = Expansion(seen).at(i);
+      const Draws of_one = draw_in_view(item, kFilesOfSky);
+      draws += of_one.drawn;
+      EXPECT_EQ(of_one.unseen, 0);
+      EXPECT_GE(in_view_s(item), 2.5 - 1e-9) << i;
+      Item placed = Expansion(seen).at(i);
+      place(placed, seen, kFilesOfSky);
+      EXPECT_EQ(placed.scene.intruders[0].waypoints_ned_m, item.scene.intruders[0].waypoints_ned_m);
+      Item first = Expansion(any).at(i);
+      EXPECT_EQ(draw_in_view(first, kFilesOfSky).drawn, 0);
+      unseen_of_any += in_view_s(first) < 2.5 ? 1 : 0;
+    }
+    EXPECT_GT(unseen_of_any, 0);
+    EXPECT_GE(draws, Expansion(seen).size() + unseen_of_any);
+  }
+}
+
+TEST_F(EncounterModel, WhatIsNeverInViewIsCounted) {
+  const Catalogue catalogue = with("kind = \"geometric\"\ncount = 3\nvmd_m = 50000\n");
+  const build::Plan plan = build::plan_of(catalogue, {}, {});
+  EXPECT_EQ(plan.never_in_view, 3);
+  EXPECT_EQ(plan.draws, 3 * static_cast<std::int64_t>(kMostDraws));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nin_view = false\nseen_s = 3\n"),
+              HasSubstr("seen_s is for in_view = true"));
+}
+
+// 9 sequences of three types, and of backgrounds whose weights are 1 and 2.
+TEST_F(EncounterModel, TypesAndBackgroundsComeInTheirShares) {
+  const std::string second = R"([[background]]
+name = "other"
+weight = 2
+flight = { seed = 4, frame_count = 240, width = 160, height = 120 }
+lens = { vertical_fov_deg = 75 }
+camera = { position_ned_m = [0, 0, -900], velocity_ned_mps = [40, 10, -1] }
+)";
+  const Catalogue catalogue = parse_catalogue(
+      second + kBackground + "kind = \"geometric\"\ncount = 9\n", folder_ / "c.toml");
+  std::map<std::string, int> types;
+  std::map<std::size_t, int> backgrounds;
+  for (std::int64_t i = 0; i < 9; ++i) {
+    Item item = Expansion(catalogue).at(i);
+    ++backgrounds[item.background];
+    draw_in_view(item, kFilesOfSky);
+    const std::string name = item.scene.intruders[0].aircraft;
+    ++types[name.substr(0, name.find('/'))];
+  }
+  EXPECT_THAT(types,
+              testing::ElementsAre(
+                  testing::Pair("738", 3), testing::Pair("Cub", 3), testing::Pair("c172", 3)));
+  EXPECT_THAT(backgrounds, testing::ElementsAre(testing::Pair(0, 6), testing::Pair(1, 3)));
 }
 
 }  // namespace

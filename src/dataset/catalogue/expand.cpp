@@ -2,12 +2,15 @@
 #include "dataset/catalogue/expand.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "dataset/catalogue/encounter_rule.h"
 #include "dataset/catalogue/meeting.h"
 #include "foundation/base/error.h"
+#include "sequence/setup/from_scene.h"
 
 namespace airtruth::catalogue {
 namespace {
@@ -81,7 +84,7 @@ Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) 
   Item item;
   item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
   item.rule = &rule;
-  item.drawn = draw(rule, catalogue.seed, index);
+  item.drawn = draw(rule, catalogue.backgrounds, catalogue.seed, index);
   item.background = item.drawn.background;
   item.frame_count = rule.frame_count;
   item.scene = scene_over(catalogue, item.background);
@@ -107,18 +110,19 @@ Item item_of(const Catalogue& catalogue, const EncounterRule& rule, std::int64_t
   Item item;
   item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
   item.frame_count = rule.frame_count;
-  item.background = background_of(rule, index);
+  item.background = background_of(rule, catalogue.backgrounds, index);
   item.scene = scene_over(catalogue, item.background);
-  item.encounter_s = rule.length_s;
+  item.encounter_rule = &rule;
+  item.index_in_rule = index;
   add_encounter(item.scene, rule, index);
   return item;
 }
 
 // A clip must not outlast the tracks of its encounter.
 void check_length(const Item& item, const BackgroundFiles& files) {
-  if (item.encounter_s == 0 || files.frame_rate_hz <= 0) return;
+  if (item.encounter_rule == nullptr || files.frame_rate_hz <= 0) return;
   const double clip_s = static_cast<double>(item.frame_count) / files.frame_rate_hz;
-  if (clip_s > item.encounter_s)
+  if (clip_s > item.encounter_rule->length_s)
     throw Error(
         fmt::format("{}: {} frames at {:.3g} a second are {:.1f} s; encounters are drawn for "
                     "{:.0f} s, expected 24 frames a second or more",
@@ -126,7 +130,7 @@ void check_length(const Item& item, const BackgroundFiles& files) {
                     item.frame_count,
                     files.frame_rate_hz,
                     clip_s,
-                    item.encounter_s),
+                    double(item.encounter_rule->length_s)),
         item.scene.background.where);
 }
 
@@ -194,6 +198,19 @@ std::int64_t random_first_frame(const Item& item,
 
 }  // namespace
 
+Draws draw_in_view(Item& item, const BackgroundFiles& files) {
+  if (item.encounter_rule == nullptr) return {};
+  check_length(item, files);
+  const Views views{setup::lens_of(item.scene.lens, {files.width, files.height}),
+                    item.frame_count,
+                    files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
+  std::erase_if(item.scene.intruders, scene::is_aircraft);
+  std::vector<scene::Intruder> distractors = std::exchange(item.scene.intruders, {});
+  const Draws draws = add_encounter(item.scene, *item.encounter_rule, item.index_in_rule, &views);
+  std::move(distractors.begin(), distractors.end(), std::back_inserter(item.scene.intruders));
+  return draws;
+}
+
 void place(Item& item,
            const Catalogue& catalogue,
            const BackgroundFiles& files,
@@ -204,7 +221,7 @@ void place(Item& item,
   placed.mask = files.mask;
   placed.first_frame = background.first_frame;
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
-  check_length(item, files);
+  draw_in_view(item, files);
   if (item.rule != nullptr && item.rule->start == ClipStart::kRandom)
     placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};

@@ -38,8 +38,10 @@ struct Item {
   DrawnSequence drawn;          // valid where there is a rule
   // In the scene already, with provisional places until place().
   DrawnDistractors distractors;
-  // Of a rule of [[encounter_model]]: how long its tracks are, in seconds of the clip; else 0.
-  double encounter_s = 0;
+  // Of a sequence of [[encounter_model]]: its rule, and its number there. Until place() its
+  // intruders are the first that are drawn, whether or not they are in view.
+  const EncounterRule* encounter_rule = nullptr;
+  std::int64_t index_in_rule = 0;
 };
 
 // The sequences of a catalogue by number, in the order of the file. Memory holds only the catalogue
@@ -59,6 +61,10 @@ class Expansion {
 // Makes a scene over the background with this index in the catalogue. It lacks [background],
 // intruders and name.
 scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);
+
+// Draws the intruders of a sequence of [[encounter_model]] for the size and rate of its
+// background's pictures, which `files` states. Any other item stays as it is.
+Draws draw_in_view(Item& item, const BackgroundFiles& files);
 
 // Gives an item's scene the files of its background, and gives random values their place in time
 // and space: the first frame, the meeting moment, and the range at which an aircraft has the

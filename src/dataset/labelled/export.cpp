@@ -54,6 +54,9 @@ Json options_json(const fs::path& set, const ExportOptions& options) {
                {"boxes", enum_name(options.boxes)},
                {"one_class", options.one_class}};
   if (options.mot_classes) json["mot_classes"] = true;
+  if (options.min_contrast > 0) json["min_contrast"] = options.min_contrast;
+  if (options.min_size_px > 0) json["min_size_px"] = options.min_size_px;
+  if (options.drop_faint) json["drop_faint"] = true;
   return json;
 }
 
@@ -163,7 +166,8 @@ class Export {
     write_file(place_.root() / "LOSS.md", exchange::loss(options_.format) + about_boxes());
     place_.finish({{"sequences", summary_.sequences},
                    {"frames", summary_.frames},
-                   {"frames_of_part", summary_.frames_of_part}});
+                   {"frames_of_part", summary_.frames_of_part},
+                   {"faint", summary_.faint}});
     return summary_;
   }
 
@@ -204,12 +208,51 @@ class Export {
   // A rendered sequence has its video and its size.
   void expect_held() const {
     for (const std::string& name : set_.names()) {
+      if (options_.min_contrast > 0) expect_contrast(name);
       if (!set_.is_imported(name)) continue;
       const exchange::Clip clip = clip_of(name);
       exchange::expect_held(options_.format, clip);
       if (*options_.images != Images::kNone && !place_.has_images_of(name))
         check_has_video(name, clip);
     }
+  }
+
+  void expect_contrast(const std::string& name) const {
+    std::int64_t known = 0, boxes = 0;
+    for (const exchange::LabelledFrame& frame : set_.clip(name, options_.boxes).frames)
+      for (const exchange::Label& label : frame.labels) {
+        ++boxes;
+        known += label.contrast_to_noise ? 1 : 0;
+      }
+    if (boxes > 0 && known == 0)
+      throw Error(
+          "states no contrast to noise of its boxes; expected a sequence that this version "
+          "rendered, or no --min-contrast",
+          {set_.folder(name).string()});
+  }
+
+  bool is_faint(const exchange::Label& label) const {
+    return label.contrast_to_noise.value_or(options_.min_contrast) < options_.min_contrast ||
+           std::max(label.box_px.width, label.box_px.height) < options_.min_size_px;
+  }
+
+  bool marks_faint() const {
+    return !options_.drop_faint && exchange::has_ignore_mark(options_.format);
+  }
+
+  // Marks or drops what is too faint or too small; returns how many boxes.
+  std::int64_t sift(exchange::Clip& clip) const {
+    std::int64_t faint = 0;
+    for (exchange::LabelledFrame& frame : clip.frames) {
+      for (exchange::Label& label : frame.labels) {
+        if (!is_faint(label)) continue;
+        ++faint;
+        label.object_class = exchange::kIgnore;
+      }
+      if (!marks_faint())
+        std::erase_if(frame.labels, [this](const auto& label) { return is_faint(label); });
+    }
+    return faint;
   }
 
   exchange::Clip clip_of(const std::string& name, bool with_masks = false) const {
@@ -244,7 +287,8 @@ class Export {
 
   void write_images_of(const std::string& name) {
     if (place_.has_images_of(name)) return;
-    const exchange::Clip clip = clip_of(name);
+    exchange::Clip clip = clip_of(name);
+    sift(clip);
     const std::string& part = parts_.at(name);
     const std::map<std::int64_t, std::vector<fs::path>> wanted = places_of(clip, part);
     video::Reader reader(clip.media, {.threads = 1});
@@ -296,7 +340,8 @@ class Export {
   void write_labels() {
     for (const std::string& name : set_.names()) {
       if (options_.stop.stop_requested()) throw Interrupted();
-      const exchange::Clip clip = clip_of(name, options_.format == exchange::Format::kCoco);
+      exchange::Clip clip = clip_of(name, options_.format == exchange::Format::kCoco);
+      summary_.faint += sift(clip);
       const std::string& part = parts_.at(name);
       count_boxes(clip, set_.is_imported(name));
       ++summary_.sequences;
@@ -330,6 +375,13 @@ class Export {
     std::string text = "\n";
     if (rendered_ > 0) text += boxes_text(options_.boxes);
     if (imported_ > 0) text += "Boxes of imported clips are as they were imported.\n";
+    if (options_.min_contrast > 0 || options_.min_size_px > 0)
+      text += fmt::format(
+          "\n{} boxes with a contrast to noise below {} or a longer side below {} px are {}.\n",
+          summary_.faint,
+          options_.min_contrast,
+          options_.min_size_px,
+          marks_faint() ? "marked as counting neither way" : "dropped");
     if (options_.format != exchange::Format::kCoco) return text;
     text +=
         summary_.masks > 0
@@ -379,6 +431,7 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
     const JsonObject record = file.object("summary");
     summary.sequences = record.count("sequences");
     summary.frames = record.count("frames");
+    if (record.has("faint")) summary.faint = record.count("faint");
     const JsonObject parts = record.object("frames_of_part");
     for (const std::string& part : parts.keys()) summary.frames_of_part[part] = parts.count(part);
     summary.was_there = true;

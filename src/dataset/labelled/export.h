@@ -33,6 +33,13 @@ struct ExportOptions {
   std::array<double, 3> shares{0.8, 0.1, 0.1};
   std::uint64_t seed = 1;
   dataset::Boxes boxes = dataset::Boxes::kCovered;
+  // A box whose contrast to noise or whose longer side is below one of these is marked as one that
+  // counts neither way, where the format can say so, else dropped. A box whose contrast nobody can
+  // measure, since it fills the picture, stays.
+  double min_contrast = 0;
+  double min_size_px = 0;
+  // True: it is dropped in every format.
+  bool drop_faint = false;
   // Every label has the class "aircraft"; otherwise its class is the aircraft's type.
   bool one_class = false;
   // For MOT only: classes are numbered from 1. Otherwise every aircraft has class 1.
@@ -49,6 +56,7 @@ struct ExportSummary {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
   std::int64_t images = 0;  // pictures that this run wrote
+  std::int64_t faint = 0;   // boxes that are marked or dropped
   std::int64_t masks = 0;   // labels that hold the object's pixels
   std::map<std::string, std::int64_t> frames_of_part;
   // True where an earlier run had already finished the export.

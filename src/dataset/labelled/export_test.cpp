@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/labelled/export.h"
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -422,6 +424,62 @@ TEST_F(Made, DeepVerificationFindsAFrameThatIsNotWhatItsTruthSays) {
               testing::Contains(HasSubstr("has another truth when it is computed again")));
 }
 
+TEST_F(Made, VerificationMeasuresTheContrastInTheVideo) {
+  EXPECT_THAT(build::verify(set(), {}).faults, ElementsAre());
+  const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
+    intruder["contrast_to_noise"] = 1.01 * intruder["contrast_to_noise"].get<double>();
+  });
+  const auto faults = build::verify(copy, {}).faults;
+  EXPECT_THAT(faults, ElementsAre(HasSubstr("a contrast to noise of ")));
+}
+
+// pycocotools' evaluation passes over iscrowd, VOC's over difficult, TrackEval over a 0 in the
+// seventh column; which boxes these are follows from truth.jsonl read by itself.
+TEST_F(Made, WhatIsTooFaintOrTooSmallCountsNeitherWay) {
+  std::vector<double> contrasts;
+  for (const auto& entry : fs::recursive_directory_iterator(set())) {
+    if (entry.path().filename() != "truth.jsonl") continue;
+    std::istringstream lines(read_file(entry.path()));
+    for (std::string line; std::getline(lines, line);)
+      for (const auto& one : nlohmann::json::parse(line)["intruders"])
+        if (!one["covered_box_px"].is_null()) contrasts.push_back(one["contrast_to_noise"]);
+  }
+  std::sort(contrasts.begin(), contrasts.end());
+  ExportOptions options;
+  options.split = Split::kNone;
+  options.images = Images::kNone;
+  options.min_contrast = contrasts[contrasts.size() / 3];
+  const auto below = std::count_if(contrasts.begin(), contrasts.end(), [&](double value) {
+    return value < options.min_contrast;
+  });
+  ASSERT_GT(below, 0);
+  const fs::path coco = fresh();
+  EXPECT_EQ(export_set(set(), coco, options).faint, below);
+  std::ptrdiff_t crowds = 0;
+  const auto json = nlohmann::json::parse(read_file(coco / "annotations/instances_all.json"));
+  for (const auto& one : json["annotations"]) {
+    EXPECT_EQ(one["iscrowd"] == 1, one["contrast_to_noise"] < options.min_contrast);
+    crowds += one["iscrowd"] == 1 ? 1 : 0;
+  }
+  EXPECT_EQ(crowds, below);
+  EXPECT_EQ(json["annotations"].size(), contrasts.size());
+  options.drop_faint = true;
+  const fs::path dropped = fresh();
+  export_set(set(), dropped, options);
+  EXPECT_EQ(
+      nlohmann::json::parse(read_file(dropped / "annotations/instances_all.json"))["annotations"]
+          .size(),
+      contrasts.size() - static_cast<std::size_t>(below));
+  options = {.format = exchange::Format::kYolo, .images = Images::kNone, .split = Split::kNone};
+  options.min_size_px = 1e6;
+  const fs::path yolo = fresh();
+  EXPECT_EQ(export_set(set(), yolo, options).faint, std::ssize(contrasts));
+  for (const auto& entry : fs::recursive_directory_iterator(yolo / "labels")) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_EQ(fs::file_size(entry.path()), 0) << entry.path();
+  }
+}
+
 TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
   EXPECT_GT(build::verify(set(), {}).in_view, 16);
   const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
@@ -429,6 +487,7 @@ TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
     intruder.erase("visible_box_px");
     intruder.erase("covered_box_px");
     intruder.erase("covered_area_px");
+    intruder.erase("contrast_to_noise");
   });
   const build::VerifyResult result = build::verify(copy, {});
   EXPECT_EQ(result.in_view_without_box, 1);

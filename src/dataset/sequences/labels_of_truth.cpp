@@ -53,6 +53,7 @@ exchange::Label label_of(const annotation::Intruder& intruder,
   label.occluded = hidden > 0;
   label.truncated = intruder.cut_by_frame > 0;
   label.range_m = intruder.range_m;
+  label.contrast_to_noise = intruder.contrast_to_noise;
   if (intruder.covered_area_px) label.area_px = static_cast<double>(*intruder.covered_area_px);
   if (intruder.position_ned_m)
     label.above_horizon = is_above_horizon(*intruder.position_ned_m, frame.camera_position_ned_m);

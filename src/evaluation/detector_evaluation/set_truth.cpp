@@ -11,11 +11,11 @@
 
 #include "dataset/sequences/labels_of_truth.h"
 #include "encounter/separation/violation.h"
-#include "evaluation/detector_evaluation/contrast_to_noise.h"
 #include "evaluation/report/film.h"
 #include "evaluation/scores/ignored_regions.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
+#include "foundation/image/contrast_to_noise.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/lens_facts.h"
 #include "sequence/replay/finished.h"
@@ -481,7 +481,7 @@ void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop)
     if (frame.objects.empty()) continue;
     const image::Picture& picture = pictures.at(frame.frame);
     for (scores::TruthObject& object : frame.objects)
-      object.contrast_to_noise = contrast_to_noise(picture, pixels_of(object.box_px));
+      object.contrast_to_noise = image::contrast_to_noise(picture, pixels_of(object.box_px));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "encounter/separation/violation.h"
 #include "evaluation/detector_evaluation/assess.h"
 #include "evaluation/detector_evaluation/tables.h"
 #include "foundation/base/error.h"
@@ -194,6 +195,30 @@ TEST_F(OfRenderedSet, AShiftOfAPixelIsItsAngle) {
     return 0.0;
   };
   EXPECT_NEAR(error("shifted") - error("straight"), 1000 / 680.6, 0.02 * 1000 / 680.6);
+}
+
+// A head-on pair in uniform motion, sampled at 10 Hz from `first_s` to `last_s`.
+std::vector<PairState> head_on(double first_s, double last_s) {
+  std::vector<PairState> states;
+  for (int i = 0; first_s + 0.1 * i <= last_s + 1e-9; ++i) {
+    const double t = first_s + 0.1 * i;
+    states.push_back({t,
+                      {Vector3(30 * t, 0, -150), Vector3(30, 0, 0)},
+                      {Vector3(3000 - 60 * t, 100, -170), Vector3(-60, 0, 0)}});
+  }
+  return states;
+}
+
+TEST(FirstViolation, IsThatOfTheClosedFormWithinTheFramesAndAfterThem) {
+  const separation::Volume& volume = separation::named_volume("f3442")->volume;
+  const std::vector<PairState> begin = head_on(0, 0);
+  const double exact_s =
+      separation::violation(volume, begin[0].own, begin[0].intruder, 180)->begin_s;
+  EXPECT_NEAR(*first_violation_s(volume, head_on(0, 40), 180), exact_s, 1e-9);
+  EXPECT_NEAR(*first_violation_s(volume, head_on(0, 5), 180), exact_s, 1e-9);
+  EXPECT_FALSE(first_violation_s(volume, head_on(0, 5), 1));
+  EXPECT_NEAR(*first_violation_s(volume, head_on(30, 31), 180), 30, 1e-12);
+  EXPECT_FALSE(first_violation_s(volume, {}, 180));
 }
 
 }  // namespace

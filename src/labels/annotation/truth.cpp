@@ -284,6 +284,8 @@ std::optional<std::string> fault(const Intruder& i) {
     return "has an empty visible_box_px";
   if (i.exact_box_px && (i.exact_box_px->width < 0 || i.exact_box_px->height < 0))
     return "has an exact_box_px of negative size";
+  if (i.contrast_to_noise && (i.state != State::kVisible || *i.contrast_to_noise < 0))
+    return "has a contrast_to_noise below 0, or of nothing visible";
   if (i.visible_area_px < 0 || i.alpha_sum_px < 0 || (i.range_m && *i.range_m < 0))
     return "holds an area or a range below 0";
   if (!is_fraction(i.hidden_by_own_aircraft) || !is_fraction(i.hidden_by_intruder) ||

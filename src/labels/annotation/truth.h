@@ -87,6 +87,10 @@ struct Intruder {
   std::optional<std::int64_t> covered_area_px;
   // Bounds of the pixels that changed; present exactly where the state is kVisible.
   std::optional<PixelBox> visible_box_px;
+  // How much box_to_show() stands out from its surroundings in the picture before it is encoded
+  // (foundation/image/contrast_to_noise.h); empty where it is not visible, where the surroundings
+  // are too few pixels, and in older files.
+  std::optional<double> contrast_to_noise;
   // Number of pixels that changed.
   std::int64_t visible_area_px = 0;
   // Sum of the visible coverage, in pixels.

@@ -44,6 +44,7 @@ void each_field(const Visit& visit, Intruders&... of) {
   visit("covered_box_px", of.covered_box_px...);
   visit("covered_area_px", of.covered_area_px...);
   visit("visible_box_px", of.visible_box_px...);
+  visit("contrast_to_noise", of.contrast_to_noise...);
   visit("visible_area_px", of.visible_area_px...);
   visit("alpha_sum_px", of.alpha_sum_px...);
   visit("centroid_px", of.centroid_px...);

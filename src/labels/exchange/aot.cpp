@@ -158,6 +158,7 @@ class AotWriter : public Writer {
       if (label.range_m && annotation::is_aircraft(label.object_class))
         entity["blob"]["range_distance_m"] = *label.range_m;
       entity["blob"]["category"] = label.category;
+      put(entity["blob"], "contrast_to_noise", label.contrast_to_noise);
       const int above = label.above_horizon ? (*label.above_horizon ? 1 : -1) : 0;
       entity["labels"] = {{"is_above_horizon", above}};
       entities.push_back(entity);
@@ -225,6 +226,7 @@ class FlightReader {
     label.category =
         blob.has("category") ? blob.text("category") : name_and_number(entity.text("id")).first;
     label.range_m = range_of(blob);
+    label.contrast_to_noise = blob.maybe_number("contrast_to_noise");
     if (entity.has("labels")) {
       const auto above = entity.object("labels").maybe_number("is_above_horizon");
       if (above && *above != 0) label.above_horizon = *above > 0;

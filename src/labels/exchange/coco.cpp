@@ -341,7 +341,7 @@ class CocoWriter : public FolderWriter {
           {"bbox", {b.x, b.y, b.width, b.height}},
           {"area", label.area_px.value_or(label.mask ? double(label.mask->area_px) : b.area())},
           {"segmentation", segmentation_of(label)},
-          {"iscrowd", 0}};
+          {"iscrowd", label.object_class == kIgnore ? 1 : 0}};
       each_known(
           label, "visibility", [&](const char* key, const auto& value) { put(json, key, value); });
       lists.annotations << (number > 1 ? ",\n" : "") << json.dump();

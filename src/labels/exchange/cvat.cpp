@@ -24,9 +24,8 @@ namespace airtruth::exchange {
 namespace {
 
 constexpr const char* kNoBox = "shapes that bound no area (points, cuboids, skeletons and tags)";
-constexpr const char* kAttributes[] = {"visible", "truncated", "range_m", "above_horizon"};
-
-std::string number(double value) { return fmt::format("{}", value); }
+constexpr const char* kAttributes[] = {
+    "visible", "truncated", "range_m", "above_horizon", "contrast_to_noise"};
 
 class CvatWriter : public FolderWriter {
  public:
@@ -134,6 +133,7 @@ class CvatWriter : public FolderWriter {
     if (label.visible) attribute("visible", number(*label.visible));
     if (label.truncated) attribute("truncated", *label.truncated ? "true" : "false");
     if (label.range_m) attribute("range_m", number(*label.range_m));
+    if (label.contrast_to_noise) attribute("contrast_to_noise", number(*label.contrast_to_noise));
     if (label.above_horizon) attribute("above_horizon", *label.above_horizon ? "true" : "false");
   }
 };
@@ -208,6 +208,7 @@ Label label_of(const XmlFile& xml,
     const std::string value = attribute.child_value();
     if (name == "visible") label.visible = number_in(value);
     if (name == "range_m") label.range_m = number_in(value);
+    if (name == "contrast_to_noise") label.contrast_to_noise = number_in(value);
     if (name == "track_id")
       if (const auto id = whole_in(number_in(value).value_or(-1), 0, kMaxTracks)) label.track = *id;
     if (value != "true" && value != "false") continue;

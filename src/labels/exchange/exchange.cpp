@@ -38,9 +38,8 @@ constexpr std::array<About, 11> kAll = {{
      "COCO, with videos and tracks",
      read_coco,
      coco_writer,
-     "box, class, track, area, frame and time; visibility, occluded, truncated, range_m and "
-     "above_horizon "
-     "as further keys, which COCO's readers pass over",
+     "box, class, track, area, frame and time; visibility, occluded, truncated, range_m, "
+     "above_horizon and contrast_to_noise as further keys, which COCO's readers pass over",
      ""},
     {Format::kYolo,
      "yolo",
@@ -48,7 +47,7 @@ constexpr std::array<About, 11> kAll = {{
      read_yolo,
      yolo_writer,
      "box (as shares of the picture), class",
-     "track, time, visibility, occlusion, range, area"},
+     "track, time, visibility, occlusion, range, contrast, area"},
     {Format::kMot,
      "mot",
      "MOTChallenge",
@@ -58,29 +57,32 @@ constexpr std::array<About, 11> kAll = {{
      "the "
      "class of a track in tracks.txt, and as the number of the class where that was asked for; "
      "otherwise what is no aircraft is marked as not to be considered",
-     "time stamps (a frame rate alone), occlusion and truncation as such, area"},
+     "time stamps (a frame rate alone), occlusion and truncation as such, contrast, area"},
     {Format::kVoc,
      "voc",
      "Pascal VOC",
      read_voc,
      voc_writer,
-     "box (the whole pixels that it touches), class, truncated, occluded",
+     "box (the whole pixels that it touches), class, truncated, occluded, contrast_to_noise as a "
+     "further "
+     "element",
      "track, time, visibility, range, area"},
     {Format::kCvat,
      "cvat",
      "CVAT for video 1.1",
      read_cvat,
      cvat_writer,
-     "box, class, track, occluded; visible, truncated, range_m and above_horizon as attributes",
+     "box, class, track, occluded; visible, truncated, range_m, above_horizon and "
+     "contrast_to_noise as attributes",
      "time stamps, frame rate, area"},
     {Format::kAot,
      "aot",
      "Airborne Object Tracking",
      read_aot,
      aot_writer,
-     "box, track, time in nanoseconds, range, above or below the horizon; the class as a further "
-     "key "
-     "of `blob`",
+     "box, track, time in nanoseconds, range, above or below the horizon; the class and the "
+     "contrast "
+     "to noise as further keys of `blob`",
      "visibility, occlusion, truncation, area; the id of every aircraft is an `Airplane`, that of "
      "a bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; the range of what is "
      "no aircraft (a range marks an aircraft as planned); what is on the lens"},
@@ -90,7 +92,8 @@ constexpr std::array<About, 11> kAll = {{
      read_single_object,
      single_object_writer,
      "box",
-     "class, time, visibility, occlusion, range, area; of a sequence all before the first frame "
+     "class, time, visibility, occlusion, range, contrast, area; of a sequence all before the "
+     "first frame "
      "that shows the object whole and after the "
      "last that shows it; where it begins in the video"},
     {Format::kGot10k,
@@ -99,7 +102,8 @@ constexpr std::array<About, 11> kAll = {{
      read_single_object,
      single_object_writer,
      "box, class, absence, truncation, visibility in eighths (steps of 15 %)",
-     "time stamps, occlusion, range, area; of a sequence all before the first frame that shows the "
+     "time stamps, occlusion, range, contrast, area; of a sequence all before the first frame that "
+     "shows the "
      "object whole and after the "
      "last that shows it; where it begins in the video"},
     {Format::kVot,
@@ -107,7 +111,7 @@ constexpr std::array<About, 11> kAll = {{
      "VOT",
      read_single_object,
      single_object_writer,
-     "box, class, occlusion and range by frame",
+     "box, class, occlusion, range and contrast to noise by frame",
      "time stamps, visibility, truncation, area; of a sequence all before the first frame that "
      "shows the object whole and after the "
      "last that shows it; where it begins in the video"},
@@ -139,6 +143,10 @@ const char* name(Format format) { return about(format).name; }
 bool can_write(Format format) { return about(format).write != nullptr; }
 
 bool is_single_object(Format format) { return about(format).read == read_single_object; }
+
+bool has_ignore_mark(Format format) {
+  return format == Format::kCoco || format == Format::kVoc || format == Format::kMot;
+}
 
 Pictures pictures_of(Format format) {
   if (format == Format::kAot) return Pictures::kPngAlone;

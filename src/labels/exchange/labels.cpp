@@ -22,7 +22,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "airtruth labels 1";
 // The class of a region in which detections count neither way.
-constexpr const char* kIgnore = "ignore";
 
 constexpr std::int64_t kLongestSide_px = 1'000'000;
 constexpr double kHighestRate_hz = 1e6;

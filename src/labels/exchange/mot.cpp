@@ -105,7 +105,8 @@ class MotWriter : public FolderWriter {
   std::string line_of(const Label& label, std::size_t i, double unknown_visibility) const {
     const Box& b = label.box_px;
     // MOTChallenge's evaluation of one class passes over what is not to be considered.
-    const bool is_considered = options_.mot_classes || annotation::is_aircraft(label.object_class);
+    const bool is_considered = options_.mot_classes ? label.object_class != kIgnore
+                                                    : annotation::is_aircraft(label.object_class);
     return fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
                        i + 1,
                        label.track,

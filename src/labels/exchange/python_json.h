@@ -30,6 +30,7 @@ void each_known(AnyLabel& label, const char* visible_key, const Visit& visit) {
   visit("truncated", label.truncated);
   visit("range_m", label.range_m);
   visit("above_horizon", label.above_horizon);
+  visit("contrast_to_noise", label.contrast_to_noise);
 }
 void get_known(const JsonObject& json, Label& label, const char* visible_key);
 

@@ -56,6 +56,7 @@ class Draw {
         label.occluded = often(0.3);
         label.truncated = often(0.3);
         label.range_m = number(10, 3000);
+        label.contrast_to_noise = number(0, 60);
         label.above_horizon = often(0.5);
         label.area_px = number(0.3, 0.9) * label.box_px.area();
         frame.labels.push_back(label);
@@ -107,6 +108,9 @@ Clip held(Format format, Clip clip) {
       if (format != Format::kCoco && format != Format::kMot && format != Format::kCvat &&
           format != Format::kAot && format != Format::kVot)
         label.range_m.reset();
+      if (format == Format::kYolo || format == Format::kMot || format == Format::kOtb ||
+          format == Format::kGot10k)
+        label.contrast_to_noise.reset();
       if (format != Format::kCoco && format != Format::kCvat && format != Format::kAot)
         label.above_horizon.reset();
     }
@@ -145,6 +149,7 @@ void expect_same(const Clip& read, const Clip& expected) {
       EXPECT_EQ(a.occluded, b.occluded);
       EXPECT_EQ(a.truncated, b.truncated);
       expect_near(a.range_m, b.range_m, 1e-12);
+      expect_near(a.contrast_to_noise, b.contrast_to_noise, 1e-12);
       expect_near(a.area_px, b.area_px, 1e-9);
       EXPECT_EQ(a.above_horizon, b.above_horizon);
     }

@@ -269,6 +269,9 @@ class SequenceReader {
       each("range_m.value", [](Label& label, double v) {
         if (std::isfinite(v)) label.range_m = v;
       });
+      each("contrast_to_noise.value", [](Label& label, double v) {
+        if (std::isfinite(v)) label.contrast_to_noise = v;
+      });
     }
   }
 
@@ -364,6 +367,13 @@ class SingleObjectWriter : public FolderWriter {
     });
   }
 
+  // True where a frame at least knows it.
+  static bool is_known(const Clip& clip, std::optional<double> Label::*member) {
+    return std::any_of(clip.frames.begin(), clip.frames.end(), [&](const LabelledFrame& frame) {
+      return !frame.labels.empty() && (frame.labels.front().*member).has_value();
+    });
+  }
+
   static void add_got10k(const Clip& clip, const fs::path& folder) {
     write_column(folder / "absence.label", clip, [](const Label* label) {
       return std::string(label == nullptr ? "1" : "0");
@@ -417,10 +427,14 @@ class SingleObjectWriter : public FolderWriter {
       write_column(folder / "occlusion.tag", clip, [](const Label* label) {
         return std::string(label != nullptr && *label->occluded ? "1" : "0");
       });
-    if (knows(clip, &Label::range_m))
-      write_column(folder / "range_m.value", clip, [](const Label* label) {
-        return label == nullptr ? std::string("nan") : fmt::format("{}", *label->range_m);
-      });
+    for (const auto& [name, value] :
+         {std::pair("range_m.value", &Label::range_m),
+          std::pair("contrast_to_noise.value", &Label::contrast_to_noise)})
+      if (is_known(clip, value))
+        write_column(folder / name, clip, [value = value](const Label* label) {
+          const auto known = label == nullptr ? std::nullopt : label->*value;
+          return known ? number(*known) : std::string("nan");
+        });
   }
 
   // The starts of this program's own multi-start runs (<airtruth/vot.h>).

@@ -24,6 +24,8 @@ std::optional<double> number_from(std::string_view text) {
 
 }  // namespace
 
+std::string number(double value) { return fmt::format("{}", value); }
+
 std::optional<double> number_in(std::string_view text) {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);

@@ -29,6 +29,8 @@ std::vector<Line> lines_of(const fs::path& file);
 
 // The text as a finite number, with or without blanks around it; empty where it is not one.
 std::optional<double> number_in(std::string_view text);
+// The shortest text that reads back as the same number.
+std::string number(double value);
 
 // The numbers of a line, split at commas, semicolons, tabs and blanks. "nan" is a number. Throws
 // Error with the line.

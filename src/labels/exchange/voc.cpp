@@ -81,7 +81,10 @@ class VocWriter : public FolderWriter {
     add_text(object, "pose", "Unspecified");
     add_number(object, "truncated", label.truncated.value_or(false) ? 1 : 0);
     add_number(object, "occluded", label.occluded.value_or(false) ? 1 : 0);
-    add_number(object, "difficult", 0);
+    // The development kit's evaluation passes over what is difficult.
+    add_number(object, "difficult", label.object_class == kIgnore ? 1 : 0);
+    if (label.contrast_to_noise)
+      add_text(object, "contrast_to_noise", number(*label.contrast_to_noise));
     std::string unknown = label.truncated ? "" : "truncated";
     if (!label.occluded) unknown += unknown.empty() ? "occluded" : " occluded";
     if (!unknown.empty()) add_text(object, "unknown", unknown);
@@ -148,6 +151,7 @@ LabelledPicture read_picture(const fs::path& file,
     label.category = xml.child(object, "name").child_value();
     label.truncated = flag(object, "truncated");
     label.occluded = flag(object, "occluded");
+    label.contrast_to_noise = number_in(object.child("contrast_to_noise").child_value());
     const pugi::xml_node box = xml.child(object, "bndbox");
     const double x = xml.number(box, "xmin") - 1;
     const double y = xml.number(box, "ymin") - 1;

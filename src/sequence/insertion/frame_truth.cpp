@@ -7,6 +7,7 @@
 
 #include "encounter/passage/passage.h"
 #include "encounter/separation/violation.h"
+#include "foundation/image/contrast_to_noise.h"
 #include "labels/projection/bearing.h"
 #include "labels/projection/spot_box.h"
 #include "sequence/setup/lens_marks.h"
@@ -174,6 +175,9 @@ annotation::Frame frame_truth(const setup::World& world,
   truth.camera_position_ned_m = moment.camera.position_in_world;
   truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
   truth.intruders = intruders_of(world, moment, painted.layer, painted.visible);
+  for (annotation::Intruder& intruder : truth.intruders)
+    if (const auto box = annotation::box_to_show(intruder))
+      intruder.contrast_to_noise = image::contrast_to_noise(frame.picture, *box);
   return truth;
 }
 

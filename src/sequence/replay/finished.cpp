@@ -126,6 +126,9 @@ Finished open_finished(const fs::path& folder) {
   if (!fs::exists(finished.video))
     throw Error("is missing; the folder is not whole", {finished.video.string()});
   finished.truth = annotation::read_truth(folder / "truth.jsonl");
+  for (const annotation::Frame& frame : finished.truth.frames)
+    for (const annotation::Intruder& intruder : frame.intruders)
+      if (intruder.contrast_to_noise) finished.has_contrast = true;
   return finished;
 }
 

@@ -96,8 +96,10 @@ std::vector<std::string> frame_faults(const Finished& sequence,
   // The measured motion is the input of both; all else is computed again.
   again.truth.motion_state = truth.motion_state;
   if (!sequence.has_covered_boxes) as_older_truth(again.truth);
-  if (!sequence.has_encounters)
-    for (annotation::Intruder& intruder : again.truth.intruders) intruder.encounter.reset();
+  for (annotation::Intruder& intruder : again.truth.intruders) {
+    if (!sequence.has_encounters) intruder.encounter.reset();
+    if (!sequence.has_contrast) intruder.contrast_to_noise.reset();
+  }
   std::vector<std::string> faults;
   if (sequence.scene->output.masks) faults = mask_faults(sequence, again);
   if (annotation::jsonl_line(again.truth, sequence.truth.lens) !=

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluation/detector_evaluation/contrast_to_noise.h"
+#include "foundation/image/contrast_to_noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "foundation/base/median.h"
 
-namespace airtruth::detector_evaluation {
+namespace airtruth::image {
 namespace {
 
 constexpr double kBeyond = 3;  // standard deviations: of normal noise, 0.3 % lie beyond
@@ -31,7 +31,7 @@ double deviation_about(const std::vector<std::uint8_t>& values, double centre, d
 
 }  // namespace
 
-std::optional<double> contrast_to_noise(const image::Picture& picture, const PixelBox& box) {
+std::optional<double> contrast_to_noise(const Picture& picture, const PixelBox& box) {
   const PixelBox whole{0, 0, picture.width, picture.height};
   const int ring = std::max(kLeastRing_px, std::min(box.width, box.height));
   const PixelBox gap = grown(box, 1);
@@ -55,4 +55,4 @@ std::optional<double> contrast_to_noise(const image::Picture& picture, const Pix
   return std::sqrt(sum / (double(inside->width) * inside->height)) / noise;
 }
 
-}  // namespace airtruth::detector_evaluation
+}  // namespace airtruth::image

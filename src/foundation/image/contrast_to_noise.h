@@ -6,7 +6,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-namespace airtruth::detector_evaluation {
+namespace airtruth::image {
 
 // How much a box stands out: the root mean square difference of its luma from the median of its
 // surroundings, over the standard deviation of the surroundings. These are a ring as wide as the
@@ -17,10 +17,10 @@ namespace airtruth::detector_evaluation {
 //
 // Example: an aircraft of 6 x 3 px is 12 levels darker than a sky whose noise is 1.5 levels, and
 // fills half of its box: sqrt(12^2 / 2) / 1.5 = 5.7.
-std::optional<double> contrast_to_noise(const image::Picture& picture, const PixelBox& box);
+std::optional<double> contrast_to_noise(const Picture& picture, const PixelBox& box);
 
 constexpr int kLeastRing_px = 4;
 constexpr std::size_t kLeastRingPixels =
     20;  // a deviation of fewer is uncertain by a sixth or more
 
-}  // namespace airtruth::detector_evaluation
+}  // namespace airtruth::image
