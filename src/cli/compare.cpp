@@ -71,8 +71,10 @@ struct JudgeArguments {
 void judge_all(const JudgeArguments& arguments, Context& context) {
   video::check_still_output(arguments.figure, arguments.overwrite);
   check_output_file(arguments.json, arguments.overwrite);
-  const std::vector<std::filesystem::path> folders(arguments.comparisons.begin(),
-                                                   arguments.comparisons.end());
+  std::vector<std::filesystem::path> folders;
+  // A clip is called by its folder's name, which a path with a slash at its end lacks.
+  for (const std::filesystem::path folder : arguments.comparisons)
+    folders.push_back(folder.has_filename() ? folder : folder.parent_path());
   const judge::Verdict verdict =
       judge::verdict_on(folders, arguments.seed, arguments.chance_draws, context.stop);
   if (!arguments.figure.empty()) comparison::write_figure(folders, arguments.figure);
