@@ -232,12 +232,39 @@ def batch_of(frames, random, size):
     return np.stack(pixels), targets
 
 
+def checkpoint_of(options):
+    """Beside the output; removed once that is written."""
+    return options.output + ".checkpoint"
+
+
+def given(options):
+    """What a training that goes on must have in common with its beginning."""
+    return [[os.path.abspath(folder) for folder in options.sets], options.every, options.batch, options.seed]
+
+
+def save(network, optimiser, random, options, spent, step):
+    unfinished = checkpoint_of(options) + ".part"
+    torch.save({"network": network.state_dict(), "optimiser": optimiser.state_dict(), "random": random.bit_generator.state,
+                "spent": spent, "step": step, "given": given(options)}, unfinished)
+    os.replace(unfinished, checkpoint_of(options))
+
+
 def train(network, frames, options):
     random = np.random.default_rng(options.seed)
     optimiser = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-4)
-    begun, step, shown, mean = time.process_time(), 0, 0.0, None
+    before, step, mean = 0.0, 0, None
+    if os.path.exists(checkpoint_of(options)):
+        state = torch.load(checkpoint_of(options), weights_only=True)
+        if state["given"] != given(options):
+            sys.exit(f"{checkpoint_of(options)} is of a training on other sets, or with another --every, --batch or --seed; remove it to begin anew")
+        network.load_state_dict(state["network"])
+        optimiser.load_state_dict(state["optimiser"])
+        random.bit_generator.state = state["random"]
+        before, step = state["spent"], state["step"]
+        print(f"goes on from {checkpoint_of(options)}: {before:.1f} min, step {step}", flush=True)
+    begun, shown = time.process_time(), before
     network.train()
-    while (spent := (time.process_time() - begun) / 60 / options.threads) < options.minutes:
+    while (spent := before + (time.process_time() - begun) / 60 / options.threads) < options.minutes:
         share = spent / options.minutes
         for group in optimiser.param_groups:  # a short rise, then half a cosine
             group["lr"] = 2e-3 * min(1, (step + 1) / 50) * (0.5 + 0.5 * math.cos(math.pi * share))
@@ -251,6 +278,7 @@ def train(network, frames, options):
         if spent - shown >= 0.5:
             shown = spent
             print(f"{spent:5.1f} min  step {step:5d}  loss {mean:.3f}", flush=True)
+            save(network, optimiser, random, options, spent, step)
     network.eval()
     return step
 
@@ -278,7 +306,7 @@ def write(network, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sets", nargs="+", metavar="SET", help="folders of `airtruth dataset build`")
-    parser.add_argument("-o", "--output", required=True, help="the ONNX file; a .json is written beside it")
+    parser.add_argument("-o", "--output", required=True, help="the ONNX file; a .json is written beside it, and until then every half minute of training a .checkpoint, from which the same command goes on")
     parser.add_argument("--minutes", type=float, default=12, help="processor time to train for, on each thread (default 12)")
     parser.add_argument("--every", type=int, default=2, help="take every n-th frame (default 2): neighbours are alike")
     parser.add_argument("--batch", type=int, default=24, help="crops in a step (default 24)")
@@ -298,6 +326,8 @@ def main():
           f"{sum(p.numel() for p in network.parameters())} parameters", flush=True)
     step = train(network, frames, options)
     write(network, options.output)
+    if os.path.exists(checkpoint_of(options)):
+        os.remove(checkpoint_of(options))
     print(f"{step} steps; wrote {options.output}")
 
 

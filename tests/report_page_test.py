@@ -311,7 +311,7 @@ def main():
             expect("title", out["title"], "<script><b onclick=x>set")
             expect("sequences", len(out["all"]), 8)
             expect("count", out["count"], "8 of 8")
-            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (14 + 3 * 8 + 8, True))
+            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (14 + 3 * 8 + 2 * 8, True))
             expect("films", out["films"], 8)
             expect("charts with bins that have no label", out["unlabelled"], [])
             expect("markup made of names", out["injected"], 0)

@@ -181,6 +181,11 @@ void find_mask(const MaskArguments& arguments, Context& context) {
   console.end_progress();
   video::write_still(arguments.out, insertion::picture_of(mask));
   const auto own = std::count(mask.free.begin(), mask.free.end(), 0);
+  if (own == 0)
+    console.warn()(
+        "nothing stays still while the world moves: the picture holds nothing of the own aircraft, "
+        "or the camera hardly moves in this clip, which hides it; a clip of the same camera with "
+        "turns in it shows it, or a mask drawn by hand, black where the own aircraft is");
   console.result(fmt::format("{}: the own aircraft covers {:.1f} % of the picture",
                              arguments.out,
                              100.0 * double(own) / double(mask.free.size())));

@@ -80,8 +80,10 @@ void judge_all(const JudgeArguments& arguments, Context& context) {
   for (const std::string& folder : arguments.comparisons) files.reads(folder);
   files.writes(arguments.figure, arguments.overwrite).writes(arguments.json, arguments.overwrite);
   files.begin();
-  const std::vector<std::filesystem::path> folders(arguments.comparisons.begin(),
-                                                   arguments.comparisons.end());
+  std::vector<std::filesystem::path> folders;
+  // A clip is called by its folder's name, which a path with a slash at its end lacks.
+  for (const std::filesystem::path folder : arguments.comparisons)
+    folders.push_back(folder.has_filename() ? folder : folder.parent_path());
   const judge::Verdict verdict =
       judge::verdict_on(folders, arguments.seed, arguments.chance_draws, context.stop);
   files.write(arguments.figure, [&](const fs::path& at) { comparison::write_figure(folders, at); });

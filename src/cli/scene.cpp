@@ -32,6 +32,7 @@ void new_scene(const NewArguments& arguments, Context& context) {
   new_scene::NewSceneOptions options;
   if (!arguments.lens.empty()) options.lens = arguments.lens;
   options.picture_rate_hz = arguments.frame_rate_hz;
+  options.folder = std::filesystem::absolute(out).parent_path();
   follow(options, context, "looking for lens and motion");
   const std::string text = new_scene::scene_text(arguments.video, options);
   console.end_progress();

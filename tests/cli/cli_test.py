@@ -159,6 +159,17 @@ class BadScene(Case):
         self.assert_refused(run("render", write("bad.toml", b'name = "\xff\xfe"\n'), "--out", self.out), "bad.toml", "utf-8")
         self.assert_refused(run("render", "no.toml", "--out", self.out), "no.toml")
 
+    def test_a_video_where_a_scene_belongs(self):
+        for command in (["render", "flight.mkv", "--out", self.out], ["preview", "flight.mp4", "-o", os.path.join(self.out, "p.png")],
+                        ["render", ROOT, "--out", self.out]):
+            self.assert_refused(run(*command), command[1], "airtruth scene new")
+
+    def test_an_unknown_detector_gets_each_name_once(self):
+        result = run("detect", "flight.mkv", "-d", "nonsense", "-o", os.path.join(self.out, "d"))
+        self.assert_refused(result, "nonsense", "frame-difference")
+        for name in ("onnx:MODEL.onnx", "exec:COMMAND", "cmo,"):
+            self.assertEqual(result.stderr.count(name), 1, result.stderr)
+
 
 class Output(Case):
     def test_that_exists_is_kept_until_overwrite(self):
@@ -289,6 +300,31 @@ class Track(Case):
 
 
 class Others(Case):
+    def test_a_new_scene_names_its_video_relative_to_itself(self):
+        os.mkdir(os.path.join(self.out, "scenes"))
+        file = os.path.join(self.out, "scenes", "new.toml")
+        made = run("scene", "new", "flight.mkv", "-o", file)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        with open(file) as text:
+            words = text.read()
+        self.assertIn('video = "../../flight.mkv"', words)
+        self.assertIn("# [realism]", words)
+        # The closest approach lies within the clip's 0.37 s.
+        self.assertLess(float(words.split("cpa_time_s = ")[1].split("#")[0]), 0.4)
+        self.assertEqual(run("preview", file, "-o", os.path.join(self.out, "p.png")).returncode, 0)
+
+    def test_preview_says_that_the_clip_is_shorter(self):
+        picture = os.path.join(self.out, "p.png")
+        for count, is_said in ((12, False), (500, True)):
+            made = run("preview", write("scene.toml", scene(background=f"frame_count = {count}")), "-o", picture, "--overwrite")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.assertEqual("frame_count is 500" in made.stderr and "only 12 frames" in made.stderr, is_said, made.stderr)
+
+    def test_a_mask_of_nothing_says_why(self):
+        made = run("mask", "flight.mkv", "-o", os.path.join(self.out, "m.png"))
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertEqual("nothing stays still" in made.stderr, "0.0 %" in made.stdout, made.stdout + made.stderr)
+
     def test_motion(self):
         table = os.path.join(self.out, "motion.csv")
         result = run("motion", "flight.mkv", "-o", table)

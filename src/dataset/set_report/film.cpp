@@ -2,6 +2,7 @@
 #include "dataset/set_report/film.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "foundation/base/error.h"
@@ -18,6 +19,12 @@ constexpr std::size_t kLoopFrames = 10;  // chosen
 // Quality setting of libav's mjpeg encoder; a still takes about 10 kB.
 constexpr int kStillQuality = 7;
 constexpr int kLoopQuality = 5;
+// The enlarged square beside a still: its side on the page, and in the frame the least side and the
+// multiple of the box's longer side. Display choices.
+constexpr int kZoomSide = 192;
+constexpr int kLeastZoomPx = 48, kSurroundings = 4;
+
+int longer_side(const PixelBox& box) { return std::max(box.width, box.height); }
 
 std::optional<PixelBox> first_box(const annotation::Frame& frame) {
   for (const annotation::Intruder& intruder : frame.intruders)
@@ -99,7 +106,20 @@ Film::Still still_of(const image::Picture& picture,
                      const std::vector<std::string>& ids) {
   const image::Rgb8 small =
       drawing::small_copy(image::rgb8_from_picture(picture), Film::kStillWidth);
-  return {truth.frame, video::jpeg_of(small, kStillQuality), marked(truth, ids)};
+  Film::Still still{truth.frame, video::jpeg_of(small, kStillQuality), marked(truth, ids)};
+  const auto largest = std::max_element(
+      still.boxes.begin(), still.boxes.end(), [](const Film::Marked& a, const Film::Marked& b) {
+        return longer_side(a.box) < longer_side(b.box);
+      });
+  if (largest == still.boxes.end()) return still;
+  const PixelBox& box = largest->box;
+  still.zoom_px = std::max(kLeastZoomPx, kSurroundings * longer_side(box));
+  still.zoom_x = std::round(box.x + (box.width - still.zoom_px) / 2);
+  still.zoom_y = std::round(box.y + (box.height - still.zoom_px) / 2);
+  still.zoom_jpeg =
+      video::jpeg_of(drawing::square(picture, still.zoom_x, still.zoom_y, still.zoom_px, kZoomSide),
+                     kStillQuality);
+  return still;
 }
 
 }  // namespace

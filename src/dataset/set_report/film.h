@@ -22,9 +22,13 @@ struct Film {
     std::int64_t frame = 0;
     std::string jpeg;  // at most kStillWidth pixels wide
     std::vector<Marked> boxes;
+    // The surroundings of the largest box, from (x, y) of the frame on, `px` wide; empty without
+    // one.
+    std::string zoom_jpeg;
+    double zoom_x = 0, zoom_y = 0, zoom_px = 0;
   };
   // Pixels: a display choice.
-  static constexpr int kStillWidth = 400;
+  static constexpr int kStillWidth = 640;
 
   std::vector<Still> stills;  // in frame order
   // Index in `stills` of the picture whose intruder is largest.

@@ -28,8 +28,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Upper bound for the stills of all sequences together; a still takes about 13 kB of the page.
-constexpr std::size_t kMaxStills = 1500;
+// Upper bound for the stills of all sequences together; a still takes some 30 kB of the page.
+constexpr std::size_t kMaxStills = 1000;
 constexpr std::size_t kMaxStillsOfOne = 60;
 constexpr std::size_t kMinStillsOfOne = 4;
 
@@ -109,7 +109,9 @@ Json film_json(const Film& film) {
     const auto box_of = [](const Film::Marked& one) {
       return Json{one.intruder, one.box.x, one.box.y, one.box.width, one.box.height};
     };
-    return Json{{"frame", still.frame}, {"boxes", column(still.boxes, box_of)}};
+    Json json{{"frame", still.frame}, {"boxes", column(still.boxes, box_of)}};
+    if (!still.zoom_jpeg.empty()) json["zoom"] = {still.zoom_x, still.zoom_y, still.zoom_px};
+    return json;
   });
 }
 
@@ -233,8 +235,12 @@ std::vector<html::PageBlob> pictures_of(const std::vector<const Portrait*>& port
   std::vector<html::PageBlob> pictures;
   for (std::size_t i = 0; i < portraits.size(); ++i) {
     const Film& film = portraits[i]->film;
-    for (std::size_t k = 0; k < film.stills.size(); ++k)
-      pictures.push_back({fmt::format("still-{}-{}", i, k), base64_of(film.stills[k].jpeg)});
+    for (std::size_t k = 0; k < film.stills.size(); ++k) {
+      const Film::Still& still = film.stills[k];
+      pictures.push_back({fmt::format("still-{}-{}", i, k), base64_of(still.jpeg)});
+      if (!still.zoom_jpeg.empty())
+        pictures.push_back({fmt::format("zoom-{}-{}", i, k), base64_of(still.zoom_jpeg)});
+    }
     if (!film.loop_jpeg.empty())
       pictures.push_back({fmt::format("loop-{}", i), base64_of(film.loop_jpeg)});
   }

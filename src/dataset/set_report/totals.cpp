@@ -2,8 +2,7 @@
 #include "dataset/set_report/totals.h"
 
 #include <algorithm>
-
-#include <fmt/format.h>
+#include <limits>
 
 #include "labels/annotation/object_class.h"
 
@@ -11,8 +10,10 @@ namespace airtruth::set_report {
 namespace {
 
 // Bars over named places.
-plot::Plot bars(const std::vector<std::string>& names, const std::vector<std::int64_t>& counts) {
-  plot::Plot plot{.x = {.names = names}, .y = {.min = 0}};
+plot::Plot bars(const std::string& of,
+                const std::vector<std::string>& names,
+                const std::vector<std::int64_t>& counts) {
+  plot::Plot plot{.x = {.names = names}, .y = {.label = of, .min = 0}};
   plot::Series series{.mark = plot::Mark::kBars};
   for (std::size_t i = 0; i < counts.size(); ++i) {
     series.x.push_back(static_cast<double>(i));
@@ -23,15 +24,15 @@ plot::Plot bars(const std::vector<std::string>& names, const std::vector<std::in
 }
 
 // The first and the last bin also count what lies beyond the edges.
-plot::Plot bars(const Histogram& histogram) {
+plot::Plot bars(const std::string& of, const Histogram& histogram) {
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
   const std::vector<double>& edges = histogram.edges;
   const std::size_t last = histogram.counts.size() - 1;
   std::vector<std::string> names;
   for (std::size_t i = 0; i <= last; ++i)
-    names.push_back(i == last ? fmt::format("≥ {}", edges[i])
-                    : i == 0  ? fmt::format("< {}", edges[1])
-                              : fmt::format("{}–{}", edges[i], edges[i + 1]));
-  return bars(names, histogram.counts);
+    names.push_back(plot::name_of_bin(i == 0 && last > 0 ? -kOpen : edges[i],
+                                      i == last ? kOpen : edges[i + 1]));
+  return bars(of, names, histogram.counts);
 }
 
 // Every name of the enum in its order, and those that occur without a value.
@@ -42,7 +43,7 @@ plot::Plot bars(const std::map<std::string, std::int64_t>& counts, const std::st
   std::vector<std::int64_t> heights;
   for (const std::string& name : names)
     heights.push_back(counts.contains(name) ? counts.at(name) : 0);
-  return bars(names, heights);
+  return bars("encounters", names, heights);
 }
 
 constexpr const char* kNoMeeting = "hovering";
@@ -102,21 +103,23 @@ std::vector<OverviewPlot> overview_plots(const Totals& totals) {
   }
   const std::int64_t without = totals.frames - totals.frames_with_intruder;
   std::vector<OverviewPlot> plots = {
-      {"range_m", bars(totals.range_m)},
-      {"size_px", bars(totals.size_px)},
-      {"azimuth_deg", bars(totals.azimuth_deg)},
-      {"contrast", bars(totals.contrast)},
-      {"classes", bars(classes, boxes)},
-      {"negatives", bars({"with an intruder", "without"}, {totals.frames_with_intruder, without})},
+      {"range_m", bars("boxes", totals.range_m)},
+      {"size_px", bars("boxes", totals.size_px)},
+      {"azimuth_deg", bars("boxes", totals.azimuth_deg)},
+      {"contrast", bars("frames", totals.contrast)},
+      {"classes", bars("boxes", classes, boxes)},
+      {"negatives",
+       bars("frames", {"with an intruder", "without"}, {totals.frames_with_intruder, without})},
       {"states",
-       bars({"visible", "hidden", "outside", "behind", "ended"},
+       bars("intruders in frames",
+            {"visible", "hidden", "outside", "behind", "ended"},
             {totals.by_state.begin(), totals.by_state.end()})}};
   if (totals.encounters == 0) return plots;
-  plots.push_back({"to_closest_s", bars(totals.to_closest_s)});
+  plots.push_back({"to_closest_s", bars("boxes", totals.to_closest_s)});
   plots.push_back({"meetings", bars<passage::Meeting>(totals.meetings, kNoMeeting)});
-  plots.push_back({"closest_m", bars(totals.closest_m)});
-  plots.push_back({"first_seen_m", bars(totals.first_seen_m)});
-  plots.push_back({"first_seen_s", bars(totals.first_seen_s)});
+  plots.push_back({"closest_m", bars("encounters", totals.closest_m)});
+  plots.push_back({"first_seen_m", bars("encounters", totals.first_seen_m)});
+  plots.push_back({"first_seen_s", bars("encounters", totals.first_seen_s)});
   plots.push_back(
       {"horizon", bars<passage::AgainstHorizon>(totals.horizons_when_first_seen, kNeverSeen)});
   return plots;

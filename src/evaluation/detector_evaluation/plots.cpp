@@ -113,7 +113,7 @@ Plot declared_plot(const scores::Assessment& assessment) {
 }
 
 std::string name_of(const scores::DetectionBin& bin) {
-  return bin.name.empty() ? report::name_of_bin(bin.from, bin.to) : bin.name;
+  return bin.name.empty() ? plot::name_of_bin(bin.from, bin.to) : bin.name;
 }
 
 // Every second place is shaded, so that the dots of one place are seen as a group.
@@ -125,18 +125,23 @@ void shade_places(Plot& plot) {
 }
 
 Plot by_plot(const scores::Assessment& assessment, const scores::Quantity& quantity) {
-  // By the lower bound, then by name.
-  std::map<std::pair<double, std::string>, std::string> names;
+  // By the lower bound, then by name; of detectors that differ in what they saw, the one with the
+  // most.
+  std::map<std::pair<double, std::string>, scores::DetectionBin> names;
   const auto key = [](const scores::DetectionBin& bin) { return std::pair(bin.from, bin.name); };
   const auto bins_of = [&](const scores::DetectorScore& detector) {
     const auto found = detector.by.find(quantity.key);
     return found == detector.by.end() ? std::vector<scores::DetectionBin>{} : found->second;
   };
   for (const scores::DetectorScore& detector : assessment.detectors)
-    for (const scores::DetectionBin& bin : bins_of(detector)) names[key(bin)] = name_of(bin);
-  Plot plot{.x = {.label = quantity.title},
+    for (const scores::DetectionBin& bin : bins_of(detector))
+      if (scores::DetectionBin& most = names[key(bin)];
+          bin.detection.trials >= most.detection.trials)
+        most = bin;
+  Plot plot{.x = {.label = std::string(quantity.title) + " (aircraft)"},
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
-  for (const auto& [place, name] : names) plot.x.names.push_back(name);
+  for (const auto& [place, bin] : names)
+    plot.x.names.push_back(report::counted_place(name_of(bin), bin.detection.trials));
   shade_places(plot);
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
     Series plain = series_of(assessment, k, plot::Mark::kDots);
@@ -159,11 +164,12 @@ Plot named_plot(const scores::Assessment& assessment,
                 const std::string& label,
                 plot::Mark mark,
                 const auto& map_of,
-                const auto& add_value) {
+                const auto& add_value,
+                std::optional<double> most = {}) {
   std::set<std::string> names;
   for (const scores::DetectorScore& detector : assessment.detectors)
     for (const auto& [name, value] : map_of(detector)) names.insert(name);
-  Plot plot{.y = {.label = label, .min = 0}};
+  Plot plot{.y = {.label = label, .min = 0, .max = most}};
   plot.x.names.assign(names.begin(), names.end());
   if (mark == plot::Mark::kDots) shade_places(plot);
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
@@ -195,7 +201,8 @@ Plot mistaken_plot(const scores::Assessment& assessment) {
       [](const scores::DetectorScore& detector) -> const auto& { return detector.mistaken_by; },
       [](Series& series, double x, const statistics::Proportion& share) {
         add_point(series, x, share);
-      });
+      },
+      1);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(DetectionPlots, BinsOfAllDetectorsShareTheirPlaces) {
   const auto plots = detection_plots(two_detectors());
   const plot::Plot* by_range = plot_named(plots, "by_range_m");
   ASSERT_NE(by_range, nullptr);
-  EXPECT_EQ(by_range->x.names, (std::vector<std::string>{"0–100", "100–200", "≥ 200"}));
+  EXPECT_EQ(by_range->x.names, (std::vector<std::string>{"0–100 (2)", "100–200 (2)", "≥ 200 (2)"}));
   ASSERT_EQ(by_range->series.size(), 2u);
   EXPECT_EQ(by_range->series[0].x, (std::vector<double>{0, 2}));
   EXPECT_EQ(by_range->series[1].x, (std::vector<double>{1}));
@@ -77,7 +77,7 @@ TEST(DetectionPlots, BoundsBelowZeroAreNotJoinedByADash) {
   const auto plots = detection_plots(assessment);
   const plot::Plot* by_bearing = plot_named(plots, "by_azimuth_deg");
   ASSERT_NE(by_bearing, nullptr);
-  EXPECT_EQ(by_bearing->x.names, (std::vector<std::string>{"-20 to -10"}));
+  EXPECT_EQ(by_bearing->x.names, (std::vector<std::string>{"-20 to -10 (2)"}));
 }
 
 // Rings of weighted shares stand beside the dots of their detector, where there are any.

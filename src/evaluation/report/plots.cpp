@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/report/plots.h"
 
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,10 +44,8 @@ nlohmann::ordered_json json_of(const std::vector<NamedPlot>& plots) {
   return json;
 }
 
-std::string name_of_bin(double from, double to) {
-  if (!std::isfinite(to)) return fmt::format("≥ {}", from);
-  // A dash beside a minus sign is hard to read.
-  return fmt::format(fmt::runtime(from < 0 ? "{} to {}" : "{}–{}"), from, to);
+std::string counted_place(const std::string& name, double count) {
+  return fmt::format("{} ({:.0f})", name, count);
 }
 
 plot::Plot ranking_plot(const std::string& measure, const std::vector<Ranked>& best_first) {

@@ -28,9 +28,8 @@ std::vector<NamedPlot> with_data(std::vector<NamedPlot> plots);
 // The plots by name, as a page's script reads them.
 nlohmann::ordered_json json_of(const std::vector<NamedPlot>& plots);
 
-// The name of a bin from one bound to another, which is infinite for the last bin: "100–200",
-// "≥ 200", "-20 to -10".
-std::string name_of_bin(double from, double to);
+// The name of a place of an axis with the number of what is in it: "100–200 (40)".
+std::string counted_place(const std::string& name, double count);
 
 // The rows of a ranking, the best on top, with 95 % intervals of sequences; `measure` is the name
 // beside the axis.

@@ -77,13 +77,16 @@ Plot eao_plot(const Assessment& assessment) {
 }
 
 Plot bins_plot(const Assessment& assessment, const std::string& key, const std::string& x) {
-  std::map<double, std::string> names;  // by the lower bound
+  // By the lower bound; of trackers that differ in their frames, the one with the most.
+  std::map<double, measures::Bin> names;
   for (const ScoredTracker& tracker : assessment.trackers)
     if (const auto found = tracker.bins.find(key); found != tracker.bins.end())
       for (const measures::Bin& bin : found->second)
-        names[bin.from] = report::name_of_bin(bin.from, bin.to);
-  Plot plot{.x = {.label = x}, .y = {.label = "mean overlap", .min = 0}};
-  for (const auto& [from, name] : names) plot.x.names.push_back(name);
+        if (measures::Bin& most = names[bin.from]; bin.frames > most.frames) most = bin;
+  Plot plot{.x = {.label = x + " (frames)"}, .y = {.label = "mean overlap", .min = 0}};
+  for (const auto& [from, bin] : names)
+    plot.x.names.push_back(
+        report::counted_place(plot::name_of_bin(from, bin.to), static_cast<double>(bin.frames)));
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
     const auto found = assessment.trackers[k].bins.find(key);
     if (found == assessment.trackers[k].bins.end() || found->second.empty()) continue;
@@ -100,11 +103,13 @@ Plot bins_plot(const Assessment& assessment, const std::string& key, const std::
 }
 
 Plot background_plot(const Assessment& assessment) {
-  std::set<std::string> names;
+  std::map<std::string, std::int64_t> names;
   for (const ScoredTracker& tracker : assessment.trackers)
-    for (const auto& [name, bin] : tracker.backgrounds) names.insert(name);
-  Plot plot{.y = {.label = "mean overlap", .min = 0}};
-  plot.x.names.assign(names.begin(), names.end());
+    for (const auto& [name, bin] : tracker.backgrounds)
+      names[name] = std::max(names[name], bin.frames);
+  Plot plot{.x = {.label = "background (frames)"}, .y = {.label = "mean overlap", .min = 0}};
+  for (const auto& [name, frames] : names)
+    plot.x.names.push_back(report::counted_place(name, static_cast<double>(frames)));
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
     const auto& backgrounds = assessment.trackers[k].backgrounds;
     if (backgrounds.empty()) continue;

@@ -71,18 +71,16 @@ std::unique_ptr<detector::Detector> make_detector(std::string_view command,
     if (model.empty()) throw Error("'onnx:' names no file; expected onnx:MODEL.onnx");
     return network::make_network_detector(model, {options.threads, options.stop});
   }
-  std::vector<std::string> names = detector_names();
-  names.insert(names.end(), {"onnx:MODEL.onnx", "exec:COMMAND"});
   const std::string scheme(command.substr(0, command.find(':')));
   const bool has_scheme = scheme.size() < command.size();
   const auto near = has_scheme
                         ? nearest_spelling(scheme + ":", std::vector<std::string>{"onnx:", "exec:"})
                         : nearest_spelling(scheme, detector_names());
-  throw Error(fmt::format(
-      "there is no detector '{}'; {}",
-      command.substr(0, 80),
-      near ? "did you mean '" + *near + "'?"
-           : fmt::format("expected {}, onnx:MODEL.onnx or exec:COMMAND", fmt::join(names, ", "))));
+  throw Error(fmt::format("there is no detector '{}'; {}",
+                          command.substr(0, 80),
+                          near ? "did you mean '" + *near + "'?"
+                               : fmt::format("expected {}, onnx:MODEL.onnx or exec:COMMAND",
+                                             fmt::join(detector_names(), ", "))));
 }
 
 }  // namespace airtruth::runs

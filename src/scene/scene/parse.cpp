@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <fstream>
 #include <limits>
+
+#include <fmt/format.h>
 
 #include "foundation/base/files.h"
 #include "scene/scene/parse_distractor.h"
@@ -42,7 +47,20 @@ Background background_from(const TableReader& table) {
 
 }  // namespace
 
-Scene read_scene(const fs::path& file) { return parse_scene(read_file(file, kLargestToml), file); }
+Scene read_scene(const fs::path& file) {
+  const bool is_folder = fs::is_directory(file);
+  std::ifstream beginning(file, std::ios::binary);
+  std::array<char, 4096> bytes{};
+  beginning.read(bytes.data(), bytes.size());
+  const auto end = bytes.begin() + beginning.gcount();
+  // Every container of video has a byte of zero among its first; no text has one.
+  if (is_folder || std::find(bytes.begin(), end, '\0') != end)
+    throw Error(fmt::format("is {}; expected a scene file (.toml); `airtruth scene new` writes one "
+                            "for a video",
+                            is_folder ? "a folder" : "no text"),
+                {file.string()});
+  return parse_scene(read_file(file, kLargestToml), file);
+}
 
 Scene parse_scene(std::string_view text, const fs::path& file) {
   const toml::table parsed = parsed_toml(text, file.string());

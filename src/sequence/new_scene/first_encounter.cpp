@@ -17,25 +17,25 @@ namespace {
 // An intruder that is nearest later than this begins as a dot of a pixel or two.
 constexpr double kMaxApproachS = 12;
 
-// The candidates, as a person would state them. A closest approach after the moments at which the
-// view is tested keeps the intruder in front of the camera.
+// The candidates, as a person would state them. The closest approach is near the end of the part
+// that is used, so that the intruder is in front of the camera for most of it.
 struct Candidate {
   double cpa_share;  // of the clip's duration, or of kMaxApproachS in a longer clip
   double course_deg;
   double speed_mps;
   double right_m;
 };
-constexpr std::array<Candidate, 5> kCandidates = {{{1.1, 180, 60, 40},
-                                                   {1.1, 150, 60, -30},
-                                                   {1.2, 90, 50, -30},
-                                                   {1.2, 270, 50, 30},
-                                                   {1.3, 180, 45, 20}}};
+constexpr std::array<Candidate, 5> kCandidates = {{{0.9, 180, 60, 40},
+                                                   {0.9, 150, 60, -30},
+                                                   {0.9, 90, 50, -30},
+                                                   {0.9, 270, 50, 30},
+                                                   {0.95, 180, 45, 20}}};
 constexpr double kAboveM = 15;  // how much higher the intruder passes: chosen
 constexpr int kSteps = 40;      // moments at which the view is tested
 
 scene::Encounter encounter_of(const Candidate& candidate, double duration_s) {
   scene::Encounter encounter;
-  encounter.cpa_time_s = candidate.cpa_share * std::clamp(duration_s, 1.0, kMaxApproachS);
+  encounter.cpa_time_s = candidate.cpa_share * std::min(duration_s, kMaxApproachS);
   encounter.cpa_right_m = candidate.right_m;
   encounter.cpa_above_m = kAboveM;
   encounter.course_deg = candidate.course_deg;

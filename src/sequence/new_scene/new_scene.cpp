@@ -173,12 +173,22 @@ std::string quoted(const fs::path& path) {
   return text + '"';
 }
 
+// A file as the scene names it: relative to the scene's folder where that is stated.
+fs::path as_written(const fs::path& file, const NewSceneOptions& options) {
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  return options.folder
+             ? whole.lexically_proximate(fs::absolute(*options.folder).lexically_normal())
+             : whole;
+}
+
 struct CameraWords {
   scene::Camera camera;
   std::string table;
 };
 
-CameraWords camera_for(const fs::path& video, const std::optional<YawPitchRoll>& attitude) {
+CameraWords camera_for(const fs::path& video,
+                       const std::optional<YawPitchRoll>& attitude,
+                       const NewSceneOptions& options) {
   CameraWords words;
   words.table = "[camera]\n";
   const auto log = log_of(video);
@@ -186,7 +196,7 @@ CameraWords camera_for(const fs::path& video, const std::optional<YawPitchRoll>&
     words.camera.log = log;
     words.table +=
         fmt::format("log = {}                  # where the aircraft flew: airtruth log show\n",
-                    quoted(fs::absolute(*log)));
+                    quoted(as_written(*log, options)));
   } else {
     words.camera.position_ned_m = {0, 0, -150};
     words.camera.velocity_ned_mps = {20, 0, 0};
@@ -267,7 +277,7 @@ std::string background_words(const fs::path& video,
                              const Part& part,
                              double duration_s,
                              const std::optional<double>& picture_rate_hz) {
-  std::string words = fmt::format("[background]\nvideo = {}\n", quoted(fs::absolute(video)));
+  std::string words = fmt::format("[background]\nvideo = {}\n", quoted(video));
   if (picture_rate_hz) words += fmt::format("frame_rate_hz = {}\n", *picture_rate_hz);
   if (!part.is_whole)
     words += fmt::format(
@@ -302,7 +312,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const lens::ImageSize size{info.width, info.height};
   const LensWords lens = lens_for(video, size, options);
   const Part part = part_of(video, info, lens.lens, options);
-  const CameraWords camera = camera_for(video, part.attitude);
+  const CameraWords camera = camera_for(video, part.attitude, options);
   const double rate_hz = info.frame_rate.value();
   const auto seconds_of = [&](std::int64_t frames) {
     return rate_hz > 0 ? static_cast<double>(std::max<std::int64_t>(1, frames) - 1) / rate_hz : 0;
@@ -320,6 +330,9 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       "{}\n"
       "# {}.\n{}\n"
       "{}\n"
+      "# [realism]                              # blur, noise and haze as this camera has them\n"
+      "# auto = true                            # measured from the clip, which takes a minute\n"
+      "# fallback = true                        # left out, with a warning, where it cannot be\n\n"
       "[light]                                  # the sun, from north towards east and above the "
       "horizon\n"
       "sun_azimuth_deg = 180\nsun_elevation_deg = 45\n\n"
@@ -330,7 +343,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       info.height,
       rate_hz,
       seconds_of(info.frame_count_estimate),
-      background_words(video, part, duration_s, options.picture_rate_hz),
+      background_words(as_written(video, options), part, duration_s, options.picture_rate_hz),
       lens.origin,
       lens.table,
       camera.table,

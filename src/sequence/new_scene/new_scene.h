@@ -17,6 +17,8 @@ struct NewSceneOptions {
   std::optional<std::filesystem::path> lens;
   // Of numbered pictures, in frames a second.
   std::optional<double> picture_rate_hz;
+  // The folder of the scene file, to which the files in it are relative; empty: they are absolute.
+  std::optional<std::filesystem::path> folder;
   Warn warn;
   std::stop_token stop;
   std::function<void(std::int64_t done, std::int64_t total)> progress;

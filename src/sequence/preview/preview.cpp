@@ -26,7 +26,7 @@ namespace {
 
 // The sizes of this file are display choices.
 
-constexpr int kWidthPx = 1930;  // that of a contact sheet of three tiles
+constexpr int kWidthPx = 1960;  // that of a contact sheet of three tiles
 // Widths of the picture at the left and of the plan and the heights at its right, 10 px apart.
 constexpr int kMainWidthPx = 1270;
 constexpr int kSideWidthPx = kWidthPx - kMainWidthPx - 10;
@@ -55,6 +55,7 @@ class Previewer {
   }
 
   Preview make() {
+    warn_of_length();
     // What an aircraft cannot fly is said before it is rendered.
     for (std::size_t i = 0; i < world().actors.size(); ++i)
       setup::warn_not_flyable(
@@ -97,6 +98,18 @@ class Previewer {
                                   seen.time_s,
                                   duration_s_),
                       seen.where);
+  }
+  // The opened stream's number of frames is what the scene can use of the clip.
+  void warn_of_length() const {
+    const scene::Background& background = scene().background;
+    const std::int64_t frames = opened_.info.frame_count_estimate;
+    if (options_.warn && frames > 0 && background.frame_count.value_or(0) > frames)
+      options_.warn(
+          fmt::format("[background] frame_count is {}, and first_frame {}; the clip has only {} "
+                      "frames from there",
+                      *background.frame_count,
+                      background.first_frame,
+                      frames));
   }
   void stop_if_asked() const {
     if (options_.stop.stop_requested()) throw Interrupted();
@@ -175,7 +188,29 @@ class Previewer {
     cv::Mat canvas = drawing::view(scaled).clone();
     for (std::size_t actor = 0; actor < world().actors.size(); ++actor)
       draw_path(canvas, actor, scale);
+    draw_ticks(canvas, scale);
     return canvas;
+  }
+
+  // Pixels of the frame along the upper and the left edge, from which `seen` can be read.
+  static void draw_ticks(cv::Mat& canvas, double scale) {
+    // Least distance between two ticks, their length, and the size of their numbers, in px of the
+    // canvas.
+    constexpr int kApartPx = 90, kTickPx = 8;
+    constexpr double kTextPx = 11;
+    double step = 10;
+    while (step * scale < kApartPx) step *= 2;
+    for (int i = 0; i * step * scale < std::max(canvas.cols, canvas.rows); ++i) {
+      const int at = static_cast<int>(std::lround(i * step * scale));
+      const std::string words = fmt::format("{:.0f}", i * step);
+      if (at + drawing::text_width(words, kTextPx) < canvas.cols) {
+        cv::line(canvas, {at, 0}, {at, kTickPx}, drawing::kWhite);
+        drawing::text(canvas, words, at + 3, 13, kTextPx, drawing::kWhite);
+      }
+      if (i == 0 || at + kTickPx > canvas.rows) continue;
+      cv::line(canvas, {0, at}, {kTickPx, at}, drawing::kWhite);
+      drawing::text(canvas, words, kTickPx + 3, at + 4, kTextPx, drawing::kWhite);
+    }
   }
 
   // The pixels of an intruder's centre, each in the frame of its time, joined, with the seconds

@@ -13,12 +13,15 @@
 namespace airtruth::drawing {
 namespace {
 
-image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
+image::Rgb8 alpha_picture(const image::Layer& layer,
+                          const PixelBox& area,
+                          const image::Mask* own_aircraft) {
   image::Rgb8 result = image::make_rgb8(area.width, area.height);
   const auto common = layer.empty() ? std::nullopt : intersection(layer.patch, area);
   if (!common) return result;
   for (int y = common->y; y < common->bottom(); ++y) {
     for (int x = common->x; x < common->right(); ++x) {
+      if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
       const float alpha = std::clamp(layer.pixels[layer.index(x, y)].alpha, 0.0f, 1.0f);
       std::fill_n(result.at(x - area.x, y - area.y),
                   3,
@@ -75,6 +78,8 @@ constexpr int kPanelGapPx = 12;
 constexpr int kHeadingPx = 52;
 // Width of the longest caption of a panel.
 constexpr int kMinSlotPx = 110;
+// Longest side of the picture, but for its margins.
+constexpr int kMostPx = 4000;
 // Size of the text.
 constexpr double kCloseupTextPx = 12;
 
@@ -97,15 +102,18 @@ void draw_heading(cv::Mat& canvas, std::int64_t frame, int zoom) {
 image::Rgb8 closeup(const Closeup& what,
                     const annotation::Frame& truth,
                     const PixelBox& area,
-                    int zoom) {
-  check(what.background != nullptr && what.result != nullptr && zoom > 0,
+                    int largest_zoom) {
+  const int zoom = std::clamp(
+      std::min(kMostPx / (3 * area.width), kMostPx / area.height), 1, std::max(1, largest_zoom));
+  check(what.background != nullptr && what.result != nullptr && largest_zoom > 0,
         "a closeup has its pictures");
   const image::Rgb8 before =
       image::rgb8_from_picture(*what.background, area.x, area.y, area.width, area.height);
   const image::Rgb8 after =
       image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
-  const image::Rgb8 middle =
-      what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
+  const image::Rgb8 middle = what.layer != nullptr
+                                 ? alpha_picture(*what.layer, area, what.own_aircraft)
+                                 : difference_picture(before, after);
   const int panel = area.width * zoom;
   const int slot = std::max(panel, kMinSlotPx);
   cv::Mat canvas(kHeadingPx + area.height * zoom + kPanelGapPx,
@@ -124,6 +132,8 @@ image::Rgb8 closeup(const Closeup& what,
     cv::Mat part = canvas(cv::Rect(x, kHeadingPx, panel, area.height * zoom));
     if (i == 2) draw_boxes(part, truth, area, zoom);
   }
+  const double shrink = std::min(1.0, kMostPx / double(std::max(canvas.cols, canvas.rows)));
+  if (shrink < 1) cv::resize(canvas, canvas, {}, shrink, shrink, cv::INTER_AREA);
   return from_mat(canvas);
 }
 

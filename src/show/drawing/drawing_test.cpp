@@ -150,6 +150,25 @@ TEST(Closeup, EnlargesEachPixelToASquareOfItsOwnColour) {
   EXPECT_EQ(result.at(12 + 2 * (kSlot + 12) + 40, 52 + 30)[0], 60);
 }
 
+TEST(Closeup, IsBoundedAndShowsNoAlphaOfTheOwnAircraft) {
+  const image::Picture picture = grey_picture(400, 300, 50);
+  const annotation::Frame truth = frame_with_box(3, {30, 20, 2, 2});
+  image::Layer layer;
+  layer.patch = {10, 10, 20, 10};
+  layer.pixels.assign(200, {});
+  for (auto& pixel : layer.pixels) pixel.alpha = 1;
+  image::Mask mask{400, 300, std::vector<unsigned char>(400 * 300, 255)};
+  for (int y = 0; y < 300; ++y)
+    for (int x = 20; x < 400; ++x) mask.free[static_cast<std::size_t>(y * 400 + x)] = 0;
+  const image::Rgb8 result = closeup({&picture, &picture, &layer, &mask}, truth, {0, 0, 50, 40}, 4);
+  const int alpha = 24 + (result.width - 48) / 3;
+  EXPECT_EQ(result.at(alpha + 4 * 15, 52 + 4 * 15)[0], 255);
+  EXPECT_EQ(result.at(alpha + 4 * 25, 52 + 4 * 15)[0], 0);
+  const image::Rgb8 large = closeup({&picture, &picture, nullptr}, truth, {0, 0, 400, 300}, 64);
+  EXPECT_LE(std::max(large.width, large.height), 4000);
+  EXPECT_GT(large.width, 3600);
+}
+
 // A gap without ink separates the captions of two panels, and the picture's right edge has no ink.
 TEST(Closeup, CaptionsDoNotRunTogetherHoweverNarrowThePanels) {
   const image::Picture picture = grey_picture(400, 300, 50);

@@ -51,14 +51,17 @@ struct Closeup {
   const image::Picture* result = nullptr;
   // The layer whose alpha is shown; nullptr: |result - background| is shown instead.
   const image::Layer* layer = nullptr;
+  // Where it is not free the layer is not drawn; nullptr: everywhere is free.
+  const image::Mask* own_aircraft = nullptr;
 };
 
-// Shows background, alpha and result side by side, each pixel enlarged `zoom` times without
-// smoothing. The exact box (amber), the covered box (green) and the visible box (white) are drawn
-// on the result. `area`: the pixels that are shown; it may extend beyond the frame.
+// Shows background, alpha and result side by side, each pixel enlarged `largest_zoom` times
+// without smoothing, or less where the picture would have more than some 4000 px a side. The exact
+// box (amber), the covered box (green) and the visible box (white) are drawn on the result. `area`:
+// the pixels that are shown; it may extend beyond the frame.
 image::Rgb8 closeup(const Closeup& what,
                     const annotation::Frame& truth,
                     const PixelBox& area,
-                    int zoom);
+                    int largest_zoom);
 
 }  // namespace airtruth::drawing

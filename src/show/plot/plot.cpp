@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "show/plot/plot.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
 namespace airtruth::plot {
 
 Style style_of(std::size_t index) {
@@ -11,6 +15,13 @@ Style style_of(std::size_t index) {
           dash == 0   ? Dash::kSolid
           : dash == 1 ? Dash::kLong
                       : Dash::kShort};
+}
+
+std::string name_of_bin(double from, double to) {
+  if (!std::isfinite(to)) return fmt::format("≥ {}", from);
+  if (!std::isfinite(from)) return fmt::format("< {}", to);
+  // A dash beside a minus sign is hard to read.
+  return fmt::format(fmt::runtime(from < 0 ? "{} to {}" : "{}–{}"), from, to);
 }
 
 }  // namespace airtruth::plot

@@ -106,4 +106,8 @@ struct Plot {
   const image::Rgb8* picture = nullptr;
 };
 
+// The name of a bin from one bound to another; an infinite one is open: "100–200", "< 50", "≥ 200",
+// "-20 to -10".
+std::string name_of_bin(double from, double to);
+
 }  // namespace airtruth::plot

@@ -17,15 +17,32 @@ const airtruth = (() => {
   // The colour of truth alone.
   const ink = dark ? '#ffffff' : '#000000';
 
-  // The axis of a described plot. Places with names have all their names, upright where there are many.
+  // A name with its middle left out where it is long.
+  const shortened = (name, most) => (name.length <= most ? name : `${name.slice(0, Math.ceil(most / 2) - 1)}…${name.slice(1 - Math.floor(most / 2))}`);
+
+  // The axis of a described plot. `bounds`: the ends of its intervals, which it holds too; `areWhole`: its values
+  // are counts. Places with names have all their
+  // names, upright where they do not fit beside each other; numbers lie flat.
   const isPower = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
-  const described = ({ label, min, max, names, logarithmic }) => ({
+  const briefly = (value) => (value >= 1e4 || value < 1e-3 ? `1e${Math.round(Math.log10(value))}` : String(Number(value.toPrecision(1))));
+  const longestName = 16;
+  const described = ({ label, min, max, names, logarithmic }, bounds, areWhole = false) => ({
     ...(names.length
-      ? { type: 'category', ticks: { autoSkip: false, minRotation: names.length > 5 ? 90 : 0, font: { size: 9 } }, grid: { display: false } }
+      ? { type: 'category', grid: { display: false },
+        ticks: { autoSkip: false, maxRotation: 90, font: { size: 9 }, callback: (k) => shortened(names[k], longestName) },
+        afterCalculateLabelRotation: (scale) => {
+          scale.ctx.font = `9px ${Chart.defaults.font.family}`;
+          const widest = Math.max(...names.map((name) => scale.ctx.measureText(shortened(name, longestName)).width));
+          scale.labelRotation = widest + 4 > (scale.chart.width - 60) / names.length ? 90 : 0;
+        } }
       : { type: logarithmic ? 'logarithmic' : 'linear', min: min ?? undefined, max: max ?? undefined,
-        ticks: logarithmic ? { callback: (value) => (isPower(value) ? String(Number(value.toPrecision(1))) : '') } : { maxTicksLimit: 11 } }),
+        ...(bounds.length ? { suggestedMin: Math.min(...bounds), suggestedMax: Math.max(...bounds) } : {}),
+        ticks: logarithmic
+          ? { maxRotation: 0, callback: (value) => (isPower(value) ? briefly(value) : '') }
+          : { maxRotation: 0, maxTicksLimit: 11, ...(areWhole ? { precision: 0 } : {}) } }),
     title: { display: Boolean(label), text: label },
   });
+  const boundsOf = (plot) => plot.series.flatMap(({ low, high }) => [...low, ...high]).filter((value) => value !== null);
 
   // What stands at a named place beside others.
   const isBeside = ({ mark }) => mark === 'bars' || mark === 'dots';
@@ -80,11 +97,11 @@ const airtruth = (() => {
 
   // Room for what stands side by side: a figure with many takes the whole row, and is scrolled where that is too narrow.
   const makeRoom = (canvas, plot) => {
-    const many = plot.x.names.length * plot.series.filter(isBeside).length;
-    if (many <= 40) return;
+    const many = plot.x.names.length * Math.max(1, plot.series.filter(isBeside).length);
+    if (many <= 40 && plot.x.names.length <= 20) return;
     canvas.closest('figure').classList.add('dense');
     const room = element('div');
-    room.style.minWidth = `${60 + 8 * many}px`;
+    room.style.minWidth = `${60 + Math.max(8 * many, 14 * plot.x.names.length)}px`;
     canvas.replaceWith(room);
     room.append(canvas);
   };
@@ -112,7 +129,7 @@ const airtruth = (() => {
       const series = plot.series[datasetIndex];
       return { borderColor: paintOf(series), backgroundColor: series.hollow ? 'transparent' : paintOf(series) };
     };
-    if (areBeside) makeRoom(canvas, plot);
+    makeRoom(canvas, plot);
     return new Chart(canvas, {
       type: areBeside ? 'bar' : 'line',
       data: { labels: names.length ? names : undefined, datasets },
@@ -120,7 +137,7 @@ const airtruth = (() => {
         plugins: { legend: { display: false }, ...(areDots ? { tooltip: { callbacks: { labelColor } } } : {}) },
         // Dots are small to point at: what is said is said of their whole place.
         ...(areDots ? { interaction: { mode: 'index', intersect: false } } : {}),
-        scales: { x: described(plot.x), y: described(plot.y) },
+        scales: { x: described(plot.x, []), y: described(plot.y, boundsOf(plot), plot.series.every(({ y }) => y.every(Number.isInteger))) },
       },
       plugins: areBeside ? [uprights(plot)] : [],
     });
@@ -133,6 +150,23 @@ const airtruth = (() => {
       ? `repeating-linear-gradient(90deg, ${colour} 0 ${dash[0] / 2}px, transparent 0 ${dash[0] / 2 + 2}px)`
       : colour;
     return dot;
+  };
+
+  // A table that is wider than its place becomes a list: a block for each row, with the heading beside each value.
+  const fitted = new WeakSet();
+  const fit = (table) => {
+    const heads = [...table.tHead.rows[0].cells].map((cell) => cell.textContent.replace(/ [▲▼]$/, ''));
+    for (const row of table.tBodies[0].rows) [...row.cells].forEach((cell, k) => { cell.dataset.name = heads[k] || ''; });
+    const place = table.parentNode;
+    const change = () => {
+      table.classList.remove('stacked');
+      table.classList.toggle('stacked', table.scrollWidth > place.clientWidth);
+    };
+    change();
+    if (fitted.has(table)) return;
+    fitted.add(table);
+    let width = place.clientWidth;
+    new ResizeObserver(() => { if (place.clientWidth !== width) { width = place.clientWidth; setTimeout(change); } }).observe(place);
   };
 
   // A table that a click on a heading sorts. A column has a name, what rows are sorted by (`of`), and `up` where it begins ascending;
@@ -162,9 +196,26 @@ const airtruth = (() => {
         const line = body.insertRow();
         columns.forEach((column, k) => fill(line.insertCell(), row, column, k));
       }
+      fit(table);
     };
     draw();
   };
+
+  // A button that shows `player` on the whole screen; the key F does so for the player that the pointer is over.
+  let pointed = null;
+  const fullScreen = (player) => {
+    const button = element('button', 'Full screen (F)');
+    button.type = 'button';
+    const toggle = () => (document.fullscreenElement ? document.exitFullscreen() : player.requestFullscreen().catch(() => {}));
+    button.addEventListener('click', toggle);
+    player.addEventListener('pointerenter', () => { pointed = toggle; });
+    player.addEventListener('pointerleave', () => { if (pointed === toggle) pointed = null; });
+    return button;
+  };
+  document.addEventListener('keydown', (event) => {
+    const isTyped = event.ctrlKey || event.metaKey || event.altKey || event.target.matches('select, input:not([type=range]):not([type=checkbox])');
+    if (event.key.toLowerCase() === 'f' && pointed && !isTyped) pointed();
+  });
 
   // What both players of sequences begin with: the list of sequences, a box for each of `shown` that hides it, the buttons and the slider.
   //   sequences, wordsOf(one)   the list and what it says of each; each gets its index
@@ -197,6 +248,7 @@ const airtruth = (() => {
     byId('next').addEventListener('click', step(1));
     byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
     byId('play').addEventListener('click', () => (byId('play').textContent === 'Play' ? play() : stop()));
+    byId('play').parentNode.append(fullScreen(byId('play').closest('.player')));
   };
 
   return {
@@ -206,6 +258,8 @@ const airtruth = (() => {
     dotOf,
     drawPlot,
     element,
+    fit,
+    fullScreen,
     sortable,
     least: (values) => (values.length ? values.reduce((a, b) => Math.min(a, b)) : null),
     most: (values) => (values.length ? values.reduce((a, b) => Math.max(a, b)) : null),
@@ -213,8 +267,9 @@ const airtruth = (() => {
     number: (value, digits = 0) =>
       value === null || value === undefined ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits }),
     line: (label, points, colour, more = {}) =>
-      ({ label, data: points, borderColor: colour, backgroundColor: colour, borderWidth: 1.5, pointRadius: 0, showLine: true, ...more }),
+      ({ label: shortened(label, 28), data: points, borderColor: colour, backgroundColor: colour, borderWidth: 1.5, pointRadius: 0, showLine: true, ...more }),
     axis: (text, more = {}) => ({ type: 'linear', title: { display: true, text }, ...more }),
-    legend: { position: 'top', labels: { boxWidth: 12, filter: (item) => !item.text.startsWith('_') } },
+    // Of the first ten of what is drawn: more names leave no room for the plot.
+    legend: { position: 'top', labels: { boxWidth: 12, filter: (item) => !item.text.startsWith('_') && item.datasetIndex < 10 } },
   };
 })();

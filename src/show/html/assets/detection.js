@@ -10,7 +10,7 @@
   // Of a path of keys; null where a step is missing.
   const at = (object, path) => path.split('.').reduce((value, key) => (value === null || value === undefined ? null : value[key] ?? null), object);
   const withBounds = (value, bounds, digits) =>
-    value === null ? '–' : `${number(value, digits)}${bounds ? ` [${number(bounds[0], digits)}, ${number(bounds[1], digits)}]` : ''}`;
+    value === null ? '–' : `${number(value, digits)}${bounds ? ` [${number(bounds[0], digits)},\u00a0${number(bounds[1], digits)}]` : ''}`;
   const shareText = (share) => (share ? withBounds(share.share, share.interval_95, 3) : '–');
   const meanText = (mean, digits) => (mean ? withBounds(mean.mean, mean.interval_95, digits) : '–');
 

@@ -126,6 +126,7 @@ airtruth.detectionPlayer = (data, dotOf) => {
       }
       if (listed.length > mostRows) body.insertRow().append(element('td', `and ${listed.length - mostRows} more`));
     }
+    airtruth.fit(table);
   };
 
   const rowHeight = 18;

@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, counted, dotOf, drawPlot, element, ink, most, number, sortable, line, axis, legend } = airtruth;
+  const { byId, counted, dotOf, drawPlot, element, ink, most, number, sortable, line, axis } = airtruth;
   const trackers = data.trackers;
   for (const tracker of trackers) Object.assign(tracker, { colour: tracker.style.colour, dash: tracker.style.dash });
   const scored = trackers.filter((tracker) => tracker.overall);
@@ -166,7 +166,7 @@
             options: {
               spanGaps: false,
               events: [],
-              plugins: { legend: id === 'x' ? legend : none, tooltip: { enabled: false } },
+              plugins: { legend: none, tooltip: { enabled: false } },
               scales: { x: axis(id === 'error' ? 'frame' : '', { min: sequence.frame[0], max: sequence.frame[sequence.frame.length - 1] }), y: { ...y, afterFit: (scale) => { scale.width = 58; } } },
             },
             plugins: [cursor],
@@ -268,6 +268,7 @@
           : 'never';
         for (const text of [number(one.auc, 3), number(one.precision_20px, 3), number(one.angle_mrad, 1), lost]) row.append(element('td', text));
       }
+      airtruth.fit(table);
     };
 
     const show = (index) => {

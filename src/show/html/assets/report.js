@@ -122,11 +122,13 @@
     const sets = [line('camera height, m', camera.frame.map((x, i) => ({ x, y: -camera.down_m[i] })), '#7d8590')];
     sequence.intruders.forEach((intruder, k) =>
       sets.push(line(`${intruder.id} height, m`, intruder.frame.map((x, i) => ({ x, y: intruder.down_m[i] === null ? null : -intruder.down_m[i] })), colours[k % colours.length])));
-    sets.push(line('camera shift, px', camera.frame.map((x, i) => ({ x, y: camera.shift_px[i] })), '#B8B000', { yAxisID: 'shift', borderWidth: 1 }));
+    // Of a motion that is a rotation alone there is no shift.
+    const hasShift = camera.shift_px.some((shift) => shift);
+    if (hasShift) sets.push(line('camera shift, px', camera.frame.map((x, i) => ({ x, y: camera.shift_px[i] })), '#B8B000', { yAxisID: 'shift', borderWidth: 1 }));
     return new Chart(canvas, {
       type: 'scatter',
       data: { datasets: sets },
-      options: { plugins: { legend }, scales: { x: axis('frame'), y: axis('height, m'), shift: axis('shift, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } },
+      options: { plugins: { legend }, scales: { x: axis('frame'), y: axis('height, m'), ...(hasShift ? { shift: axis('shift, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } : {}) } },
     });
   };
 
@@ -158,8 +160,8 @@
   const playerOf = (sequence) => {
     const place = element('div', undefined, 'film');
     const canvas = element('canvas');
-    canvas.width = 400;
-    canvas.height = Math.max(1, Math.round((400 * sequence.height) / sequence.width));
+    canvas.width = Math.min(960, Math.max(640, sequence.width));
+    canvas.height = Math.max(1, Math.round((canvas.width * sequence.height) / sequence.width));
     canvas.setAttribute('role', 'img');
     canvas.setAttribute('aria-label', `Frames of ${sequence.name}`);
     const controls = element('div', undefined, 'scrub');
@@ -173,36 +175,48 @@
     controls.append(button, slider);
     const caption = element('p', '', 'note');
     place.append(canvas, controls, caption);
+    const zoom = element('canvas');
+    zoom.width = zoom.height = 480;
+    zoom.setAttribute('role', 'img');
+    zoom.setAttribute('aria-label', `The intruder of ${sequence.name}, enlarged`);
     let at = sequence.poster;
     let playing = 0;
     let asked = 0;
 
-    // Picture, boxes, caption and slider change together, once the picture is decoded.
-    const show = (index) => new Promise((done) => {
+    // The part of the frame from (left, top) on, `px` wide, with its boxes; without an image nothing.
+    const draw = (on, image, boxes, left, top, px) => {
+      const context = on.getContext('2d');
+      context.clearRect(0, 0, on.width, on.height);
+      if (!image) return;
+      context.drawImage(image, 0, 0, on.width, on.height);
+      const scale = on.width / px;
+      for (const [intruder, x, y, width, height] of boxes)
+        for (const [colour, thickness] of [['#000000', 3.5], [colours[intruder % colours.length], 1.8]]) {
+          context.strokeStyle = colour;
+          context.lineWidth = thickness;
+          context.strokeRect((x - left) * scale - 2, (y - top) * scale - 2, width * scale + 4, height * scale + 4);
+        }
+    };
+    const loaded = (id) => new Promise((done) => {
+      const source = picture(id);
+      const image = new Image();
+      image.onerror = () => done(null);
+      image.onload = () => done(image);
+      if (source) image.src = source; else done(null);
+    });
+    // Pictures, boxes, caption and slider change together, once the pictures are decoded.
+    const show = async (index) => {
       at = index;
       asked += 1;
       const mine = asked;
       const still = sequence.stills[index];
-      const image = new Image();
-      image.onerror = done;
-      image.onload = () => {
-        if (mine === asked) {
-          const context = canvas.getContext('2d');
-          context.drawImage(image, 0, 0, canvas.width, canvas.height);
-          const scale = canvas.width / sequence.width;
-          for (const [intruder, x, y, width, height] of still.boxes)
-            for (const [colour, thickness] of [['#000000', 3.5], [colours[intruder % colours.length], 1.8]]) {
-              context.strokeStyle = colour;
-              context.lineWidth = thickness;
-              context.strokeRect(x * scale - 2, y * scale - 2, width * scale + 4, height * scale + 4);
-            }
-          caption.textContent = `frame ${still.frame}` + (still.boxes.length ? '' : ', no intruder is seen');
-          slider.value = index;
-        }
-        done();
-      };
-      image.src = picture(`still-${sequence.index}-${index}`);
-    });
+      const [whole, close] = await Promise.all([loaded(`still-${sequence.index}-${index}`), loaded(`zoom-${sequence.index}-${index}`)]);
+      if (mine !== asked) return;
+      draw(canvas, whole, still.boxes, 0, 0, sequence.width);
+      draw(zoom, close, still.boxes, ...(still.zoom || [0, 0, 1]));
+      caption.textContent = `frame ${still.frame}` + (still.boxes.length ? '' : ', no intruder is seen');
+      slider.value = index;
+    };
     const stop = () => {
       playing += 1;
       button.textContent = 'Play';
@@ -248,7 +262,7 @@
       if (sequence.video) addFile();
       show(at);
     };
-    return { place, begin };
+    return { place, zoom, controls, begin };
   };
 
   const link = (path) => {
@@ -272,8 +286,9 @@
     const table = encounters.tableOf(sequence, colours);
     if (table) card.append(table);
     const row = element('div', undefined, 'row');
-    const pictures = element('div', undefined, 'pictures');
+    const pictures = element('div');
     const player = playerOf(sequence);
+    const film = element('div', undefined, 'player');
     const pair = element('div', undefined, 'pair');
     const loop = element('div', undefined, 'loop');
     loop.setAttribute('role', 'img');
@@ -281,8 +296,10 @@
     const links = element('div', undefined, 'links');
     sequence.files.forEach((path) => links.append(link(path)));
     pair.append(loop, links);
-    pictures.append(player.place, pair);
-    row.append(pictures);
+    pictures.append(player.zoom, pair);
+    film.append(player.place, pictures);
+    player.controls.append(airtruth.fullScreen(film));
+    card.append(film);
     const plots = ['plan', 'profile', 'sizes'].map(() => {
       const plot = element('div', undefined, 'plot');
       plot.append(element('canvas'));
@@ -292,6 +309,7 @@
     card.append(row);
     card.draw = () => {
       player.begin();
+      if (table) airtruth.fit(table.firstChild);
       const strip = picture(`loop-${sequence.index}`);
       if (strip) {
         const side = sequence.loop_side;
