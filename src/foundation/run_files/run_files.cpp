@@ -184,7 +184,7 @@ class RunFiles::Hidden {
   // A run that clears away may take the new folder for a dead one's before it is locked.
   void make() {
     for (;;) {
-      std::string name = (parent_ / (std::string(kHiddenBegins) + "XXXXXX")).string();
+      std::string name = (parent_ / fmt::format("{}XXXXXX", kHiddenBegins)).string();
       if (::mkdtemp(name.data()) == nullptr)
         throw Error(std::string("cannot create: ") + std::strerror(errno), {parent_.string()});
       path_ = name;

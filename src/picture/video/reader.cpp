@@ -17,7 +17,6 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/image/cuts.h"
-#include "picture/video/frame_index.h"
 #include "picture/video/libav.h"
 #include "picture/video/media_file.h"
 #include "picture/video/numbered_images.h"

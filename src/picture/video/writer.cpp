@@ -15,7 +15,6 @@
 #include "picture/video/libav.h"
 #include "picture/video/media_file.h"
 #include "picture/video/still.h"
-#include "picture/video/stored_colour.h"
 
 namespace airtruth::video {
 namespace {

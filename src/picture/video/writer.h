@@ -9,7 +9,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
-#include "picture/video/frame.h"
 #include "picture/video/reader.h"
 
 namespace airtruth::video {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "labels/annotation/truth.h"
-#include "picture/video/frame.h"
+#include "picture/video/reader.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"

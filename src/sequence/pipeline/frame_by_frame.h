@@ -7,7 +7,6 @@
 
 #include "labels/annotation/lens_facts.h"
 #include "labels/annotation/truth.h"
-#include "picture/video/frame.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/options.h"
