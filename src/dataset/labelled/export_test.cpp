@@ -329,7 +329,7 @@ TEST_F(Made, VerificationHoldsMasksToTheirBoxes) {
     intruder["covered_box_px"][2] = intruder["covered_box_px"][2].get<int>() - 1;
   });
   EXPECT_THAT(build::verify(copy, {}).faults,
-              ElementsAre(HasSubstr("its mask is not of its covered box")));
+              testing::Contains(HasSubstr("its mask is not of its covered box")));
 }
 
 // A set from before the truth had covered boxes.
