@@ -440,9 +440,11 @@ TEST_F(Made, WhatIsTooFaintOrTooSmallCountsNeitherWay) {
   for (const auto& entry : fs::recursive_directory_iterator(set())) {
     if (entry.path().filename() != "truth.jsonl") continue;
     std::istringstream lines(read_file(entry.path()));
-    for (std::string line; std::getline(lines, line);)
-      for (const auto& one : nlohmann::json::parse(line)["intruders"])
+    for (std::string line; std::getline(lines, line);) {
+      const auto frame = nlohmann::json::parse(line);
+      for (const auto& one : frame["intruders"])
         if (!one["covered_box_px"].is_null()) contrasts.push_back(one["contrast_to_noise"]);
+    }
   }
   std::sort(contrasts.begin(), contrasts.end());
   ExportOptions options;
