@@ -136,6 +136,7 @@ DrawnSequence draw(const Drawn& rule,
   const auto stream = [&](const std::string& of) { return seed.stream(of + rule.name, number); };
   DrawnSequence result;
   Random random = stream("sequence ");
+  one_of(random, rule.backgrounds);  // so that all else is drawn as it was
   result.background = stratified_background(
       rule.backgrounds, backgrounds, seed.stream("of " + rule.name)(), rule.count, index);
   result.encounters.push_back(

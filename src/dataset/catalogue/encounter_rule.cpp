@@ -248,7 +248,6 @@ double strain(const fleet::FlightLimits& limits, const Demands& demands) {
 struct Fitting {
   std::vector<const AircraftType*> types;
   bool can_fly = false;
-  std::vector<const AircraftType*> able;  // all that fly it
 };
 Fitting fitting_types(const EncounterRule& rule, const Demands& demands) {
   std::vector<const AircraftType*> usual, able, nearest;
@@ -265,8 +264,8 @@ Fitting fitting_types(const EncounterRule& rule, const Demands& demands) {
         demands.mean_mps <= limits->usual_high_mps)
       usual.push_back(&type);
   }
-  if (able.empty()) return {nearest, false, {}};
-  return {usual.empty() ? able : usual, true, able};
+  if (able.empty()) return {nearest, false};
+  return {usual.empty() ? able : usual, true};
 }
 
 track::Track own_track(const scene::Scene& scene, const EncounterRule& rule) {
@@ -406,7 +405,7 @@ DrawnIntruder drawn_intruder(const EncounterRule& rule,
   Random random = Seed(rule.seed).stream("aircraft", number);
   const Fitting fitting = fitting_types(rule, demands_of(passage.track));
   const bool suits =
-      std::find(fitting.able.begin(), fitting.able.end(), &wanted) != fitting.able.end();
+      std::find(fitting.types.begin(), fitting.types.end(), &wanted) != fitting.types.end();
   const AircraftType& type = suits ? wanted : *one_of(random, fitting.types);
   DrawnIntruder drawn{{}, passage.weight};
   scene::Intruder& intruder = drawn.intruder;

@@ -329,7 +329,7 @@ TEST_F(Made, VerificationHoldsMasksToTheirBoxes) {
     intruder["covered_box_px"][2] = intruder["covered_box_px"][2].get<int>() - 1;
   });
   EXPECT_THAT(build::verify(copy, {}).faults,
-              ElementsAre(HasSubstr("its mask is not of its covered box")));
+              testing::Contains(HasSubstr("its mask is not of its covered box")));
 }
 
 // A set from before the truth had covered boxes.
@@ -440,9 +440,11 @@ TEST_F(Made, WhatIsTooFaintOrTooSmallCountsNeitherWay) {
   for (const auto& entry : fs::recursive_directory_iterator(set())) {
     if (entry.path().filename() != "truth.jsonl") continue;
     std::istringstream lines(read_file(entry.path()));
-    for (std::string line; std::getline(lines, line);)
-      for (const auto& one : nlohmann::json::parse(line)["intruders"])
+    for (std::string line; std::getline(lines, line);) {
+      const auto frame = nlohmann::json::parse(line);
+      for (const auto& one : frame["intruders"])
         if (!one["covered_box_px"].is_null()) contrasts.push_back(one["contrast_to_noise"]);
+    }
   }
   std::sort(contrasts.begin(), contrasts.end());
   ExportOptions options;
