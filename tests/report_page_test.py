@@ -73,7 +73,9 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   };
   const drawn = (canvas) => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v !== 0);
   const out = { title: page.getElementById('title').textContent, all: names(), count: page.getElementById('count').textContent };
-  out.canvases = [...page.querySelectorAll('canvas')].map(drawn);
+  // Beside a still without an intruder there is nothing to enlarge.
+  out.canvases = [...page.querySelectorAll('canvas:not([aria-label$=enlarged])')].map(drawn);
+  out.enlarged = [...page.querySelectorAll('canvas[aria-label$=enlarged]')].map(drawn);
   out.films = page.querySelectorAll('.film canvas').length;
   // Every bin of every histogram has a label.
   out.unlabelled = [...page.querySelectorAll('.charts canvas')].map((c) => frame.contentWindow.eval('Chart').getChart(c))
@@ -311,7 +313,8 @@ def main():
             expect("title", out["title"], "<script><b onclick=x>set")
             expect("sequences", len(out["all"]), 8)
             expect("count", out["count"], "8 of 8")
-            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (14 + 3 * 8 + 2 * 8, True))
+            expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (14 + 3 * 8 + 8, True))
+            expect("intruders enlarged", (len(out["enlarged"]), sum(out["enlarged"]) >= 7), (8, True))
             expect("films", out["films"], 8)
             expect("charts with bins that have no label", out["unlabelled"], [])
             expect("markup made of names", out["injected"], 0)
