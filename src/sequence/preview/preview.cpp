@@ -181,10 +181,11 @@ class Previewer {
     }
     image::Rgb8 rgb = image::rgb8_from_picture(frame.picture);
     const double scale = static_cast<double>(kMainWidthPx) / rgb.width;
-    image::Rgb8 scaled = drawing::resized(rgb,
-                                          kMainWidthPx,
-                                          static_cast<int>(std::lround(rgb.height * scale)),
-                                          scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    image::Rgb8 scaled =
+        drawing::resized(rgb,
+                         kMainWidthPx,
+                         std::max(1, static_cast<int>(std::lround(rgb.height * scale))),
+                         scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
     cv::Mat canvas = drawing::view(scaled).clone();
     for (std::size_t actor = 0; actor < world().actors.size(); ++actor)
       draw_path(canvas, actor, scale);

@@ -21,6 +21,10 @@ namespace {
 
 // Width of a tile, and number of tiles side by side.
 constexpr int kTileWidthPx = 640;
+// Tallest picture of a tile: four times as high as wide.
+constexpr int kMostTileHeightPx = 4 * kTileWidthPx;
+// Smallest side of an inset in which an aircraft can be told: that of a box outline and two pixels.
+constexpr int kLeastInsetPx = 8;
 constexpr int kColumns = 3;
 // Height of the line of text below a tile's picture.
 constexpr int kCaptionPx = 22;
@@ -126,6 +130,7 @@ void draw_insets(cv::Mat& canvas,
                  const annotation::Frame& truth,
                  const std::vector<PixelBox>& boxes) {
   const int side = boxes.size() > 2 ? canvas.rows / 4 : canvas.rows * 2 / 5;
+  if (side < kLeastInsetPx) return;
   std::vector<PixelBox> insets;
   std::size_t seen = 0;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
@@ -160,12 +165,15 @@ image::Rgb8 small_copy(const image::Picture& picture, int width, int height) {
 
 // The picture with a line of text below it.
 image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& truth) {
-  const double scale = static_cast<double>(kTileWidthPx) / picture.width;
+  const double scale = std::min(static_cast<double>(kTileWidthPx) / picture.width,
+                                static_cast<double>(kMostTileHeightPx) / picture.height);
   const int height = std::max(1, static_cast<int>(picture.height * scale));
+  const int width =
+      std::clamp(static_cast<int>(std::lround(picture.width * scale)), 1, kTileWidthPx);
   image::Rgb8 paper = dark_paper(kTileWidthPx, height + kCaptionPx);
   cv::Mat tile = view(paper);
-  image::Rgb8 small = small_copy(picture, kTileWidthPx, height);
-  cv::Mat canvas = tile(cv::Rect(0, 0, kTileWidthPx, height));
+  image::Rgb8 small = small_copy(picture, width, height);
+  cv::Mat canvas = tile(cv::Rect(0, 0, width, height));
   view(small).copyTo(canvas);
   const std::vector<PixelBox> boxes = outline_intruders(canvas, truth, scale);
   draw_insets(canvas, picture, truth, boxes);
