@@ -182,6 +182,7 @@ std::string expected_namespace(const std::string& module) {
   const std::set<std::string> in_airtruth = {"foundation/base",
                                              "foundation/geometry",
                                              "foundation/json",
+                                             "foundation/run_files",
                                              "library/pictures",
                                              "library/records"};
   return in_airtruth.contains(module) ? "" : module.substr(module.find('/') + 1);

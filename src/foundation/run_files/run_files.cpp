@@ -280,7 +280,7 @@ void RunFiles::write(const fs::path& output,
     write(found->is_folder ? hidden.path() : hidden.path() / output.filename());
   } catch (const Error& error) {
     const fs::path at = error.where().file;
-    if (!is_within(at, hidden.path())) throw;
+    if (at.empty() || !is_within(at, hidden.path())) throw;
     throw Error(
         error.message(),
         {(hidden.parent() / at.lexically_relative(hidden.path())).lexically_normal().string()});
