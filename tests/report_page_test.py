@@ -301,7 +301,7 @@ def main():
         page = os.path.join(root, "report.html")
         for command in (["build", catalogue, "--out", made], ["report", made, "-o", page]):
             subprocess.run([airtruth, "dataset", *command], check=True, stdout=subprocess.DEVNULL)
-        for size in ((1600, 7000), (400, 24000)):
+        for size in ((1600, 14000), (400, 24000)):
             out = looked_at(browser, root, size)
             faults = []
 
