@@ -72,9 +72,12 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
     await wait(100);
   };
   const drawn = (canvas) => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((v) => v !== 0);
+  // Stills are decoded one after the other.
+  for (let i = 0; i < 24 && ![...page.querySelectorAll('canvas')].every(drawn); ++i) await wait(250);
   const out = { title: page.getElementById('title').textContent, all: names(), count: page.getElementById('count').textContent };
   // Beside a still without an intruder there is nothing to enlarge.
   out.canvases = [...page.querySelectorAll('canvas:not([aria-label$=enlarged])')].map(drawn);
+  out.blank = [...page.querySelectorAll('canvas')].filter((c) => !drawn(c)).map((c) => c.getAttribute('aria-label') || c.dataset.plot || c.className);
   out.enlarged = [...page.querySelectorAll('canvas[aria-label$=enlarged]')].map(drawn);
   out.films = page.querySelectorAll('.film canvas').length;
   // Every bin of every histogram has a label.
@@ -313,6 +316,7 @@ def main():
             expect("title", out["title"], "<script><b onclick=x>set")
             expect("sequences", len(out["all"]), 8)
             expect("count", out["count"], "8 of 8")
+            expect("canvases that are blank", out["blank"], [])
             expect("canvases drawn", (len(out["canvases"]), all(out["canvases"])), (14 + 3 * 8 + 8, True))
             expect("intruders enlarged", (len(out["enlarged"]), sum(out["enlarged"]) >= 7), (8, True))
             expect("films", out["films"], 8)
