@@ -85,7 +85,7 @@ def commands(airtruth, d):
 def told_apart(folder):
     """The state of a result, without the files that hold measured seconds."""
     return {file: value for file, value in common.state(folder, leave_out=(".lock",)).items()
-            if not file.endswith(("sequence.json", "dataset.json", "_time.txt", ".seconds")) and "manifest" not in file}
+            if not file.endswith(("sequence.json", "dataset.json", "_time.txt", ".seconds", "own/clip.json")) and "manifest" not in file}
 
 
 def alone(name, words_of, place, environment):
