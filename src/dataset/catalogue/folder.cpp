@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/catalogue/folder.h"
 
-#include <cerrno>
-#include <cstring>
-
-#include <fcntl.h>
-#include <unistd.h>
-
 #include "dataset/catalogue/encounter_rule.h"
 #include "foundation/base/files.h"
 
@@ -53,18 +47,11 @@ Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_
   return folder;
 }
 
-FolderLock::FolderLock(const Folder& folder, Sharing sharing, const Warn& to) {
-  const fs::path name = folder.root / ".lock";
-  file_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0)
-    throw Error(std::string("cannot create: ") + std::strerror(errno), {name.string()});
-  const Lock lock = try_lock(file_, name, sharing);
-  if (lock == Lock::kUnsupported) warn_of_no_locks(folder.root, to);
-  if (lock != Lock::kBusy) return;
-  ::close(file_);
-  throw Error("another build is at work in this folder", {folder.root.string()});
-}
-
-FolderLock::~FolderLock() { ::close(file_); }
+FolderLock::FolderLock(const Folder& folder, Sharing sharing, const Warn& to)
+    : lock_(folder.root / ".lock",
+            folder.root,
+            to,
+            sharing,
+            "another build is at work in this folder") {}
 
 }  // namespace airtruth::catalogue

@@ -54,12 +54,9 @@ class FolderLock {
   // Throws Error where another process holds it. Where the file system has no locks that is not
   // seen, and said.
   FolderLock(const Folder& folder, Sharing sharing, const Warn& to = {});
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock();
 
  private:
-  int file_ = -1;
+  RunLock lock_;
 };
 
 }  // namespace airtruth::catalogue

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <thread>
@@ -30,6 +31,44 @@ Lock try_lock(int file, const std::filesystem::path& path, Sharing sharing) {
   return Lock::kTaken;
 }
 
+bool is_open_as(int file, const std::filesystem::path& name) {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(file, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+std::optional<LockedPlace> make_locked_place(PlaceKind kind,
+                                             const std::filesystem::path& folder,
+                                             std::string_view begins) {
+  for (;;) {
+    std::string name = (folder / std::string(begins).append("XXXXXX")).string();
+    int file = -1;
+    if (kind == PlaceKind::kFile)
+      file = ::mkostemp(name.data(), O_CLOEXEC);
+    else if (::mkdtemp(name.data()) != nullptr)
+      file = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    else
+      return std::nullopt;
+    // A run that clears away may take the new place for a dead one's before it is locked.
+    if (file < 0 && (kind == PlaceKind::kFile || errno != ENOENT)) return std::nullopt;
+    if (file >= 0 && try_lock(file, name) != Lock::kBusy && is_open_as(file, name))
+      return LockedPlace{name, file};
+    if (file >= 0) ::close(file);
+  }
+}
+
+void remove_dead_places(const std::filesystem::path& folder, std::string_view begins) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    if (!entry.path().filename().string().starts_with(begins)) continue;
+    const int file = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) continue;
+    if (try_lock(file, entry.path()) == Lock::kTaken) fs::remove_all(entry.path(), ignored);
+    ::close(file);
+  }
+}
+
 void warn_of_no_locks(const std::filesystem::path& path, const Warn& to) {
   static std::atomic<bool> is_said{false};
   if (!is_said.exchange(true))
@@ -42,16 +81,17 @@ void warn_of_no_locks(const std::filesystem::path& path, const Warn& to) {
 RunLock::RunLock(const std::filesystem::path& locked,
                  const std::filesystem::path& folder,
                  const Warn& to,
-                 Sharing sharing) {
+                 Sharing sharing,
+                 const char* busy) {
   const bool is_folder = fs::is_directory(locked);
   file_ =
       ::open(locked.c_str(), is_folder ? O_RDONLY | O_CLOEXEC : O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (file_ < 0)
-    throw Error(std::string("cannot open: ") + std::strerror(errno), {locked.string()});
+    throw Error(std::string(is_folder ? "cannot open: " : "cannot create: ") + std::strerror(errno),
+                {locked.string()});
   try {
     const Lock lock = try_lock(file_, locked, sharing);
-    if (lock == Lock::kBusy)
-      throw Error("another run is writing this folder now", {folder.string()});
+    if (lock == Lock::kBusy) throw Error(busy, {folder.string()});
     if (lock == Lock::kUnsupported) warn_of_no_locks(folder, to);
   } catch (const Error&) {
     ::close(file_);

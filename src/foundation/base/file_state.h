@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stop_token>
+#include <string_view>
 
 #include "foundation/base/log.h"
 
@@ -14,24 +16,42 @@ namespace airtruth {
 // What flock() answers at once. kUnsupported: the file system has no locks (Lustre and NFS by how
 // they are mounted, some of FUSE), so nothing is known about others.
 enum class Lock { kTaken, kBusy, kUnsupported };
-// Throws Error with the name `path` for every other answer.
 enum class Sharing { kAlone, kShared };
+// Throws Error with the name `path` for every other answer.
 Lock try_lock(int file, const std::filesystem::path& path, Sharing sharing = Sharing::kAlone);
+
+// True where the descriptor is of what has this name now.
+bool is_open_as(int file, const std::filesystem::path& name);
+
+// A file or folder of this run alone, under a name of its own that begins with `begins`. The lock
+// on its descriptor tells others that the run lives.
+struct LockedPlace {
+  std::filesystem::path path;
+  int descriptor = -1;  // the caller closes it
+};
+enum class PlaceKind { kFile, kFolder };
+// Empty, with errno, where it cannot be made.
+std::optional<LockedPlace> make_locked_place(PlaceKind kind,
+                                             const std::filesystem::path& folder,
+                                             std::string_view begins);
+// Removes what runs that were killed left in a folder under such names: nobody holds its lock.
+void remove_dead_places(const std::filesystem::path& folder, std::string_view begins);
 
 // Says once a process that files are not locked.
 void warn_of_no_locks(const std::filesystem::path& path, const Warn& to);
 
 // Keeps a second run away from a folder that a run goes on in, until it is destroyed; the kernel
 // releases the lock when the process dies. `locked` is a folder that exists, which is locked
-// itself, or a file, which is made where it is missing. Throws Error "another run is writing this
-// folder now" with the name `folder` where another process holds it; where the file system has no
+// itself, or a file, which is made where it is missing. Throws Error with the words `busy` and the
+// name `folder` where another process holds it; where the file system has no
 // locks the run goes on, with a warning.
 class RunLock {
  public:
   RunLock(const std::filesystem::path& locked,
           const std::filesystem::path& folder,
           const Warn& to,
-          Sharing sharing = Sharing::kAlone);
+          Sharing sharing = Sharing::kAlone,
+          const char* busy = "another run is writing this folder now");
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
   ~RunLock();

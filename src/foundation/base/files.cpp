@@ -106,20 +106,28 @@ void refuse_existing(const fs::path& path, bool overwrite) {
     throw Error("exists already; give --overwrite to replace it", {path.string()});
 }
 
-namespace {
-
-// True where the descriptor is of the file that has this name now.
-bool is_named(const Descriptor& file, const fs::path& name) {
-  struct stat opened {};
-  struct stat named {};
-  return ::fstat(file.get(), &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+fs::path first_missing(fs::path folder) {
+  fs::path missing;
+  while (!folder.empty() && !fs::exists(folder)) {
+    missing = folder;
+    if (!folder.has_relative_path()) break;
+    folder = folder.parent_path();
+  }
+  return missing;
 }
+
+void remove_empty(fs::path folder, const fs::path& first) {
+  std::error_code failed;
+  while (!first.empty() && fs::remove(folder, failed) && folder != first)
+    folder = folder.parent_path();
+}
+
+namespace {
 
 // Removes a part whose writer is dead: nobody holds its lock.
 void remove_dead_part(const fs::path& part) {
   const Descriptor file(::open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  if (file.get() >= 0 && try_lock(file.get(), part) == Lock::kTaken && is_named(file, part))
+  if (file.get() >= 0 && try_lock(file.get(), part) == Lock::kTaken && is_open_as(file.get(), part))
     ::unlink(part.c_str());
 }
 
@@ -139,7 +147,8 @@ Descriptor new_part(const fs::path& path, fs::path& part) {
     if (file.get() < 0 && errno != EEXIST)
       throw Error("cannot create: " + reason(), {path.string()});
     // Another writer may have taken the new file for a dead one before it was locked.
-    if (file.get() >= 0 && try_lock(file.get(), part) != Lock::kBusy && is_named(file, part))
+    if (file.get() >= 0 && try_lock(file.get(), part) != Lock::kBusy &&
+        is_open_as(file.get(), part))
       return file;
     part.replace_filename(std::string(".").append(random_digits()).append(".part"));
   }

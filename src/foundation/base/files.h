@@ -32,6 +32,12 @@ void flush_files(const fs::path& folder);
 // (the extension stays, since encoders choose by it).
 fs::path part_path(const fs::path& path);
 
+// The uppermost folder of a path that is not there yet; empty where all are.
+fs::path first_missing(fs::path folder);
+// Removes the folders from `folder` up to `first`, as long as they are empty. Nothing where `first`
+// is empty.
+void remove_empty(fs::path folder, const fs::path& first);
+
 // SHA-256 of a file's content or of bytes, 64 lower-case hex digits (as sha256sum prints it).
 std::string sha256_of_file(const fs::path& path);
 std::string sha256_of(std::string_view bytes);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <system_error>
@@ -12,12 +11,11 @@
 #include <utility>
 
 #include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
+#include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth {
@@ -65,13 +63,6 @@ void refuse_input(const fs::path& output, const std::vector<fs::path>& inputs) {
   }
 }
 
-bool is_descriptor_of(int file, const fs::path& name) {
-  struct stat opened {};
-  struct stat named {};
-  return ::fstat(file, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-}
-
 // One set at a time is moved into the places of a folder. The file is removed afterwards; where the
 // file system has no locks, sets are moved without.
 class CommitLock {
@@ -81,8 +72,7 @@ class CommitLock {
       file_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
       if (file_ < 0) return;  // another user's, or no permission: the moves fail by themselves
       const Lock lock = try_lock(file_, name_);
-      if (lock == Lock::kUnsupported || (lock == Lock::kTaken && is_descriptor_of(file_, name_)))
-        return;
+      if (lock == Lock::kUnsupported || (lock == Lock::kTaken && is_open_as(file_, name_))) return;
       ::close(file_);
       std::this_thread::sleep_for(std::chrono::milliseconds(lock == Lock::kBusy ? 2 : 0));
     }
@@ -100,35 +90,6 @@ class CommitLock {
   int file_ = -1;
 };
 
-// Removes hidden folders whose run is dead: nobody holds their lock.
-void remove_dead(const fs::path& folder) {
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    if (!entry.path().filename().string().starts_with(kHiddenBegins)) continue;
-    const int file = ::open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    if (file < 0) continue;
-    if (try_lock(file, entry.path()) == Lock::kTaken) fs::remove_all(entry.path(), ignored);
-    ::close(file);
-  }
-}
-
-// The uppermost folder of a path that is not there yet; empty where all are.
-fs::path first_missing(fs::path folder) {
-  fs::path missing;
-  while (!folder.empty() && !fs::exists(folder)) {
-    missing = folder;
-    if (!folder.has_relative_path()) break;
-    folder = folder.parent_path();
-  }
-  return missing;
-}
-
-void remove_empty(fs::path folder, const fs::path& first) {
-  std::error_code failed;
-  while (!first.empty() && fs::remove(folder, failed) && folder != first)
-    folder = folder.parent_path();
-}
-
 }  // namespace
 
 // A hidden folder of this run, locked as long as the run lives.
@@ -138,7 +99,7 @@ class RunFiles::Hidden {
     std::error_code failed;
     fs::create_directories(parent_, failed);
     if (failed) throw Error("cannot create: " + failed.message(), {parent.string()});
-    remove_dead(parent_);
+    remove_dead_places(parent_, kHiddenBegins);
     unfinished_.emplace([this] { remove(); });
     try {
       make();
@@ -182,18 +143,12 @@ class RunFiles::Hidden {
   }
 
  private:
-  // A run that clears away may take the new folder for a dead one's before it is locked.
   void make() {
-    for (;;) {
-      std::string name = (parent_ / fmt::format("{}XXXXXX", kHiddenBegins)).string();
-      if (::mkdtemp(name.data()) == nullptr)
-        throw Error(std::string("cannot create: ") + std::strerror(errno), {parent_.string()});
-      path_ = name;
-      lock_ = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-      if (lock_ >= 0 && try_lock(lock_, path_) != Lock::kBusy && is_descriptor_of(lock_, path_))
-        return;
-      if (lock_ >= 0) ::close(std::exchange(lock_, -1));
-    }
+    const auto made = make_locked_place(PlaceKind::kFolder, parent_, kHiddenBegins);
+    if (!made)
+      throw Error(std::string("cannot create: ") + std::strerror(errno), {parent_.string()});
+    path_ = made->path;
+    lock_ = made->descriptor;
   }
 
   void remove() const {

@@ -164,8 +164,6 @@ void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored,
 
 namespace {
 
-using image::Range;
-
 struct FreeBuffer {
   void operator()(AVBufferRef* p) const { av_buffer_unref(&p); }
 };

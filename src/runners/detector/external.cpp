@@ -53,7 +53,7 @@ class SharedSamples {
   char* data() { return static_cast<char*>(memory_); }
 
  private:
-  process::MemoryPlace place_{process::MemoryPlace::Kind::kFile, "a detector's frames"};
+  process::MemoryPlace place_{PlaceKind::kFile, "a detector's frames"};
   std::size_t bytes_;
   void* memory_ = nullptr;
 };

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "foundation/base/file_state.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth::process {
@@ -13,9 +14,8 @@ namespace airtruth::process {
 // it tells that its run lives: the constructor removes those of runs that were killed.
 class MemoryPlace {
  public:
-  enum class Kind { kFile, kFolder };
   // Throws Error, which says what it is for, where it cannot be made.
-  MemoryPlace(Kind kind, const char* what_for);
+  MemoryPlace(PlaceKind kind, const char* what_for);
   MemoryPlace(const MemoryPlace&) = delete;
   MemoryPlace& operator=(const MemoryPlace&) = delete;
   ~MemoryPlace();

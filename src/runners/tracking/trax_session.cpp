@@ -92,8 +92,7 @@ Reply reply_of(const Message& message) {
 }  // namespace
 
 Images::Images(ImageKind kind) : kind_(kind) {
-  if (kind_ != ImageKind::kMemory)
-    folder_.emplace(process::MemoryPlace::Kind::kFolder, "a tracker's pictures");
+  if (kind_ != ImageKind::kMemory) folder_.emplace(PlaceKind::kFolder, "a tracker's pictures");
 }
 
 std::string Images::hand_over(const image::Picture& picture) {

@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::pipeline {
 namespace {
@@ -29,24 +30,6 @@ void refuse_what_exists(const fs::path& folder, bool overwrite) {
     throw Error(
         "is not a folder that airtruth made (it holds no sequence.json); it is not replaced",
         {folder.string()});
-}
-
-// The uppermost folder of a path that is not there yet; empty where all are.
-fs::path first_missing(fs::path folder) {
-  fs::path missing;
-  while (!folder.empty() && !fs::exists(folder)) {
-    missing = folder;
-    if (!folder.has_relative_path()) break;
-    folder = folder.parent_path();
-  }
-  return missing;
-}
-
-// From `folder` up to `first`, as long as they are empty. Nothing where `first` is empty.
-void remove_empty(fs::path folder, const fs::path& first) {
-  std::error_code failed;
-  while (!first.empty() && fs::remove(folder, failed) && folder != first)
-    folder = folder.parent_path();
 }
 
 void clear(const fs::path& folder) {
