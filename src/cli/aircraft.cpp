@@ -137,7 +137,9 @@ void show(const ShowArguments& arguments, Context& context) {
   Console& console = context.console();
   const fleet::Aircraft loaded =
       fleet::load_aircraft(arguments.name, load_options(arguments, context), console.warn());
-  RunFiles().reads(loaded.file).writes(arguments.out, arguments.overwrite).check();
+  RunFiles files;
+  for (const auto& source : loaded.sources) files.reads(source);
+  files.writes(arguments.out, arguments.overwrite).check();
   const model::Extents size = model::extents(loaded.mesh);
   const auto liveries = fleet::liveries(arguments.name);
   console.result(fmt::format(

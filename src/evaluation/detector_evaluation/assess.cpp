@@ -16,6 +16,7 @@
 #include "evaluation/scores/detector_score.h"
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
+#include "foundation/json/settings_record.h"
 #include "runners/results/results_folder.h"
 
 namespace airtruth::detector_evaluation {
@@ -127,6 +128,7 @@ scores::Assessment assess(const fs::path& set,
     const std::string name = report::name_of_results(source);
     if (found.contains(name))
       throw Error("is the second set of results called '" + name + "'", {source.string()});
+    check_record(source / "detector.json");
     found[name] = results_in(source, assessment.truths, options.warn);
   }
   if (options.with_film) add_films(assessment.truths, found, options);

@@ -11,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
+#include "foundation/json/settings_record.h"
 #include "runners/results/trajectories.h"
 
 namespace airtruth::tracker_evaluation {
@@ -84,6 +85,7 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                                 const std::vector<TruthClip>& truths,
                                                 const AssessOptions& options) {
   if (!fs::is_directory(folder)) throw Error("is no folder of results", {folder.string()});
+  check_record(folder / "tracker.json");
   std::vector<results::TrackerResults> results;
   std::size_t missing = 0;
   std::set<std::string> known;

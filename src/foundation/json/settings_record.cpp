@@ -8,11 +8,28 @@
 #include "foundation/base/files.h"
 
 namespace airtruth {
+namespace {
+
+[[noreturn]] void fail_no_record(const std::filesystem::path& file) {
+  throw Error("is not a record that airtruth wrote", {file.string()});
+}
+
+nlohmann::ordered_json record_in(const std::filesystem::path& file) {
+  const auto record = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  if (!record.is_object()) fail_no_record(file);
+  return record;
+}
+
+}  // namespace
+
+void check_record(const std::filesystem::path& file) {
+  if (std::filesystem::exists(file)) record_in(file);
+}
 
 bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_json& settings) {
   if (!std::filesystem::exists(file)) return false;
   try {
-    const auto there = nlohmann::ordered_json::parse(read_file(file));
+    const auto there = record_in(file);
     for (const auto& [key, value] : settings.items())
       if (there.at(key) != value)
         throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out or "
@@ -21,8 +38,8 @@ bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_jso
                                 there.at(key).dump(),
                                 value.dump()),
                     {file.parent_path().string()});
-  } catch (const nlohmann::ordered_json::exception&) {
-    throw Error("is not a record that airtruth wrote", {file.string()});
+  } catch (const nlohmann::ordered_json::exception&) {  // a key is missing
+    fail_no_record(file);
   }
   return true;
 }

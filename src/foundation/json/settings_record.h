@@ -14,4 +14,7 @@ namespace airtruth {
 // holds another value than `settings` for one of its keys; further keys of the file do not matter.
 bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_json& settings);
 
+// Throws Error where the file is there and is no record.
+void check_record(const std::filesystem::path& file);
+
 }  // namespace airtruth

@@ -169,6 +169,15 @@ RunFiles::~RunFiles() = default;
 
 RunFiles& RunFiles::reads(const fs::path& input) {
   if (!input.empty()) inputs_.push_back(input);
+  const std::string name = input.filename().string();
+  const std::size_t percent = name.find('%');
+  std::error_code missing;
+  if (percent == std::string::npos || fs::exists(input, missing)) return *this;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(fs::absolute(input).parent_path(), missing))
+    if (entry.path().extension() == input.extension() &&
+        entry.path().filename().string().starts_with(name.substr(0, percent)))
+      inputs_.push_back(entry.path());
   return *this;
 }
 

@@ -32,7 +32,8 @@ class RunFiles {
   // Without commit() nothing stays.
   ~RunFiles();
 
-  // A file, or a folder with all files below it. An empty path is none.
+  // A file, a folder with all files below it, or a pattern of numbered files ("frames/%06d.png").
+  // An empty path is none.
   RunFiles& reads(const fs::path& input);
   // A file to write. Throws Error as check_output_file() does. An empty path is none.
   RunFiles& writes(const fs::path& output, bool overwrite);

@@ -48,6 +48,14 @@ TEST_F(RunFilesTest, AnOutputIsNoInputUnderAnyOfItsNames) {
   EXPECT_EQ(fault(RunFiles().reads(a).writes(folder_ / "b.mp4", false)), "");
 }
 
+TEST_F(RunFilesTest, AFileOfANumberedPatternIsAnInput) {
+  const fs::path first = file("f_0001.png");
+  const fs::path other = file("plot.png");
+  const fs::path pattern = folder_ / "f_%04d.png";
+  EXPECT_NE(fault(RunFiles().reads(pattern).writes(first, true)), "");
+  EXPECT_EQ(fault(RunFiles().reads(pattern).writes(other, true)), "");
+}
+
 TEST_F(RunFilesTest, OutputsDiffer) {
   EXPECT_NE(fault(RunFiles().writes(folder_ / "x", false).writes(folder_ / "." / "x", false)), "");
   EXPECT_EQ(fault(RunFiles().writes(folder_ / "x", false).writes(folder_ / "y", false)), "");

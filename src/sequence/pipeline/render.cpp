@@ -72,7 +72,7 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
     const Timed timed(clocks.write);
     const std::shared_ptr<const video::Frame> frame(work, &work->frame);
     outputs.write(frame, work->truth, work->masks);
-    add_frame(tally, *frame, work->moved.motion.state, work->truth);
+    add_frame(tally, *frame, work->moved.motion.state, work->ambient, work->truth);
     if (options.progress)
       options.progress({tally.frames, maker.resolved().info.frame_count_estimate});
   });
@@ -127,6 +127,8 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
 
   // All faults of the inputs are found before any long work, and whether they can be written.
   OpenedScene opened = open_scene(scene, options);
+  for (const fs::path& model : model_files(opened.world)) files.reads(model);
+  files.check();
   std::optional<Outputs> outputs;
   outputs.emplace(
       staged.path(), opened.stated.scene, opened.world.lens, opened.info, options.threads);
