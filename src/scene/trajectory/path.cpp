@@ -39,24 +39,34 @@ bool has_heading(const Vector3& v) {
   return std::hypot(v.x(), v.y()) > std::max(kHorizontalMps, 1e-9 * v.norm());
 }
 
-// The heading to keep where the path goes straight up or down or the object stands still: the last
-// defined heading before u, else the first one after it.
-double heading_near_deg(const CubicSpline<Vector3>& spline, double u) {
-  // Number of parts of the path at whose ends a heading is looked for.
-  constexpr int kSteps = 1024;
-  const double step = (spline.end() - spline.begin()) / kSteps;
-  const auto here = static_cast<int>((u - spline.begin()) / step);
-  const auto heading = [&](int i) -> std::optional<double> {
-    const Vector3 v = spline.at(spline.begin() + step * i, 1);
-    if (!has_heading(v)) return std::nullopt;
-    return degrees(std::atan2(v.y(), v.x()));
-  };
-  for (int i = std::min(here, kSteps); i >= 0; --i)
-    if (const auto before = heading(i)) return *before;
-  for (int i = std::max(here, 0); i <= kSteps; ++i)
-    if (const auto after = heading(i)) return *after;
-  return 0;
-}
+// The headings to keep where the path goes straight up or down or the object stands still: the last
+// defined heading before there, else the first one after.
+class KeptHeadings {
+ public:
+  explicit KeptHeadings(const CubicSpline<Vector3>& spline)
+      : begin_(spline.begin()), step_((spline.end() - spline.begin()) / kSteps) {
+    std::vector<std::optional<double>> defined(kSteps + 1);
+    for (int i = 0; i <= kSteps; ++i) {
+      const Vector3 v = spline.at(begin_ + step_ * i, 1);
+      if (has_heading(v)) defined[static_cast<std::size_t>(i)] = degrees(std::atan2(v.y(), v.x()));
+    }
+    const auto first =
+        std::ranges::find_if(defined, [](const auto& yaw) { return yaw.has_value(); });
+    double kept_deg = first == defined.end() ? 0.0 : **first;
+    for (const auto& yaw : defined) yaw_deg_.push_back(kept_deg = yaw.value_or(kept_deg));
+  }
+  double deg_at(double u) const {
+    const double step = std::clamp((u - begin_) / step_, 0.0, static_cast<double>(kSteps));
+    return yaw_deg_[static_cast<std::size_t>(step)];
+  }
+
+ private:
+  // Number of equal parts of the path at whose ends a heading is looked for.
+  static constexpr int kSteps = 1024;
+  double begin_;
+  double step_;
+  std::vector<double> yaw_deg_;
+};
 
 // Heading and climb angle from the velocity, bank angle from a coordinated turn: tan(bank) = v_h *
 // turn rate / g.
@@ -89,25 +99,25 @@ State state_along(const Vector3& position,
                   const Vector3& velocity,
                   const Vector3& acceleration,
                   const AttitudeOverride& stated,
-                  const CubicSpline<Vector3>& spline,
+                  const KeptHeadings& kept,
                   double u) {
-  const double kept_yaw_deg = has_heading(velocity) ? 0.0 : heading_near_deg(spline, u);
   return state_with(
-      position, velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated);
+      position, velocity, attitude_along(velocity, acceleration, kept.deg_at(u)), stated);
 }
 
 class AtTimes : public Path::Impl {
  public:
   AtTimes(std::vector<double> times, std::vector<Vector3> points, const AttitudeOverride& stated)
-      : spline_(std::move(times), std::move(points)), stated_(stated) {}
+      : spline_(std::move(times), std::move(points)), kept_(spline_), stated_(stated) {}
   double start_s() const override { return spline_.begin(); }
   double end_s() const override { return spline_.end(); }
   State at(double t) const override {
-    return state_along(spline_.at(t, 0), spline_.at(t, 1), spline_.at(t, 2), stated_, spline_, t);
+    return state_along(spline_.at(t, 0), spline_.at(t, 1), spline_.at(t, 2), stated_, kept_, t);
   }
 
  private:
   CubicSpline<Vector3> spline_;
+  KeptHeadings kept_;
   AttitudeOverride stated_;
 };
 
@@ -119,7 +129,10 @@ class AtSpeed : public Path::Impl {
           std::vector<Vector3> points,
           double speed,
           const AttitudeOverride& stated)
-      : spline_(std::move(knots), std::move(points)), speed_(speed), stated_(stated) {
+      : spline_(std::move(knots), std::move(points)),
+        kept_(spline_),
+        speed_(speed),
+        stated_(stated) {
     // Number of equal parts of a span.
     constexpr int kParts = 64;
     u_.push_back(spline_.begin());
@@ -141,13 +154,13 @@ class AtSpeed : public Path::Impl {
     const Vector3 bend = spline_.at(u, 2);
     const double rate = slope.norm();
     if (rate < 1e-12)
-      return state_along(spline_.at(u, 0), Vector3::Zero(), Vector3::Zero(), stated_, spline_, u);
+      return state_along(spline_.at(u, 0), Vector3::Zero(), Vector3::Zero(), stated_, kept_, u);
     const Vector3 tangent = slope / rate;
     const Vector3 curvature =
         // The derivative of the unit tangent by arc length.
         (bend - tangent * tangent.dot(bend)) / (rate * rate);
     return state_along(
-        spline_.at(u, 0), speed_ * tangent, speed_ * speed_ * curvature, stated_, spline_, u);
+        spline_.at(u, 0), speed_ * tangent, speed_ * speed_ * curvature, stated_, kept_, u);
   }
 
  private:
@@ -181,6 +194,7 @@ class AtSpeed : public Path::Impl {
   }
 
   CubicSpline<Vector3> spline_;
+  KeptHeadings kept_;
   double speed_;
   AttitudeOverride stated_;
   std::vector<double> u_;
