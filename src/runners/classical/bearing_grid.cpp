@@ -16,12 +16,18 @@ constexpr int kNodeStep = 16;
 constexpr double kStandsStillPx = 0.25;
 constexpr float kNowhere = -1e6F;  // cells; cv::remap takes it for outside
 
+// Cells that cover so many px, in a number that vectors of four divide.
+int columns_over(int width_px, int cell_px) {
+  return ((width_px + cell_px - 1) / cell_px + 3) & ~3;
+}
+
 }  // namespace
 
 BearingGrid::BearingGrid(const lens::Lens& lens, int cell_px)
     : lens_(lens),
       cell_px_(cell_px),
-      size_(lens.size().width / cell_px & ~3, lens.size().height / cell_px) {}
+      size_(columns_over(lens.size().width, cell_px),
+            (lens.size().height + cell_px - 1) / cell_px) {}
 
 std::optional<Pixel> BearingGrid::pixel_of(const cv::Point& cell) const {
   const Pixel in_anchor(cell_px_ * (cell.x + 0.5), cell_px_ * (cell.y + 0.5));

@@ -58,10 +58,10 @@ cv::Point strongest_under(const Level& fine, const cv::Point& coarse, double sig
 }
 
 cv::Point strongest_in_block(const Level& level, int bx, int by) {
-  const cv::Mat block = level.response({bx * kBlock, by * kBlock, kBlock, kBlock});
+  const cv::Rect block = block_in(level.response.size(), bx, by);
   cv::Point at;
-  cv::minMaxLoc(block, nullptr, nullptr, nullptr, &at);
-  return {bx * kBlock + at.x, by * kBlock + at.y};
+  cv::minMaxLoc(level.response(block), nullptr, nullptr, nullptr, &at);
+  return block.tl() + at;
 }
 
 // A sample of a level against the plane of the ring around it. The object's samples are those of

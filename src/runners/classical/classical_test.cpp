@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/classical/classical.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -216,6 +217,33 @@ TEST(CloseMinusOpen, DoesNotRespondToEdgesAndLines) {
     detector->begin(sequence_of(640, 480));
     EXPECT_THAT(detector->detect({0, 0, &picture, {}}), testing::IsEmpty()) << slope;
   }
+}
+
+// A picture whose sides are no multiples of the blocks is looked at up to its rim.
+TEST(Classical, SeesAnObjectAtEachRim) {
+  constexpr int kColumns = 326, kRows = 250;
+  std::mt19937 random(8);
+  std::normal_distribution<double> noise(0, 1.5);
+  for (const char* name : {"cmo", "cmo-hmm"})
+    for (const Pixel& centre :
+         {Pixel(322.5, 120.5), Pixel(3.5, 120.5), Pixel(160.5, 246.5), Pixel(160.5, 3.5)}) {
+      const auto detector = make_classical(name);
+      detector->begin(sequence_of(kColumns, kRows));
+      int frames_seen = 0;
+      for (int frame = 0; frame < 30; ++frame) {
+        image::Picture picture = image::make_picture(kColumns, kRows, {image::Chroma::kNone});
+        for (int y = 0; y < kRows; ++y)
+          for (int x = 0; x < kColumns; ++x) {
+            const bool inside = (Pixel(x + 0.5, y + 0.5) - centre).norm() < 2.5;
+            picture.planes[0].row(y)[x] =
+                static_cast<std::uint8_t>(std::lround(150 - (inside ? 40 : 0) + noise(random)));
+          }
+        const auto found = detector->detect({frame, frame / 30.0, &picture, frame == 0, {}});
+        frames_seen += std::any_of(
+            found.begin(), found.end(), [&](const auto& one) { return hits(one, centre, 5); });
+      }
+      EXPECT_GE(frames_seen, 25) << name << " at " << centre.transpose();
+    }
 }
 
 TEST(Classical, SeldomSeesAnythingInNoise) {

@@ -22,7 +22,7 @@ constexpr std::size_t kLevelsOfMeasurement = 4;
 // Relative responses of a level, one for each sample, in 8 bits.
 cv::Mat relative_responses(const Level& level) {
   cv::Mat relative(level.response.size(), CV_8U, cv::Scalar(0));
-  for (int y = 0; y < level.typical.rows * kBlock; ++y) {
+  for (int y = 0; y < relative.rows; ++y) {
     const short* response = level.response.ptr<short>(y);
     const float* typical = level.typical.ptr<float>(y / kBlock);
     std::uint8_t* out = relative.ptr<std::uint8_t>(y);
@@ -30,15 +30,25 @@ cv::Mat relative_responses(const Level& level) {
       // Fixed point: 256 parts of a part.
       const int factor =
           static_cast<int>(std::lround(256.0 * kPartsOfTypical / static_cast<double>(typical[bx])));
-      for (int x = bx * kBlock; x < (bx + 1) * kBlock; ++x)
+      for (int x = bx * kBlock; x < std::min(relative.cols, (bx + 1) * kBlock); ++x)
         out[x] = static_cast<std::uint8_t>(std::min(255, response[x] * factor >> 8));
     }
   }
   return relative;
 }
 
+// The values of a grid of that size, whose last cells may lie outside of the picture: 0 there.
+cv::Mat fitted(const cv::Mat& values, const cv::Size& size) {
+  if (values.size() == size) return values;
+  cv::Mat result(size, values.type(), cv::Scalar(0));
+  const cv::Rect both = cv::Rect({}, values.size()) & cv::Rect({}, size);
+  values(both).copyTo(result(both));
+  return result;
+}
+
 // The larger of every 2 x 2 samples.
-cv::Mat pooled(const cv::Mat& samples, const cv::Size& size) {
+cv::Mat pooled(const cv::Mat& responses, const cv::Size& size) {
+  const cv::Mat samples = fitted(responses, {2 * size.width, 2 * size.height});
   cv::Mat result(size, CV_8U);
   for (int y = 0; y < size.height; ++y) {
     const std::uint8_t* upper = samples.ptr<std::uint8_t>(2 * y);
@@ -61,8 +71,9 @@ cv::Mat clutter_of(const Level& level, const cv::Size& cells) {
           static_cast<std::uint8_t>(std::clamp(static_cast<int>(octaves), 0, kClutterClasses - 1));
     }
   cv::Mat result;
-  cv::resize(classes, result, cells, 0, 0, cv::INTER_NEAREST);
-  return result;
+  constexpr int kCellsOfBlock = kBlock / 2;
+  cv::resize(classes, result, {}, kCellsOfBlock, kCellsOfBlock, cv::INTER_NEAREST);
+  return fitted(result, cells);
 }
 
 }  // namespace
@@ -83,8 +94,7 @@ Measurement measurement_of(const std::vector<Level>& levels, const cv::Size& cel
   Measurement measurement;
   measurement.response = pooled(relative_responses(levels.front()), cells);
   if (!coarse.empty()) {
-    if (coarse.size() != cells) cv::resize(coarse, coarse, cells, 0, 0, cv::INTER_NEAREST);
-    cv::max(measurement.response, coarse, measurement.response);
+    cv::max(measurement.response, fitted(coarse, cells), measurement.response);
   }
   measurement.clutter = clutter_of(levels.front(), cells);
   return measurement;
@@ -98,9 +108,9 @@ Measurement coarser(const Measurement& measurement, int factor, const cv::Size& 
              largest,
              cv::Mat::ones(factor, factor, CV_8U),
              {0, 0});  // the cell and those after it
-  const cv::Rect used(0, 0, cells.width * factor, cells.height * factor);
-  cv::resize(largest(used), result.response, cells, 0, 0, cv::INTER_NEAREST);
-  cv::resize(measurement.clutter(used), result.clutter, cells, 0, 0, cv::INTER_NEAREST);
+  const cv::Size used(cells.width * factor, cells.height * factor);
+  cv::resize(fitted(largest, used), result.response, cells, 0, 0, cv::INTER_NEAREST);
+  cv::resize(fitted(measurement.clutter, used), result.clutter, cells, 0, 0, cv::INTER_NEAREST);
   return result;
 }
 

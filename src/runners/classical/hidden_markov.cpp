@@ -22,8 +22,6 @@ namespace {
 constexpr std::array<int, 2> kCellsPx = {2, 8};
 // ln odds from which a cell is a detection.
 constexpr double kLeastScore = 7;
-// Side of the blocks of cells of which the strongest cell is looked at.
-constexpr int kBlockCells = 8;
 // Blocks on either side of a block that make its surroundings.
 constexpr int kAround = 2;
 // A peak this near to a stronger one's box is of the same object.
@@ -155,13 +153,13 @@ class HiddenMarkov : public detector::Detector {
   // The strongest cell of each block, by how much its ln odds exceed those of the strongest cells
   // of the blocks around it, on average: clutter that stays, as on the ground, lifts those as well.
   static std::vector<Peak> peaks_of(const cv::Mat& odds) {
-    const cv::Size blocks(odds.cols / kBlockCells, odds.rows / kBlockCells);
-    if (blocks.empty()) return {};
+    if (std::min(odds.cols, odds.rows) < kBlock) return {};
+    const cv::Size blocks = blocks_in(odds.size());
     cv::Mat strongest(blocks, CV_32F), around, inner;
     for (int by = 0; by < blocks.height; ++by)
       for (int bx = 0; bx < blocks.width; ++bx) {
         double most = 0;
-        cv::minMaxLoc(odds(block(bx, by)), nullptr, &most);
+        cv::minMaxLoc(odds(block_in(odds.size(), bx, by)), nullptr, &most);
         strongest.at<float>(by, bx) = static_cast<float>(std::log(std::max(1.0, most)));
       }
     // Without the block's neighbours, which a target may fill.
@@ -174,9 +172,10 @@ class HiddenMarkov : public detector::Detector {
         const double outer = around.at<float>(by, bx) - inner.at<float>(by, bx);
         const double score = strongest.at<float>(by, bx) - outer / (side * side - 9);
         if (score < kLeastScore) continue;
+        const cv::Rect block = block_in(odds.size(), bx, by);
         cv::Point at;
-        cv::minMaxLoc(odds(block(bx, by)), nullptr, nullptr, nullptr, &at);
-        found.push_back({at + block(bx, by).tl(), score});
+        cv::minMaxLoc(odds(block), nullptr, nullptr, nullptr, &at);
+        found.push_back({at + block.tl(), score});
       }
     std::stable_sort(
         found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.score > b.score; });
@@ -189,10 +188,6 @@ class HiddenMarkov : public detector::Detector {
           }))
         own.push_back(peak);
     return own;
-  }
-
-  static cv::Rect block(int bx, int by) {
-    return {bx * kBlockCells, by * kBlockCells, kBlockCells, kBlockCells};
   }
 
   // The bank's peaks that are of no object that is there already.

@@ -189,7 +189,7 @@ namespace {
 constexpr int kRingFrom = kElement;
 constexpr int kRingTo = 2 * kElement - 2;
 // At the picture's border, a ring with less than this share of its samples tells too little.
-constexpr double kLeastRing = 0.6;
+constexpr double kLeastRing = 0.5;
 constexpr int kWholeRing =
     (2 * kRingTo + 1) * (2 * kRingTo + 1) - (2 * kRingFrom - 1) * (2 * kRingFrom - 1);
 // Standard deviation of normal noise over its median absolute deviation (Rousseeuw and Croux 1993).

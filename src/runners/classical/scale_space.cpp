@@ -98,19 +98,19 @@ cv::Mat close_minus_open(const cv::Mat& picture, bool with_long, cv::Mat& is_dar
   return dark;
 }
 
-// Mean and largest response of each whole block. A sum of eight responses fits 16 bits: none
+// Mean and largest response of each block. A sum of eight responses fits 16 bits: none
 // exceeds 255 * kGreyScale.
 void block_statistics(const cv::Mat& response, cv::Mat& mean, cv::Mat& largest) {
   static_assert(kBlock == 8 && kBlock * 255 * kGreyScale < 32768);
-  const int columns = response.cols / kBlock, rows = response.rows / kBlock;
-  mean.create(rows, columns, CV_32F);
-  largest.create(rows, columns, CV_16S);
-  for (int by = 0; by < rows; ++by)
-    for (int bx = 0; bx < columns; ++bx) {
+  const cv::Size blocks = blocks_in(response.size());
+  mean.create(blocks, CV_32F);
+  largest.create(blocks, CV_16S);
+  for (int by = 0; by < blocks.height; ++by)
+    for (int bx = 0; bx < blocks.width; ++bx) {
+      const cv::Point begin = block_in(response.size(), bx, by).tl();
       cv::v_int16x8 sum = cv::v_setzero_s16(), most = cv::v_setzero_s16();
       for (int y = 0; y < kBlock; ++y) {
-        const cv::v_int16x8 samples =
-            cv::v_load(response.ptr<short>(by * kBlock + y) + bx * kBlock);
+        const cv::v_int16x8 samples = cv::v_load(response.ptr<short>(begin.y + y) + begin.x);
         sum = cv::v_add_wrap(sum, samples);
         most = cv::v_max(most, samples);
       }
@@ -135,7 +135,7 @@ void without_hidden(const cv::Mat& hidden, cv::Mat& mean) {
   cv::Mat free_share(mean.size(), CV_32F);
   for (int by = 0; by < mean.rows; ++by)
     for (int bx = 0; bx < mean.cols; ++bx) {
-      const cv::Mat block = hidden({bx * kBlock, by * kBlock, kBlock, kBlock});
+      const cv::Mat block = hidden(block_in(hidden.size(), bx, by));
       const double share = 1 - cv::countNonZero(block) / double(kBlock * kBlock);
       free_share.at<float>(by, bx) = share < 0.5 ? 0.0F : static_cast<float>(share);
     }
@@ -226,22 +226,19 @@ bool Level::is_peak(int bx, int by) const {
 }
 
 double Level::noise_at(const cv::Point& sample) const {
-  const int bx = std::min(sample.x / kBlock, typical.cols - 1);
-  const int by = std::min(sample.y / kBlock, typical.rows - 1);
+  const int bx = sample.x / kBlock, by = sample.y / kBlock;
   return static_cast<double>(typical.at<float>(by, bx)) / kMeanResponse;
 }
 
 double Level::clutter_at(const cv::Point& sample) const {
-  const int bx = std::min(sample.x / kBlock, clutter.cols - 1);
-  const int by = std::min(sample.y / kBlock, clutter.rows - 1);
+  const int bx = sample.x / kBlock, by = sample.y / kBlock;
   return static_cast<double>(clutter.at<float>(by, bx));
 }
 
 double Level::relative_response(const cv::Point& sample) const {
   if (sample.x < 0 || sample.y < 0 || sample.x >= picture.cols || sample.y >= picture.rows)
     return 0;
-  const int bx = std::min(sample.x / kBlock, typical.cols - 1);
-  const int by = std::min(sample.y / kBlock, typical.rows - 1);
+  const int bx = sample.x / kBlock, by = sample.y / kBlock;
   return response.at<short>(sample) / static_cast<double>(typical.at<float>(by, bx));
 }
 

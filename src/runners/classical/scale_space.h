@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -18,6 +19,17 @@ inline constexpr int kGreyScale = 16;
 inline constexpr double kIsolated = 6;
 // Side of the square blocks over which noise is measured, in samples of a level.
 inline constexpr int kBlock = 8;
+// The blocks of a level, or of another grid of at least kBlock x kBlock. Where a side is no
+// multiple of kBlock, the last block overlaps the one before it, so that blocks cover all samples.
+inline cv::Size blocks_in(const cv::Size& samples) {
+  return {(samples.width + kBlock - 1) / kBlock, (samples.height + kBlock - 1) / kBlock};
+}
+inline cv::Rect block_in(const cv::Size& samples, int bx, int by) {
+  return {std::min(bx * kBlock, samples.width - kBlock),
+          std::min(by * kBlock, samples.height - kBlock),
+          kBlock,
+          kBlock};
+}
 // Length of the structuring elements, in samples. Close-minus-open responds to objects of at most
 // this length less one; the smoothing makes them two samples longer. So a level of n times fewer
 // samples per side responds to objects of up to 4 n px.
