@@ -142,7 +142,7 @@ void measure(const MotionArguments& arguments, Context& context) {
   const auto gyro = lens ? setup::gyro_of(arguments.video) : std::vector<gyro::GyroSample>();
   report_gyro(setup::bridge_by_gyro(gyro, all), !gyro.empty(), console);
   all = enum_named<scene::MotionReference>(arguments.reference) == scene::MotionReference::kSmoothed
-            ? motion::smoothed(all, options)
+            ? motion::smoothed(std::move(all), options)
             : motion::within_reach(std::move(all), info.width, info.height);
   files.write(arguments.out,
               [&](const fs::path& at) { write_file(at, motion::csv_from_motion(all)); });

@@ -2,8 +2,9 @@
 #include "camera/motion/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <sstream>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,17 +37,6 @@ namespace {
 constexpr const char* kHeader =
     "frame,time_s,h11,h12,h13,h21,h22,h23,h31,h32,h33,inliers,rms_px,state";
 constexpr const char* kRotationHeader = "frame,time_s,qw,qx,qy,qz,inliers,rms_px,state";
-// The number of columns of the two.
-constexpr std::size_t kCells = 14;
-constexpr std::size_t kRotationCells = 9;
-
-State state_of(const std::string& word, const Where& where) {
-  for (State state :
-       {State::kReference, State::kMeasured, State::kBridged, State::kCut, State::kTurnedAway})
-    if (word == name(state)) return state;
-  throw Error("state is '" + word.substr(0, 40) + "'; expected reference, measured, bridged or cut",
-              where);
-}
 
 }  // namespace
 
@@ -65,49 +55,6 @@ std::string csv_from_motion(const std::vector<FrameMotion>& motion) {
     text += fmt::format(",{},{},{}\n", m.inliers, m.rms_px, name(m.state));
   }
   return text;
-}
-
-namespace {
-
-FrameMotion motion_of(const std::vector<std::string>& cells, bool is_rotation, const Where& where) {
-  const std::size_t expected = is_rotation ? kRotationCells : kCells;
-  if (cells.size() != expected)
-    throw Error(fmt::format("has {} cells; expected {}", cells.size(), expected), where);
-  FrameMotion m;
-  const double frame = finite_number(cells[0], where);
-  const double inliers = finite_number(cells[expected - 3], where);
-  if (std::abs(frame) > 1e15 || std::abs(inliers) > 1e9) throw Error("a count is too large", where);
-  m.frame = static_cast<std::int64_t>(frame);
-  m.time_s = finite_number(cells[1], where);
-  if (is_rotation) {
-    const auto q = [&](std::size_t i) { return finite_number(cells[2 + i], where); };
-    m.rotation = Quaternion(q(0), q(1), q(2), q(3));
-    if (std::abs(m.rotation->norm() - 1) > 1e-6)
-      throw Error("qw,qx,qy,qz is no rotation; expected a unit quaternion", where);
-  } else {
-    for (std::size_t i = 0; i < 9; ++i)
-      m.frame_from_reference(static_cast<int>(i / 3), static_cast<int>(i % 3)) =
-          finite_number(cells[2 + i], where);
-  }
-  m.inliers = static_cast<int>(inliers);
-  m.rms_px = finite_number(cells[expected - 2], where);
-  m.state = state_of(cells[expected - 1], where);
-  return m;
-}
-
-}  // namespace
-
-std::vector<FrameMotion> motion_from_csv(std::string_view text, const std::filesystem::path& file) {
-  std::istringstream lines{std::string(text)};
-  std::string line;
-  if (!std::getline(lines, line) || (line != kHeader && line != kRotationHeader))
-    throw Error(std::string("does not begin with ") + kHeader + " or " + kRotationHeader,
-                {file.string(), 1});
-  const bool is_rotation = line == kRotationHeader;
-  std::vector<FrameMotion> motion;
-  for (int row = 2; std::getline(lines, line); ++row)
-    motion.push_back(motion_of(cells_of(line), is_rotation, {file.string(), row}));
-  return motion;
 }
 
 namespace {
@@ -158,19 +105,66 @@ std::vector<FrameMotion> within_reach(std::vector<FrameMotion> against_first,
 
 namespace {
 
-// The first line of an entry, before the motion as CSV.
+// The first line of an entry, before the packed frames.
 constexpr std::string_view kToTheEnd = "to the end\n";  // of the video
 constexpr std::string_view kUntilThere = "until there\n";
 
+// The head of a packed frame; the numbers of its rotation or homography follow.
+struct PackedHead {
+  double time_s;
+  double rms_px;
+  std::int32_t inliers;
+  std::uint8_t state;
+  bool is_rotation;
+};
+constexpr std::size_t kRotationNumbers = 4;
+constexpr std::size_t kHomographyNumbers = 9;
+
+std::size_t packed_size(bool is_rotation) {
+  return sizeof(PackedHead) +
+         sizeof(double) * (is_rotation ? kRotationNumbers : kHomographyNumbers);
+}
+
+FrameMotion unpacked(const char* bytes, std::int64_t frame) {
+  PackedHead head;
+  std::memcpy(&head, bytes, sizeof head);
+  std::array<double, kHomographyNumbers> numbers{};
+  std::memcpy(numbers.data(), bytes + sizeof head, packed_size(head.is_rotation) - sizeof head);
+  FrameMotion motion{.frame = frame,
+                     .time_s = head.time_s,
+                     .inliers = head.inliers,
+                     .rms_px = head.rms_px,
+                     .state = static_cast<State>(head.state)};
+  if (head.is_rotation)
+    motion.rotation = Quaternion(numbers[0], numbers[1], numbers[2], numbers[3]);
+  else
+    motion.frame_from_reference = Eigen::Map<const Homography>(numbers.data());
+  return motion;
+}
+
+// The packed frames of an entry's body, and whether they are all of the video.
 struct Kept {
-  std::vector<FrameMotion> motion;
+  std::string_view packed;
   bool to_the_end = false;
+
+  std::size_t frame_size() const {
+    if (packed.size() < sizeof(PackedHead)) return packed_size(true);
+    PackedHead head;
+    std::memcpy(&head, packed.data(), sizeof head);
+    return packed_size(head.is_rotation);
+  }
+  std::size_t frames() const { return packed.size() / frame_size(); }
 };
 
-Kept kept_from(const std::string& body) {
-  const bool to_the_end = body.starts_with(kToTheEnd);
-  if (!to_the_end && !body.starts_with(kUntilThere)) throw Error("is no motion");
-  return {motion_from_csv(body.substr(body.find('\n') + 1), {}), to_the_end};
+std::optional<Kept> kept_in(const std::optional<std::string>& body) {
+  if (!body) return std::nullopt;
+  const std::string_view text = *body;
+  for (const std::string_view line : {kToTheEnd, kUntilThere}) {
+    if (!text.starts_with(line)) continue;
+    const Kept kept{text.substr(line.size()), line == kToTheEnd};
+    if (kept.packed.size() % kept.frame_size() == 0) return kept;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -190,28 +184,54 @@ disk_cache::Key CacheKey::entry() const {
       .add(options.seed);
 }
 
-std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache,
-                                               const CacheKey& key) {
-  auto found = cache.find(key.entry(), kept_from);
-  if (!found) return std::nullopt;
-  const auto wanted = static_cast<std::size_t>(std::max<std::int64_t>(0, key.frame_count));
-  if (key.frame_count < 0 ? !found->to_the_end
-                          : found->motion.size() < wanted && !found->to_the_end)
-    return std::nullopt;
-  if (key.frame_count >= 0 && found->motion.size() > wanted) found->motion.resize(wanted);
-  return std::move(found->motion);
+void pack(const FrameMotion& motion, std::string& packed) {
+  PackedHead head{};
+  head.time_s = motion.time_s;
+  head.rms_px = motion.rms_px;
+  head.inliers = motion.inliers;
+  head.state = static_cast<std::uint8_t>(motion.state);
+  head.is_rotation = motion.rotation.has_value();
+  packed.append(reinterpret_cast<const char*>(&head), sizeof head);
+  const auto add = [&](const double* numbers, std::size_t count) {
+    packed.append(reinterpret_cast<const char*>(numbers), count * sizeof(double));
+  };
+  if (motion.rotation) {
+    const Quaternion& q = *motion.rotation;
+    const std::array<double, kRotationNumbers> numbers = {q.w(), q.x(), q.y(), q.z()};
+    add(numbers.data(), numbers.size());
+  } else {
+    add(motion.frame_from_reference.data(), kHomographyNumbers);
+  }
 }
 
-void store(const disk_cache::Cache& cache,
-           const CacheKey& key,
-           const std::vector<FrameMotion>& motion) {
-  const bool to_the_end =
-      key.frame_count < 0 || static_cast<std::int64_t>(motion.size()) < key.frame_count;
-  const auto before = cache.find(key.entry(), kept_from);
-  if (before && (before->to_the_end || (!to_the_end && before->motion.size() >= motion.size())))
+std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache,
+                                               const CacheKey& key) {
+  const auto body = cache.find(key.entry());
+  const auto kept = kept_in(body);
+  if (!kept) return std::nullopt;
+  std::size_t count = kept->frames();
+  if (key.frame_count < 0 && !kept->to_the_end) return std::nullopt;
+  if (key.frame_count >= 0) {
+    const auto wanted = static_cast<std::size_t>(key.frame_count);
+    if (count < wanted && !kept->to_the_end) return std::nullopt;
+    count = std::min(count, wanted);
+  }
+  std::vector<FrameMotion> motion;
+  motion.reserve(count);
+  for (std::size_t k = 0; k < count; ++k)
+    motion.push_back(
+        unpacked(kept->packed.data() + k * kept->frame_size(), static_cast<std::int64_t>(k)));
+  return motion;
+}
+
+void store(const disk_cache::Cache& cache, const CacheKey& key, const std::string& packed) {
+  Kept now{packed, true};
+  now.to_the_end = key.frame_count < 0 || static_cast<std::int64_t>(now.frames()) < key.frame_count;
+  const auto body = cache.find(key.entry());
+  const auto before = kept_in(body);
+  if (before && (before->to_the_end || (!now.to_the_end && before->frames() >= now.frames())))
     return;
-  cache.keep(key.entry(),
-             std::string(to_the_end ? kToTheEnd : kUntilThere) + csv_from_motion(motion));
+  cache.keep(key.entry(), std::string(now.to_the_end ? kToTheEnd : kUntilThere) + packed);
 }
 
 }  // namespace airtruth::motion

@@ -84,11 +84,10 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-// The text of motion.csv, and back. The columns are frame,time_s,h11,...,h33,inliers,rms_px,state
+// The text of motion.csv. The columns are frame,time_s,h11,...,h33,inliers,rms_px,state
 // for homographies and frame,time_s,qw,qx,qy,qz,inliers,rms_px,state for rotations. Numbers
 // round-trip exactly.
 std::string csv_from_motion(const std::vector<FrameMotion>& motion);
-std::vector<FrameMotion> motion_from_csv(std::string_view text, const std::filesystem::path& name);
 
 // The limit of a homography. One plane shows only what lies ahead of the reference camera: for
 // a turn, the map of unit determinant from the frame to the reference has at a pixel the
@@ -134,9 +133,10 @@ struct CacheKey {
 
 // The motion of exactly the frames of the key. Empty where the cache does not hold all of them.
 std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache, const CacheKey& key);
-// Keeps the motion, unless the cache already holds more frames for this key.
-void store(const disk_cache::Cache& cache,
-           const CacheKey& key,
-           const std::vector<FrameMotion>& motion);
+// Adds a frame to the form in which motion is kept: 56 bytes for a rotation, 96 for a homography.
+// The frames of a clip are of one model, in order.
+void pack(const FrameMotion& motion, std::string& packed);
+// Keeps packed motion, unless the cache already holds more frames for this key.
+void store(const disk_cache::Cache& cache, const CacheKey& key, const std::string& packed);
 
 }  // namespace airtruth::motion

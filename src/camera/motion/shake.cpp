@@ -94,11 +94,12 @@ Vector3 turn(const std::vector<FrameMotion>& motion, std::size_t from, std::size
   return turned.angle() * turned.axis();
 }
 
-// The same on the group of rotations. Here every frame of the window is compared with frame k
-// directly.
-void smooth_rotations(const std::vector<FrameMotion>& against_first,
-                      double sigma_s,
-                      std::vector<FrameMotion>& result) {
+// The shake of every frame on the group of rotations. Here every frame of the window is compared
+// with frame k directly.
+std::vector<Quaternion> shaking_rotations(const std::vector<FrameMotion>& against_first,
+                                          double sigma_s) {
+  std::vector<Quaternion> result;
+  result.reserve(against_first.size());
   for (std::size_t k = 0; k < against_first.size(); ++k) {
     Vector3 sum = Vector3::Zero();
     double total = 1;
@@ -116,9 +117,10 @@ void smooth_rotations(const std::vector<FrameMotion>& against_first,
       if (against_first[i].state == State::kCut || !add(i - 1)) break;
     const Vector3 steady = sum / total;
     const double angle = steady.norm();
-    result[k].rotation =
-        angle > 0 ? Quaternion(Eigen::AngleAxisd(-angle, steady / angle)) : Quaternion::Identity();
+    result.push_back(angle > 0 ? Quaternion(Eigen::AngleAxisd(-angle, steady / angle))
+                               : Quaternion::Identity());
   }
+  return result;
 }
 
 // The weighted sum over the neighbours of a frame.
@@ -156,32 +158,39 @@ void add_neighbours(const std::vector<FrameMotion>& against_first,
   }
 }
 
-}  // namespace
-
 // The neighbours i of frame k are compared with it by i_from_k. The steady camera is the one for
 // which the weighted mean of log(i_from_k) is zero: steady_from_k = exp(sum w_i log(i_from_k)), a
 // first-order mean on the group of homographies (Fletcher 2004). The frame's shake is the inverse.
 // Only maps between frames that are close in time are used, since no homography describes a long
 // turn. Nothing is smoothed across a cut.
-std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
-                                  const Options& options) {
-  check(options.smoothing_s > 0, "smoothing takes time");
-  std::vector<FrameMotion> result = against_first;
-  const std::size_t n = against_first.size();
-  const double sigma = options.smoothing_s;
-  if (n > 0 && against_first.front().rotation) {
-    smooth_rotations(against_first, sigma, result);
-    return result;
-  }
-  for (std::size_t k = 0; k < n; ++k) {
+std::vector<Homography> shaking_homographies(const std::vector<FrameMotion>& against_first,
+                                             double sigma_s) {
+  std::vector<Homography> result;
+  result.reserve(against_first.size());
+  for (std::size_t k = 0; k < against_first.size(); ++k) {
     NeighbourSum all;
-    for (const int direction : {+1, -1}) add_neighbours(against_first, k, direction, sigma, all);
+    for (const int direction : {+1, -1}) add_neighbours(against_first, k, direction, sigma_s, all);
     const Homography steady_from_k = (all.sum / all.weight).exp();
     const Homography shake = steady_from_k.inverse();
-    result[k].frame_from_reference =
-        shake.allFinite() ? Homography(shake / shake(2, 2)) : Homography(Homography::Identity());
+    result.push_back(shake.allFinite() ? Homography(shake / shake(2, 2))
+                                       : Homography(Homography::Identity()));
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<FrameMotion> smoothed(std::vector<FrameMotion> against_first, const Options& options) {
+  check(options.smoothing_s > 0, "smoothing takes time");
+  if (against_first.empty()) return against_first;
+  if (against_first.front().rotation) {
+    const auto shake = shaking_rotations(against_first, options.smoothing_s);
+    for (std::size_t k = 0; k < shake.size(); ++k) against_first[k].rotation = shake[k];
+  } else {
+    const auto shake = shaking_homographies(against_first, options.smoothing_s);
+    for (std::size_t k = 0; k < shake.size(); ++k) against_first[k].frame_from_reference = shake[k];
+  }
+  return against_first;
 }
 
 }  // namespace airtruth::motion

@@ -23,8 +23,7 @@ inline double differentiator_weight(int j, int reach) {
 
 // The motion of each frame against a Gaussian-smoothed camera path, which is the shake, from the
 // motion against the first frame. The function needs all frames at once (a few hundred bytes each).
-std::vector<FrameMotion> smoothed(const std::vector<FrameMotion>& against_first,
-                                  const Options& options);
+std::vector<FrameMotion> smoothed(std::vector<FrameMotion> against_first, const Options& options);
 
 // The shake of frame k and its change per second, from the neighbouring frames. Motion blur and a
 // rolling shutter are computed from it.

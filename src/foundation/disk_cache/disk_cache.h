@@ -19,8 +19,8 @@
 //
 //   const disk_cache::Cache cache(disk_cache::user_folder("motion"));
 //   const auto key = disk_cache::Key("motion").add(video_sha256).add(options.seed);
-//   if (auto known = cache.find(key, motion_from_csv)) return *known;
-//   cache.keep(key, csv_from_motion(motion));
+//   if (auto known = cache.find(key, motion_from_text)) return *known;
+//   cache.keep(key, text_from_motion(motion));
 //
 // An entry is a file of the key's name: the SHA-256 of the body, as 64 hex digits, and the body. It
 // is written beside its place and renamed. An entry that is cut short, damaged, foreign or larger

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "labels/annotation/evision.h"
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include <fmt/format.h>
@@ -172,22 +174,26 @@ std::string rectangle(const PixelBox& box) {
 
 }  // namespace
 
-std::string evision_xml(const std::vector<std::optional<EvisionFrame>>& frames,
-                        const std::vector<Vector3>& camera_ned_m) {
-  check(frames.size() == camera_ned_m.size(), "a camera position for each frame");
-  std::string xml = "<?xml version=\"1.0\"?>\n<opencv_storage>\n";
-  int last = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    last = frames[i] ? frames[i]->number : last + 1;
-    xml += fmt::format("<frame_{}>\n", last) + point("CameraPos_m", camera_ned_m[i]);
-    if (frames[i]) {
-      xml += point("IntruderPos_m", frames[i]->intruder_ned_m);
-      xml += fmt::format("  <Distance_m>{}</Distance_m>\n", number(frames[i]->distance_m));
-    }
-    xml +=
-        rectangle(frames[i] ? frames[i]->rect_px : PixelBox{}) + fmt::format("</frame_{}>\n", last);
+EvisionWriter::EvisionWriter(const std::filesystem::path& file)
+    : file_(file), out_(file, std::ios::binary) {
+  out_ << "<?xml version=\"1.0\"?>\n<opencv_storage>\n";
+}
+
+void EvisionWriter::add(const std::optional<EvisionFrame>& frame, const Vector3& camera_ned_m) {
+  last_ = frame ? frame->number : last_ + 1;
+  std::string xml = fmt::format("<frame_{}>\n", last_) + point("CameraPos_m", camera_ned_m);
+  if (frame) {
+    xml += point("IntruderPos_m", frame->intruder_ned_m);
+    xml += fmt::format("  <Distance_m>{}</Distance_m>\n", number(frame->distance_m));
   }
-  return xml + "</opencv_storage>\n";
+  xml += rectangle(frame ? frame->rect_px : PixelBox{}) + fmt::format("</frame_{}>\n", last_);
+  out_ << xml;
+}
+
+void EvisionWriter::finish() {
+  out_ << "</opencv_storage>\n";
+  out_.close();
+  if (!out_) throw Error(std::string("cannot write: ") + std::strerror(errno), {file_.string()});
 }
 
 }  // namespace airtruth::annotation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,14 +26,24 @@ struct EvisionFrame {
   PixelBox rect_px{};
 };
 
-// Text in the form of the published files, except for the last digit of exact halves
-// (docs/formats/evision.md). An empty frame means that the intruder is not in the world (its path
-// has not begun or is over); it is written with the camera's position, an empty box, and no
-// IntruderPos_m or Distance_m.
-std::string evision_xml(const std::vector<std::optional<EvisionFrame>>& frames,
-                        const std::vector<Vector3>& camera_ned_m);
+// Writes a file in the form of the published ones, except for the last digit of exact halves
+// (docs/formats/evision.md), frame by frame.
+class EvisionWriter {
+ public:
+  explicit EvisionWriter(const std::filesystem::path& file);
+  // An empty frame means that the intruder is not in the world (its path has not begun or is over);
+  // it is written with the camera's position, an empty box, and no IntruderPos_m or Distance_m.
+  void add(const std::optional<EvisionFrame>& frame, const Vector3& camera_ned_m);
+  // Throws Error where anything could not be written.
+  void finish();
 
-// Reads the published files and those of evision_xml(). Errors carry file and line. Frames without
+ private:
+  std::filesystem::path file_;
+  std::ofstream out_;
+  int last_ = 0;  // number of the frame before
+};
+
+// Reads the published files and those of EvisionWriter. Errors carry file and line. Frames without
 // IntruderPos_m are empty.
 struct Evision {
   std::vector<std::optional<EvisionFrame>> frames;

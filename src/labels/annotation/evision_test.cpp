@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth::annotation {
 namespace {
@@ -45,6 +46,15 @@ constexpr std::string_view kForm = R"(<?xml version="1.0"?>
     <height>0</height></IntruderRect_pix></frame_2>
 </opencv_storage>
 )";
+
+std::string evision_xml(const std::vector<std::optional<EvisionFrame>>& frames,
+                        const std::vector<Vector3>& camera_ned_m) {
+  const test_support::TemporaryFolder folder;
+  EvisionWriter writer(folder / "a.xml");
+  for (std::size_t i = 0; i < frames.size(); ++i) writer.add(frames[i], camera_ned_m[i]);
+  writer.finish();
+  return read_file(folder / "a.xml");
+}
 
 Evision form() { return parse_evision(kForm, "a.xml"); }
 

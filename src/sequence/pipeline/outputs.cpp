@@ -65,6 +65,8 @@ std::vector<Checksum> checksums_below(const fs::path& folder) {
   return result;
 }
 
+}  // namespace
+
 std::vector<fs::path> model_files(const setup::World& world) {
   std::vector<fs::path> models;
   for (const setup::Actor& actor : world.actors)
@@ -73,8 +75,6 @@ std::vector<fs::path> model_files(const setup::World& world) {
   models.erase(std::unique(models.begin(), models.end()), models.end());
   return models;
 }
-
-}  // namespace
 
 Outputs::Outputs(const fs::path& folder,
                  const scene::Scene& scene,
@@ -87,9 +87,13 @@ Outputs::Outputs(const fs::path& folder,
       writer_(video_, info, writer_options(scene.output, threads)),
       truth_(folder / "truth.jsonl", std::ios::binary),
       aircraft_(aircraft_of(scene)),
-      evision_(std::max<std::size_t>(1, aircraft_)),
       sheet_(scene.name, info.frame_count_estimate) {
   check_truth("create");
+  const std::size_t files = std::max<std::size_t>(1, aircraft_);
+  for (std::size_t i = 0; i < files; ++i) {
+    const std::string suffix = files == 1 ? "" : "-" + scene.intruders[i].id;
+    evision_.emplace_back(folder / (scene.name + suffix + ".xml"));
+  }
 }
 
 void Outputs::check_truth(const char* what) const {
@@ -108,14 +112,15 @@ void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
   }
   truth_ << annotation::jsonl_line(truth, lens_) << '\n';
   check_truth("write");
-  camera_ned_m_.push_back(truth.camera_position_ned_m);
+  const Vector3& camera_ned_m = truth.camera_position_ned_m;
   // The format is one of aircraft, which come first.
-  if (aircraft_ == 0) evision_[0].push_back(std::nullopt);
+  if (aircraft_ == 0) evision_[0].add(std::nullopt, camera_ned_m);
   for (std::size_t i = 0; i < aircraft_; ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
-    evision_[i].push_back(intruder.state == annotation::State::kEnded
-                              ? std::nullopt
-                              : std::optional(evision_frame(truth, intruder)));
+    evision_[i].add(intruder.state == annotation::State::kEnded
+                        ? std::nullopt
+                        : std::optional(evision_frame(truth, intruder)),
+                    camera_ned_m);
   }
   sheet_.add(frame->picture, truth);
 }
@@ -127,18 +132,10 @@ void Outputs::finish(const scene::Scene& scene,
   writer_.finish();
   truth_.close();
   check_truth("write");
-  write_annotations(scene);
+  for (annotation::EvisionWriter& file : evision_) file.finish();
   video::write_still(folder_ / "preview.jpg", sheet_.sheet());
   if (scene.output.masks) flush_files(folder_);
   write_record(scene, inputs, encounters, summary);
-}
-
-void Outputs::write_annotations(const scene::Scene& scene) const {
-  for (std::size_t i = 0; i < evision_.size(); ++i) {
-    const std::string suffix = evision_.size() == 1 ? "" : "-" + scene.intruders[i].id;
-    write_file(folder_ / (scene.name + suffix + ".xml"),
-               annotation::evision_xml(evision_[i], camera_ned_m_));
-  }
 }
 
 void Outputs::write_record(const scene::Scene& scene,

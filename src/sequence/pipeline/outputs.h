@@ -53,7 +53,6 @@ class Outputs {
  private:
   // Throws Error where the truth could not be written so far.
   void check_truth(const char* what) const;
-  void write_annotations(const scene::Scene& scene) const;
   void write_record(const scene::Scene& scene,
                     const std::vector<Checksum>& inputs,
                     const std::vector<EncounterRecord>& encounters,
@@ -64,13 +63,14 @@ class Outputs {
   fs::path video_;
   video::Writer writer_;
   std::ofstream truth_;
-  std::vector<Vector3> camera_ned_m_;
   std::size_t aircraft_ = 0;  // of the scene's intruders, which they are the first of
-  // Indexed by [aircraft][frame]. A scene without aircraft has one entry whose frames have no
-  // position.
-  std::vector<std::vector<std::optional<annotation::EvisionFrame>>> evision_;
+  // By aircraft. A scene without aircraft has one file whose frames have no position.
+  std::vector<annotation::EvisionWriter> evision_;
   drawing::ContactSheet sheet_;
 };
+
+// The files of the aircraft's models, by name.
+std::vector<fs::path> model_files(const setup::World& world);
 
 // Every file that a run reads, with its SHA-256, for sequence.json: video, mask, camera file, lens
 // file, path files, and the files of the aircraft's models by name. `scene` is the one the user

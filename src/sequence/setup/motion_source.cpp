@@ -102,11 +102,11 @@ motion::Estimator MotionSource::estimator(int width, int height) const {
 }
 
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
-  std::vector<motion::FrameMotion> bridged = against_first;
-  if (is_to_be_stored()) against_first_ = std::move(against_first);
-  bridge_by_gyro(gyro_, bridged);
-  all_ = smoothed_ ? motion::smoothed(bridged, options_)
-                   : motion::within_reach(std::move(bridged), size_.width, size_.height);
+  if (is_to_be_stored())
+    for (const motion::FrameMotion& motion : against_first) motion::pack(motion, against_first_);
+  bridge_by_gyro(gyro_, against_first);
+  all_ = smoothed_ ? motion::smoothed(std::move(against_first), options_)
+                   : motion::within_reach(std::move(against_first), size_.width, size_.height);
   ready_ = true;
 }
 
@@ -154,7 +154,7 @@ motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
   motion::FrameMotion motion =
       estimator_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
   motion.frame = frame.index;
-  if (is_to_be_stored()) against_first_.push_back(motion);
+  if (is_to_be_stored()) motion::pack(motion, against_first_);
   return motion;
 }
 

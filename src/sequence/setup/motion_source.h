@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "camera/gyro/gyro.h"
@@ -101,7 +102,7 @@ class MotionSource {
   lens::ImageSize size_;
   motion::ReachGuard guard_;  // of motion against the first frame
   std::optional<motion::Estimator> estimator_;
-  std::vector<motion::FrameMotion> against_first_;  // empty unless is_to_be_stored()
+  std::string against_first_;  // packed for the cache; empty unless is_to_be_stored()
   std::vector<motion::FrameMotion> all_;
 };
 
