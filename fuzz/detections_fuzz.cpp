@@ -31,9 +31,7 @@ enum class Kind { kCoco, kMot, kOwnText, kOwnFacts, kIgnored, kHello, kAnswer, k
 
 const fs::path& folder() {
   static const fs::path made = [] {
-    const fs::path shm = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
-    std::atexit([] { fs::remove_all(folder()); });
-    return shm / ("airtruth_detections_fuzz_" + std::to_string(::getpid()));
+    return fs::temp_directory_path() / ("airtruth_detections_fuzz_" + std::to_string(::getpid()));
   }();
   return made;
 }

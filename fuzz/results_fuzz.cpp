@@ -34,9 +34,7 @@ constexpr std::array<Case, 7> kCases = {{
 
 const fs::path& folder() {
   static const fs::path made = [] {
-    const fs::path shm = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
-    std::atexit([] { fs::remove_all(folder()); });
-    return shm / ("airtruth_results_fuzz_" + std::to_string(::getpid()));
+    return fs::temp_directory_path() / ("airtruth_results_fuzz_" + std::to_string(::getpid()));
   }();
   return made;
 }

@@ -2,8 +2,9 @@
 """Labels belong to the pictures that they name, whatever the names are. picture_names_test.py AIRTRUTH
 
 Sets of eight pictures are named by schemes that people and their tools use, and are listed shuffled and sorted. Picture i has the
-grey level 10 i and its box has x = i. Each set is imported from every format that names pictures; that of COCO is exported to YOLO and
-imported again. The box of every frame must be that of its picture each time.
+grey level 10 i and its box has x = i. A set of each scheme is imported from COCO, exported to YOLO and imported again. The other formats that
+name pictures share COCO's join of labels and pictures: each imports every fifth scheme, another fifth each. The box of every frame must
+be that of its picture each time.
 """
 
 import json
@@ -181,8 +182,8 @@ class Names(unittest.TestCase):
 
     def test_labels_belong_to_the_pictures_that_they_name(self):
         self.assertGreaterEqual(len(SCHEMES), 24)
-        for form in WRITERS:
-            for scheme in SCHEMES:
+        for place, form in enumerate(WRITERS):
+            for scheme in list(SCHEMES) if form == "coco" else list(SCHEMES)[place::5]:
                 numbers = list(range(COUNT))
                 if form != "aot":
                     RANDOM.shuffle(numbers)
