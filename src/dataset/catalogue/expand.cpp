@@ -181,7 +181,7 @@ Item Expansion::at(std::int64_t index) const {
 
 namespace {
 
-// The first frame of a clip at a random position of its background at which it fits.
+// The number of a random frame of its background at which a clip fits.
 std::int64_t random_first_frame(const Item& item,
                                 std::int64_t first_frame,
                                 const BackgroundFiles& files) {
@@ -194,6 +194,20 @@ std::int64_t random_first_frame(const Item& item,
       std::max<std::int64_t>(1, files.frames - first_frame - item.frame_count + 1);
   const auto place = static_cast<std::int64_t>(item.drawn.start_share * double(places));
   return first_frame + std::min(place, places - 1);
+}
+
+// A log's offset belongs to the background's first_frame, and follows the clip's.
+void begin_at_random(Item& item, const Background& background, const BackgroundFiles& files) {
+  scene::Camera& camera = item.scene.camera;
+  scene::Background& placed = item.scene.background;
+  if (camera.path_file)
+    throw Error(fmt::format("start is random, but the path_file of background '{}' is that of its "
+                            "first frames; expected start = \"first\", or a log",
+                            background.name),
+                item.rule->where);
+  const double start_s = camera.log_offset_s ? setup::clip_start_s(placed) : 0;
+  placed.first_frame = random_first_frame(item, background.first_frame, files);
+  if (camera.log_offset_s) *camera.log_offset_s += setup::clip_start_s(placed) - start_s;
 }
 
 }  // namespace
@@ -223,7 +237,8 @@ void place(Item& item,
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
   draw_in_view(item, files);
   if (item.rule != nullptr && item.rule->start == ClipStart::kRandom)
-    placed.first_frame = random_first_frame(item, background.first_frame, files);
+    begin_at_random(item, background, files);
+  setup::take_clip_start(item.scene);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
   const std::int64_t left = files.frames - placed.first_frame;
   if (left > 0) clip.frames = clip.frames > 0 ? std::min(clip.frames, left) : left;

@@ -138,4 +138,8 @@ class Reader {
   std::unique_ptr<State> state_;
 };
 
+// Time of a frame in seconds from the video's first frame. `options` states the frame and the rate
+// of numbered images. Errors as of Reader.
+double time_of_first_frame_s(const std::filesystem::path& path, const ReaderOptions& options);
+
 }  // namespace airtruth::video

@@ -193,6 +193,7 @@ TEST_F(Video, VariableFrameRateKeepsItsTimes) {
   ASSERT_EQ(times.size(), 12u);
   EXPECT_NEAR(times[2], 0.08, 1e-9);
   EXPECT_NEAR(times[3], 0.20, 1e-9);
+  EXPECT_NEAR(time_of_first_frame_s(folder_ / "vfr.mp4", {.first_frame = 3}), 0.20, 1e-9);
   StreamInfo info = reader.info();
   Reader again(folder_ / "vfr.mp4");
   Writer writer(folder_ / "copy.mp4", info, {});

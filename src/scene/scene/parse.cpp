@@ -80,7 +80,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       "background", {"video", "name", "mask", "first_frame", "frame_count", "frame_rate_hz"}));
   scene.lens = lens_in(root);
   scene.motion = motion_in(root);
-  scene.camera = camera_in(root, scene.motion, scene.background.first_frame);
+  scene.camera = camera_in(root, scene.motion);
   scene.light = light_in(root);
   scene.camera_model = camera_model_in(root);
   scene.realism = realism_in(root);

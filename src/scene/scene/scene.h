@@ -76,6 +76,9 @@ struct Camera {
   std::optional<fs::path> log;
   // Time of the log = time of the clip + log_offset_s. Empty: the log is on the video's clock.
   std::optional<double> log_offset_s;
+  // Time of the clip's first frame on the video's clock. It follows from [background] first_frame
+  // and the video (sequence/setup/from_scene.h).
+  double clip_start_s = 0;
   // With a log: whether the scene states the position and the attitude at the first frame; the
   // log's are used where it does not.
   bool position_is_stated = false;

@@ -92,7 +92,7 @@ Lens lens_in(const TableReader& parent) {
 
 namespace {
 
-void read_log(const TableReader& table, std::int64_t first_frame, Camera& camera) {
+void read_log(const TableReader& table, Camera& camera) {
   table.exclude("log", {"path_file", "velocity_ned_mps"});
   camera.log = table.path("log");
   camera.log_offset_s = table.number("log_offset_s", kTime);
@@ -100,16 +100,11 @@ void read_log(const TableReader& table, std::int64_t first_frame, Camera& camera
   camera.attitude_is_stated = table.has("attitude_yaw_pitch_roll_deg");
   if (!camera.log && camera.log_offset_s)
     table.fail("log_offset_s", "log_offset_s is stated without a log; expected log as well");
-  if (camera.log && first_frame > 0 && !camera.log_offset_s)
-    table.fail("log",
-               fmt::format("first_frame is {} and the log has no log_offset_s; expected the log's "
-                           "time at that frame",
-                           first_frame));
 }
 
 }  // namespace
 
-Camera camera_in(const TableReader& parent, const Motion& motion, std::int64_t first_frame) {
+Camera camera_in(const TableReader& parent, const Motion& motion) {
   const TableReader table = parent.table("camera",
                                          {"position_ned_m",
                                           "velocity_ned_mps",
@@ -121,7 +116,7 @@ Camera camera_in(const TableReader& parent, const Motion& motion, std::int64_t f
   camera.where = table.where();
   table.exclude("path_file", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg"});
   camera.path_file = table.path("path_file");
-  read_log(table, first_frame, camera);
+  read_log(table, camera);
   camera.follows_log_attitude = motion.reference == MotionReference::kSmoothed;
   camera.position_ned_m = table.vector("position_ned_m", kPosition).value_or(camera.position_ned_m);
   camera.velocity_ned_mps =

@@ -20,8 +20,8 @@ constexpr std::size_t kLargestToml = std::size_t{16} << 20;
 toml::table parsed_toml(std::string_view text, const std::string& file);
 
 Lens lens_in(const TableReader& parent);
-// `motion` and `first_frame` belong to the same clip: a log's attitude and clock depend on them.
-Camera camera_in(const TableReader& parent, const Motion& motion, std::int64_t first_frame);
+// `motion` belongs to the same clip: whether a log's attitude is followed depends on it.
+Camera camera_in(const TableReader& parent, const Motion& motion);
 Motion motion_in(const TableReader& parent);
 CameraModel camera_model_in(const TableReader& parent);
 Realism realism_in(const TableReader& parent);

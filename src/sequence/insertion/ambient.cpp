@@ -37,6 +37,12 @@ constexpr float kBrightestSun = 6.0f;
 // pyranometers, 0.2 for fields and woods, includes the infrared, of which leaves reflect half.
 constexpr float kGroundAlbedo = 0.1f;
 
+// Mean linear light below which a picture is black: a third of the darkest code above black.
+constexpr float kBlack = 1e-4f;
+// Level irradiance over pi of the sky over a black picture: a white surface is half as bright as
+// the brightest sample.
+constexpr float kAssumedSky = 0.5f;
+
 struct Block {
   Rgb linear{};
   float brightness = 0;
@@ -53,7 +59,8 @@ float brightness(const Rgb& linear) {
 }
 
 int grid_step(const image::Picture& picture) {
-  return std::max(1, std::max(picture.width, picture.height) / kGrid);
+  const auto [shorter, longer] = std::minmax(picture.width, picture.height);
+  return std::clamp(longer / kGrid, 1, shorter);
 }
 
 // Calls visit(x, y) with the middle of each block.
@@ -314,7 +321,18 @@ Rgb ground_of(float albedo, double sun_elevation_deg, const Ambient& light) {
   return ground;
 }
 
+// Over a black picture: an overcast sky above a level ground.
+Ambient assumed(double sun_elevation_deg) {
+  Ambient ambient;
+  ambient.is_assumed = true;
+  ambient.cloud = {kAssumedSky, kAssumedSky, kAssumedSky};
+  for (std::size_t c = 0; c < 3; ++c) ambient.sun[c] = kVeiledSun * kAssumedSky * kSunColour[c];
+  ambient.ground = ground_of(kGroundAlbedo, sun_elevation_deg, ambient);
+  return ambient;
+}
+
 Ambient measure(const std::vector<Block>& blocks, const Skies& skies, double elevation_deg) {
+  if (brightness(mean(blocks, 0.5f, 1.01f)) < kBlack) return assumed(elevation_deg);
   const Seen seen = seen_in(blocks, skies);
   Ambient ambient;
   const float sky_weight = seen.blue.weight + seen.cloud.weight;
@@ -377,7 +395,7 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
   if (begins_shot) smooth_.reset();
   follow_exposure(colours);
   const Ambient now = measure(by_brightness(blocks), skies_, light_.sun_elevation_deg);
-  if (!smooth_) smooth_ = now;
+  if (!smooth_ || smooth_->is_assumed != now.is_assumed) smooth_ = now;
   blend(smooth_->sun, now.sun);
   blend(smooth_->blue, now.blue);
   blend(smooth_->cloud, now.cloud);

@@ -21,8 +21,9 @@
 // white balance does to an overcast sky. The brightness of the sky gives the exposure, because the
 // luminance of such a sky is known (sky.h). The exposure gives the sun: by day the ratios between
 // the sun, the blue sky and clouds depend on the sun's elevation alone. Where no ground is visible,
-// a level ground under the same light takes its place. Three quantities are measured: the exposure,
-// the clearness of the sky, and the share of cloud in it. A clipped sky makes all results too dark.
+// a level ground under the same light takes its place. Where the whole picture is black, the light
+// is that of an overcast sky. Three quantities are measured: the exposure, the clearness of the
+// sky, and the share of cloud in it. A clipped sky makes all results too dark.
 //
 // Blocks near the intruder have four times the weight. The result is smoothed over time. A jump of
 // the camera's exposure or white balance is followed at once; the jump is the median over the
@@ -40,6 +41,9 @@ struct Ambient {
   // Radiance of the background around the intruder, which haze approaches.
   std::array<float, 3> airlight{};
   shade::Environment surroundings;  // radiance of sky and ground by direction
+  // True where the picture is black: nothing could be measured, and what the scene does not state
+  // is the light of an overcast sky.
+  bool is_assumed = false;
 
   std::array<float, 3> sky() const {
     return {blue[0] + cloud[0], blue[1] + cloud[1], blue[2] + cloud[2]};

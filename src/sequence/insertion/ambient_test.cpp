@@ -71,6 +71,21 @@ TEST(Ambient, AClearSkysLightIsThatOfTheWholeSkyWhereverTheCameraLooks) {
     }
 }
 
+TEST(Ambient, ABlackPictureGetsTheLightOfAnOvercastSky) {
+  ClearSky black(40, 180, 30);
+  EXPECT_FALSE(black.seen().is_assumed);
+  for (std::size_t plane = 0; plane < 3; ++plane)
+    for (int y = 0; y < kSkySize; ++y)
+      std::fill_n(
+          black.picture.planes[plane].row(y), kSkySize, std::uint8_t(plane == 0 ? 16 : 128));
+  const Ambient light = black.seen();
+  EXPECT_TRUE(light.is_assumed);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_FLOAT_EQ(light.sky()[c], 0.5F);
+    EXPECT_FLOAT_EQ(light.airlight[c], 0);
+  }
+}
+
 TEST(Ambient, AGroundThatIsNotSeenGivesBackItsShareOfSunAndSky) {
   ClearSky sky(40, 180, 30);
   const Ambient usual = sky.seen();

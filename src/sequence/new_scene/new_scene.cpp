@@ -245,7 +245,6 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
       });
 }
 
-// Of a video with a log of its own, whose clock begins with the video, the whole.
 Part part_of(const fs::path& video,
              const video::StreamInfo& info,
              const lens::Lens& lens,
@@ -255,7 +254,7 @@ Part part_of(const fs::path& video,
   const auto wanted = static_cast<std::size_t>(std::max(1.0, kEncounterS * rate_hz));
   const double turn_rad = kSteadyShare * radians(lens.horizontal_fov_deg());
   const Stretch steady = steady_stretch(part.motion, turn_rad, wanted);
-  if (steady.first > 0 && !log_of(video)) {
+  if (steady.first > 0) {
     part.is_whole = false;
     part.first_frame = static_cast<std::int64_t>(steady.first);
     part.frames = static_cast<std::int64_t>(steady.frames);
@@ -282,7 +281,11 @@ std::string background_words(const fs::path& video,
   if (!part.is_whole)
     words += fmt::format(
         "first_frame = {:<25}# the camera turns away from where it looks; for these {:.1f} s it "
-        "does not\nframe_count = {}\n",
+        "does not\nframe_count = {}\n"
+        "# [motion]                             # to use the whole: this in place of the two "
+        "lines above\n"
+        "# reference = \"smoothed\"               # only the shake is taken from the video, and "
+        "the camera looks ahead\n",
         part.first_frame,
         duration_s,
         part.frames);
@@ -312,7 +315,9 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const lens::ImageSize size{info.width, info.height};
   const LensWords lens = lens_for(video, size, options);
   const Part part = part_of(video, info, lens.lens, options);
-  const CameraWords camera = camera_for(video, part.attitude, options);
+  CameraWords camera = camera_for(video, part.attitude, options);
+  camera.camera.clip_start_s = video::time_of_first_frame_s(
+      video, {.first_frame = part.first_frame, .picture_rate_hz = options.picture_rate_hz});
   const double rate_hz = info.frame_rate.value();
   const auto seconds_of = [&](std::int64_t frames) {
     return rate_hz > 0 ? static_cast<double>(std::max<std::int64_t>(1, frames) - 1) / rate_hz : 0;

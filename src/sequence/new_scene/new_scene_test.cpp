@@ -18,6 +18,7 @@
 #include "sequence/new_scene/first_encounter.h"
 #include "sequence/new_scene/lens_hint.h"
 #include "sequence/preview/preview.h"
+#include "sequence/setup/from_scene.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::new_scene {
@@ -103,6 +104,14 @@ TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
         return row.box_px.has_value();
       });
   EXPECT_GE(2 * seen, std::ssize(made.rows));
+
+  // A clip that begins 2 s into the video begins 2 s into the log.
+  scene::Scene later = scene;
+  later.background.first_frame = 60;
+  setup::take_clip_start(later);
+  EXPECT_NEAR(later.camera.clip_start_s, 2, 1e-9);
+  EXPECT_NEAR(
+      setup::camera_path(later.camera).end_s(), setup::camera_path(scene.camera).end_s() - 2, 1e-9);
 }
 
 std::string fault_of(const fs::path& video, const NewSceneOptions& options) {

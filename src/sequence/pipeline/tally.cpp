@@ -44,7 +44,13 @@ void warn_never_seen(const scene::Intruder& intruder,
                      const Warn& to_warn) {
   std::string text =
       to_string(intruder.where) + ": intruder '" + world.actors[i].id + "' is never visible";
-  if (const auto nearest = setup::nearest_approach(world, i, last_time_s)) {
+  const auto nearest = setup::nearest_approach(world, i, last_time_s);
+  if (nearest && nearest->off_view_deg <= 0) {
+    text += fmt::format(
+        "; it is in view at {:.2f} s, but changes no pixel there: something hides it, or it is as "
+        "bright as the picture behind it",
+        nearest->time_s);
+  } else if (nearest) {
     text += fmt::format(
         "; it comes nearest to the view's edge at {:.2f} s, {:.1f} degrees from it, at a range of "
         "{:.0f} m",
@@ -68,6 +74,12 @@ void warn_of_video(const Tally& tally,
                      video,
                      reader.corrupt_packets(),
                      tally.frames_damaged));
+  if (tally.frames_black > 0)
+    warn(to_warn,
+         fmt::format("{}: {} frames are black, and show no light; there the intruders have that of "
+                     "an overcast sky, or what [light] states",
+                     video,
+                     tally.frames_black));
   if (reader.ends_early())
     warn(to_warn, fmt::format("{}: ends early, after {} frames", video, tally.frames));
   if (background.frame_count && tally.frames < *background.frame_count)
@@ -107,6 +119,7 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
 void add_frame(Tally& tally,
                const video::Frame& frame,
                motion::State motion,
+               const insertion::Ambient& ambient,
                const annotation::Frame& truth) {
   ++tally.frames;
   tally.last_time_s = frame.time_s;
@@ -121,6 +134,7 @@ void add_frame(Tally& tally,
   tally.frames_bridged += motion::is_known(motion) ? 0 : 1;
   tally.frames_turned += motion == motion::State::kTurnedAway ? 1 : 0;
   tally.frames_damaged += frame.damaged ? 1 : 0;
+  tally.frames_black += ambient.is_assumed ? 1 : 0;
   if (frame.begins_shot) tally.cuts.push_back(frame.index);
 }
 

@@ -10,6 +10,7 @@
 #include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"
+#include "sequence/insertion/ambient.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/setup/world.h"
@@ -23,6 +24,7 @@ struct Tally {
   std::int64_t frames_bridged = 0;  // the camera's motion was not measured
   std::int64_t frames_turned = 0;   // of these: the camera has turned beyond a homography's reach
   std::int64_t frames_damaged = 0;  // the background's data was corrupt
+  std::int64_t frames_black = 0;    // the light of the intruders is assumed
   std::vector<std::int64_t> cuts;   // frames that begin a shot
   // Per intruder with a range: the first frame that shows it; empty: never visible.
   std::vector<std::optional<FirstSeen>> first_seen;
@@ -33,6 +35,7 @@ struct Tally {
 void add_frame(Tally& tally,
                const video::Frame& frame,
                motion::State motion,
+               const insertion::Ambient& ambient,
                const annotation::Frame& truth);
 
 // Warns of what a user should know about a finished run: corrupt or missing frames, bridged motion,

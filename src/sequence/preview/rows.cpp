@@ -82,10 +82,11 @@ std::vector<std::string> approach_lines(const setup::World& world,
     });
     if (!is_seen)
       if (const auto nearest = setup::nearest_approach(world, actor, duration_s))
-        line +=
-            fmt::format("; in view at no whole second, nearest at {:.2f} s, {:.1f} degrees outside",
-                        nearest->time_s,
-                        nearest->off_view_deg);
+        line += nearest->off_view_deg > 0
+                    ? fmt::format("; never in view, nearest at {:.2f} s, {:.1f} degrees outside",
+                                  nearest->time_s,
+                                  nearest->off_view_deg)
+                    : fmt::format("; in view at no whole second, but at {:.2f} s", nearest->time_s);
     lines.push_back(line);
   }
   return lines;

@@ -16,6 +16,7 @@
 #include "foundation/base/names.h"
 #include "picture/render/renderer.h"
 #include "picture/video/metadata.h"
+#include "picture/video/reader.h"
 #include "scene/flight_log/builder.h"
 #include "scene/flight_log/gpmf.h"
 #include "scene/flight_log/local_path.h"
@@ -60,6 +61,17 @@ trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {
   if (camera.log) return path_from_log(camera, warn);
   return trajectory::uniform(
       camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
+}
+
+double clip_start_s(const scene::Background& background) {
+  return video::time_of_first_frame_s(
+      background.video,
+      {.first_frame = background.first_frame, .picture_rate_hz = background.frame_rate_hz});
+}
+
+void take_clip_start(scene::Scene& scene) {
+  if (scene.camera.log && !scene.camera.log_offset_s)
+    scene.camera.clip_start_s = clip_start_s(scene.background);
 }
 
 namespace {
@@ -229,7 +241,7 @@ flight_log::FlightLog log_in_video(const std::filesystem::path& path) {
 
 double offset_of(const scene::Camera& camera, const flight_log::FlightLog& log) {
   if (camera.log_offset_s) return *camera.log_offset_s;
-  if (log.is_on_video_clock) return 0;
+  if (log.is_on_video_clock) return camera.clip_start_s;
   throw Error(fmt::format("the log ({}) has a clock of its own; expected log_offset_s, which "
                           "'airtruth log align' finds",
                           flight_log::name(log.format)),

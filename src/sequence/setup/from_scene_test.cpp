@@ -117,8 +117,6 @@ TEST_F(OwnLog, WhatDoesNotFitIsAnErrorAtTheScenesLine) {
   };
   EXPECT_THAT(parse_error("log_offset_s = 1\n", ""),
               testing::HasSubstr("log_offset_s is stated without a log"));
-  EXPECT_THAT(parse_error("log = \"a.srt\"\n", "first_frame = 120\n"),
-              testing::HasSubstr("first_frame is 120 and the log has no log_offset_s"));
   EXPECT_THAT(parse_error("log = \"a.srt\"\npath_file = \"a.csv\"\n", ""),
               testing::HasSubstr("path_file"));
 }

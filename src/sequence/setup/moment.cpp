@@ -136,6 +136,10 @@ std::optional<NearestApproach> nearest_approach(const World& world,
     const Rigid world_from_cam =
         camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
     const Vector3 p_in_cam = world_from_cam.inverse() * state->position_in_world;
+    const auto pixel = world.lens.pixel_from_cam(p_in_cam);
+    if (pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() <= size.width &&
+        pixel->y() <= size.height)
+      return NearestApproach{time_s, 0, p_in_cam.norm()};
     // The nearest pixel of the image to the direction, through a coarse walk along the image's
     // border.
     double off = kPi;

@@ -62,7 +62,7 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
 // is never visible.
 struct NearestApproach {
   double time_s = 0;
-  double off_view_deg = 0;  // angle from the nearest edge of the view
+  double off_view_deg = 0;  // angle from the nearest edge of the view; 0 within it
   double range_m = 0;
 };
 std::optional<NearestApproach> nearest_approach(const World& world,
