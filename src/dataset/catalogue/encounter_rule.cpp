@@ -360,9 +360,9 @@ bool has_second(const EncounterRule& rule, std::int64_t index) {
 const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k) {
   const pairing::Strata strata(
       Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
-  return rule
-      .types[static_cast<std::size_t>(strata.at(index % static_cast<std::uint64_t>(rule.count), 0) *
-                                      static_cast<double>(rule.types.size()))];
+  return rule.types[static_cast<std::size_t>(
+      strata.middle(index % static_cast<std::uint64_t>(rule.count), 0) *
+      static_cast<double>(rule.types.size()))];
 }
 
 // How long the reference point of an intruder is in the view, in all.

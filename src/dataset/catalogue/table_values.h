@@ -109,10 +109,16 @@ std::int64_t drawn(Random& random, const WholeRange& range);
 // For sizes and distances: each factor of them is equally frequent.
 double drawn_evenly_in_logarithm(Random& random, const Range& range);
 
+// Of the things in their order, the one at a share of them from 0 up to 1.
+template <typename T>
+const T& one_at(double share, const std::vector<T>& things) {
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(things.size()));
+  return things[std::min(at, things.size() - 1)];
+}
+
 template <typename T>
 const T& one_of(Random& random, const std::vector<T>& things) {
-  const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(things.size()));
-  return things[std::min(at, things.size() - 1)];
+  return one_at(random.uniform(), things);
 }
 
 }  // namespace airtruth::catalogue

@@ -70,7 +70,14 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       file.string(),
       with_camera_tables(
           {"name", "seed", "weight", "background", "lens", "camera", "motion", "light"},
-          {"realism", "intruder", "distractor", "truth", "render", "composite", "output"}));
+          {"weather",
+           "realism",
+           "intruder",
+           "distractor",
+           "truth",
+           "render",
+           "composite",
+           "output"}));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
@@ -83,6 +90,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.camera = camera_in(root, scene.motion, scene.background.first_frame);
   scene.light = light_in(root);
   scene.camera_model = camera_model_in(root);
+  scene.weather = weather_in(root);
   scene.realism = realism_in(root);
   scene.intruders = intruders_from(root);
   add_distractors(root, scene);
