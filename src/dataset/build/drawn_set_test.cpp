@@ -110,6 +110,35 @@ TEST_F(DrawnSet, NegativesAndRandomStartsAreWholeSequences) {
   EXPECT_THAT(verify(root_, deep).faults, testing::IsEmpty());
 }
 
+// What is said of a flight of 16 frames of 320x240, 1/16 of 1280x960, is the sum of
+// docs/scaling.md.
+TEST_F(DrawnSet, ThePlanAddsUpWhatScalingMdStates) {
+  const auto said = [&](const std::string& background, const std::string& rule) {
+    return plan_of(catalogue::parse_catalogue(
+                       text(background,
+                            "count = 3\nframe_count = 10\naircraft = [\"c172/news\"]\n" + rule),
+                       "c.toml"),
+                   {},
+                   {})
+        .core_s;
+  };
+  const double motion_s = 10 * (0.0025 + 0.005 / 16);
+  const double plain_s = 0.8 + 16 * 0.069 / 16 + motion_s + 3 * (0.3 + 10 * 0.034 / 16);
+  EXPECT_NEAR(said("", ""), plain_s, 1e-9);
+  const std::string flock = "[[distractor]]\nkind = \"bird\"\nflock = 7\n";
+  const double birds_s = 3 * 7 * (0.009 + 10 * (0.0002 + 0.005 / 16));
+  EXPECT_NEAR(said("", flock), plain_s + birds_s, 1e-9);
+  EXPECT_NEAR(said("optics = { point_spread_px = 1 }\n", flock),
+              plain_s + birds_s + 3 * 10 * (0.002 + 7 * 0.5 * (0.0002 + 0.005 / 16)),
+              1e-9);
+  // Each is measured by itself, after half of the way between two key frames.
+  EXPECT_NEAR(said("", "start = \"random\"\n"),
+              plain_s - motion_s + 3 * (10 * 0.0025 + 125 * 0.005 / 16),
+              1e-9);
+  EXPECT_NEAR(
+      said("realism = { auto = true }\n", ""), plain_s + 3 * 10 * 0.002 + 16 * 0.044 / 16, 1e-9);
+}
+
 // Two sequences over different parts of one clip share one camera, which is measured once.
 TEST_F(DrawnSet, ABackgroundIsCalibratedOnceForAllItsSequences) {
   const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
