@@ -165,6 +165,27 @@ TEST(Drawing, WeatherThatMakesNoSenseIsOneLine) {
   EXPECT_THAT(random_error(rule + "sun_share = 0.5\n"), HasSubstr("no error"));
 }
 
+// Each count has its limit, and so has what they come to together.
+TEST(Drawing, ACatalogueHasAtMostTenMillionSequences) {
+  const std::string aircraft = "aircraft = [\"c172/*\"]\n";
+  EXPECT_EQ(Expansion(with_random("count = 10000000\n" + aircraft)).size(), 10'000'000);
+  EXPECT_THAT(random_error("count = 10000001\n" + aircraft), HasSubstr("c.toml:"));
+  const Catalogue two =
+      with_random("count = 10000000\n" + aircraft + "[[random]]\nname = \"s{index}\"\n" + aircraft);
+  try {
+    const Expansion expansion(two);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("c.toml: makes more than 10000000 sequences"));
+  }
+  EXPECT_THAT(
+      random_error(aircraft + "[[distractor]]\nkind = \"bird\"\ncount = 4\nflock = [1, 200]\n"),
+      HasSubstr("no error"));
+  EXPECT_THAT(
+      random_error(aircraft + "[[distractor]]\nkind = \"bird\"\ncount = 5\nflock = [1, 200]\n"),
+      HasSubstr("to 1000 things at most, with those before it; expected up to 900"));
+}
+
 TEST(Drawing, NegativesAreTheShareThatWasAskedFor) {
   for (const double share : {0.2, 1.0 / 3, 0.0, 1.0}) {
     Catalogue catalogue = with_random("aircraft = [\"c172/*\"]\n");

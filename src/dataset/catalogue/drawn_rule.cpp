@@ -17,7 +17,6 @@ namespace {
 
 using scene::TableReader;
 
-constexpr std::int64_t kMaxIntruders = 100;          // in one sequence: chosen
 constexpr std::int64_t kMaxDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
 constexpr const char* kSuitsType = "type";
 
@@ -269,7 +268,7 @@ Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   Drawn drawn;
   drawn.where = table.where();
   drawn.name = index_pattern(table, "r{index}");
-  drawn.count = table.whole("count", 1, kMost).value_or(1);
+  drawn.count = table.whole("count", 1, kMostSequences).value_or(1);
   drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
   drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   drawn.types = types_in(table);

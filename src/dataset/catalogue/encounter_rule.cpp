@@ -133,7 +133,7 @@ EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   rule.where = table.where();
   rule.name = index_pattern(table, "e{index}");
   rule.seed = Seed(catalogue.seed).stream("encounters of " + rule.name)();
-  rule.count = table.whole("count", 1, kMost).value_or(1);
+  rule.count = table.whole("count", 1, kMostSequences).value_or(1);
   rule.frame_count = table.whole("frame_count", 1, kMaxFrames).value_or(rule.frame_count);
   rule.length_s = static_cast<int>(std::ceil(double(rule.frame_count) / kSlowestRateHz)) + 1;
   rule.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");

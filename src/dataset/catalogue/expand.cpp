@@ -172,6 +172,11 @@ Expansion::Expansion(const Catalogue& catalogue) : catalogue_(catalogue) {
   for (const Rule& rule : catalogue.rules) {
     first_.push_back(size_);
     size_ += size_of(rule);
+    if (size_ > kMostSequences)
+      throw Error(fmt::format("makes more than {} sequences; expected fewer: lower counts, or "
+                              "several catalogues",
+                              kMostSequences),
+                  {catalogue.file.string()});
   }
 }
 

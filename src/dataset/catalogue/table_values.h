@@ -17,8 +17,12 @@
 // What the tables of a catalogue have in common: names of other tables, and ranges to draw from.
 namespace airtruth::catalogue {
 
-// Upper bound for every count in a catalogue.
+// Upper bound for every number of a frame in a catalogue: the length of its video bounds the cost.
 constexpr std::int64_t kMost = 1'000'000'000;
+// Most sequences of a rule, and of a catalogue: 5 TB of records and previews. Chosen.
+constexpr std::int64_t kMostSequences = 10'000'000;
+// Most intruders of a sequence: chosen.
+constexpr std::int64_t kMaxIntruders = 100;
 
 // Returns the index of the thing with that name. Throws Error at `where` with the nearest spelling.
 template <typename Things>

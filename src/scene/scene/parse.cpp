@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/files.h"
+#include "scene/scene/flock.h"
 #include "scene/scene/parse_distractor.h"
 #include "scene/scene/parse_intruder.h"
 #include "scene/scene/scene.h"
@@ -93,6 +94,11 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.weather = weather_in(root);
   scene.realism = realism_in(root);
   scene.intruders = intruders_from(root);
+  if (scene.intruders.size() > kMaxThings)
+    throw Error(
+        fmt::format(
+            "has {} tables [[intruder]]; expected at most {}", scene.intruders.size(), kMaxThings),
+        scene.intruders[kMaxThings].where);
   add_distractors(root, scene);
   scene.truth = truth_in(root);
   scene.render = render_in(root);
