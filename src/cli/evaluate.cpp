@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "dataset/sequences/condition.h"
 #include "evaluation/detector_evaluation/assess.h"
 #include "evaluation/detector_evaluation/page.h"
 #include "evaluation/detector_evaluation/tables.h"
@@ -222,6 +223,7 @@ struct Evaluate {
   std::string out;
   std::vector<int> eao_range;
   std::string against;
+  std::vector<std::string> where;
   bool no_page = false;
   std::string figures;
   tracker_evaluation::AssessOptions options;
@@ -329,10 +331,13 @@ void set_options(Evaluate& arguments, Context& context) {
     options.eao_range = {arguments.eao_range[0], arguments.eao_range[1]};
   }
   options.with_film = !arguments.no_page;
+  for (const std::string& text : arguments.where)
+    options.where.push_back(sequences::condition_from(text));
   follow(options, context, "reading the videos", "sequences");
   detector_evaluation::AssessOptions& detections = arguments.detections.options;
   detections.ignore = arguments.detections.ignore;
   detections.with_film = options.with_film;
+  detections.where = options.where;
   detections.jobs = options.jobs;
   detections.warn = options.warn;
   detections.stop = options.stop;
@@ -417,6 +422,12 @@ void add_measure_options(CLI::App* command, Evaluate& arguments) {
                    "by the data set's own lengths)")
       ->expected(2)
       ->check(CLI::Range(1, 1'000'000));
+  command
+      ->add_option("--where",
+                   arguments.where,
+                   "KEY=LOW..HIGH: only sequences whose visibility_m, exposure, white_balance, "
+                   "blur, noise or sun_share is within (docs/formats/scene.md)")
+      ->allow_extra_args(false);
   command->add_flag("--speed-until-loss",
                     arguments.options.until_loss,
                     "Frames per second without the frames from the first loss on, where some "

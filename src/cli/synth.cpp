@@ -28,6 +28,21 @@ struct SynthArguments {
   synthetic::FlightOptions flight;
 };
 
+constexpr int kMaxFrames = 1'000'000;
+
+int frames_of(const SynthArguments& arguments) {
+  const double frames = arguments.duration_s * arguments.flight.frame_rate_hz + 0.5;
+  if (frames > kMaxFrames)
+    throw Error(
+        fmt::format("--duration is {:g} s, {:.0f} frames at {:g} a second; expected at most "
+                    "{} frames",
+                    arguments.duration_s,
+                    frames,
+                    arguments.flight.frame_rate_hz,
+                    kMaxFrames));
+  return std::max(1, static_cast<int>(frames));
+}
+
 void synth(SynthArguments arguments, Context& context) {
   RunFiles files;
   files.reads(arguments.lens_file);
@@ -35,9 +50,7 @@ void synth(SynthArguments arguments, Context& context) {
     files.writes(file, arguments.overwrite);
   video::check_still_output(arguments.mask, arguments.overwrite);
   synthetic::FlightOptions& options = arguments.flight;
-  if (arguments.duration_s > 0)
-    options.frame_count =
-        std::max(1, static_cast<int>(arguments.duration_s * options.frame_rate_hz + 0.5));
+  if (arguments.duration_s > 0) options.frame_count = frames_of(arguments);
   options.own_aircraft = !arguments.no_own_aircraft;
   options.translate = !arguments.rotate_only;
   if (!arguments.lens_file.empty())
@@ -81,10 +94,10 @@ void add_camera_options(CLI::App& command, SynthArguments& arguments) {
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   command.add_option("--frames", flight.frame_count, "Number of frames")
-      ->check(CLI::Range(1, 1000000))
+      ->check(CLI::Range(1, kMaxFrames))
       ->capture_default_str();
   command.add_option("--duration", arguments.duration_s, "Seconds, in place of --frames")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 1e6));
   command.add_option("--fov", flight.vertical_fov_deg, "Pinhole: vertical view in degrees")
       ->check(CLI::Range(1.0, 150.0))
       ->capture_default_str();

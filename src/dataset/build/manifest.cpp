@@ -26,6 +26,7 @@ Json manifest_line(const catalogue::Folder& folder, const catalogue::Item& item)
       {"folder", fs::relative(folder.sequence(item), folder.root).string()},
       {"frames", summary.count("frames")},
       {"frames_with_an_intruder_visible", summary.count("frames_with_an_intruder_visible")}};
+  if (record.has("weather")) line["weather"] = record.value("weather");
   line["weight"] = or_null(record.maybe_number("weight"));
   line["outputs"] = record.value("outputs");
   return line;

@@ -8,6 +8,7 @@
 #include "dataset/build/backgrounds.h"
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/error.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
@@ -16,14 +17,39 @@
 namespace airtruth::build {
 namespace {
 
-// Cost of a frame of 1280x960 (docs/scaling.md); the cost of other sizes is proportional to their
-// pixels.
-constexpr double kCoreSecondsPerFrame = 0.034;
-constexpr double kCoreSecondsPerFlownFrame = 0.069;
-constexpr double kCoreSecondsPerCalibratedFrame = 0.044;
+// What a set costs, in seconds of a core where nothing else is said; docs/scaling.md has where each
+// number was measured.
+struct Costs {
+  // Each is of a frame of 1280x960, and proportional to the pixels of others.
+  double frame = 0.034;       // one intruder, motion known
+  double flown = 0.069;       // of a virtual flight
+  double calibrated = 0.044;  // of a background whose camera is measured
+  double decoded = 0.005;     // that is only decoded
+  // Of each thing in the air or on the lens after the first, in a frame.
+  double thing_in_picture = 0.005;
+
+  // These do not depend on the size.
+  double start = 0.8;     // of the program
+  double sequence = 0.3;  // begun and ended
+  double thing = 0.009;   // a bird or another thing made
+  double thing_in_frame = 0.0002;
+  double motion = 0.0025;  // of a frame whose motion is measured
+  // What a camera and the air do to the intruder in a frame, and the factor by which they make the
+  // other things dearer.
+  double camera_model = 0.002;
+  double things_in_camera_model = 1.5;
+  // Frames that are decoded before a clip that does not begin with its video: half of the distance
+  // of key frames that x264 has by default.
+  double sought_frames = 125;
+};
+constexpr Costs kCosts;
 constexpr double kBytesPerFrame = 15'000;
 constexpr double kBytesPerSequence = 580'000;  // preview.jpg
 constexpr double kUsualPixels = 1280.0 * 960.0;
+
+bool has_camera_model(const scene::Scene& scene) {
+  return scene.realism.automatic || scene.realism.file || scene::states_any_key(scene.camera_model);
+}
 
 class Planner {
  public:
@@ -40,7 +66,8 @@ class Planner {
     ++plan_.sequences;
     plan_.frames += frames;
     plan_.open_ended += frames == 0 ? 1 : 0;
-    plan_.core_s += static_cast<double>(frames) * facts.size * kCoreSecondsPerFrame;
+    plan_.core_s += cost_of(item, frames, facts.size);
+    count_motion(item, frames);
     plan_.bytes +=
         static_cast<double>(frames) * facts.size * kBytesPerFrame + kBytesPerSequence * facts.size;
     count_things(item.scene);
@@ -52,9 +79,50 @@ class Planner {
     fly(item, frames > 0 ? static_cast<double>(frames - 1) / rate_hz : 1e9);
   }
 
-  Plan result() { return std::move(plan_); }
+  Plan result() {
+    plan_.core_s += plan_.sequences > 0 ? kCosts.start : 0;
+    // The motion of a background is measured once for all its sequences that begin with it.
+    for (std::size_t i = 0; i < facts_.size(); ++i)
+      if (facts_[i])
+        plan_.core_s += static_cast<double>(facts_[i]->moved_frames) *
+                        (kCosts.motion + facts_[i]->size * kCosts.decoded);
+    return std::move(plan_);
+  }
 
  private:
+  static bool has_random_start(const catalogue::Item& item) {
+    return item.rule != nullptr && item.rule->start == catalogue::ClipStart::kRandom;
+  }
+
+  // Of a sequence by itself.
+  double cost_of(const catalogue::Item& item, std::int64_t frames, double size) const {
+    const scene::Scene& scene = item.scene;
+    const auto distractors = static_cast<double>(
+        scene.lens_marks.size() +
+        static_cast<std::size_t>(std::count_if(scene.intruders.begin(),
+                                               scene.intruders.end(),
+                                               [](const auto& one) { return !is_aircraft(one); })));
+    const auto others = static_cast<double>(
+        std::max<std::size_t>(1, scene.intruders.size() + scene.lens_marks.size()) - 1);
+    const bool has_camera = has_camera_model(scene);
+    const double other = (kCosts.thing_in_frame + size * kCosts.thing_in_picture) *
+                         (has_camera ? kCosts.things_in_camera_model : 1);
+    double per_frame =
+        size * kCosts.frame + others * other + (has_camera ? kCosts.camera_model : 0);
+    double cost = kCosts.sequence + distractors * kCosts.thing;
+    if (has_random_start(item) && scene.motion.model != scene::MotionModel::kNone)
+      per_frame += kCosts.motion;
+    if (has_random_start(item) || catalogue_.backgrounds[item.background].first_frame > 0)
+      cost += kCosts.sought_frames * size * kCosts.decoded;
+    return cost + static_cast<double>(frames) * per_frame;
+  }
+
+  void count_motion(const catalogue::Item& item, std::int64_t frames) {
+    if (has_random_start(item) || item.scene.motion.model == scene::MotionModel::kNone) return;
+    std::int64_t& moved = facts_[item.background]->moved_frames;
+    moved = std::max(moved, frames);
+  }
+
   void count_things(const scene::Scene& scene) {
     std::int64_t aircraft = 0;
     for (const scene::Intruder& intruder : scene.intruders) {
@@ -78,6 +146,7 @@ class Planner {
     double size = 1;
     int width = 0;
     int height = 0;
+    std::int64_t moved_frames = 0;  // whose motion is measured for all sequences
   };
 
   // Facts of a background in use; the first call also counts the cost of the background itself.
@@ -92,10 +161,10 @@ class Planner {
                                            info.height});
     const double whole = static_cast<double>(facts.frames) * facts.size;
     if (std::holds_alternative<synthetic::FlightOptions>(background.source))
-      plan_.core_s += whole * kCoreSecondsPerFlownFrame;
+      plan_.core_s += whole * kCosts.flown;
     if (pipeline::needs_calibration(catalogue::scene_over(catalogue_, i))) {
-      plan_.calibration_s += whole * kCoreSecondsPerCalibratedFrame;
-      plan_.core_s += whole * kCoreSecondsPerCalibratedFrame;
+      plan_.calibration_s += whole * kCosts.calibrated;
+      plan_.core_s += whole * kCosts.calibrated;
     }
     return facts;
   }

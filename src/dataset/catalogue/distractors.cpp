@@ -127,6 +127,7 @@ std::vector<DistractorRule> distractor_rules(const TableReader& root) {
   for (const TableReader::Keys* more : {&kAirKeys, &kBirdKeys, &kLensKeys})
     keys.insert(keys.end(), more->begin(), more->end());
   std::vector<DistractorRule> rules;
+  std::int64_t most = 0;
   for (const TableReader& table : root.tables("distractor", keys)) {
     const auto kind = table.choice<DistractorKind>("kind");
     if (!kind)
@@ -141,6 +142,15 @@ std::vector<DistractorRule> distractor_rules(const TableReader& root) {
       read_lens(table, rule);
     else
       read_air(table, rule);
+    // A scene holds them beside the intruders.
+    constexpr auto kMostThings = static_cast<std::int64_t>(scene::kMaxThings) - kMaxIntruders;
+    most += rule.count.high * (scene::is_on_lens(*kind) ? 1 : rule.flock.high);
+    if (most > kMostThings)
+      throw Error(fmt::format("[[distractor]] takes a sequence to {} things at most, with those "
+                              "before it; expected up to {}: a lower count or flock",
+                              most,
+                              kMostThings),
+                  rule.where);
     rules.push_back(std::move(rule));
   }
   return rules;

@@ -19,14 +19,71 @@ constexpr Range kAnyHours{8, 17};
 constexpr double kAnyBankDeg = 30;
 constexpr double kUsualClimbDeg = 5;
 
-// One number selects a type and then its livery: its integer part and its fraction.
-const std::string& drawn_aircraft(Random& random, const std::vector<AircraftType>& types) {
+// The number of sequences before `index` that is_chosen() chooses.
+std::int64_t chosen_before(const std::string& what,
+                           double share,
+                           std::uint64_t seed,
+                           std::int64_t index) {
+  Random random = Seed(seed).stream(what);
+  return static_cast<std::int64_t>(
+      std::floor(static_cast<double>(index) * share + random.uniform()));
+}
+
+// The place of a sequence among those of its rule that are like it: with an intruder, or without.
+struct Turn {
+  std::uint64_t place = 0;
+  std::uint64_t of = 1;
+  bool is_negative = false;
+
+  // The strata of a quantity, of which each place has `each`.
+  pairing::Strata strata(const Seed& seed, const std::string& what, std::uint64_t each = 1) const {
+    return {seed.stream(what + (is_negative ? " without an intruder" : ""))(), of * each, 1};
+  }
+};
+
+Turn turn_of(const Drawn& rule, std::uint64_t seed, std::int64_t index) {
+  const std::string what = "negatives of " + rule.name;
+  const std::int64_t place = index % rule.count;
+  const std::int64_t before = chosen_before(what, rule.negatives, seed, place);
+  const std::int64_t negatives = chosen_before(what, rule.negatives, seed, rule.count);
+  const bool is_negative = chosen_before(what, rule.negatives, seed, place + 1) > before;
+  return {static_cast<std::uint64_t>(is_negative ? before : place - before),
+          static_cast<std::uint64_t>(is_negative ? negatives : rule.count - negatives),
+          is_negative};
+}
+
+// The types take turns; the fraction of one number selects the livery.
+const std::string& drawn_aircraft(Random& random,
+                                  double share_of_types,
+                                  const std::vector<AircraftType>& types) {
   const double at = random.uniform() * static_cast<double>(types.size());
-  const std::size_t type = std::min(types.size() - 1, static_cast<std::size_t>(at));
-  const auto& liveries = types[type].liveries;
-  const double rest = at - static_cast<double>(type);
-  return liveries[std::min(liveries.size() - 1,
-                           static_cast<std::size_t>(rest * static_cast<double>(liveries.size())))];
+  return one_at(at - std::floor(at), one_at(share_of_types, types).liveries);
+}
+
+// Factors and distances are even in their logarithm, but for those that may be 0.
+bool is_even_in_logarithm(const scene::WeatherKey& key) { return key.limits.low > 0; }
+
+// strata_of(key) are those of the sequence's turn, whose place is `place`.
+void draw_weather(const DrawnWeather& weather,
+                  std::uint64_t place,
+                  const auto& strata_of,
+                  DrawnSequence& result) {
+  const auto share = [&](const DrawnNumber& number, const char* key) {
+    const pairing::Strata strata = strata_of(key);
+    return number.any_of.empty() ? strata.at(place, 0) : strata.middle(place, 0);
+  };
+  if (weather.visibility_m)
+    result.visibility_m =
+        weather.visibility_m->at_in_logarithm(share(*weather.visibility_m, scene::kVisibilityKey));
+  for (std::size_t i = 0; i < weather.factors.size(); ++i) {
+    const scene::WeatherKey& key = scene::kWeatherKeys[i];
+    const auto& factor = weather.factors[i];
+    if (!factor) continue;
+    const double at = share(*factor, key.name);
+    result.weather.*key.member =
+        is_even_in_logarithm(key) ? factor->at_in_logarithm(at) : factor->at(at);
+  }
+  result.weather.where = weather.where;
 }
 
 Range speed_range(const Drawn& rule, const fleet::FlightLimits* limits) {
@@ -59,6 +116,8 @@ double drawn_bank_deg(Random random, const Drawn& rule, const fleet::FlightLimit
 struct Streams {
   Random bank;
   Random path;
+  // Of types[share * n].
+  double share_of_types = 0;
 };
 
 // A path by its closest approach or by what is seen; false where the rule has neither.
@@ -73,7 +132,7 @@ bool draw_stated_path(const Drawn& rule, Random of_path, Encounter& encounter) {
 
 Encounter drawn_encounter(Random& random, const Streams& streams, const Drawn& rule) {
   Encounter encounter;
-  encounter.aircraft = drawn_aircraft(random, rule.types);
+  encounter.aircraft = drawn_aircraft(random, streams.share_of_types, rule.types);
   const fleet::FlightLimits* limits = fleet::flight_limits(encounter.aircraft);
   encounter.speed_mps = drawn(random, speed_range(rule, limits));
   encounter.meeting_share = random.uniform(0.2, 0.8);
@@ -119,7 +178,7 @@ std::size_t stratified_background(const std::vector<std::size_t>& among,
       Seed(seed).stream("background")(), static_cast<std::uint64_t>(count), 1);
   double sum = 0;
   for (const std::size_t place : among) sum += backgrounds[place].weight;
-  double left = sum * strata.at(static_cast<std::uint64_t>(index % count), 0);
+  double left = sum * strata.middle(static_cast<std::uint64_t>(index % count), 0);
   for (const std::size_t place : among) {
     left -= backgrounds[place].weight;
     if (left < 0) return place;
@@ -139,8 +198,14 @@ DrawnSequence draw(const Drawn& rule,
   one_of(random, rule.backgrounds);  // so that all else is drawn as it was
   result.background = stratified_background(
       rule.backgrounds, backgrounds, seed.stream("of " + rule.name)(), rule.count, index);
-  result.encounters.push_back(
-      drawn_encounter(random, {stream("bank of sequence "), stream("path of sequence ")}, rule));
+  const Turn turn = turn_of(rule, seed_value, index);
+  const auto each = static_cast<std::uint64_t>(rule.intruders.high);
+  const pairing::Strata types = turn.strata(seed, "types of " + rule.name, each);
+  const auto share_of_types = [&](std::int64_t k) {
+    return types.middle(turn.place * each + static_cast<std::uint64_t>(k), 0);
+  };
+  result.encounters.push_back(drawn_encounter(
+      random, {stream("bank of sequence "), stream("path of sequence "), share_of_types(0)}, rule));
   if (rule.sun_azimuth_deg) result.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);
   if (rule.sun_elevation_deg) result.sun_elevation_deg = drawn(random, *rule.sun_elevation_deg);
   Random of_count = stream("intruders of sequence ");
@@ -148,8 +213,11 @@ DrawnSequence draw(const Drawn& rule,
   for (std::int64_t k = 1; k < count; ++k) {
     const std::string which = std::to_string(k + 1) + " of sequence ";
     Random other = stream("intruder " + which);
-    result.encounters.push_back(drawn_encounter(
-        other, {stream("bank of intruder " + which), stream("path of intruder " + which)}, rule));
+    result.encounters.push_back(drawn_encounter(other,
+                                                {stream("bank of intruder " + which),
+                                                 stream("path of intruder " + which),
+                                                 share_of_types(k)},
+                                                rule));
   }
   if (rule.daytime) {
     const SunPosition sun =
@@ -159,6 +227,12 @@ DrawnSequence draw(const Drawn& rule,
   }
   Random of_start = stream("start of sequence ");
   result.start_share = of_start.uniform();
+  if (rule.weather)
+    draw_weather(
+        *rule.weather,
+        turn.place,
+        [&](const char* key) { return turn.strata(seed, std::string(key) + " of " + rule.name); },
+        result);
   if (is_chosen("negatives of " + rule.name, rule.negatives, seed_value, index))
     result.encounters.clear();
   return result;
@@ -166,9 +240,7 @@ DrawnSequence draw(const Drawn& rule,
 
 // Selects every 1/share-th sequence; the seed draws the offset.
 bool is_chosen(const std::string& what, double share, std::uint64_t seed, std::int64_t index) {
-  Random random = Seed(seed).stream(what);
-  const double before = static_cast<double>(index) * share + random.uniform();
-  return std::floor(before + share) > std::floor(before);
+  return chosen_before(what, share, seed, index + 1) > chosen_before(what, share, seed, index);
 }
 
 namespace {

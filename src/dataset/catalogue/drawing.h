@@ -43,14 +43,18 @@ struct DrawnSequence {
   std::size_t background = 0;
   std::vector<Encounter> encounters;  // empty: a sequence without an intruder
   std::optional<double> sun_azimuth_deg, sun_elevation_deg;
+  std::optional<double> visibility_m;
+  scene::Weather weather;
   // The beginning of the clip, as a share of the positions that its background offers.
   double start_share = 0;
 };
 
 // Draws sequence `index` of a rule; the result depends on rule, backgrounds, seed and index alone.
-// Types are equally frequent, and so are the liveries of each type. Among any n consecutive
-// sequences the number without an intruder is within one of n times the share `negatives`. Sizes
-// and ranges have a uniform logarithm.
+// Types come equally often, within one in the whole rule where each sequence has as many intruders;
+// the liveries of each type are equally frequent. Among any n consecutive sequences the number
+// without an intruder is within one of n times the share `negatives`. Sizes and ranges have a
+// uniform logarithm. Each number of the weather is stratified by itself, over the sequences with an
+// intruder and over those without: of n, each n-th of its range holds one.
 DrawnSequence draw(const Drawn& rule,
                    const std::vector<Background>& backgrounds,
                    std::uint64_t seed,

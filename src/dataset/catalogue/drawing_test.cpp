@@ -13,6 +13,7 @@
 #include "dataset/build/plan.h"
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
@@ -44,9 +45,7 @@ const Drawn& rule_of(const Catalogue& catalogue) {
 
 constexpr std::int64_t kMany = 4000;
 
-// 80 liveries of one type and 12 of another: each type is half of what is drawn. A binomial count
-// of n = 4000 and p = 1/2 has a standard deviation of 31.6; it is beyond four of them once in
-// 16,000.
+// 80 liveries of one type and 12 of another: each type is half of what is drawn.
 TEST(Drawing, TypesComeOutEvenAndSoDoTheirLiveries) {
   const Catalogue catalogue = with_random("count = 4000\naircraft = [\"738/*\", \"c172/*\"]\n");
   const Drawn& rule = rule_of(catalogue);
@@ -59,12 +58,132 @@ TEST(Drawing, TypesComeOutEvenAndSoDoTheirLiveries) {
     ++liveries[name];
     c172 += name.starts_with("c172/") ? 1 : 0;
   }
-  EXPECT_NEAR(c172, kMany / 2, 4 * std::sqrt(kMany * 0.25));
+  EXPECT_EQ(c172, kMany / 2);
   for (const AircraftType& type : rule.types) {
     const double share = 0.5 / static_cast<double>(type.liveries.size());
     for (const std::string& livery : type.liveries)
       EXPECT_NEAR(liveries[livery], kMany * share, 5 * std::sqrt(kMany * share)) << livery;
   }
+}
+
+// Of the sequences that have an intruder each type has its n-th part, within one.
+TEST(Drawing, TypesTakeTurns) {
+  for (const std::string keys :
+       {"count = 8\n", "count = 31\nnegatives = 0.4\n", "count = 10\nintruders = 3\n"}) {
+    const Catalogue catalogue =
+        with_random(keys + "aircraft = [\"738/*\", \"c172/*\", \"Cub/*\"]\n");
+    const Drawn& rule = rule_of(catalogue);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      std::map<std::string, int> types;
+      int all = 0;
+      for (std::int64_t i = 0; i < rule.count; ++i)
+        for (const Encounter& one : draw(rule, catalogue.backgrounds, seed, i).encounters) {
+          ++types[one.aircraft.substr(0, one.aircraft.find('/'))];
+          ++all;
+        }
+      EXPECT_EQ(types.size(), 3u);
+      for (const auto& [type, count] : types) {
+        EXPECT_GE(count, all / 3) << keys << type;
+        EXPECT_LE(count, (all + 2) / 3) << keys << type;
+      }
+    }
+  }
+}
+
+Catalogue with_weather(const std::string& keys) {
+  std::string text = test_support::kCatalogue;
+  text.resize(text.find("[[aircraft]]"));
+  const std::string lens = "lens = { vertical_fov_deg = 75 }\n";
+  for (std::size_t at = text.find(lens); at != std::string::npos; at = text.find(lens, at + 200))
+    text.insert(at,
+                "optics = { point_spread_px = 0.8 }\nair = { extinction_per_km = \"auto\" }\n"
+                "sensor = { noise_floor = 1e-5 }\n");
+  return parse_catalogue(text + "[[random]]\naircraft = [\"c172/*\"]\n" + keys, "c.toml");
+}
+
+// Of n sequences each n-th of a range holds one: McKay's Latin hypercube. What cannot be 0 is cut
+// in its logarithm. So it is of the sequences with an intruder, and of those without.
+TEST(Drawing, WeatherIsStratified) {
+  const Catalogue catalogue = with_weather(
+      "count = 60\nnegatives = 0.25\n[random.weather]\nvisibility_m = [2000, 32000]\n"
+      "exposure = [0.5, 2]\nwhite_balance = [0.8, 1.25]\nblur = [0, 3]\nnoise = [0.5, 2.5]\n"
+      "sun_share = { any_of = [0, 0.5, 1] }\n");
+  std::map<std::string, std::map<int, int>> strata;
+  std::map<double, int> suns;
+  for (std::int64_t i = 0; i < 60; ++i) {
+    const Item item = Expansion(catalogue).at(i);
+    const bool is_negative = item.scene.intruders.empty();
+    const double n = is_negative ? 15 : 45;
+    const scene::Weather& weather = item.scene.weather;
+    const auto count = [&](const std::string& key, double share) {
+      ++strata[key + (is_negative ? "-" : "+")][static_cast<int>(std::floor(share * n + 1e-9))];
+    };
+    const auto& air = *item.scene.camera_model.extinction_per_km;
+    EXPECT_EQ(air[0], air[2]);
+    // At Koschmieder's visibility the contrast has fallen to 2 %.
+    const double visibility_m = scene::weather_facts(item.scene).at("visibility_m");
+    EXPECT_NEAR(std::exp(-air[1] * visibility_m / 1000), 0.02, 1e-12);
+    EXPECT_TRUE(item.scene.camera_model.automatic.empty());
+    count("visibility", std::log(visibility_m / 2000) / std::log(16));
+    count("exposure", std::log(*weather.exposure / 0.5) / std::log(4));
+    count("white", std::log(*weather.white_balance / 0.8) / std::log(1.25 / 0.8));
+    count("blur", *weather.blur / 3);
+    count("noise", (*weather.noise - 0.5) / 2);
+    if (!is_negative) ++suns[*weather.sun_share];
+  }
+  EXPECT_EQ(strata.size(), 10u);
+  for (const auto& [key, counts] : strata) {
+    EXPECT_EQ(counts.size(), key.back() == '-' ? 15u : 45u) << key;
+    for (const auto& [stratum, number] : counts) EXPECT_EQ(number, 1) << key << stratum;
+  }
+  EXPECT_EQ(suns, (std::map<double, int>{{0, 15}, {0.5, 15}, {1, 15}}));
+}
+
+TEST(Drawing, WeatherLeavesAllElseAsItWas) {
+  const auto drawn = [](const std::string& keys) {
+    const Catalogue catalogue = with_weather("count = 4\n" + keys);
+    return draw(rule_of(catalogue), catalogue.backgrounds, 1, 2);
+  };
+  const DrawnSequence without = drawn("");
+  const DrawnSequence with = drawn("[random.weather]\nnoise = [1, 2]\n");
+  EXPECT_FALSE(without.weather.noise);
+  EXPECT_TRUE(with.weather.noise);
+  EXPECT_EQ(with.encounters[0].aircraft, without.encounters[0].aircraft);
+  EXPECT_EQ(with.encounters[0].range_m, without.encounters[0].range_m);
+  EXPECT_EQ(with.background, without.background);
+}
+
+TEST(Drawing, WeatherThatMakesNoSenseIsOneLine) {
+  const std::string rule = "aircraft = [\"c172/*\"]\n[random.weather]\n";
+  EXPECT_THAT(random_error(rule + "blur = [1, 2]\n"),
+              HasSubstr("blur is a factor on optics.point_spread_px, which background 'sky' has "
+                        "not"));
+  EXPECT_THAT(random_error(rule + "noise = [1, 2]\n"), HasSubstr("sensor.noise_gain"));
+  EXPECT_THAT(random_error(rule + "noise = [1, 20]\n"), HasSubstr("a factor from 0 to 10"));
+  EXPECT_THAT(random_error(rule + "exposure = [2, 1]\n"), HasSubstr("falls"));
+  EXPECT_THAT(random_error(rule + "visibility = [2, 3]\n"), HasSubstr("visibility_m"));
+  EXPECT_THAT(random_error(rule + "sun_share = 0.5\n"), HasSubstr("no error"));
+}
+
+// Each count has its limit, and so has what they come to together.
+TEST(Drawing, ACatalogueHasAtMostTenMillionSequences) {
+  const std::string aircraft = "aircraft = [\"c172/*\"]\n";
+  EXPECT_EQ(Expansion(with_random("count = 10000000\n" + aircraft)).size(), 10'000'000);
+  EXPECT_THAT(random_error("count = 10000001\n" + aircraft), HasSubstr("c.toml:"));
+  const Catalogue two =
+      with_random("count = 10000000\n" + aircraft + "[[random]]\nname = \"s{index}\"\n" + aircraft);
+  try {
+    const Expansion expansion(two);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("c.toml: makes more than 10000000 sequences"));
+  }
+  EXPECT_THAT(
+      random_error(aircraft + "[[distractor]]\nkind = \"bird\"\ncount = 4\nflock = [1, 200]\n"),
+      HasSubstr("no error"));
+  EXPECT_THAT(
+      random_error(aircraft + "[[distractor]]\nkind = \"bird\"\ncount = 5\nflock = [1, 200]\n"),
+      HasSubstr("to 1000 things at most, with those before it; expected up to 900"));
 }
 
 TEST(Drawing, NegativesAreTheShareThatWasAskedFor) {

@@ -17,7 +17,6 @@ namespace {
 
 using scene::TableReader;
 
-constexpr std::int64_t kMaxIntruders = 100;          // in one sequence: chosen
 constexpr std::int64_t kMaxDrawnFrames = 1'000'000;  // 9 h at 30 frames/s
 constexpr const char* kSuitsType = "type";
 
@@ -218,17 +217,65 @@ void read_paths(const TableReader& table, Drawn& drawn) {
   drawn.bank_suits_type = table.has("bank_deg") && !drawn.bank_deg;
 }
 
+// True where the scenes of a background may have a value of that camera key.
+bool may_have(const Background& background, std::initializer_list<const char*> names) {
+  const scene::CameraModel& model = background.camera_model;
+  return background.realism.automatic || background.realism.file ||
+         std::any_of(names.begin(), names.end(), [&](const char* name) {
+           const auto* number =
+               std::get_if<scene::CameraKey::Number>(&scene::camera_key(name)->member);
+           return (model.*(*number)).has_value() ||
+                  std::find(model.automatic.begin(), model.automatic.end(), name) !=
+                      model.automatic.end();
+         });
+}
+
+// A factor needs something to multiply on every background.
+void expect_value(const TableReader& table,
+                  const char* key,
+                  std::initializer_list<const char*> names,
+                  const Drawn& drawn,
+                  const Catalogue& catalogue) {
+  if (!table.has(key)) return;
+  for (const std::size_t i : drawn.backgrounds)
+    if (!may_have(catalogue.backgrounds[i], names))
+      table.fail(key,
+                 fmt::format("{} is a factor on {}, which background '{}' has not; expected a "
+                             "number or \"auto\" there, or realism",
+                             key,
+                             *names.begin(),
+                             catalogue.backgrounds[i].name));
+}
+
+void read_weather(const TableReader& rule, const Catalogue& catalogue, Drawn& drawn) {
+  if (!rule.has("weather")) return;
+  const std::vector<std::string> names = scene::weather_names();
+  const TableReader table = rule.table("weather", {names.begin(), names.end()});
+  if (catalogue.composite.method == scene::CompositeMethod::kChromaKey)
+    throw Error("[random.weather] is not for composite.method chroma-key; expected \"matte\"",
+                table.where());
+  DrawnWeather& weather = drawn.weather.emplace();
+  weather.where = table.where();
+  weather.visibility_m = number_in(table, scene::kVisibilityKey, scene::kVisibility);
+  for (std::size_t i = 0; i < scene::kWeatherKeys.size(); ++i)
+    weather.factors[i] =
+        number_in(table, scene::kWeatherKeys[i].name, scene::kWeatherKeys[i].limits);
+  expect_value(table, "blur", {"optics.point_spread_px"}, drawn, catalogue);
+  expect_value(table, "noise", {"sensor.noise_gain", "sensor.noise_floor"}, drawn, catalogue);
+}
+
 Drawn drawn_from(const TableReader& table, const Catalogue& catalogue) {
   Drawn drawn;
   drawn.where = table.where();
   drawn.name = index_pattern(table, "r{index}");
-  drawn.count = table.whole("count", 1, kMost).value_or(1);
+  drawn.count = table.whole("count", 1, kMostSequences).value_or(1);
   drawn.frame_count = table.whole("frame_count", 1, kMaxDrawnFrames).value_or(drawn.frame_count);
   drawn.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   drawn.types = types_in(table);
   read_paths(table, drawn);
   read_intruders(table, catalogue.negatives, drawn);
   read_start(table, catalogue, drawn);
+  read_weather(table, catalogue, drawn);
   drawn.daytime = daytime_from(table);
   drawn.sun_azimuth_deg = maybe_range(table, "sun_azimuth_deg", scene::kTurn);
   drawn.sun_elevation_deg = maybe_range(table, "sun_elevation_deg", scene::kPitch);
@@ -280,7 +327,7 @@ std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalog
             "range_m",       "size_px",      "azimuth_deg", "elevation_deg",   "speed_mps",
             "heading_deg",   "climb_deg",    "bank_deg",    "sun_azimuth_deg", "sun_elevation_deg",
             "time_of_day_h", "latitude_deg", "day_of_year", "negatives",       "intruders",
-            "start",         "encounter",    "seen"}))
+            "start",         "encounter",    "seen",        "weather"}))
     result.push_back(drawn_from(table, catalogue));
   return result;
 }
@@ -298,7 +345,15 @@ double DrawnNumber::draw(Random& random) const {
 }
 
 double DrawnNumber::draw_in_logarithm(Random& random) const {
-  return any_of.empty() ? low * std::pow(high / low, random.uniform()) : one_of(random, any_of);
+  return at_in_logarithm(random.uniform());
+}
+
+double DrawnNumber::at(double share) const {
+  return any_of.empty() ? low + share * (high - low) : one_at(share, any_of);
+}
+
+double DrawnNumber::at_in_logarithm(double share) const {
+  return any_of.empty() ? low * std::pow(high / low, share) : one_at(share, any_of);
 }
 
 scene::Encounter DrawnApproach::draw(Random random, double usual_speed_mps) const {

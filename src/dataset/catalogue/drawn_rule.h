@@ -10,6 +10,7 @@
 #include "dataset/catalogue/table_values.h"
 #include "foundation/base/names.h"
 #include "foundation/base/seed.h"
+#include "scene/scene/camera_keys.h"
 #include "scene/scene/scene.h"
 #include "scene/scene/table_reader.h"
 
@@ -29,6 +30,9 @@ struct DrawnNumber {
   double least() const;
   double greatest() const;
   double draw(Random& random) const;
+  // The number at a share from 0 up to 1: of a range evenly, or in its logarithm.
+  double at(double share) const;
+  double at_in_logarithm(double share) const;
   // Evenly in the logarithm, for sizes and ranges.
   double draw_in_logarithm(Random& random) const;
 };
@@ -53,6 +57,15 @@ struct DrawnSeen {
   Where where;
 
   scene::Seen draw(Random& random) const;
+};
+
+// [random.weather]: [weather] of a scene (scene/scene/camera_keys.h) with numbers to draw.
+struct DrawnWeather {
+  // In place of the extinction of the background's air.
+  std::optional<DrawnNumber> visibility_m;
+  // In the order of scene::kWeatherKeys.
+  std::array<std::optional<DrawnNumber>, scene::kWeatherKeys.size()> factors;
+  Where where;
 };
 
 // An aircraft of the list with its liveries: "738" with "738/738-Ryanair" and others.
@@ -101,7 +114,7 @@ struct Drawn {
   std::int64_t count = 0;
   std::int64_t frame_count = 90;
   std::vector<std::size_t> backgrounds;
-  // The type is drawn first, then a livery of that type.
+  // The types take turns; the livery is drawn.
   std::vector<AircraftType> types;
   MeetingPlace place;
   // Empty: a speed that suits the type.
@@ -118,6 +131,7 @@ struct Drawn {
   std::optional<Range> sun_azimuth_deg, sun_elevation_deg;
   // Replaces the two sun ranges.
   std::optional<DaytimeRange> daytime;
+  std::optional<DrawnWeather> weather;
   // Share of sequences without an intruder, from 0 to 1.
   double negatives = 0;
   WholeRange intruders;

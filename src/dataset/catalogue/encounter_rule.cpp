@@ -133,7 +133,7 @@ EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   rule.where = table.where();
   rule.name = index_pattern(table, "e{index}");
   rule.seed = Seed(catalogue.seed).stream("encounters of " + rule.name)();
-  rule.count = table.whole("count", 1, kMost).value_or(1);
+  rule.count = table.whole("count", 1, kMostSequences).value_or(1);
   rule.frame_count = table.whole("frame_count", 1, kMaxFrames).value_or(rule.frame_count);
   rule.length_s = static_cast<int>(std::ceil(double(rule.frame_count) / kSlowestRateHz)) + 1;
   rule.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
@@ -360,9 +360,9 @@ bool has_second(const EncounterRule& rule, std::int64_t index) {
 const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, std::uint64_t k) {
   const pairing::Strata strata(
       Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
-  return rule
-      .types[static_cast<std::size_t>(strata.at(index % static_cast<std::uint64_t>(rule.count), 0) *
-                                      static_cast<double>(rule.types.size()))];
+  return rule.types[static_cast<std::size_t>(
+      strata.middle(index % static_cast<std::uint64_t>(rule.count), 0) *
+      static_cast<double>(rule.types.size()))];
 }
 
 // How long the reference point of an intruder is in the view, in all.

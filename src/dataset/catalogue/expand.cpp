@@ -10,6 +10,7 @@
 #include "dataset/catalogue/encounter_rule.h"
 #include "dataset/catalogue/meeting.h"
 #include "foundation/base/error.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/setup/from_scene.h"
 
 namespace airtruth::catalogue {
@@ -78,6 +79,15 @@ Item item_of(const Catalogue& catalogue, const Product& rule, std::int64_t index
   return item;
 }
 
+// A drawn visibility takes the place of the background's extinction, which is then not measured.
+void take_weather(const DrawnSequence& drawn, scene::Scene& scene) {
+  scene.weather = drawn.weather;
+  if (!drawn.visibility_m) return;
+  const double extinction = scene::extinction_per_km(*drawn.visibility_m);
+  scene.camera_model.extinction_per_km = {extinction, extinction, extinction};
+  std::erase(scene.camera_model.automatic, "air.extinction_per_km");
+}
+
 // The random values of a rule of [[random]] for one sequence. Until place() knows the background,
 // its paths are provisional and belong to a clip at kAssumedRateHz.
 Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) {
@@ -91,6 +101,7 @@ Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) 
   if (item.drawn.sun_azimuth_deg) item.scene.light.sun_azimuth_deg = *item.drawn.sun_azimuth_deg;
   if (item.drawn.sun_elevation_deg)
     item.scene.light.sun_elevation_deg = *item.drawn.sun_elevation_deg;
+  take_weather(item.drawn, item.scene);
   const DrawnClip clip{rule.frame_count, kAssumedRateHz};
   for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k) {
     const Encounter& encounter = item.drawn.encounters[k];
@@ -161,6 +172,11 @@ Expansion::Expansion(const Catalogue& catalogue) : catalogue_(catalogue) {
   for (const Rule& rule : catalogue.rules) {
     first_.push_back(size_);
     size_ += size_of(rule);
+    if (size_ > kMostSequences)
+      throw Error(fmt::format("makes more than {} sequences; expected fewer: lower counts, or "
+                              "several catalogues",
+                              kMostSequences),
+                  {catalogue.file.string()});
   }
 }
 

@@ -48,6 +48,7 @@ struct Item {
 // and does not grow with the number of sequences. Item i depends on the catalogue and i alone.
 class Expansion {
  public:
+  // Throws Error for more than kMostSequences.
   explicit Expansion(const Catalogue& catalogue);
   std::int64_t size() const { return size_; }
   Item at(std::int64_t index) const;

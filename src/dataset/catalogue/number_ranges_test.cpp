@@ -325,7 +325,9 @@ std::vector<std::string> scenes() {
           "[shutter]\nexposure_s = 0.004\nreadout_s = 0.01\n[air]\nextinction_per_km = [1, 1, 1]\n"
           "airlight = [0.5, 0.5, 0.5]\n[optics]\npoint_spread_px = 0.7\nsharpening = 0.4\n"
           "sharpening_px = 1\n[sensor]\nnoise_gain = 1e-4\nnoise_floor = 1e-5\n"
-          "noise_correlation_px = 0.5\nchroma_spread_px = 2\ncodec_step = 4\ngamma = 2.2\n" +
+          "noise_correlation_px = 0.5\nchroma_spread_px = 2\ncodec_step = 4\ngamma = 2.2\n"
+          "[weather]\nexposure = 1.2\nwhite_balance = 1.1\nblur = 1.3\nnoise = 2\nsun_share = "
+          "0.5\n" +
           kIntruder + "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\ntimes_s = [0, 1]\n",
       head + "[lens]\nfile = 'lens.json'\n[shutter]\nangle_deg = 180\n" + light + kIntruder +
           "waypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\nspeed_mps = 20\n",
@@ -406,6 +408,12 @@ TEST_F(NumberRanges, OfACatalogue) {
       "range_m = [100, 200]\nazimuth_deg = [-5, 5]\nelevation_deg = [-5, 5]\n"
       "speed_mps = [40, 50]\nheading_deg = [0, 10]\nclimb_deg = [-1, 1]\n"
       "sun_azimuth_deg = [1, 2]\nsun_elevation_deg = [1, 2]\n";
+  const std::string by_weather =
+      "optics = { point_spread_px = 0.8 }\nsensor = { noise_floor = 1e-5 }\n";
+  const std::string weather =
+      "[random.weather]\nvisibility_m = [4000, 40000]\nexposure = [0.7, 1.4]\n"
+      "white_balance = [0.8, 1.2]\nblur = [0.8, 1.5]\nnoise = 1.5\nsun_share = [0, 1]\n";
+  const std::string of_camera = std::string(video).insert(video.find("[[random]]"), by_weather);
   const std::string by_approach =
       "[random.encounter]\ncpa_time_s = 1\ncpa_right_m = [-60, 60]\ncpa_above_m = [-20, 20]\n"
       "course_deg = 180\nspeed_mps = [40, 50]\nclimb_mps = 1\nturn_rate_dps = 0\n";
@@ -423,7 +431,8 @@ TEST_F(NumberRanges, OfACatalogue) {
         {video + by_size, read, true},
         {video + by_approach, use, true},
         {video + by_approach_ahead, use, true},
-        {video + by_seen, use, true}},
+        {video + by_seen, use, true},
+        {of_camera + weather, use, true}},
        {});
 }
 

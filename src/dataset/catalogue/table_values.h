@@ -17,8 +17,12 @@
 // What the tables of a catalogue have in common: names of other tables, and ranges to draw from.
 namespace airtruth::catalogue {
 
-// Upper bound for every count in a catalogue.
+// Upper bound for every number of a frame in a catalogue: the length of its video bounds the cost.
 constexpr std::int64_t kMost = 1'000'000'000;
+// Most sequences of a rule, and of a catalogue: 5 TB of records and previews. Chosen.
+constexpr std::int64_t kMostSequences = 10'000'000;
+// Most intruders of a sequence: chosen.
+constexpr std::int64_t kMaxIntruders = 100;
 
 // Returns the index of the thing with that name. Throws Error at `where` with the nearest spelling.
 template <typename Things>
@@ -109,10 +113,16 @@ std::int64_t drawn(Random& random, const WholeRange& range);
 // For sizes and distances: each factor of them is equally frequent.
 double drawn_evenly_in_logarithm(Random& random, const Range& range);
 
+// Of the things in their order, the one at a share of them from 0 up to 1.
+template <typename T>
+const T& one_at(double share, const std::vector<T>& things) {
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(things.size()));
+  return things[std::min(at, things.size() - 1)];
+}
+
 template <typename T>
 const T& one_of(Random& random, const std::vector<T>& things) {
-  const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(things.size()));
-  return things[std::min(at, things.size() - 1)];
+  return one_at(random.uniform(), things);
 }
 
 }  // namespace airtruth::catalogue

@@ -13,6 +13,7 @@
 #include "labels/pixel_mask/pixel_mask.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/replay/finished.h"
 
@@ -124,6 +125,7 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     const scene::Scene scene = scene::parse_scene(record.text("scene_toml"), file);
     facts.background = scene.background.video.string();
     facts.background_name = scene.background.name;
+    facts.weather = scene::weather_facts(scene);
     facts.frames = record.object("summary").count("frames");
     std::set<std::string> distractors;
     for (const scene::Intruder& intruder : scene.intruders)

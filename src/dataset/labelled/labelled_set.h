@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct ClipFacts {
   // Those of them that are no aircraft.
   std::vector<std::string> distractors;
   std::int64_t frames = 0;
+  // scene::weather_facts() of its scene; empty for an imported clip.
+  std::map<std::string, double> weather;
 };
 
 // The labelled clips of a folder. The folder is a data set that `dataset build` made, complete or

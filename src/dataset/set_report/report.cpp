@@ -144,6 +144,7 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
       {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
       {"sun_azimuth_deg", scene ? Json(rounded(scene->light.sun_azimuth_deg, 0.1)) : Json()},
       {"sun_elevation_deg", scene ? Json(rounded(scene->light.sun_elevation_deg, 0.1)) : Json()},
+      {"weather", portrait.facts.weather},
       {"motion_model", scene ? enum_name(scene->motion.model) : ""},
       {"visible", portrait.frames_by_state[0]},
       {"hidden", portrait.frames_by_state[1]},

@@ -36,6 +36,10 @@ std::uint64_t Strata::stratum(std::uint64_t index, std::size_t dimension) const 
   return value;
 }
 
+double Strata::middle(std::uint64_t index, std::size_t dimension) const {
+  return (static_cast<double>(stratum(index, dimension)) + 0.5) / static_cast<double>(count_);
+}
+
 double Strata::at(std::uint64_t index, std::size_t dimension) const {
   const std::uint64_t place = index * keys_.size() + dimension;
   const double within = Seed(seed_).stream("within the stratum", place).uniform();

@@ -19,6 +19,10 @@ class Strata {
 
   // Coordinate of point `index`, from 0 up to but not including 1.
   double at(std::uint64_t index, std::size_t dimension) const;
+  // The middle of the point's stratum. Of k things of equal width in the unit interval, the middles
+  // fall into each as often as into the others, within one; the points themselves may differ by
+  // two.
+  double middle(std::uint64_t index, std::size_t dimension) const;
   // The stratum of that coordinate, 0 to count - 1.
   std::uint64_t stratum(std::uint64_t index, std::size_t dimension) const;
 

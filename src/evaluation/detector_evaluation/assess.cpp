@@ -118,6 +118,7 @@ scores::Assessment assess(const fs::path& set,
   assessment.point = options.point;
   assessment.manoeuvre_s = options.manoeuvre_s;
   assessment.volume = options.volume;
+  for (const sequences::Condition& one : options.where) assessment.where.push_back(one.text);
   SetTruth truth = set_truth(set, {options.volume, options.ignore, options.warn});
   assessment.truths = std::move(truth.sequences);
   assessment.is_weighted = truth.is_weighted;
@@ -130,6 +131,11 @@ scores::Assessment assess(const fs::path& set,
       throw Error("is the second set of results called '" + name + "'", {source.string()});
     check_record(source / "detector.json");
     found[name] = results_in(source, assessment.truths, options.warn);
+    std::erase_if(found[name], [&](const scores::ScoredDetections& one) {
+      return !sequences::hold(options.where, assessment.truths[one.truth].weather);
+    });
+    if (found[name].empty())
+      throw Error("holds no detections of any sequence for which --where holds", {source.string()});
   }
   if (options.with_film) add_films(assessment.truths, found, options);
   std::vector<std::string> names;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dataset/sequences/condition.h"
 #include "evaluation/scores/detector_score.h"
 #include "foundation/base/log.h"
 
@@ -37,6 +38,8 @@ struct AssessOptions {
   bool with_film = true;
   // Number of threads; 0 means one per core.
   int jobs = 0;
+  // Sequences for which these do not hold are left out of every measure.
+  std::vector<sequences::Condition> where;
   Warn warn;
   std::function<void(std::int64_t done, std::int64_t total)>
       progress;  // counts videos that were read

@@ -138,7 +138,7 @@ Plot by_plot(const scores::Assessment& assessment, const scores::Quantity& quant
       if (scores::DetectionBin& most = names[key(bin)];
           bin.detection.trials >= most.detection.trials)
         most = bin;
-  Plot plot{.x = {.label = std::string(quantity.title) + " (aircraft)"},
+  Plot plot{.x = {.label = quantity.title + " (aircraft)"},
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
   for (const auto& [place, bin] : names)
     plot.x.names.push_back(report::counted_place(name_of(bin), bin.detection.trials));
@@ -230,7 +230,7 @@ std::vector<report::NamedPlot> detection_plots(const scores::Assessment& assessm
       {"operating", declaration_range_plot(assessment)},
       {"declared", declared_plot(assessment)}};
   for (const scores::Quantity& quantity : scores::quantities())
-    plots.push_back({std::string("by_") + quantity.key, by_plot(assessment, quantity)});
+    plots.push_back({"by_" + quantity.key, by_plot(assessment, quantity)});
   plots.push_back({"false_alarms", false_alarms_plot(assessment)});
   plots.push_back({"mistaken", mistaken_plot(assessment)});
   return report::with_data(std::move(plots));

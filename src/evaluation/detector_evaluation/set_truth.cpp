@@ -18,6 +18,7 @@
 #include "foundation/image/contrast_to_noise.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/lens_facts.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/replay/finished.h"
 
 namespace airtruth::detector_evaluation {
@@ -257,6 +258,7 @@ RenderedTruth rendered_truth(const fs::path& folder,
   truth.width = finished.truth.lens.width;
   truth.height = finished.truth.lens.height;
   truth.lens = annotation::lens_of(finished.truth.lens);
+  truth.weather = scene::weather_facts(*finished.scene);
   if (const auto weight = record.maybe_number("weight")) {
     if (*weight < 0) record.fail("weight", "a number from 0 on");
     rendered.has_weight = true;

@@ -510,6 +510,7 @@ void write_tables(const scores::Assessment& assessment, const std::filesystem::p
               {"manoeuvre_s", or_null(assessment.manoeuvre_s)},
               {"volume", assessment.volume.empty() ? Json() : Json(assessment.volume)},
               {"weighted", assessment.is_weighted},
+              {"where", assessment.where},
               {"left_out", assessment.left_out},
               {"detectors", detectors}};
   report::write_files(out,

@@ -32,6 +32,12 @@ std::vector<DetectionBin> binned(std::span<const AircraftInFrame> sightings,
   return bins;
 }
 
+std::vector<Quantity> with_weather(std::vector<Quantity> quantities) {
+  for (const auto& [key, edges] : statistics::kWeatherEdges)
+    quantities.push_back({key, key, edges});
+  return quantities;
+}
+
 }  // namespace
 
 std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
@@ -62,42 +68,50 @@ const std::vector<Quantity>& quantities() {
   using Value = std::optional<double>;
   using Name = std::optional<std::string>;
   using Object = const TruthObject&;
-  static const std::vector<Quantity> all = {
-      {"range_m",
-       "range, m",
-       statistics::kRangeEdges_m,
-       [](Object object) { return object.range_m; }},
-      {"size_px",
-       "longer side, px",
-       {0, 3, 5, 7, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400},
-       [](Object object) { return Value(object.size_px()); }},
-      {"area_px",
-       "pixels on target",
-       {0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000},
-       [](Object object) { return Value(object.area_px); }},
-      {"contrast_to_noise",
-       "contrast to noise",
-       {0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64},
-       [](Object object) { return object.contrast_to_noise; }},
-      {"azimuth_deg",
-       "azimuth, deg",
-       {-180, -90, -70, -50, -40, -30, -20, -10, 0, 10, 20, 30, 40, 50, 70, 90},
-       [](Object object) { return object.azimuth_deg; }},
-      {"to_closest_approach_s",
-       "time to closest approach, s",
-       {-600, -60, -30, -10, 0, 2, 5, 10, 15, 20, 30, 45, 60, 90, 120, 300},
-       [](Object object) { return object.to_closest_approach_s; }},
-      {"horizon",
-       "against the horizon",
-       {},
-       nullptr,
-       [](const TruthSequence&, Object object) {
-         return object.above_horizon ? Name(*object.above_horizon ? "above" : "below") : Name();
-       }},
-      {"background", "background", {}, nullptr, [](const TruthSequence& sequence, Object) {
-         return sequence.background.empty() ? Name() : Name(sequence.background);
-       }}};
+  static const std::vector<Quantity> all = with_weather(
+      {{"range_m",
+        "range, m",
+        statistics::kRangeEdges_m,
+        [](Object object) { return object.range_m; }},
+       {"size_px",
+        "longer side, px",
+        {0, 3, 5, 7, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400},
+        [](Object object) { return Value(object.size_px()); }},
+       {"area_px",
+        "pixels on target",
+        {0, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000},
+        [](Object object) { return Value(object.area_px); }},
+       {"contrast_to_noise",
+        "contrast to noise",
+        {0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64},
+        [](Object object) { return object.contrast_to_noise; }},
+       {"azimuth_deg",
+        "azimuth, deg",
+        {-180, -90, -70, -50, -40, -30, -20, -10, 0, 10, 20, 30, 40, 50, 70, 90},
+        [](Object object) { return object.azimuth_deg; }},
+       {"to_closest_approach_s",
+        "time to closest approach, s",
+        {-600, -60, -30, -10, 0, 2, 5, 10, 15, 20, 30, 45, 60, 90, 120, 300},
+        [](Object object) { return object.to_closest_approach_s; }},
+       {"horizon",
+        "against the horizon",
+        {},
+        nullptr,
+        [](const TruthSequence&, Object object) {
+          return object.above_horizon ? Name(*object.above_horizon ? "above" : "below") : Name();
+        }},
+       {"background", "background", {}, nullptr, [](const TruthSequence& sequence, Object) {
+          return sequence.background.empty() ? Name() : Name(sequence.background);
+        }}});
   return all;
+}
+
+std::optional<double> value_of(const Quantity& quantity,
+                               const TruthSequence& sequence,
+                               const TruthObject& object) {
+  if (quantity.value_of != nullptr) return quantity.value_of(object);
+  const auto fact = sequence.weather.find(quantity.key);
+  return fact == sequence.weather.end() ? std::nullopt : std::optional(fact->second);
 }
 
 }  // namespace airtruth::scores

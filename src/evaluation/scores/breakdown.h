@@ -50,16 +50,22 @@ std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sig
 
 // The quantities, as keys of DetectorScore::by: "range_m", "size_px" (longer side), "area_px"
 // (pixels on target), "contrast_to_noise", "azimuth_deg", "to_closest_approach_s", "horizon"
-// ("above", "below"), and "background" (file names).
+// ("above", "below"), "background" (file names), and the keys of statistics::kWeatherEdges.
 struct Quantity {
-  const char* key;
-  const char* title;          // for plots: "range, m"
+  std::string key;
+  std::string title;          // for plots: "range, m"
   std::vector<double> edges;  // empty: by name
-  // The first for quantities with edges, the second for those by name.
+  // The first for quantities with edges, the second for those by name; of the weather neither:
+  // TruthSequence::weather has it by key.
   std::optional<double> (*value_of)(const TruthObject& object) = nullptr;
   std::optional<std::string> (*name_of)(const TruthSequence& sequence,
                                         const TruthObject& object) = nullptr;
 };
 const std::vector<Quantity>& quantities();
+
+// The value of a quantity with edges.
+std::optional<double> value_of(const Quantity& quantity,
+                               const TruthSequence& sequence,
+                               const TruthObject& object);
 
 }  // namespace airtruth::scores

@@ -333,7 +333,7 @@ class Scoring {
         if (quantity.edges.empty())
           names.push_back(quantity.name_of(of, object));
         else
-          values.push_back(quantity.value_of(object));
+          values.push_back(value_of(quantity, of, object));
       }
       std::vector<DetectionBin> bins =
           quantity.edges.empty() ? detection_by_name(sightings, names, weights)

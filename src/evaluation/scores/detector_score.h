@@ -89,6 +89,8 @@ struct Assessment {
   std::optional<double> manoeuvre_s;
   std::string volume;  // empty: none
   bool is_weighted = false;
+  // The conditions that the sequences meet, as they were asked for.
+  std::vector<std::string> where;
   // What the truth lacks, as sentences for people: "No range is known: ...".
   std::vector<std::string> left_out;
 

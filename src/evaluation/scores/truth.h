@@ -92,6 +92,8 @@ struct TruthSequence {
   // Number of frames over the frame rate, or the span of the time stamps with one frame more.
   double duration_s = 0;
   std::optional<lens::Lens> lens;
+  // What is known of the weather of what was inserted (scene::weather_facts()).
+  std::map<std::string, double> weather;
   // Of the encounter among those of its encounter model; 1 where the set has none.
   double weight = 1;
   // Of an imported clip: its categories by their numbers in its set.

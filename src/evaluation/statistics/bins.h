@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 // Bins of a quantity: each extends from its edge to the next, and the last one has no upper end.
@@ -18,6 +20,15 @@ namespace airtruth::statistics {
 // The bins of range for trackers and detectors alike.
 inline const std::vector<double> kRangeEdges_m = {
     0, 100, 200, 300, 400, 500, 750, 1000, 1500, 2000, 3000, 5000, 10000};
+
+// The bins of a set's weather (docs/formats/catalogue.md), by key.
+inline const std::map<std::string, std::vector<double>> kWeatherEdges = {
+    {"visibility_m", {0, 1000, 2000, 5000, 10000, 20000, 50000}},
+    {"exposure", {0, 0.25, 0.5, 0.71, 1, 1.41, 2, 4}},
+    {"white_balance", {0, 0.5, 0.71, 0.84, 1, 1.19, 1.41, 2}},
+    {"blur", {0, 0.5, 0.75, 1, 1.5, 2, 3, 5}},
+    {"noise", {0, 0.5, 0.75, 1, 1.5, 2, 3, 5}},
+    {"sun_share", {0, 0.25, 0.5, 0.75}}};
 
 // The bin of a value; empty for an unknown one, and for one below the first edge.
 inline std::optional<std::size_t> bin_of(const std::optional<double>& value,

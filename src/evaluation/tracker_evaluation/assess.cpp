@@ -187,6 +187,11 @@ class Scoring {
         values["size_px"].push_back(truth.size_px[outcome.frame]);
         values["contrast"].push_back(truth.contrast[outcome.frame]);
         by_background[truth.background].push_back(outcome);
+        for (const auto& [key, edges] : statistics::kWeatherEdges) {
+          const auto fact = truth.weather.find(key);
+          values[key].push_back(fact == truth.weather.end() ? std::nullopt
+                                                            : std::optional(fact->second));
+        }
       }
     }
     tracker.angle_mrad = measures::mean_of(all).angle_mrad;
@@ -194,6 +199,9 @@ class Scoring {
         measures::breakdown(all, values["range_m"], statistics::kRangeEdges_m);
     tracker.bins["size_px"] = measures::breakdown(all, values["size_px"], kSizeEdges_px);
     tracker.bins["contrast"] = measures::breakdown(all, values["contrast"], kContrastEdges);
+    for (const auto& [key, edges] : statistics::kWeatherEdges)
+      if (auto bins = measures::breakdown(all, values[key], edges); !bins.empty())
+        tracker.bins[key] = std::move(bins);
     for (const auto& [name, outcomes] : by_background)
       tracker.backgrounds[name] = measures::mean_of(outcomes);
   }
@@ -227,6 +235,20 @@ std::pair<int, int> range_of(const std::vector<TruthClip>& truths) {
 }
 
 // Where a curve ends before the range over which its mean is taken. last: the range's last index.
+// Takes the results away for sequences of which nothing was asked.
+void leave_out_others(const fs::path& folder,
+                      const std::vector<TruthClip>& truths,
+                      const std::vector<sequences::Condition>& where,
+                      std::vector<results::TrackerResults>& results) {
+  bool any = false;
+  for (std::size_t i = 0; i < truths.size(); ++i) {
+    if (!sequences::hold(where, truths[i].weather)) results[i] = {};
+    any = any || !results[i].empty();
+  }
+  if (!any)
+    throw Error("holds no result for any sequence for which --where holds", {folder.string()});
+}
+
 void warn_of_short_curve(const std::string& tracker,
                          const char* protocol,
                          std::size_t points,
@@ -314,6 +336,7 @@ Assessment assess(const fs::path& set,
   Assessment assessment;
   assessment.set = report::name_of_results(set);
   assessment.until_loss = options.until_loss;
+  for (const sequences::Condition& one : options.where) assessment.where.push_back(one.text);
   assessment.truths = truths_of(labelled::LabelledSet(set), options.warn);
   assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
   // Results are read first, so that their faults are reported before minutes of video are read.
@@ -323,6 +346,7 @@ Assessment assess(const fs::path& set,
     if (found.contains(name))
       throw Error("is the second folder of results called '" + name + "'", {folder.string()});
     found[name] = results_in(folder, assessment.truths, options);
+    leave_out_others(folder, assessment.truths, options.where, found[name]);
   }
   if (options.with_film) add_films(assessment.truths, found, options);
   const Scoring scored(assessment.truths, assessment.eao_range, options.until_loss);

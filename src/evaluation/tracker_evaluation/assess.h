@@ -13,6 +13,7 @@
 #include <airtruth/statistics.h>
 #include <airtruth/vot.h>
 
+#include "dataset/sequences/condition.h"
 #include "evaluation/matching/boxes.h"
 #include "evaluation/measures/outcome.h"
 #include "evaluation/tracker_evaluation/truth.h"
@@ -61,8 +62,8 @@ struct ScoredTracker {
   std::optional<double> angle_mrad;
   // Number of sequences in which the tracker lost its object.
   std::int64_t lost = 0;
-  // `bins` has the keys "range_m", "size_px" and "contrast"; `backgrounds` has the backgrounds'
-  // names.
+  // `bins` has the keys "range_m", "size_px" and "contrast", and of the weather those that the set
+  // states; `backgrounds` has the backgrounds' names.
   std::map<std::string, std::vector<measures::Bin>> bins;
   std::map<std::string, measures::Bin> backgrounds;
   std::optional<evaluation::Restart> restart;
@@ -84,6 +85,8 @@ struct Assessment {
   std::pair<int, int> eao_range{};       // in frames
   // True where frames per second leave out lost frames (AssessOptions).
   bool until_loss = false;
+  // The conditions that the sequences meet, as they were asked for.
+  std::vector<std::string> where;
 };
 
 struct AssessOptions {
@@ -97,6 +100,8 @@ struct AssessOptions {
   bool with_film = true;
   // Number of threads; 0 means one per core.
   int jobs = 0;
+  // Sequences for which these do not hold are left out of every measure.
+  std::vector<sequences::Condition> where;
   Warn warn;
   std::function<void(std::int64_t done, std::int64_t total)>
       progress;  // counts videos that were read

@@ -13,6 +13,7 @@
 
 #include "evaluation/matching/boxes.h"
 #include "evaluation/report/plots.h"
+#include "evaluation/statistics/bins.h"
 #include "evaluation/tracker_evaluation/tables.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
@@ -134,28 +135,31 @@ const ScoredSequence* scored_sequence(const Assessment& assessment,
   return nullptr;
 }
 
-// success, precision, normalised, eao, range_m, size_px, contrast and background: those of them for
-// which the assessment holds values. Every tracker has one style in all of them.
+// success, precision, normalised, eao, range_m, size_px, contrast, background and the weather:
+// those of them for which the assessment holds values. Every tracker has one style in all of them.
 std::vector<report::NamedPlot> evaluation_plots(const Assessment& assessment) {
   using evaluation::Score;
-  return report::with_data(
-      {{"success",
-        curve(assessment, "overlap", 0.05, [](const Score& s) { return std::span(s.success); })},
-       {"precision",
-        curve(assessment,
-              "centre error, px",
-              1,
-              [](const Score& s) { return std::span(s.precision); })},
-       {"normalised",
-        curve(assessment,
-              "centre error over size",
-              0.01,
-              [](const Score& s) { return std::span(s.normalised); })},
-       {"eao", eao_plot(assessment)},
-       {"range_m", bins_plot(assessment, "range_m", "range, m")},
-       {"size_px", bins_plot(assessment, "size_px", "box size (longer side), px")},
-       {"contrast", bins_plot(assessment, "contrast", "contrast, levels of 255")},
-       {"background", background_plot(assessment)}});
+  std::vector<report::NamedPlot> plots = {
+      {"success",
+       curve(assessment, "overlap", 0.05, [](const Score& s) { return std::span(s.success); })},
+      {"precision",
+       curve(assessment,
+             "centre error, px",
+             1,
+             [](const Score& s) { return std::span(s.precision); })},
+      {"normalised",
+       curve(assessment,
+             "centre error over size",
+             0.01,
+             [](const Score& s) { return std::span(s.normalised); })},
+      {"eao", eao_plot(assessment)},
+      {"range_m", bins_plot(assessment, "range_m", "range, m")},
+      {"size_px", bins_plot(assessment, "size_px", "box size (longer side), px")},
+      {"contrast", bins_plot(assessment, "contrast", "contrast, levels of 255")},
+      {"background", background_plot(assessment)}};
+  for (const auto& [key, edges] : statistics::kWeatherEdges)
+    plots.push_back({key, bins_plot(assessment, key, key)});
+  return report::with_data(std::move(plots));
 }
 
 // The mean AUC of each tracker with its 95 % interval over sequences, the best on top. Without

@@ -177,6 +177,7 @@ void write_tables(const Assessment& assessment, const fs::path& out) {
               {"dataset", assessment.set},
               {"eao_range", {assessment.eao_range.first, assessment.eao_range.second}},
               {"speed_until_loss", assessment.until_loss},
+              {"where", assessment.where},
               {"trackers", Json::array()},
               {"comparisons", Json::array()}};
   for (const ScoredTracker& tracker : assessment.trackers) {

@@ -49,11 +49,12 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& w
   std::vector<TruthClip> truths;
   for (const std::string& name : set.names()) {
     const auto lens = lens_of(set, name);
-    const std::string background = set.facts(name).background_name;
+    const labelled::ClipFacts facts = set.facts(name);
     for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name, boxes))) {
       truths.push_back(truth_from(std::move(clip)));
       truths.back().lens = lens;
-      truths.back().background = background;
+      truths.back().background = facts.background_name;
+      truths.back().weather = facts.weather;
     }
   }
   std::sort(truths.begin(), truths.end(), [](const TruthClip& a, const TruthClip& b) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -22,6 +23,8 @@ struct TruthClip {
   exchange::Clip clip;
   // File name of the background video; for an imported clip, of its own video.
   std::string background;
+  // What is known of the weather of what was inserted (scene::weather_facts()).
+  std::map<std::string, double> weather;
   // Set for rendered sequences.
   std::optional<lens::Lens> lens;
   // By frame of the clip; empty where the object is not visible or the value is unknown.

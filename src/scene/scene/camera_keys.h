@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "scene/scene/limits.h"
 #include "scene/scene/scene.h"
@@ -242,6 +246,55 @@ inline bool is_above_zero(const CameraModel& model, const CameraKey& key) {
   if (colour == nullptr || !(model.*(*colour))) return false;
   const std::array<double, 3>& values = *(model.*(*colour));
   return std::any_of(values.begin(), values.end(), [](double value) { return value > 0; });
+}
+
+// A key of [weather].
+struct WeatherKey {
+  const char* name;
+  std::optional<double> Weather::*member;
+  Limits limits;
+};
+
+inline constexpr auto kWeatherKeys = std::to_array<WeatherKey>({
+    {"exposure", &Weather::exposure, kExposureChange},
+    {"white_balance", &Weather::white_balance, kWhiteBalanceChange},
+    {"blur", &Weather::blur, kBlurChange},
+    {"noise", &Weather::noise, kBlurChange},
+    {"sun_share", &Weather::sun_share, kShare},
+});
+
+inline bool states_any_key(const Weather& weather) {
+  return std::any_of(kWeatherKeys.begin(), kWeatherKeys.end(), [&](const WeatherKey& key) {
+    return (weather.*key.member).has_value();
+  });
+}
+
+// Koschmieder's visibility, the distance at which a black object keeps 2 % of its contrast to the
+// horizon: ln 50 over the extinction.
+inline constexpr const char* kVisibilityKey = "visibility_m";
+inline double extinction_per_km(double visibility_m) {
+  return 1000 * std::log(50.0) / visibility_m;
+}
+
+// The keys of weather_facts().
+inline std::vector<std::string> weather_names() {
+  std::vector<std::string> names = {kVisibilityKey};
+  for (const WeatherKey& key : kWeatherKeys) names.emplace_back(key.name);
+  return names;
+}
+
+// What a scene states of the weather of what it inserts, by key: the visibility where the air has
+// an extinction (that of green), and the keys of [weather] that are there. Sequences are filtered
+// and results are broken down by these.
+inline std::map<std::string, double> weather_facts(const Scene& scene) {
+  std::map<std::string, double> facts;
+  const auto& extinction = scene.camera_model.extinction_per_km;
+  // ln 50 / x is its own inverse.
+  if (extinction && (*extinction)[1] > 0)
+    facts[kVisibilityKey] = extinction_per_km((*extinction)[1]);
+  for (const WeatherKey& key : kWeatherKeys)
+    if (const auto& value = scene.weather.*key.member) facts[key.name] = *value;
+  return facts;
 }
 
 }  // namespace airtruth::scene

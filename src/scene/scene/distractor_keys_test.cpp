@@ -3,6 +3,7 @@
 #include <set>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "labels/annotation/object_class.h"
@@ -138,6 +139,37 @@ TEST(DistractorKeys, WrongKeysAreNamedAtTheirLine) {
   EXPECT_EQ(message_of("kind = \"dirt\"\nid = \"a\"\npixel = [1, 2]\n[[distractor]]\nkind = "
                        "\"dirt\"\nid = \"a\"\npixel = [3, 4]\n"),
             "/data/s.toml:11:6: id 'a' is taken; expected another");
+}
+
+// A thousand things are a scene, one more is a line; birds of flocks count one by one.
+TEST(DistractorKeys, AThousandThingsAreTheMost) {
+  const std::string head = "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n";
+  const auto flock = [](int count) {
+    return "[[distractor]]\nkind = \"bird\"\nspread_m = 900\nposition_ned_m = [9, 0, 0]\ncount = " +
+           std::to_string(count) + "\n";
+  };
+  std::string most = head;
+  for (int i = 0; i < 5; ++i) most += flock(200);
+  EXPECT_EQ(parse_scene(most, "s.toml").intruders.size(), 1000u);
+  const auto error = [](const std::string& text) -> std::string {
+    try {
+      parse_scene(text, "s.toml");
+    } catch (const Error& found) {
+      return found.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(error(most + "[[distractor]]\nkind = \"dirt\"\npixel = [1, 1]\n"),
+              testing::HasSubstr("beyond the 1000 intruders and distractors"));
+  EXPECT_THAT(
+      error(head + flock(200) + flock(200) + flock(200) + flock(200) + flock(199) + flock(2)),
+      testing::HasSubstr("count is 2, with which the scene has more than 1000"));
+  std::string intruders = head;
+  for (int i = 0; i < 1001; ++i)
+    intruders +=
+        "[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = [[1, 0, 0], [2, 0, "
+        "0]]\nspeed_mps = 9\n";
+  EXPECT_THAT(error(intruders), testing::HasSubstr("has 1001 tables [[intruder]]"));
 }
 
 }  // namespace

@@ -10,6 +10,9 @@ namespace airtruth::scene {
 
 // Largest number of members of a flock: a choice.
 constexpr std::int64_t kMaxFlock = 200;
+// Most intruders and distractors of one scene, birds of flocks counted one by one: each takes
+// memory and time in every frame. Chosen.
+constexpr std::size_t kMaxThings = 1000;
 
 // `count` intruders in place of one bird, multirotor or balloon. All fly the leader's path, each
 // displaced within a flat ellipsoid of the radius `spread_m` (a third of that in height), and none

@@ -94,6 +94,14 @@ inline constexpr Limits kSharpening{.expected = "a number from 0 to 3", .low = 0
 inline constexpr Limits kVariance{.expected = "a variance from 0 to 0.1", .low = 0, .high = 0.1};
 inline constexpr Limits kCodecStep{.expected = "code values from 0 to 128", .low = 0, .high = 128};
 
+// Weather: factors on what the clip shows.
+inline constexpr Limits kExposureChange{
+    .expected = "a factor from 1/16 to 16", .low = 0.0625, .high = 16};
+inline constexpr Limits kWhiteBalanceChange{
+    .expected = "a factor from 0.25 to 4", .low = 0.25, .high = 4};
+inline constexpr Limits kBlurChange{.expected = "a factor from 0 to 10", .low = 0, .high = 10};
+inline constexpr Limits kVisibility{.expected = "metres from 1 to 1e6", .low = 1, .high = 1e6};
+
 // Catalogues.
 inline constexpr Limits kShare{.expected = "a number from 0 to 1", .low = 0, .high = 1};
 inline constexpr Limits kOwnSpeed{

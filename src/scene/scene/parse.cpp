@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/files.h"
+#include "scene/scene/flock.h"
 #include "scene/scene/parse_distractor.h"
 #include "scene/scene/parse_intruder.h"
 #include "scene/scene/scene.h"
@@ -70,7 +71,14 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       file.string(),
       with_camera_tables(
           {"name", "seed", "weight", "background", "lens", "camera", "motion", "light"},
-          {"realism", "intruder", "distractor", "truth", "render", "composite", "output"}));
+          {"weather",
+           "realism",
+           "intruder",
+           "distractor",
+           "truth",
+           "render",
+           "composite",
+           "output"}));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
@@ -83,8 +91,14 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.camera = camera_in(root, scene.motion);
   scene.light = light_in(root);
   scene.camera_model = camera_model_in(root);
+  scene.weather = weather_in(root);
   scene.realism = realism_in(root);
   scene.intruders = intruders_from(root);
+  if (scene.intruders.size() > kMaxThings)
+    throw Error(
+        fmt::format(
+            "has {} tables [[intruder]]; expected at most {}", scene.intruders.size(), kMaxThings),
+        scene.intruders[kMaxThings].where);
   add_distractors(root, scene);
   scene.truth = truth_in(root);
   scene.render = render_in(root);

@@ -213,6 +213,11 @@ void add_distractors(const TableReader& root, Scene& scene) {
       throw Error(
           "[[distractor]] has no kind; expected bird, multirotor, balloon, glint, dirt or insect",
           table.where());
+    if (scene.intruders.size() + scene.lens_marks.size() >= kMaxThings)
+      throw Error(fmt::format("[[distractor]] is beyond the {} intruders and distractors, birds of "
+                              "flocks included, that a scene has at most",
+                              kMaxThings),
+                  table.where());
     const std::string id = ids.of(table, *kind);
     if (is_on_lens(*kind)) {
       ids.take(table, id);
@@ -222,7 +227,14 @@ void add_distractors(const TableReader& root, Scene& scene) {
     }
     Intruder leader = intruder_from(table, *kind);
     leader.id = id;
-    for (Intruder& one : flock_in(table, leader, scene.seed)) {
+    std::vector<Intruder> flock = flock_in(table, leader, scene.seed);
+    if (scene.intruders.size() + scene.lens_marks.size() + flock.size() > kMaxThings)
+      table.fail("count",
+                 fmt::format("count is {}, with which the scene has more than {} intruders and "
+                             "distractors; expected fewer",
+                             flock.size(),
+                             kMaxThings));
+    for (Intruder& one : flock) {
       ids.take(table, one.id);
       scene.intruders.push_back(std::move(one));
     }

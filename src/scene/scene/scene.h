@@ -155,6 +155,23 @@ struct CameraModel {
   std::vector<std::string> automatic;
 };
 
+// [weather]: how the light and the camera of what is inserted depart from those of the clip, whose
+// own picture stays as it is. An empty factor is 1. Every field has a row in kWeatherKeys
+// (camera_keys.h).
+struct Weather {
+  // On the light of sun, sky and ground that falls on what is inserted.
+  std::optional<double> exposure;
+  // On the ratio of red to blue in that light.
+  std::optional<double> white_balance;
+  // On optics.point_spread_px.
+  std::optional<double> blur;
+  // On the standard deviation of the sensor's noise.
+  std::optional<double> noise;
+  // Share of the sun's direct light that reaches what is inserted: 0 behind a cloud.
+  std::optional<double> sun_share;
+  Where where;
+};
+
 // [realism]: where the camera model's values come from when the scene does not state them.
 struct Realism {
   // A camera.toml, whose values fill in for keys that the scene does not state.
@@ -288,6 +305,7 @@ struct Scene {
   Motion motion;
   Light light;
   CameraModel camera_model;
+  Weather weather;
   Realism realism;
   // The aircraft first, in the order of the file, then the distractors in the air.
   std::vector<Intruder> intruders;

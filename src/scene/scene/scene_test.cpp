@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/files.h"
+#include "scene/scene/camera_keys.h"
 #include "support/source_folder.h"
 
 namespace airtruth::scene {
@@ -138,6 +139,20 @@ TEST(Scene, AwkwardTextsAndNumbersReadBackTheSame) {
   EXPECT_EQ(toml_from_scene(again), toml_from_scene(scene));
 }
 
+TEST(Scene, WeatherIsReadAndWrittenAgain) {
+  const Scene scene = parse_scene(
+      "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n[air]\nextinction_per_km = "
+      "[0.4, 0.5, 0.6]\n[weather]\nexposure = 1.2\nsun_share = 0\n",
+      "/s.toml");
+  EXPECT_EQ(scene.weather.exposure, 1.2);
+  EXPECT_EQ(scene.weather.sun_share, 0);
+  EXPECT_FALSE(scene.weather.blur);
+  const Scene again = parse_scene(toml_from_scene(scene), "/s.toml");
+  EXPECT_EQ(weather_facts(again), weather_facts(scene));
+  // Of green: ln 50 / 0.5 km.
+  EXPECT_NEAR(weather_facts(scene).at("visibility_m"), 7824.05, 0.01);
+}
+
 // The shipped examples are valid scenes, and the first names every key that exists.
 TEST(Scene, ExamplesAreGood) {
   int count = 0;
@@ -193,6 +208,10 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "path_file",
                                 "reference",
                                 "smoothing_s",
+                                "white_balance",
+                                "blur",
+                                "noise",
+                                "sun_share",
                                 "sun_azimuth_deg",
                                 "sun_elevation_deg",
                                 "exposure",

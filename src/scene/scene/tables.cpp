@@ -185,6 +185,17 @@ TableReader::Keys with_camera_tables(TableReader::Keys before, const TableReader
   return before;
 }
 
+Weather weather_in(const TableReader& parent) {
+  TableReader::Keys names;
+  for (const WeatherKey& key : kWeatherKeys) names.emplace_back(key.name);
+  const TableReader table = parent.table("weather", names);
+  Weather weather;
+  weather.where = table.where();
+  for (const WeatherKey& key : kWeatherKeys)
+    weather.*key.member = table.number(key.name, key.limits);
+  return weather;
+}
+
 Realism realism_in(const TableReader& parent) {
   const TableReader table = parent.table("realism", {"file", "auto", "profile", "fallback"});
   Realism realism;

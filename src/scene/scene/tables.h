@@ -24,6 +24,7 @@ Lens lens_in(const TableReader& parent);
 Camera camera_in(const TableReader& parent, const Motion& motion);
 Motion motion_in(const TableReader& parent);
 CameraModel camera_model_in(const TableReader& parent);
+Weather weather_in(const TableReader& parent);
 Realism realism_in(const TableReader& parent);
 Light light_in(const TableReader& parent);
 Truth truth_in(const TableReader& parent);

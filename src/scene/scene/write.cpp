@@ -132,6 +132,12 @@ void add_camera_model(Text& text, const CameraModel& model) {
   }
 }
 
+void add_weather(Text& text, const Weather& weather) {
+  if (!states_any_key(weather)) return;
+  text.heading("[weather]");
+  for (const WeatherKey& key : kWeatherKeys) text.add(key.name, weather.*key.member);
+}
+
 void add_realism(Text& text, const Realism& realism) {
   text.heading("[realism]");
   text.add("file", realism.file);
@@ -295,6 +301,7 @@ std::string toml_from_scene(const Scene& scene) {
   add_light(text, scene.light);
   add_things(text, scene);
   add_camera_model(text, scene.camera_model);
+  add_weather(text, scene.weather);
   add_realism(text, scene.realism);
   add_truth(text, scene.truth);
   text.heading("[render]");

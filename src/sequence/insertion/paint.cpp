@@ -10,6 +10,7 @@
 #include "picture/composite/spots.h"
 #include "picture/composite/spread.h"
 #include "picture/video/still.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/insertion/frame_coder.h"
 #include "sequence/setup/from_scene.h"
 
@@ -38,6 +39,27 @@ image::Layer through_air_and_lens(image::Layer layer,
       layer, model.point_spread_px.value_or(0), margin_px(model), size.width, size.height);
 }
 
+// The light of the clip, changed by [weather]. What the air between adds stays the clip's.
+shade::Light light_on_intruders(const scene::Scene& scene, const Ambient& ambient) {
+  shade::Light light{setup::to_sun_in_world(scene.light),
+                     ambient.sun,
+                     ambient.sky(),
+                     ambient.ground,
+                     scene.composite.method == scene::CompositeMethod::kChromaKey
+                         ? std::nullopt
+                         : std::optional(ambient.surroundings)};
+  if (!scene::states_any_key(scene.weather)) return light;
+  const std::array<float, 3> by = setup::light_in_weather(scene.weather);
+  const auto sun_share = static_cast<float>(scene.weather.sun_share.value_or(1));
+  for (std::size_t c = 0; c < 3; ++c) {
+    light.sun[c] *= by[c] * sun_share;
+    light.sky[c] *= by[c];
+    light.ground[c] *= by[c];
+  }
+  if (light.surroundings) light.surroundings = light.surroundings->scaled({by[0], by[1], by[2]});
+  return light;
+}
+
 class Matte : public Painter {
  public:
   using Painter::Painter;
@@ -52,7 +74,7 @@ class Matte : public Painter {
       coder_.emplace(*scene_.camera_model.codec_step);
     if (!painted.layer.empty()) {
       composite::MatteOptions options{.own_aircraft = mask_};
-      options.sensor = setup::sensor_of(scene_.camera_model);
+      options.sensor = setup::sensor_of(setup::camera_in_weather(scene_));
       options.seed = scene_.seed;
       options.frame = moment.frame;
       options.coder = coder_ ? &*coder_ : nullptr;
@@ -185,13 +207,8 @@ image::Layer render_layer(const scene::Scene& scene,
                           moment.sight.shutter,
                           moment.sight.camera,
                           moment.sight.frame_from_nominal_per_s};
-  const shade::Light light{setup::to_sun_in_world(scene.light),
-                           ambient.sun,
-                           ambient.sky(),
-                           ambient.ground,
-                           scene.composite.method == scene::CompositeMethod::kChromaKey
-                               ? std::nullopt
-                               : std::optional(ambient.surroundings)};
+  const shade::Light light = light_on_intruders(scene, ambient);
+  const scene::CameraModel camera = setup::camera_in_weather(scene);
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
@@ -212,15 +229,11 @@ image::Layer render_layer(const scene::Scene& scene,
         view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
     if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
     if (has_spots) composite::hide_behind(layer, covers, own_aircraft);
-    layer = through_air_and_lens(std::move(layer), scene.camera_model, ambient, size);
+    layer = through_air_and_lens(std::move(layer), camera, ambient, size);
   }
   if (!has_spots) return layer;
-  return composite::with_spots(std::move(layer),
-                               world.actors.size(),
-                               on_lens,
-                               covers,
-                               own_aircraft,
-                               margin_px(scene.camera_model));
+  return composite::with_spots(
+      std::move(layer), world.actors.size(), on_lens, covers, own_aircraft, margin_px(camera));
 }
 
 void check_method(const scene::Scene& scene, const lens::Lens& lens) {

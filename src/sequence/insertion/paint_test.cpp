@@ -2,8 +2,10 @@
 // Distractors through the whole way from a scene to a frame's truth: geometry against pixels.
 #include "sequence/insertion/paint.h"
 
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -242,6 +244,69 @@ TEST(Distractors, ANearerBalloonHidesABird) {
       0);
   EXPECT_GT(made.truth.intruders[0].hidden_by_intruder, 0.1);
   EXPECT_EQ(made.truth.intruders[1].hidden_by_intruder, 0);
+}
+
+// A balloon of 40 px in the light of a sun and of a sky that is even.
+image::Layer layer_in(const std::string& weather, const std::array<float, 3>& sun) {
+  const scene::Scene scene = scene_with(
+      "[[distractor]]\nkind = \"balloon\"\nsize_m = 0.6\ncolour = [0.5, 0.5, 0.5]\n"
+      "position_ned_m = [8, 0, -150]\n" +
+      weather);
+  const setup::World world = setup::load_world(scene, kSize, {});
+  Ambient ambient;
+  ambient.sun = sun;
+  ambient.surroundings = shade::Environment::of([](const Vector3&) {
+    return image::Rgb{0.2f, 0.3f, 0.4f};
+  });
+  return render_layer(scene, world, setup::moment_at(world, 0, 0, {}), ambient);
+}
+
+std::array<double, 3> sums_of(const image::Layer& layer) {
+  std::array<double, 3> sums{};
+  for (const image::LayerPixel& pixel : layer.pixels) {
+    sums[0] += double{pixel.red};
+    sums[1] += double{pixel.green};
+    sums[2] += double{pixel.blue};
+  }
+  return sums;
+}
+
+// Light is linear: each factor of [weather] is that of the light that leaves the intruder.
+TEST(Weather, ChangesTheLightOnWhatIsInserted) {
+  const std::array<float, 3> sun = {0.5f, 0.5f, 0.5f};
+  const auto plain = sums_of(layer_in("", sun));
+  const auto bright = sums_of(layer_in("[weather]\nexposure = 2\n", sun));
+  const auto warm = sums_of(layer_in("[weather]\nwhite_balance = 1.44\n", sun));
+  const auto clouded = sums_of(layer_in("[weather]\nsun_share = 0\n", sun));
+  const auto sunless = sums_of(layer_in("", {}));
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_GT(plain[c], 100);
+    EXPECT_NEAR(bright[c] / plain[c], 2, 1e-4) << c;
+    EXPECT_NEAR(warm[c] / plain[c], std::pow(1.2, 1 - static_cast<int>(c)), 1e-4) << c;
+    EXPECT_NEAR(clouded[c], sunless[c], 1e-4 * sunless[c]) << c;
+    EXPECT_LT(clouded[c], 0.95 * plain[c]) << c;
+  }
+}
+
+// A factor on what the camera does is the same as that number stated; of noise it is the standard
+// deviation's, so that the variance takes its square.
+TEST(Weather, ChangesTheCameraOfWhatIsInserted) {
+  const std::string balloon =
+      "[[distractor]]\nkind = \"balloon\"\nsize_m = 0.6\nposition_ned_m = [8, 0, -150]\n";
+  const auto luma = [&](const std::string& tables) {
+    const Drawn made = drawn(scene_with(balloon + tables), 0);
+    std::vector<std::uint8_t> samples;
+    for (int y = 0; y < kSize.height; ++y) {
+      const auto* row = made.after.planes[0].row(y);
+      samples.insert(samples.end(), row, row + kSize.width);
+    }
+    return samples;
+  };
+  const auto with = luma(
+      "[optics]\npoint_spread_px = 0.8\n[sensor]\nnoise_floor = 1e-5\n[weather]\nblur = 2\nnoise "
+      "= 3\n");
+  EXPECT_EQ(with, luma("[optics]\npoint_spread_px = 1.6\n[sensor]\nnoise_floor = 9e-5\n"));
+  EXPECT_NE(with, luma("[optics]\npoint_spread_px = 0.8\n[sensor]\nnoise_floor = 1e-5\n"));
 }
 
 }  // namespace

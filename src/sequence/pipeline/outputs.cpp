@@ -14,6 +14,7 @@
 #include "foundation/json/or_null.h"
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
+#include "scene/scene/camera_keys.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
 
@@ -148,6 +149,8 @@ void Outputs::write_record(const scene::Scene& scene,
   record["name"] = scene.name;
   record["seed"] = scene.seed;
   record["weight"] = or_null(scene.weight);
+  if (const auto weather = scene::weather_facts(scene); !weather.empty())
+    record["weather"] = weather;
   record["encoder"] = writer_.encoder();
   record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
   record["scene_toml"] = scene::toml_from_scene(scene);

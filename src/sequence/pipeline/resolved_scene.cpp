@@ -134,11 +134,12 @@ bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
 // than none.
 void refuse_with_chroma_key(const scene::Scene& scene) {
   if (scene.composite.method != scene::CompositeMethod::kChromaKey) return;
-  if (scene.realism.file || scene.realism.automatic || scene::states_any_key(scene.camera_model))
+  if (scene.realism.file || scene.realism.automatic || scene::states_any_key(scene.camera_model) ||
+      scene::states_any_key(scene.weather))
     throw Error(
         "composite.method chroma-key is for the picture as it is, without [shutter], [air], "
-        "[optics], "
-        "[sensor] and [realism]; expected none of them, or method = \"matte\"",
+        "[optics], [sensor], [weather] and [realism]; expected none of them, or method = "
+        "\"matte\"",
         scene.realism.where.line > 0 ? scene.realism.where : Where{scene.file.string()});
 }
 
@@ -313,6 +314,31 @@ void expect_standard_range(const scene::Scene& scene, const video::StreamInfo& i
       {scene.background.video.string()});
 }
 
+// A factor of [weather] has something to multiply, be it measured later.
+void check_weather(const scene::Scene& scene, const std::vector<std::string>& to_measure) {
+  const auto expect =
+      [&](const std::optional<double>& factor,
+          const char* name,
+          const std::vector<std::pair<std::string, std::optional<double>>>& values) {
+        const bool has_value = std::any_of(values.begin(), values.end(), [&](const auto& value) {
+          return value.second ||
+                 std::find(to_measure.begin(), to_measure.end(), value.first) != to_measure.end();
+        });
+        if (factor && !has_value)
+          throw Error(
+              fmt::format("[weather] {} is a factor on {}, which the scene has not; expected a "
+                          "number or \"auto\" there, or [realism]",
+                          name,
+                          values.front().first),
+              scene.weather.where);
+      };
+  const scene::CameraModel& model = scene.camera_model;
+  expect(scene.weather.blur, "blur", {{"optics.point_spread_px", model.point_spread_px}});
+  expect(scene.weather.noise,
+         "noise",
+         {{"sensor.noise_gain", model.noise_gain}, {"sensor.noise_floor", model.noise_floor}});
+}
+
 StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
   refuse_with_chroma_key(scene);
@@ -325,6 +351,7 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   fill_from_file(result.scene, file);
   result.to_measure = left_to_measure(result.scene);
   check_profile(scene.realism, info, !result.to_measure.empty());
+  check_weather(result.scene, result.to_measure);
   if (!result.sun_is_known && file.sun_azimuth_deg && file.sun_elevation_deg) {
     result.scene.light.sun_azimuth_deg = *file.sun_azimuth_deg;
     result.scene.light.sun_elevation_deg = *file.sun_elevation_deg;

@@ -43,6 +43,7 @@ class Previewer {
   Previewer(const scene::Scene& scene, const pipeline::Options& options)
       : options_(options),
         opened_(pipeline::open_scene(scene, options)),
+        parties_(parties_of(opened_.stated.scene)),
         motion_(known_motion()),
         painter_(insertion::make_painter(
             opened_.stated.scene, world(), opened_.mask.get(), nullptr, options.stop)),
@@ -63,8 +64,9 @@ class Previewer {
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
     result.has_motion = motion_.has_value();
-    result.rows = preview_rows(world(), times, [&](double time_s) { return moment(time_s); });
-    result.approaches = approach_lines(world(), result.rows, duration_s_);
+    result.rows =
+        preview_rows(world(), parties_, times, [&](double time_s) { return moment(time_s); });
+    result.approaches = approach_lines(world(), parties_, result.rows, duration_s_);
     const auto seen = times_in_view(result.rows);
     std::vector<cv::Mat> parts = {title(result.approaches), top(result.rows, seen)};
     if (!seen.empty()) parts.push_back(moments(chosen(seen)));
@@ -148,10 +150,21 @@ class Previewer {
     return std::move(*frame);
   }
 
+  Shake shake_at(double time_s) const { return motion_ ? motion_->nearest(time_s).shake : Shake{}; }
+
   setup::Moment moment(double time_s) const {
-    const Shake shake = motion_ ? motion_->nearest(time_s).shake : Shake{};
-    return setup::moment_at(
-        world(), static_cast<std::int64_t>(std::llround(time_s * rate_hz_)), time_s, shake);
+    return setup::moment_at(world(),
+                            static_cast<std::int64_t>(std::llround(time_s * rate_hz_)),
+                            time_s,
+                            shake_at(time_s));
+  }
+
+  // The camera alone: what a point of a path needs.
+  projection::Sight sight_at(double time_s) const {
+    const auto camera = world().camera.at(time_s);
+    if (!camera) return moment(time_s).sight;  // says what is wrong
+    return setup::sight_of(
+        world().lens, world().shutter, world().camera, *camera, time_s, shake_at(time_s));
   }
 
   // The time whose frame stands behind the paths: that of the nearest intruder in view.
@@ -187,8 +200,7 @@ class Previewer {
                          std::max(1, static_cast<int>(std::lround(rgb.height * scale))),
                          scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
     cv::Mat canvas = drawing::view(scaled).clone();
-    for (std::size_t actor = 0; actor < world().actors.size(); ++actor)
-      draw_path(canvas, actor, scale);
+    for (std::size_t i = 0; i < parties_.size(); ++i) draw_path(canvas, i, scale);
     draw_ticks(canvas, scale);
     return canvas;
   }
@@ -216,16 +228,16 @@ class Previewer {
 
   // The pixels of an intruder's centre, each in the frame of its time, joined, with the seconds
   // beside them.
-  void draw_path(cv::Mat& canvas, std::size_t actor, double scale) const {
-    const trajectory::Path& path = world().actors[actor].path;
-    const cv::Scalar colour = drawing::intruder_colour(actor);
+  void draw_path(cv::Mat& canvas, std::size_t party, double scale) const {
+    const trajectory::Path& path = world().actors[parties_[party].middle].path;
+    const cv::Scalar colour = drawing::intruder_colour(party);
     std::optional<cv::Point> before;
     const auto steps = static_cast<int>(duration_s_ / kPathStepS);
     for (int i = 0; i <= steps; ++i) {
       const double time_s = kPathStepS * i;
       const auto state = path.at(time_s);
       const auto pixel =
-          state ? projection::pixel_from_world(moment(time_s).sight, state->position_in_world)
+          state ? projection::pixel_from_world(sight_at(time_s), state->position_in_world)
                 : std::nullopt;
       const bool is_near = pixel && std::abs(pixel->x()) < 4 * world().lens.size().width &&
                            std::abs(pixel->y()) < 4 * world().lens.size().height;
@@ -261,9 +273,9 @@ class Previewer {
   cv::Mat top(const std::vector<PreviewRow>& rows, const std::vector<double>& seen) {
     const cv::Mat main = main_picture(rows, seen);
     std::vector<drawing::FlightLine> lines = {flight_of("own", world().camera, drawing::kWhite)};
-    for (std::size_t actor = 0; actor < world().actors.size(); ++actor)
+    for (std::size_t i = 0; i < parties_.size(); ++i)
       lines.push_back(flight_of(
-          world().actors[actor].id, world().actors[actor].path, drawing::intruder_colour(actor)));
+          parties_[i].name, world().actors[parties_[i].middle].path, drawing::intruder_colour(i)));
     const int plan_px = main.rows * 2 / 3;
     const auto camera = world().camera.at(0);
     image::Rgb8 plan = drawing::plan_view(
@@ -305,14 +317,8 @@ class Previewer {
 
   cv::Mat table(const std::vector<PreviewRow>& rows) const {
     std::vector<drawing::TableRow> shown;
-    for (const PreviewRow& row : rows) {
-      const auto actor = std::find_if(world().actors.begin(),
-                                      world().actors.end(),
-                                      [&](const setup::Actor& a) { return a.id == row.intruder; });
-      shown.push_back(
-          {drawing::intruder_colour(static_cast<std::size_t>(actor - world().actors.begin())),
-           table_cells(row)});
-    }
+    for (const PreviewRow& row : rows)
+      shown.push_back({drawing::intruder_colour(row.party), table_cells(row)});
     image::Rgb8 picture = drawing::table_picture(table_heading(), shown, kWidthPx);
     return drawing::view(picture).clone();
   }
@@ -362,6 +368,7 @@ class Previewer {
 
   const pipeline::Options& options_;
   pipeline::OpenedScene opened_;
+  std::vector<Party> parties_;
   std::optional<setup::MotionSource> motion_;
   std::unique_ptr<insertion::Painter> painter_;
   double rate_hz_;

@@ -18,7 +18,7 @@ struct Preview {
   // frames of single moments, and the rows as a table.
   image::Rgb8 picture;
   std::vector<PreviewRow> rows;
-  // The closest approach of each intruder in words, one line each.
+  // The closest approach of each intruder or flock in words, one line each.
   std::vector<std::string> approaches;
   // True where each moment has the camera's measured motion.
   bool has_motion = false;

@@ -42,8 +42,10 @@ scene::Scene head_on(const fs::path& video) {
 }
 
 TEST(PreviewRows, NumbersAreThoseOfAHeadOnEncounter) {
-  const setup::World world = setup::load_world(head_on("none.mp4"), {640, 480}, {});
-  const auto rows = preview_rows(world, whole_seconds(5), [&](double time_s) {
+  const scene::Scene scene = head_on("none.mp4");
+  const setup::World world = setup::load_world(scene, {640, 480}, {});
+  const auto parties = parties_of(scene);
+  const auto rows = preview_rows(world, parties, whole_seconds(5), [&](double time_s) {
     return setup::moment_at(world, std::llround(30 * time_s), time_s, {});
   });
   ASSERT_EQ(rows.size(), 6u);
@@ -58,10 +60,42 @@ TEST(PreviewRows, NumbersAreThoseOfAHeadOnEncounter) {
   EXPECT_NEAR(rows[0].box_px->width, focal_px * 11 / 300, 1);
   EXPECT_FALSE(rows[4].box_px);  // abeam
   EXPECT_FALSE(rows[5].tcpa_s);  // diverging
-  const auto lines = approach_lines(world, rows, 5);
+  const auto lines = approach_lines(world, parties, rows, 5);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], testing::HasSubstr("near: closest 22.4 m at 4.00 s"));
   EXPECT_THAT(table_text(rows), testing::HasSubstr("out of view"));
+}
+
+// Two flocks side by side and a lone bird: a row for each, around all of its members.
+TEST(PreviewRows, AFlockIsOneRow) {
+  const auto flock = [](int east_m, int count) {
+    return "[[distractor]]\nkind = \"bird\"\ncount = " + std::to_string(count) +
+           "\nspread_m = 5\nposition_ned_m = [100, " + std::to_string(east_m) + ", -150]\n";
+  };
+  const scene::Scene scene =
+      scene::parse_scene("[background]\nvideo = \"none.mp4\"\n[lens]\nvertical_fov_deg = 60\n" +
+                             flock(-20, 12) + flock(20, 7) + flock(0, 1),
+                         "flocks.toml");
+  const auto parties = parties_of(scene);
+  ASSERT_EQ(parties.size(), 3u);
+  EXPECT_EQ(parties[0].name, "bird-1 (12)");
+  EXPECT_EQ(parties[1].name, "bird-2 (7)");
+  EXPECT_EQ(parties[2].name, "bird-3");
+  const setup::World world = setup::load_world(scene, {640, 480}, {});
+  const setup::Moment moment = setup::moment_at(world, 0, 0, {});
+  const auto rows = preview_rows(world, parties, {0}, [&](double) { return moment; });
+  ASSERT_EQ(rows.size(), 3u);
+  double nearest_m = HUGE_VAL;
+  for (std::size_t i = 0; i < 12; ++i) {
+    const Box& one = *moment.boxes[i].box;
+    EXPECT_GE(one.x, rows[0].box_px->x);
+    EXPECT_LE(one.bottom(), rows[0].box_px->bottom());
+    nearest_m =
+        std::min(nearest_m, (moment.states[i]->position_in_world - Vector3(0, 0, -150)).norm());
+  }
+  EXPECT_NEAR(rows[0].range_m, nearest_m, 1e-9);
+  EXPECT_LT(rows[0].box_px->right(), rows[1].box_px->x);
+  EXPECT_EQ(approach_lines(world, parties, rows, 1).size(), 3u);
 }
 
 TEST(Preview, ThePictureShowsTheIntruderWhereTheRowsSay) {

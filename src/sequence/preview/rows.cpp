@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,15 +19,31 @@ std::string cell(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-PreviewRow row_of(const setup::World& world, const setup::Moment& moment, std::size_t actor) {
-  const trajectory::State& state = *moment.states[actor];
-  const separation::Measures m =
-      separation::measures(passage::mover_of(moment.camera), passage::mover_of(state));
+Box around(const Box& a, const Box& b) {
+  const double x = std::min(a.x, b.x);
+  const double y = std::min(a.y, b.y);
+  return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
+}
+
+// Empty where none of the party is in the world.
+std::optional<PreviewRow> row_of(const setup::World& world,
+                                 const setup::Moment& moment,
+                                 const Party& party) {
   PreviewRow row;
+  std::optional<separation::Measures> nearest;
+  for (const std::size_t actor : party.actors) {
+    if (!moment.states[actor]) continue;
+    const separation::Measures m = separation::measures(passage::mover_of(moment.camera),
+                                                        passage::mover_of(*moment.states[actor]));
+    if (!nearest || m.range_m < nearest->range_m) nearest = m;
+    const auto& box = moment.boxes[actor].box;
+    if (box && setup::meets_frame(*box, world.lens.size()))
+      row.box_px = row.box_px ? around(*row.box_px, *box) : *box;
+  }
+  if (!nearest) return std::nullopt;
+  const separation::Measures& m = *nearest;
   row.time_s = moment.time_s;
-  row.intruder = world.actors[actor].id;
-  const auto& box = moment.boxes[actor].box;
-  if (box && setup::meets_frame(*box, world.lens.size())) row.box_px = box;
+  row.intruder = party.name;
   row.range_m = m.range_m;
   row.bearing_deg = m.relative_bearing_deg;
   row.above_m = m.above_m;
@@ -35,7 +52,41 @@ PreviewRow row_of(const setup::World& world, const setup::Moment& moment, std::s
   return row;
 }
 
+// A flock's members are "ID-1", "ID-2", ... of one table.
+std::string flock_name(const std::string& id) { return id.substr(0, id.rfind('-')); }
+
+bool are_of_one_flock(const scene::Intruder& a, const scene::Intruder& b) {
+  return a.distractor && b.distractor && a.where.line == b.where.line &&
+         a.where.column == b.where.column && flock_name(a.id) == flock_name(b.id);
+}
+
+std::size_t middle_of(const scene::Scene& scene, const std::vector<std::size_t>& actors) {
+  Vector3 mean = Vector3::Zero();
+  for (const std::size_t actor : actors) mean += scene.intruders[actor].offset_ned_m;
+  mean /= static_cast<double>(actors.size());
+  return *std::min_element(actors.begin(), actors.end(), [&](std::size_t a, std::size_t b) {
+    return (scene.intruders[a].offset_ned_m - mean).norm() <
+           (scene.intruders[b].offset_ned_m - mean).norm();
+  });
+}
+
 }  // namespace
+
+std::vector<Party> parties_of(const scene::Scene& scene) {
+  std::vector<Party> parties;
+  for (std::size_t i = 0; i < scene.intruders.size(); ++i) {
+    if (i == 0 || !are_of_one_flock(scene.intruders[i - 1], scene.intruders[i]))
+      parties.emplace_back();
+    parties.back().actors.push_back(i);
+  }
+  for (Party& party : parties) {
+    const std::string& id = scene.intruders[party.actors.front()].id;
+    const std::size_t count = party.actors.size();
+    party.name = count == 1 ? id : fmt::format("{} ({})", flock_name(id), count);
+    party.middle = middle_of(scene, party.actors);
+  }
+  return parties;
+}
 
 std::vector<double> whole_seconds(double duration_s) {
   const double last_s = std::floor(duration_s + 1e-6);
@@ -47,41 +98,62 @@ std::vector<double> whole_seconds(double duration_s) {
 
 std::vector<PreviewRow> preview_rows(
     const setup::World& world,
+    const std::vector<Party>& parties,
     const std::vector<double>& times_s,
     const std::function<setup::Moment(double time_s)>& moment_at_time) {
   std::vector<PreviewRow> rows;
   for (const double time_s : times_s) {
     const setup::Moment moment = moment_at_time(time_s);
-    for (std::size_t actor = 0; actor < world.actors.size(); ++actor)
-      if (moment.states[actor]) rows.push_back(row_of(world, moment, actor));
+    for (std::size_t i = 0; i < parties.size(); ++i)
+      if (auto row = row_of(world, moment, parties[i])) {
+        row->party = i;
+        rows.push_back(std::move(*row));
+      }
   }
   return rows;
 }
 
+namespace {
+
+std::optional<passage::Approach> nearest_of(const setup::World& world,
+                                            const Party& party,
+                                            double duration_s) {
+  std::optional<passage::Approach> nearest;
+  for (const std::size_t actor : party.actors) {
+    const auto one =
+        passage::closest_approach(world.camera, world.actors[actor].path, 0, duration_s);
+    if (one && (!nearest || one->distance_m < nearest->distance_m)) nearest = one;
+  }
+  return nearest;
+}
+
+}  // namespace
+
 std::vector<std::string> approach_lines(const setup::World& world,
+                                        const std::vector<Party>& parties,
                                         const std::vector<PreviewRow>& rows,
                                         double duration_s) {
   std::vector<std::string> lines;
-  for (std::size_t actor = 0; actor < world.actors.size(); ++actor) {
-    const setup::Actor& intruder = world.actors[actor];
-    const auto closest = passage::closest_approach(world.camera, intruder.path, 0, duration_s);
+  for (std::size_t i = 0; i < parties.size(); ++i) {
+    const Party& party = parties[i];
+    const auto closest = nearest_of(world, party, duration_s);
     if (!closest) {
-      lines.push_back(fmt::format("{}: not in the world while the clip lasts", intruder.id));
+      lines.push_back(fmt::format("{}: not in the world while the clip lasts", party.name));
       continue;
     }
     std::string line =
         fmt::format("{}: closest {:.1f} m at {:.2f} s ({:.1f} ahead, {:.1f} right, {:.1f} above)",
-                    intruder.id,
+                    party.name,
                     closest->distance_m,
                     closest->time_s,
                     closest->offset.ahead_m,
                     closest->offset.right_m,
                     closest->offset.above_m);
     const bool is_seen = std::any_of(rows.begin(), rows.end(), [&](const PreviewRow& row) {
-      return row.intruder == intruder.id && row.box_px;
+      return row.party == i && row.box_px;
     });
     if (!is_seen)
-      if (const auto nearest = setup::nearest_approach(world, actor, duration_s))
+      if (const auto nearest = setup::nearest_approach(world, party.middle, duration_s))
         line += nearest->off_view_deg > 0
                     ? fmt::format("; never in view, nearest at {:.2f} s, {:.1f} degrees outside",
                                   nearest->time_s,

@@ -7,17 +7,31 @@
 #include <vector>
 
 #include "foundation/geometry/box.h"
+#include "scene/scene/scene.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
 
 namespace airtruth::preview {
 
-// An intruder at a whole second of the clip.
+// What the preview shows as one: an intruder, or a flock, whose members one table [[distractor]]
+// states.
+struct Party {
+  std::string name;  // "b737"; "bird-1 (40)"
+  // Numbers of its actors in the world.
+  std::vector<std::size_t> actors;
+  // The one of them that is nearest to their middle: its path stands for all.
+  std::size_t middle = 0;
+};
+std::vector<Party> parties_of(const scene::Scene& scene);
+
+// A party at a whole second of the clip.
 struct PreviewRow {
   double time_s = 0;
-  std::string intruder;
-  // The exact box; empty where the intruder is not in view.
+  std::size_t party = 0;
+  std::string intruder;  // its name
+  // The exact box, of a flock around those in view; empty where none is in view.
   std::optional<Box> box_px;
+  // These are of the nearest.
   double range_m = 0;
   // From the own course, right positive; empty where the own aircraft hovers.
   std::optional<double> bearing_deg;
@@ -29,15 +43,17 @@ struct PreviewRow {
 // Whole seconds of a clip, at most 60 of them: where the clip is longer they are further apart.
 std::vector<double> whole_seconds(double duration_s);
 
-// Every intruder at every one of the times at which it is in the world.
+// Every party at every one of the times at which it is in the world.
 std::vector<PreviewRow> preview_rows(
     const setup::World& world,
+    const std::vector<Party>& parties,
     const std::vector<double>& times_s,
     const std::function<setup::Moment(double time_s)>& moment_at_time);
 
 // "b737: closest 61 m (60 right, 11 above) at 8.00 s", and where it never comes into view how near
-// it comes to it.
+// it comes to it. Of a flock, the nearest member's.
 std::vector<std::string> approach_lines(const setup::World& world,
+                                        const std::vector<Party>& parties,
                                         const std::vector<PreviewRow>& rows,
                                         double duration_s);
 

@@ -190,6 +190,26 @@ video::Encoder encoder_of(scene::OutputEncoder encoder) {
   return enum_named<video::Encoder>(enum_name(encoder)).value();
 }
 
+scene::CameraModel camera_in_weather(const scene::Scene& scene) {
+  scene::CameraModel model = scene.camera_model;
+  const auto scale = [](std::optional<double>& value, double factor) {
+    if (value) *value *= factor;
+  };
+  scale(model.point_spread_px, scene.weather.blur.value_or(1));
+  const double noise = scene.weather.noise.value_or(1);
+  scale(model.noise_gain, noise * noise);
+  scale(model.noise_floor, noise * noise);
+  return model;
+}
+
+std::array<float, 3> light_in_weather(const scene::Weather& weather) {
+  const double exposure = weather.exposure.value_or(1);
+  const double red = std::sqrt(weather.white_balance.value_or(1));
+  return {static_cast<float>(exposure * red),
+          static_cast<float>(exposure),
+          static_cast<float>(exposure / red)};
+}
+
 composite::Sensor sensor_of(const scene::CameraModel& model) {
   composite::Sensor sensor;
   sensor.sharpening = model.sharpening.value_or(0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -58,6 +59,11 @@ image::ToneCurve tone_of(const scene::CameraModel& model);
 video::Format format_of(scene::OutputVideo video);
 // [output] encoder: who encodes H.264.
 video::Encoder encoder_of(scene::OutputEncoder encoder);
+
+// The camera model of what is inserted: that of the clip, changed by [weather].
+scene::CameraModel camera_in_weather(const scene::Scene& scene);
+// [weather]: the factor on the light of sky and ground, by channel. The sun's has sun_share beside.
+std::array<float, 3> light_in_weather(const scene::Weather& weather);
 
 // [optics] and [sensor]: what the camera does to samples after the point spread. Quantities that
 // the model lacks are 0: no sharpening, no noise, no chroma spread.

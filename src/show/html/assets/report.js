@@ -23,6 +23,10 @@
     sequence.smallest = least(sizes);
     encounters.addKeys(sequence);
   });
+  // How what is inserted departs from the clip: the keys that any sequence states.
+  const weatherKeys = [...new Set(data.sequences.flatMap((s) => Object.keys(s.weather)))].sort();
+  for (const sequence of data.sequences)
+    for (const key of weatherKeys) sequence[key] = key in sequence.weather ? sequence.weather[key] : null;
 
   const drawOverview = () => {
     byId('title').textContent = data.title;
@@ -355,6 +359,8 @@
     const limit = (id, otherwise) => (byId(id).value === '' ? otherwise : Number(byId(id).value));
     const [from, to] = [limit('nearest-from', -Infinity), limit('nearest-to', Infinity)];
     const limited = byId('nearest-from').value !== '' || byId('nearest-to').value !== '';
+    const weather = weatherKeys.length ? byId('weather').value : '';
+    const [weatherFrom, weatherTo] = weather ? [limit('weather-from', -Infinity), limit('weather-to', Infinity)] : [];
     const key = byId('sort').value;
     const shown = data.sequences.filter((s) =>
       s.name.toLowerCase().includes(find) &&
@@ -362,6 +368,7 @@
       (!byId('shows').value || (byId('shows').value === 'some') === s.visible > 0) &&
       (!byId('background').value || s.background === byId('background').value) &&
       encounters.matches(s) &&
+      (!weather || (s[weather] !== null && s[weather] >= weatherFrom && s[weather] <= weatherTo)) &&
       (!limited || (s.nearest !== null && s.nearest >= from && s.nearest <= to)));
     const order = byId('descending').checked ? -1 : 1;
     // What has no such number comes last, whichever way.
@@ -386,6 +393,9 @@
   choices('aircraft', data.sequences.flatMap((s) => s.aircraft));
   choices('background', data.sequences.map((s) => s.background));
   encounters.begin(data.sequences, choices);
+  choices('weather', weatherKeys);
+  choices('sort', weatherKeys);
+  if (!weatherKeys.length) byId('of-weather').remove();
   byId('filters').addEventListener('input', list);
   list();
   cards.forEach((card) => seen.observe(card));
