@@ -65,6 +65,7 @@ Background background_from(const TableReader& table) {
   background.camera_model = scene::camera_model_in(table);
   background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);
+  background.occluders = scene::occluders_in(table);
   return background;
 }
 
@@ -151,7 +152,7 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
                                                                          "camera",
                                                                          "motion",
                                                                          "light"},
-                                                                        {"realism"})))
+                                                                        {"realism", "occluder"})))
     catalogue.backgrounds.push_back(background_from(table));
   for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
     catalogue.aircraft.push_back(

@@ -70,7 +70,14 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       file.string(),
       with_camera_tables(
           {"name", "seed", "weight", "background", "lens", "camera", "motion", "light"},
-          {"realism", "intruder", "distractor", "truth", "render", "composite", "output"}));
+          {"realism",
+           "intruder",
+           "distractor",
+           "occluder",
+           "truth",
+           "render",
+           "composite",
+           "output"}));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);
@@ -86,6 +93,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
   scene.realism = realism_in(root);
   scene.intruders = intruders_from(root);
   add_distractors(root, scene);
+  scene.occluders = occluders_in(root);
   scene.truth = truth_in(root);
   scene.render = render_in(root);
   scene.composite = composite_in(root);

@@ -238,6 +238,17 @@ struct TruthVolume {
   double coaltitude_s = 0;
 };
 
+// [[occluder]]: what stands in the picture before the intruders that are farther from the camera.
+// Exactly one of mask and beyond_horizon is present.
+struct Occluder {
+  double range_m = 0;
+  // A grey picture, or numbered ones, a picture for each frame of the clip: white hides.
+  std::optional<fs::path> mask;
+  // What is below the horizon.
+  bool beyond_horizon = false;
+  Where where;
+};
+
 // [truth]: what the truth says of an encounter beside its measures.
 struct Truth {
   // Names of known volumes.
@@ -290,6 +301,7 @@ struct Scene {
   std::vector<Intruder> intruders;
   // The distractors on the lens.
   std::vector<LensMark> lens_marks;
+  std::vector<Occluder> occluders;
   Truth truth;
   Render render;
   Composite composite;

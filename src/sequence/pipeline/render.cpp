@@ -73,6 +73,7 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
     const std::shared_ptr<const video::Frame> frame(work, &work->frame);
     outputs.write(frame, work->truth, work->masks);
     add_frame(tally, *frame, work->moved.motion.state, work->truth);
+    tally.frames_without_horizon += work->horizon_is_assumed ? 1 : 0;
     if (options.progress)
       options.progress({tally.frames, maker.resolved().info.frame_count_estimate});
   });
@@ -121,7 +122,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   const auto limit = thread_limit(options.threads);
   const fs::path folder = out / scene.name;
   RunFiles files;
-  for (const fs::path& file : scene::stated_files(scene)) files.reads(file);
+  for (const fs::path& file : setup::files_read(scene)) files.reads(file);
   files.replaces(folder).check();
   StagedFolder staged(folder, options.overwrite, options.warn);
 

@@ -50,6 +50,7 @@ struct SceneInputs {
   video::Reader background;                 // the scene's part of it
   video::StreamInfo info;                   // with the number of frames that this scene makes of it
   std::unique_ptr<const image::Mask> mask;  // of the own aircraft; null: none
+  insertion::Occluders occluders;           // it and the others
   std::shared_ptr<setup::SharedInputs> inputs;  // of the process, else of this run
   setup::World world;
   std::unique_ptr<backdrop::Backdrop> backdrop;  // of the chroma-key method

@@ -45,7 +45,7 @@ class Previewer {
         opened_(pipeline::open_scene(scene, options)),
         motion_(known_motion()),
         painter_(insertion::make_painter(
-            opened_.stated.scene, world(), opened_.mask.get(), nullptr, options.stop)),
+            opened_.stated.scene, world(), opened_.occluders, nullptr, options.stop)),
         rate_hz_(opened_.info.frame_rate.value()),
         duration_s_(
             static_cast<double>(std::max<std::int64_t>(0, opened_.info.frame_count_estimate - 1)) /
