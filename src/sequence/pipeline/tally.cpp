@@ -136,6 +136,7 @@ void warn_of_run(const Tally& tally,
          fmt::format("[[occluder]] beyond_horizon: {} frames show no horizon; in them it is where "
                      "the camera's attitude and its measured motion have it",
                      tally.frames_without_horizon));
+  setup::warn_below_ground(scene, world, tally.last_time_s, to_warn);
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
     setup::warn_not_flyable(scene.intruders[i], world.actors[i].path, tally.last_time_s, to_warn);
     warn_nearer(scene.intruders[i], world.actors[i], world.camera, tally.last_time_s, to_warn);

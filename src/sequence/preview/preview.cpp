@@ -56,7 +56,8 @@ class Previewer {
 
   Preview make() {
     warn_of_length();
-    // What an aircraft cannot fly is said before it is rendered.
+    // What cannot be flown is said before it is rendered.
+    setup::warn_below_ground(scene(), world(), duration_s_, options_.warn);
     for (std::size_t i = 0; i < world().actors.size(); ++i)
       setup::warn_not_flyable(
           scene().intruders[i], world().actors[i].path, duration_s_, options_.warn);
