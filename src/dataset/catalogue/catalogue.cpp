@@ -62,6 +62,7 @@ Background background_from(const TableReader& table) {
   background.lens = scene::lens_in(table);
   background.motion = scene::motion_in(table);
   background.camera = scene::camera_in(table, background.motion, background.first_frame);
+  background.camera.by_horizon = false;
   background.camera_model = scene::camera_model_in(table);
   background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);

@@ -76,10 +76,13 @@ struct Camera {
   std::optional<fs::path> log;
   // Time of the log = time of the clip + log_offset_s. Empty: the log is on the video's clock.
   std::optional<double> log_offset_s;
-  // With a log: whether the scene states the position and the attitude at the first frame; the
-  // log's are used where it does not.
+  // Whether the scene states the position and the attitude at the first frame. Those of a log are
+  // used where it does not, and an attitude that nothing states is found
+  // (sequence/setup/level_camera.h).
   bool position_is_stated = false;
   bool attitude_is_stated = false;
+  // False: such an attitude is level. A catalogue draws its encounters before a frame is read.
+  bool by_horizon = true;
   // With a log: true where the attitude follows the log throughout, which is so for motion
   // `smoothed`. Otherwise it is that of the first frame, from where the measured motion turns it.
   bool follows_log_attitude = false;

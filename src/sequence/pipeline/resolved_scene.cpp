@@ -16,6 +16,7 @@
 #include "sequence/insertion/ambient.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/level_camera.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/world.h"
 
@@ -356,6 +357,12 @@ OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
   if (auto read = insertion::read_mask(opened, size))
     mask = std::make_unique<const image::Mask>(std::move(*read));
   auto inputs = inputs_of(options);
+  const std::string attitude_words = setup::state_attitude(
+      opened.camera,
+      setup::lens_of(opened.lens, size),
+      mask.get(),
+      [&] { return open_background(scene, options); },
+      options.stop);
   setup::World world = setup::load_world(opened, size, options.warn, options.stop, inputs.get());
   auto backdrop = insertion::open_backdrop(
       opened, world.lens, {.gpu = options.gpu, .software = options.software_gl});
@@ -377,7 +384,8 @@ OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
            std::move(occluders),
            std::move(inputs),
            std::move(world),
-           std::move(backdrop)},
+           std::move(backdrop),
+           attitude_words},
           std::move(as_stated)};
 }
 

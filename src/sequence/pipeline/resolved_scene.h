@@ -54,10 +54,13 @@ struct SceneInputs {
   std::shared_ptr<setup::SharedInputs> inputs;  // of the process, else of this run
   setup::World world;
   std::unique_ptr<backdrop::Backdrop> backdrop;  // of the chroma-key method
+  // Where the camera's attitude was taken from, for the user; "": the scene states it.
+  std::string attitude_words;
 };
 
-// A scene whose files are all opened and checked, before a frame is measured: faults of the user's
-// input are found here.
+// A scene whose files are all opened and checked, before the clip is measured: faults of the user's
+// input are found here. Of its frames only the first few are read, where the camera's attitude is
+// not stated.
 struct OpenedScene : SceneInputs {
   StatedScene stated;
 };

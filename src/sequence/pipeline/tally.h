@@ -38,8 +38,8 @@ void add_frame(Tally& tally,
                const annotation::Frame& truth);
 
 // Warns of what a user should know about a finished run: corrupt or missing frames, bridged motion,
-// cuts, horizons that were not found, intruders that fly below the ground or beyond their type's limits, that come
-// nearer than their stated closest approach, and that are never visible.
+// cuts, horizons that were not found, intruders that fly below the ground or beyond their type's
+// limits, that come nearer than their stated closest approach, and that are never visible.
 void warn_of_run(const Tally& tally,
                  const scene::Scene& scene,
                  const setup::World& world,

@@ -64,6 +64,7 @@ class Previewer {
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
     result.has_motion = motion_.has_value();
+    result.attitude_words = opened_.attitude_words;
     result.rows = preview_rows(world(), times, [&](double time_s) { return moment(time_s); });
     result.approaches = approach_lines(world(), result.rows, duration_s_);
     const auto seen = times_in_view(result.rows);
