@@ -112,6 +112,8 @@ struct IntruderTruth {
   std::optional<std::array<double, 2>> centroid_px;
   // Shares of the intruder's silhouette, 0..1.
   double hidden_by_own_aircraft = 0;
+  // Empty where the scene has no [[occluder]].
+  std::optional<double> hidden_by_occluder;
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
   // "aircraft", or what a detector may take for one: "bird", "multirotor", "balloon", "glint",

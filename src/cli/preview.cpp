@@ -14,6 +14,7 @@
 #include "picture/video/still.h"
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/resolved_scene.h"
+#include "sequence/setup/motion_source.h"
 
 namespace airtruth::cli {
 namespace {
@@ -33,7 +34,7 @@ void draw(const PreviewArguments& arguments, Context& context) {
   const scene::Scene scene = scene::read_scene(arguments.scene);
   RunFiles files;
   files.reads(arguments.scene);
-  for (const std::filesystem::path& file : scene::stated_files(scene)) files.reads(file);
+  for (const std::filesystem::path& file : setup::files_read(scene)) files.reads(file);
   files.writes(arguments.out, true).check();
   if (arguments.motion) {
     options.progress = [&console](const pipeline::Progress& progress) {
@@ -47,6 +48,7 @@ void draw(const PreviewArguments& arguments, Context& context) {
   video::write_still(arguments.out, made.picture, Flush::kLater);
   std::string text = preview::table_text(made.rows);
   for (const std::string& line : made.approaches) text += line + "\n";
+  if (!made.attitude_words.empty()) text += made.attitude_words + "\n";
   console.result(text + arguments.out);
 }
 

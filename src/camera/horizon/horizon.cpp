@@ -187,4 +187,39 @@ HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,
   return {edge.up_in_cam, 0, edge.sharpness};
 }
 
+namespace {
+
+// The area of the unit square about the origin in which normal . q < t, for a unit normal: the
+// trapezoid over t that two boxes of the widths |x| and |y| make of each other.
+double area_before(const Pixel& normal, double t) {
+  const double wide = std::max(std::abs(normal.x()), std::abs(normal.y()));
+  const double narrow = std::min(std::abs(normal.x()), std::abs(normal.y()));
+  if (t < 0) return 1 - area_before(normal, -t);
+  if (2 * t <= wide - narrow) return 0.5 + t / wide;
+  const double left = std::max(0.0, (wide + narrow) / 2 - t);
+  return 1 - left * left / (2 * wide * narrow);
+}
+
+}  // namespace
+
+float share_below(const lens::Lens& lens,
+                  const Vector3& up_in_cam,
+                  const Homography& nominal_from_frame,
+                  int x,
+                  int y) {
+  const auto height = [&](double px, double py) -> std::optional<double> {
+    const auto ray = lens.ray_from_pixel(apply(nominal_from_frame, {px, py}));
+    if (!ray) return std::nullopt;
+    return ray->dot(up_in_cam);
+  };
+  const auto here = height(x + 0.5, y + 0.5);
+  if (!here) return 0;
+  const auto right = height(x + 1.0, y + 0.5), down = height(x + 0.5, y + 1.0);
+  if (!right || !down) return *here < 0 ? 1.0F : 0.0F;
+  const Pixel slope = 2 * Pixel(*right - *here, *down - *here);
+  const double steepness = slope.norm();
+  if (!(steepness > 0)) return *here < 0 ? 1.0F : 0.0F;
+  return static_cast<float>(area_before(slope / steepness, -*here / steepness));
+}
+
 }  // namespace airtruth::horizon

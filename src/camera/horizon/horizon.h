@@ -60,6 +60,15 @@ class HorizonFinder {
   std::vector<Block> blocks_;
 };
 
+// The share of a pixel's area, 0..1, that lies below the horizon of this upward direction: the
+// horizon is straight within the pixel. `nominal_from_frame` takes the pixel to the place whose ray
+// the lens gives. 0 beyond the lens's field.
+float share_below(const lens::Lens& lens,
+                  const Vector3& up_in_cam,
+                  const Homography& nominal_from_frame,
+                  int x,
+                  int y);
+
 // The attitude of a camera in which up has this direction. Its yaw is 0.
 YawPitchRoll attitude_from_up(const Vector3& up_in_cam);
 // cam_from_level, where level is the north-east-down frame turned to the camera's yaw.

@@ -174,5 +174,37 @@ TEST(Horizon, ATiltedBankOfCloudsIsRefused) {
   })));
 }
 
+// Against the share of 64 x 64 rays of the pixel.
+TEST(Horizon, AShareOfAPixelIsThatOfItsRays) {
+  int crossed = 0;
+  for (const lens::Lens& lens :
+       {the_lens(), lens::fisheye_from_vertical_fov(140, {kSkyWidth, kSkyHeight})})
+    for (const auto& [pitch, roll] : {std::pair(0.02, 0.0), {3, 7}, {-4, 45}, {2, 90}, {1, -160}}) {
+      const Vector3 up = up_of(pitch, roll);
+      for (int y = 0; y < kSkyHeight; y += 3)
+        for (int x = 0; x < kSkyWidth; x += 7) {
+          const float share = share_below(lens, up, Homography::Identity(), x, y);
+          const double middle = lens.ray_from_pixel({x + 0.5, y + 0.5})->dot(up);
+          if (std::abs(middle) > 0.01) {
+            ASSERT_EQ(share, middle < 0 ? 1.0F : 0.0F) << x << ' ' << y;
+            continue;
+          }
+          int below = 0;
+          for (int k = 0; k < 64 * 64; ++k)
+            below +=
+                lens.ray_from_pixel({x + (k % 64 + 0.5) / 64, y + (k / 64 + 0.5) / 64})->dot(up) < 0
+                    ? 1
+                    : 0;
+          EXPECT_NEAR(share, below / 4096.0, 0.012) << x << ' ' << y << ' ' << roll;
+          crossed += share > 0 && share < 1 ? 1 : 0;
+        }
+    }
+  EXPECT_GT(crossed, 300);
+  // The row y = 240 of a level camera is the horizon; a picture moved by 10.25 px moves it along.
+  Homography nominal_from_frame = Homography::Identity();
+  nominal_from_frame(1, 2) = -10.25;
+  EXPECT_NEAR(share_below(the_lens(), up_of(0, 0), nominal_from_frame, 99, 250), 0.75, 1e-4);
+}
+
 }  // namespace
 }  // namespace airtruth::horizon

@@ -142,7 +142,7 @@ class Lit {
       if (stop.stop_requested()) throw Interrupted();
       insertion::AmbientEstimator light(scene_.light, setup::tone_of(scene_.camera_model), nullptr);
       image::Picture painted = view.picture->clone();
-      insertion::make_painter(scene_, world_, nullptr, {})
+      insertion::make_painter(scene_, world_, insertion::Occluders(), {})
           ->paint(painted, view.moment, light.next(painted, view.moment.sight, {}));
       const auto made = appearance::seen_in(painted, *view.moment.boxes[0].box);
       if (!made) continue;

@@ -83,6 +83,7 @@ catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
       throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
     replaced->source = video;
     replaced->mask.reset();
+    std::erase_if(replaced->occluders, [](const scene::Occluder& one) { return one.mask; });
   }
   return catalogue;
 }

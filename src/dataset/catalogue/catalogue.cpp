@@ -62,9 +62,11 @@ Background background_from(const TableReader& table) {
   background.lens = scene::lens_in(table);
   background.motion = scene::motion_in(table);
   background.camera = scene::camera_in(table, background.motion);
+  background.camera.by_horizon = false;
   background.camera_model = scene::camera_model_in(table);
   background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);
+  background.occluders = scene::occluders_in(table);
   return background;
 }
 
@@ -151,7 +153,7 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
                                                                          "camera",
                                                                          "motion",
                                                                          "light"},
-                                                                        {"realism"})))
+                                                                        {"realism", "occluder"})))
     catalogue.backgrounds.push_back(background_from(table));
   for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
     catalogue.aircraft.push_back(

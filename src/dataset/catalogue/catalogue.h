@@ -42,6 +42,7 @@ struct Background {
   scene::CameraModel camera_model;
   scene::Realism realism;
   scene::Light light;
+  std::vector<scene::Occluder> occluders;
   // How often rules draw it, relative to others.
   double weight = 1;
   Where where;

@@ -156,6 +156,7 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
   scene.camera_model = background.camera_model;
   scene.realism = background.realism;
   scene.light = background.light;
+  scene.occluders = background.occluders;
   scene.truth = catalogue.truth;
   scene.render = catalogue.render;
   scene.composite = catalogue.composite;

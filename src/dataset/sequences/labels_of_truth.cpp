@@ -48,7 +48,8 @@ exchange::Label label_of(const annotation::Intruder& intruder,
   label.category = category_of(intruder);
   label.object_class = intruder.object_class;
   label.box_px = box;
-  const double hidden = intruder.hidden_by_own_aircraft + intruder.hidden_by_intruder;
+  const double hidden = intruder.hidden_by_own_aircraft + intruder.hidden_by_occluder.value_or(0) +
+                        intruder.hidden_by_intruder;
   label.visible = std::clamp(1 - hidden - intruder.cut_by_frame, 0.0, 1.0);
   label.occluded = hidden > 0;
   label.truncated = intruder.cut_by_frame > 0;

@@ -51,7 +51,8 @@ class OfRenderedSet : public testing::Test {
     const std::string text = "name = \"" + name + "\"\nweight = 3\n[background]\nvideo = " +
                              "\"flight.mkv\"\n[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 20\n"
                              "[camera]\nposition_ned_m = [0, 0, -150]\n"
-                             "velocity_ned_mps = [25, 0, 0]\n[motion]\nmodel = \"none\"\n" +
+                             "velocity_ned_mps = [25, 0, 0]\nattitude_yaw_pitch_roll_deg = [0, 0, "
+                             "0]\n[motion]\nmodel = \"none\"\n" +
                              tables +
                              "[[intruder]]\nid = \"him\"\naircraft = \"c172/g-boix\"\n"
                              "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"

@@ -40,13 +40,17 @@ struct Layer {
   std::vector<double> area_alone_px;
   // The part of area_alone_in_frame_px that no nearer intruder hides.
   std::vector<double> area_seen_px;
-  // The part of area_seen_px that the own aircraft's mask leaves free.
+  // The part of area_seen_px that the own aircraft leaves free.
   std::vector<double> area_free_px;
+  // The part of area_free_px that no other occluder hides.
+  std::vector<double> area_clear_px;
 
-  // True where the own aircraft's mask has been applied already: what is on the lens is in front of
-  // the own aircraft.
-  bool is_masked = false;
+  // 1 for each pixel of the patch in which occluders hide every intruder wholly
+  // (picture/composite/cover.h): nothing is drawn there, whatever the pixel holds. Empty: there
+  // is none.
+  std::vector<unsigned char> closed;
 
+  bool is_open(std::size_t i) const { return closed.empty() || closed[i] == 0; }
   bool empty() const { return patch.width == 0; }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - patch.y) * static_cast<std::size_t>(patch.width) +

@@ -288,8 +288,8 @@ std::optional<std::string> fault(const Intruder& i) {
     return "has a contrast_to_noise below 0, or of nothing visible";
   if (i.visible_area_px < 0 || i.alpha_sum_px < 0 || (i.range_m && *i.range_m < 0))
     return "holds an area or a range below 0";
-  if (!is_fraction(i.hidden_by_own_aircraft) || !is_fraction(i.hidden_by_intruder) ||
-      !is_fraction(i.cut_by_frame))
+  if (!is_fraction(i.hidden_by_own_aircraft) || !is_fraction(i.hidden_by_occluder.value_or(0)) ||
+      !is_fraction(i.hidden_by_intruder) || !is_fraction(i.cut_by_frame))
     return "holds a fraction outside 0..1";
   return i.encounter ? fault(*i.encounter) : std::nullopt;
 }
@@ -377,6 +377,7 @@ OrderedJson json(const Intruder& intruder) {
   object["aircraft"] = intruder.aircraft;
   if (!is_aircraft(intruder.object_class)) object["class"] = intruder.object_class;
   each_field(Writing{object}, intruder);
+  if (!intruder.hidden_by_occluder) object.erase("hidden_by_occluder");
   return object;
 }
 

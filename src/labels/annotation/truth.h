@@ -99,6 +99,8 @@ struct Intruder {
   std::optional<Pixel> centroid_px;
   // Shares of the intruder's silhouette, 0..1.
   double hidden_by_own_aircraft = 0;
+  // By what else the scene says stands before it; empty where it says nothing.
+  std::optional<double> hidden_by_occluder;
   double hidden_by_intruder = 0;
   double cut_by_frame = 0;
   // One of object_class.h. What is on the lens has no place in the world: of the optional fields it

@@ -49,6 +49,7 @@ void each_field(const Visit& visit, Intruders&... of) {
   visit("alpha_sum_px", of.alpha_sum_px...);
   visit("centroid_px", of.centroid_px...);
   visit("hidden_by_own_aircraft", of.hidden_by_own_aircraft...);
+  visit("hidden_by_occluder", of.hidden_by_occluder...);
   visit("hidden_by_intruder", of.hidden_by_intruder...);
   visit("cut_by_frame", of.cut_by_frame...);
 }

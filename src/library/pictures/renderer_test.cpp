@@ -41,7 +41,8 @@ class InMemory : public testing::Test {
     return "name = \"" + name +
            "\"\n[background]\nvideo = \"flight.mkv\"\n"
            "[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 75\n"
-           "[camera]\nposition_ned_m = [0, 0, -150]\n" +
+           "[camera]\nposition_ned_m = [0, 0, -150]\n"
+           "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n" +
            more +
            "[[intruder]]\nid = \"a\"\naircraft = \"738/738-Ryanair\"\n"
            "waypoints_ned_m = [[120, -8, -150], [120, 100, -150]]\nspeed_mps = 50\n"

@@ -136,9 +136,11 @@ TEST(Codec, NeverReachesTheOwnAircraft) {
   for (int y = 0; y < kCodedHeight; ++y)
     for (int x = 0; x < 43; ++x) mask.free[static_cast<std::size_t>(y * kCodedWidth + x)] = 0;
   Levelling codec;
-  MatteOptions options{.own_aircraft = &mask};
+  MatteOptions options;
   options.coder = &codec;
-  composite_matte(after, black_box({42, 34, 4, 3}, 8), options);
+  image::Layer layer = black_box({42, 34, 4, 3}, 8);
+  hide(layer, {{own_aircraft(mask)}, {500}});
+  composite_matte(after, layer, options);
   for (const std::size_t p : {0u, 1u, 2u})
     for (int y = 0; y < kCodedHeight; ++y)
       for (int x = 0; x < 43; ++x)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace airtruth::composite {
 namespace {
@@ -11,27 +12,45 @@ bool any_alpha(const AlphaMask& mask) {
   return std::any_of(mask.alpha.begin(), mask.alpha.end(), [](std::uint8_t a) { return a > 0; });
 }
 
+std::vector<float> shares_past(const std::vector<const Occluder*>& before, const PixelBox& patch) {
+  std::vector<float> shares;
+  if (before.empty()) return shares;
+  shares.reserve(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height));
+  for (int y = patch.y; y < patch.bottom(); ++y)
+    for (int x = patch.x; x < patch.right(); ++x) {
+      float share = 1;
+      for (const Occluder* occluder : before)
+        if (share > 0) share *= 1 - occluder->cover(x, y);
+      shares.push_back(share);
+    }
+  return shares;
+}
+
+// Marks the pixels in which no intruder of the layer shows.
+void close(image::Layer& layer, Shares& shares) {
+  layer.closed.assign(layer.pixels.size(), 1);
+  for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
+    if (layer.coverage[a].empty()) continue;
+    const std::vector<float>& shown = shares.past_all(a);
+    for (std::size_t i = 0; i < layer.closed.size(); ++i)
+      if (share_of(shown, i) > 0) layer.closed[i] = 0;
+  }
+}
+
 }  // namespace
 
 std::uint8_t alpha_code(float coverage) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(coverage, 0.0F, 1.0F)));
 }
 
-AlphaMask alpha_mask(const image::Layer& layer,
-                     std::size_t intruder,
-                     const image::Mask* own_aircraft) {
+AlphaMask alpha_mask(const image::Layer& layer, std::size_t intruder) {
   AlphaMask mask;
-  if (layer.is_masked) own_aircraft = nullptr;
   if (intruder >= layer.coverage.size() || layer.coverage[intruder].empty()) return mask;
   const std::vector<float>& coverage = layer.coverage[intruder];
   mask.patch = layer.patch;
   mask.alpha.assign(coverage.size(), 0);
-  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
-    for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
-      const std::size_t i = layer.index(x, y);
-      if (own_aircraft == nullptr || own_aircraft->is_free(x, y))
-        mask.alpha[i] = alpha_code(coverage[i]);
-    }
+  for (std::size_t i = 0; i < coverage.size(); ++i)
+    if (layer.is_open(i)) mask.alpha[i] = alpha_code(coverage[i]);
   if (!any_alpha(mask)) mask = {};
   return mask;
 }
@@ -54,19 +73,63 @@ std::optional<Covered> covered(const AlphaMask& mask) {
                  area_px};
 }
 
-std::optional<Covered> covered(const image::Layer& layer,
-                               std::size_t intruder,
-                               const image::Mask* own_aircraft) {
-  return covered(alpha_mask(layer, intruder, own_aircraft));
+std::optional<Covered> covered(const image::Layer& layer, std::size_t intruder) {
+  return covered(alpha_mask(layer, intruder));
 }
 
-void find_free_area(image::Layer& layer, const image::Mask& own_aircraft) {
+Occluder own_aircraft(const image::Mask& mask) {
+  return {0, [&mask](int x, int y) { return mask.is_free(x, y) ? 0.0F : 1.0F; }};
+}
+
+const std::vector<float>& Shares::past(double range_m) {
+  std::vector<const Occluder*> before;
+  for (const Occluder& occluder : occlusion_.occluders)
+    if (occluder.range_m < range_m) before.push_back(&occluder);
+  const auto [at, is_new] = known_.try_emplace(before.size());
+  if (is_new) at->second = shares_past(before, patch_);
+  return at->second;
+}
+
+const std::vector<float>& Shares::past_own_aircraft() {
+  return past(std::numeric_limits<double>::min());
+}
+
+const std::vector<float>& Shares::past_all(std::size_t intruder) {
+  return past(intruder < occlusion_.ranges_m.size() ? occlusion_.ranges_m[intruder] : 0);
+}
+
+void find_areas(image::Layer& layer, const Occlusion& occlusion) {
+  if (occlusion.occluders.empty()) return;
+  Shares shares(occlusion, layer.patch);
+  for (std::size_t a = 0; a < layer.coverage.size(); ++a)
+    for (std::size_t i = 0; i < layer.coverage[a].size(); ++i) {
+      const double coverage = layer.coverage[a][i];
+      if (!(coverage > 0)) continue;
+      layer.area_free_px[a] -= (1 - share_of(shares.past_own_aircraft(), i)) * coverage;
+      layer.area_clear_px[a] -= (1 - share_of(shares.past_all(a), i)) * coverage;
+    }
+}
+
+void hide(image::Layer& layer, const Occlusion& occlusion) {
+  if (occlusion.occluders.empty() || layer.empty()) return;
+  Shares shares(occlusion, layer.patch);
+  close(layer, shares);
+  std::vector<float> before(layer.pixels.size(), 0), after(layer.pixels.size(), 0);
   for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
-    if (layer.coverage[a].empty()) continue;
-    for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
-      for (int x = layer.patch.x; x < layer.patch.right(); ++x)
-        if (!own_aircraft.is_free(x, y))
-          layer.area_free_px[a] -= static_cast<double>(layer.coverage[a][layer.index(x, y)]);
+    const std::vector<float>& shown = shares.past_all(a);
+    for (std::size_t i = 0; i < layer.coverage[a].size(); ++i) {
+      float& coverage = layer.coverage[a][i];
+      before[i] += coverage;
+      if (layer.is_open(i)) coverage *= static_cast<float>(share_of(shown, i));
+      after[i] += coverage;
+    }
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (after[i] == before[i]) continue;
+    const float kept = after[i] / before[i];
+    image::LayerPixel& pixel = layer.pixels[i];
+    pixel = {kept * pixel.red, kept * pixel.green, kept * pixel.blue, kept * pixel.alpha};
+    if (kept == 0) layer.depth_m[i] = std::numeric_limits<float>::infinity();
   }
 }
 

@@ -33,7 +33,7 @@ image::Layer rectangle(const Box& box) {
       layer.coverage[0][layer.index(x, y)] = share;
     }
   layer.area_alone_in_frame_px = layer.area_alone_px = {box.area()};
-  layer.area_seen_px = layer.area_free_px = {box.area()};
+  layer.area_seen_px = layer.area_free_px = layer.area_clear_px = {box.area()};
   return layer;
 }
 
@@ -73,7 +73,7 @@ TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
       for (const double shift : {0.0, 0.25, 0.5, 0.9}) {
         const Box box{30 + shift, 25 + 0.7 * shift, width, 0.4 * width + 0.5};
         const image::Layer layer = spread(rectangle(box), sigma, 0, kCoverWidth, kCoverHeight);
-        const auto found = covered(layer, 0, nullptr);
+        const auto found = covered(layer, 0);
         const double effective = sigma > 0 ? std::sqrt(sigma * sigma + 1.0 / 12) : 0;
         const auto most = bounds_in_closed_form(box, effective, kAlpha - kOff);
         const auto least = bounds_in_closed_form(box, effective, kAlpha + kOff);
@@ -97,17 +97,17 @@ TEST(Cover, TheBoxIsTheClosedFormsOfARectangleThroughAGaussian) {
 TEST(Cover, TheMaskHoldsTheSumAndTheBoxOfTheCoverage) {
   const image::Layer layer =
       spread(rectangle({20.3, 30.2, 17, 5}), 0.9, 0, kCoverWidth, kCoverHeight);
-  const AlphaMask mask = alpha_mask(layer, 0, nullptr);
+  const AlphaMask mask = alpha_mask(layer, 0);
   double sum = 0;
   int pixels = 0;
   for (const std::uint8_t a : mask.alpha) sum += a / 255.0, pixels += a > 0 ? 1 : 0;
   EXPECT_NEAR(sum, 17 * 5, pixels * 0.5 / 255);
   const auto found = covered(mask);
-  EXPECT_EQ(found, covered(layer, 0, nullptr));
+  EXPECT_EQ(found, covered(layer, 0));
   EXPECT_EQ(found->area_px, std::count_if(mask.alpha.begin(), mask.alpha.end(), [](std::uint8_t a) {
               return a >= kCoveredAlpha;
             }));
-  EXPECT_TRUE(alpha_mask(layer, 1, nullptr).empty());
+  EXPECT_TRUE(alpha_mask(layer, 1).empty());
   EXPECT_FALSE(covered(AlphaMask{}));
 }
 
@@ -116,18 +116,62 @@ TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
       kCoverWidth, kCoverHeight, std::vector<unsigned char>(kCoverWidth * kCoverHeight, 255)};
   for (int y = 0; y < kCoverHeight; ++y)
     for (int x = 0; x < 30; ++x) own.free[static_cast<std::size_t>(y * kCoverWidth + x)] = 0;
+  const Occlusion occlusion{{own_aircraft(own)}, {500}};
   image::Layer sharp = rectangle({25, 30, 20, 10});
-  find_free_area(sharp, own);
+  find_areas(sharp, occlusion);
   EXPECT_NEAR(sharp.area_free_px[0], 15 * 10, 1e-3);
   EXPECT_NEAR(sharp.area_seen_px[0], 20 * 10, 1e-9);
-  const image::Layer layer = spread(sharp, 1, 0, kCoverWidth, kCoverHeight);
+  image::Layer layer = spread(sharp, 1, 0, kCoverWidth, kCoverHeight);
   EXPECT_NEAR(layer.area_free_px[0], 15 * 10, 1e-3);
-  const auto found = covered(layer, 0, &own);
+  EXPECT_TRUE(covered(layer, 0)->box.x < 25);
+  hide(layer, occlusion);
+  const auto found = covered(layer, 0);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->box.x, 30);
   // The first pixel beyond the edge at 45 has 0.31, the next 0.07.
   EXPECT_EQ(found->box.right(), 46);
-  EXPECT_TRUE(covered(layer, 0, nullptr)->box.x < 25);
+}
+
+// Alpha behind a soft edge is (1 - mask) of what it was, for the farther one of two alone.
+TEST(Cover, AnOccluderHidesWhatIsFartherInItsShare) {
+  const auto cover = [](int x, int) { return static_cast<float>(std::clamp(x - 28, 0, 10)) / 10; };
+  Occlusion occlusion{{{800, cover}}, {900, 700}};
+  image::Layer both = rectangle({20, 30, 30, 10});
+  both.coverage.push_back(std::vector<float>(both.pixels.size(), 0));
+  const auto set = [&](int x, int y, float far, float near) {
+    const std::size_t i = both.index(x, y);
+    both.coverage[0][i] = far, both.coverage[1][i] = near;
+    both.pixels[i] = {0.3F * (far + near), 0.2F * (far + near), 0.1F * (far + near), far + near};
+  };
+  for (int x = 20; x < 50; ++x)
+    for (int y = 30; y < 40; ++y) set(x, y, y < 35 ? 0.8F : 0.5F, y < 35 ? 0.0F : 0.25F);
+  for (auto* areas : {&both.area_alone_in_frame_px,
+                      &both.area_alone_px,
+                      &both.area_seen_px,
+                      &both.area_free_px,
+                      &both.area_clear_px})
+    *areas = {195, 37.5};
+  const image::Layer before = both;
+  find_areas(both, occlusion);
+  hide(both, occlusion);
+  double clear_px = 0;
+  for (int x = 20; x < 50; ++x)
+    for (int y = 30; y < 40; ++y) {
+      const std::size_t i = both.index(x, y);
+      const double shows = 1 - std::clamp((x - 28) / 10.0, 0.0, 1.0);
+      const double far = shows * before.coverage[0][i], near = before.coverage[1][i];
+      clear_px += far;
+      EXPECT_NEAR(both.coverage[0][i], far, 1e-6) << x;
+      EXPECT_EQ(both.coverage[1][i], before.coverage[1][i]);
+      EXPECT_NEAR(both.pixels[i].alpha, far + near, 1e-6) << x;
+      EXPECT_NEAR(both.pixels[i].red, 0.3 * (far + near), 1e-6) << x;
+      if (x <= 28) {
+        EXPECT_EQ(both.pixels[i].alpha, before.pixels[i].alpha);
+      }
+    }
+  EXPECT_NEAR(both.area_clear_px[0], clear_px, 1e-3);
+  EXPECT_EQ(both.area_clear_px[1], 37.5);
+  EXPECT_EQ(both.area_free_px, before.area_free_px);
 }
 
 // The documented alpha: 20 of 255.
@@ -137,8 +181,8 @@ TEST(Cover, IsCoveredFromTheStatedAlphaOn) {
   EXPECT_EQ(alpha_code(0.076F), 19);
   EXPECT_EQ(alpha_code(1.5F), 255);
   EXPECT_EQ(alpha_code(-1), 0);
-  EXPECT_FALSE(covered(rectangle({10, 10, 0.3, 0.25}), 0, nullptr));
-  EXPECT_EQ(covered(rectangle({10, 10, 0.3, 0.3}), 0, nullptr), (Covered{{10, 10, 1, 1}, 1}));
+  EXPECT_FALSE(covered(rectangle({10, 10, 0.3, 0.25}), 0));
+  EXPECT_EQ(covered(rectangle({10, 10, 0.3, 0.3}), 0), (Covered{{10, 10, 1, 1}, 1}));
 }
 
 // A codec that leaves ripple in every sample of its input.
@@ -176,7 +220,7 @@ TEST(Cover, ACodecsRippleMovesTheVisibleBoxAlone) {
   const Visible plain = composed(nullptr);
   const Visible coded = composed(&codec);
   EXPECT_EQ(plain.covered, coded.covered);
-  EXPECT_EQ(plain.covered, covered(layer, 0, nullptr));
+  EXPECT_EQ(plain.covered, covered(layer, 0));
   EXPECT_NE(plain.box, coded.box);
 }
 

@@ -102,7 +102,7 @@ class Matte {
   int log2_height_;
   Footprint across_;
   Footprint down_;
-  // 1: not the own aircraft.
+  // 1: the layer is open.
   std::vector<std::uint8_t> free_;
   // 1: alpha > 0 and free.
   std::vector<std::uint8_t> drawn_;
@@ -124,7 +124,6 @@ Matte::Matte(image::Picture& picture, const image::Layer& layer, const MatteOpti
       log2_height_(image::log2_chroma_height(picture.colour.chroma)),
       across_(footprint(log2_width_, picture.colour.siting != image::Siting::kCenter)),
       down_(footprint(log2_height_, picture.colour.siting == image::Siting::kTopLeft)) {
-  const image::Mask* own_aircraft = layer.is_masked ? nullptr : options.own_aircraft;
   const std::size_t size = layer.pixels.size();
   free_.assign(size, 1);
   drawn_.assign(size, 0);
@@ -134,7 +133,7 @@ Matte::Matte(image::Picture& picture, const image::Layer& layer, const MatteOpti
   for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
     for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
       const std::size_t i = layer.index(x, y);
-      if (own_aircraft != nullptr) free_[i] = own_aircraft->is_free(x, y);
+      free_[i] = layer.is_open(i);
       drawn_[i] = free_[i] && layer.pixels[i].alpha > 0;
       luma_[i] = picture.planes[0].row(y)[x];
     }
@@ -414,7 +413,6 @@ void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
     for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
       const std::size_t i = layer_.index(x, y);
       const auto here = static_cast<double>(coverage[i]);
-      visible.alpha_before_mask_px += here;
       if (free_[i]) {
         visible.alpha_sum_px += here;
         sum += here * Pixel(x + 0.5, y + 0.5);
@@ -427,7 +425,7 @@ void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
       bottom = std::max(bottom, y);
     }
   }
-  visible.covered = composite::covered(layer_, intruder, options_.own_aircraft);
+  visible.covered = composite::covered(layer_, intruder);
   if (visible.alpha_sum_px > 0) visible.centroid = sum / visible.alpha_sum_px;
   if (visible.pixels > 0) visible.box = PixelBox{left, top, right - left + 1, bottom - top + 1};
 }
@@ -438,7 +436,7 @@ std::vector<Visible> Matte::visible() const {
   return result;
 }
 
-void check_fits(const image::Picture& picture, const image::Layer& layer, const image::Mask* mask) {
+void check_fits(const image::Picture& picture, const image::Layer& layer) {
   const PixelBox& patch = layer.patch;
   check(patch.width > 0 && patch.height > 0, "a layer's patch has a size");
   check(patch.x >= 0 && patch.y >= 0 && patch.right() <= picture.width &&
@@ -449,8 +447,7 @@ void check_fits(const image::Picture& picture, const image::Layer& layer, const 
   check(layer.pixels.size() == size, "a layer has a pixel for each of its patch");
   for (const auto& coverage : layer.coverage)
     check(coverage.empty() || coverage.size() == size, "coverage is of the patch's size");
-  check(mask == nullptr || (mask->width == picture.width && mask->height == picture.height),
-        "the own aircraft's mask is of the frame's size");
+  check(layer.closed.empty() || layer.closed.size() == size, "what is closed is of the patch");
 }
 
 }  // namespace
@@ -459,7 +456,7 @@ std::vector<Visible> composite_matte(image::Picture& picture,
                                      const image::Layer& layer,
                                      const MatteOptions& options) {
   if (layer.empty()) return std::vector<Visible>(layer.coverage.size());
-  check_fits(picture, layer, options.own_aircraft);
+  check_fits(picture, layer);
   Matte matte(picture, layer, options);
   matte.blend();
   return matte.visible();

@@ -35,10 +35,8 @@ struct Visible {
   std::optional<PixelBox> box;
   // The number of those changed pixels.
   std::int64_t pixels = 0;
-  // Sum of the visible coverage, in pixels: after the own aircraft and nearer intruders.
+  // Sum of the visible coverage, in pixels: after occluders and nearer intruders.
   double alpha_sum_px = 0;
-  // The same sum before the own aircraft's mask.
-  double alpha_before_mask_px = 0;
   // Centroid of the visible coverage; empty where there is none.
   std::optional<Pixel> centroid;
 };
@@ -60,9 +58,6 @@ class PatchCoder {
 
 // Options of the matte.
 struct MatteOptions {
-  // Nothing is drawn where this mask is not free; null: everywhere is free. A layer to which it has
-  // been applied (Layer::is_masked) is drawn everywhere.
-  const image::Mask* own_aircraft = nullptr;
   // The camera's effect on the samples. Sharpening and chroma blur reach beyond the layer but stay
   // inside its patch: spread() enlarges the patch for them. Each pixel's own noise is scaled to the
   // level of the light that is there after the blend.

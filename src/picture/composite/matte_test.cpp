@@ -240,8 +240,8 @@ TEST(Matte, SoftChromaKeepsOffTheOwnAircraft) {
       layer.pixels[layer.index(x, y)] = {0.5f, 0.1f, 0.1f, 1};
       layer.coverage[0][layer.index(x, y)] = 1;
     }
+  hide(layer, {{own_aircraft(mask)}, {500}});
   MatteOptions options;
-  options.own_aircraft = &mask;
   options.sensor.chroma_spread_px = 3;
   composite_matte(picture, layer, options);
   EXPECT_NE(picture.planes[2].row(15)[15], 128);
@@ -259,14 +259,14 @@ TEST(Matte, OwnAircraftHidesTheLayerAndTheSumsSaySo) {
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 4; ++x) mask.free[static_cast<std::size_t>(8 * y + x)] = 0;
   }
-  const auto visible =
-      composite_matte(picture, plain_layer({2, 2, 4, 4}, {0.5f, 0, 0, 0.5f}), {&mask});
+  Layer layer = plain_layer({2, 2, 4, 4}, {0.5f, 0, 0, 0.5f});
+  hide(layer, {{own_aircraft(mask)}, {500}});
+  const auto visible = composite_matte(picture, layer, {});
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 4; ++x) EXPECT_EQ(picture.planes[0].row(y)[x], before.planes[0].row(y)[x]);
   }
   EXPECT_EQ(visible.at(0).box, (PixelBox{4, 2, 2, 4}));
   EXPECT_EQ(visible.at(0).pixels, 8);
-  EXPECT_DOUBLE_EQ(visible.at(0).alpha_before_mask_px, 8);
   EXPECT_DOUBLE_EQ(visible.at(0).alpha_sum_px, 4);
 }
 
@@ -276,9 +276,9 @@ TEST(Matte, PatchThatLeavesTheFrameIsACallersMistake) {
                std::logic_error);
   EXPECT_THROW(composite_matte(picture, plain_layer({-1, 0, 4, 4}, {0, 0, 0, 1}), {}),
                std::logic_error);
-  const image::Mask small{4, 4, std::vector<unsigned char>(16, 255)};
-  EXPECT_THROW(composite_matte(picture, plain_layer({0, 0, 4, 4}, {0, 0, 0, 1}), {&small}),
-               std::logic_error);
+  Layer small = plain_layer({0, 0, 4, 4}, {0, 0, 0, 1});
+  small.closed.assign(4, 0);
+  EXPECT_THROW(composite_matte(picture, small, {}), std::logic_error);
 }
 
 TEST(Matte, EmptyLayerAnswersForEveryIntruder) {

@@ -115,16 +115,14 @@ Areas areas_of(const image::Spot& spot, const Spots& in) {
   return {areas.all_px * cell, areas.in_frame_px * cell};
 }
 
-void mask_out(image::Layer& layer, const image::Mask& own_aircraft) {
-  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
-    for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
-      if (own_aircraft.is_free(x, y)) continue;
-      const std::size_t i = layer.index(x, y);
-      layer.pixels[i] = {};
-      layer.depth_m[i] = std::numeric_limits<float>::infinity();
-      for (auto& coverage : layer.coverage)
-        if (!coverage.empty()) coverage[i] = 0;
-    }
+void take_out_closed(image::Layer& layer) {
+  for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
+    if (layer.is_open(i)) continue;
+    layer.pixels[i] = {};
+    layer.depth_m[i] = std::numeric_limits<float>::infinity();
+    for (auto& coverage : layer.coverage)
+      if (!coverage.empty()) coverage[i] = 0;
+  }
 }
 
 // The layer on a larger patch.
@@ -139,7 +137,8 @@ image::Layer on_patch(const image::Layer& layer, const PixelBox& patch, std::siz
   for (auto [to, from] : {std::pair(&result.area_alone_in_frame_px, &layer.area_alone_in_frame_px),
                           std::pair(&result.area_alone_px, &layer.area_alone_px),
                           std::pair(&result.area_seen_px, &layer.area_seen_px),
-                          std::pair(&result.area_free_px, &layer.area_free_px)}) {
+                          std::pair(&result.area_free_px, &layer.area_free_px),
+                          std::pair(&result.area_clear_px, &layer.area_clear_px)}) {
     *to = *from;
     to->resize(intruders, 0);
   }
@@ -250,8 +249,9 @@ bool are_out_of_view(const std::vector<SpotCover>& covers) {
 
 void hide_behind(image::Layer& layer,
                  const std::vector<SpotCover>& covers,
-                 const image::Mask* own_aircraft) {
+                 const Occlusion& occlusion) {
   if (layer.empty()) return;
+  Shares shares(occlusion, layer.patch);
   std::vector<float> clear(layer.pixels.size(), 1.0F);
   for (const SpotCover& cover : covers)
     each_covered(cover, [&](int x, int y, float alpha) {
@@ -259,13 +259,14 @@ void hide_behind(image::Layer& layer,
     });
   for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
     if (layer.coverage[a].empty()) continue;
-    for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
-      for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
-        const std::size_t i = layer.index(x, y);
-        const double hidden = double(layer.coverage[a][i]) * (1 - double(clear[i]));
-        layer.area_seen_px[a] -= hidden;
-        if (own_aircraft == nullptr || own_aircraft->is_free(x, y)) layer.area_free_px[a] -= hidden;
-      }
+    const auto& free = shares.past_own_aircraft();
+    const auto& past_all = shares.past_all(a);
+    for (std::size_t i = 0; i < clear.size(); ++i) {
+      const double hidden = double(layer.coverage[a][i]) * (1 - double(clear[i]));
+      layer.area_seen_px[a] -= hidden;
+      layer.area_free_px[a] -= share_of(free, i) * hidden;
+      layer.area_clear_px[a] -= share_of(past_all, i) * hidden;
+    }
   }
 }
 
@@ -273,11 +274,9 @@ image::Layer with_spots(image::Layer layer,
                         std::size_t intruders,
                         const Spots& all,
                         const std::vector<SpotCover>& covers,
-                        const image::Mask* own_aircraft,
                         int margin_px) {
-  if (own_aircraft != nullptr && !layer.empty()) mask_out(layer, *own_aircraft);
+  take_out_closed(layer);
   image::Layer result = on_patch(layer, patch_with(layer, all, covers, margin_px), intruders);
-  result.is_masked = true;
   for (std::size_t k = 0; k < all.spots.size(); ++k) {
     const auto& spot = all.spots[k];
     result.coverage.emplace_back();
@@ -286,6 +285,7 @@ image::Layer with_spots(image::Layer layer,
     result.area_alone_in_frame_px.push_back(areas.in_frame_px);
     result.area_seen_px.push_back(areas.in_frame_px);
     result.area_free_px.push_back(areas.in_frame_px);
+    result.area_clear_px.push_back(areas.in_frame_px);
     if (spot) put_over(result, *spot, covers[k]);
   }
   return result;

@@ -7,6 +7,7 @@
 #include "foundation/geometry/within_frame.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/spot.h"
+#include "picture/composite/cover.h"
 
 // What is on the lens, in front of every intruder and of the own aircraft.
 namespace airtruth::composite {
@@ -41,21 +42,20 @@ std::vector<SpotCover> covers_of(const Spots& spots);
 // True where no spot touches the frame.
 bool are_out_of_view(const std::vector<SpotCover>& covers);
 
-// Takes what the spots hide from the layer's areas of seen and free silhouettes. Call it before the
-// layer's point spread and after find_free_area() (cover.h). `own_aircraft` may be null.
+// Takes what the spots hide from the layer's areas of seen, free and clear silhouettes. Call it
+// before the layer's point spread and after find_areas() (cover.h).
 void hide_behind(image::Layer& layer,
                  const std::vector<SpotCover>& covers,
-                 const image::Mask* own_aircraft);
+                 const Occlusion& occlusion);
 
 // Puts the spots over a layer of `intruders` intruders: each becomes one more intruder of the
 // layer, after the others. The patch grows to hold them with a margin, within the frame. The layer
-// may be empty. `own_aircraft`, which may be null, is behind the lens: it is taken out of the layer
-// first, and the result is marked so (Layer::is_masked).
+// may be empty. Occluders are behind the lens: what is closed in the layer is taken out of it, and
+// the result is open everywhere.
 image::Layer with_spots(image::Layer layer,
                         std::size_t intruders,
                         const Spots& spots,
                         const std::vector<SpotCover>& covers,
-                        const image::Mask* own_aircraft,
                         int margin_px);
 
 }  // namespace airtruth::composite

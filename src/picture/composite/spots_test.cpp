@@ -27,12 +27,8 @@ TEST(Spots, AlphaFallsFromTheMiddleToTheRim) {
   EXPECT_EQ(spot_alpha(spot, {50, 20}, 0), 0);
 }
 
-image::Layer over(image::Layer layer,
-                  std::size_t intruders,
-                  const Spots& all,
-                  const image::Mask* own = nullptr,
-                  int margin_px = 0) {
-  return with_spots(std::move(layer), intruders, all, covers_of(all), own, margin_px);
+image::Layer over(image::Layer layer, std::size_t intruders, const Spots& all, int margin_px = 0) {
+  return with_spots(std::move(layer), intruders, all, covers_of(all), margin_px);
 }
 
 // In the middle of a wing the cubic fade is 1, half a radius beside it 1/2; where body and wings
@@ -62,7 +58,7 @@ TEST(Spots, ASharpDiscCoversItsArea) {
 }
 
 TEST(Spots, TheFrameCutsHalfOfASpotOnItsEdge) {
-  const image::Layer layer = over({}, 0, in_frame(circle(0, 20, 10)), nullptr, 3);
+  const image::Layer layer = over({}, 0, in_frame(circle(0, 20, 10)), 3);
   EXPECT_NEAR(layer.area_alone_in_frame_px[0] / layer.area_alone_px[0], 0.5, 0.01);
   EXPECT_GE(layer.patch.x, 0);
 }
@@ -97,7 +93,8 @@ image::Layer grey_square() {
   for (auto* areas : {&layer.area_alone_in_frame_px,
                       &layer.area_alone_px,
                       &layer.area_seen_px,
-                      &layer.area_free_px})
+                      &layer.area_free_px,
+                      &layer.area_clear_px})
     *areas = {400};
   return layer;
 }
@@ -107,7 +104,7 @@ TEST(Spots, ASpotHidesItsShareOfAnIntruder) {
   spot.opacity = 0.25;
   spot.colour = {0.1F, 0.1F, 0.1F};
   image::Layer layer = grey_square();
-  hide_behind(layer, covers_of(in_frame(spot)), nullptr);
+  hide_behind(layer, covers_of(in_frame(spot)), {});
   EXPECT_NEAR(layer.area_seen_px[0], 300, 1e-3);
   EXPECT_NEAR(layer.area_free_px[0], 300, 1e-3);
   const image::Layer both = over(std::move(layer), 1, in_frame(spot));
@@ -126,13 +123,17 @@ TEST(Spots, TheOwnAircraftIsBehindTheLensAndBeforeTheIntruder) {
     for (int x = 30; x < 64; ++x) own.free[static_cast<std::size_t>(y * 64 + x)] = 0;
   image::Spot spot = circle(20, 20, 200);
   spot.opacity = 0.5;
+  const Occlusion occlusion{{own_aircraft(own)}, {500}};
   image::Layer layer = grey_square();
-  layer.area_free_px = {200};
-  hide_behind(layer, covers_of(in_frame(spot)), &own);
+  find_areas(layer, occlusion);
+  EXPECT_NEAR(layer.area_free_px[0], 200, 1e-3);
+  hide_behind(layer, covers_of(in_frame(spot)), occlusion);
   EXPECT_NEAR(layer.area_seen_px[0], 200, 1e-3);
   EXPECT_NEAR(layer.area_free_px[0], 100, 1e-3);
-  const image::Layer both = over(std::move(layer), 1, in_frame(spot), &own);
-  EXPECT_TRUE(both.is_masked);
+  EXPECT_NEAR(layer.area_clear_px[0], 100, 1e-3);
+  hide(layer, occlusion);
+  const image::Layer both = over(std::move(layer), 1, in_frame(spot));
+  EXPECT_TRUE(both.closed.empty());
   EXPECT_NEAR(both.coverage[0][both.index(25, 15)], 0.5, 1e-6);
   EXPECT_EQ(both.coverage[0][both.index(35, 15)], 0);
   EXPECT_NEAR(both.coverage[1][both.index(35, 15)], 0.5, 1e-6);

@@ -121,6 +121,7 @@ image::Layer grown(const image::Layer& layer, int more, int frame_width, int fra
   result.area_alone_px = layer.area_alone_px;
   result.area_seen_px = layer.area_seen_px;
   result.area_free_px = layer.area_free_px;
+  result.area_clear_px = layer.area_clear_px;
   return result;
 }
 

@@ -176,7 +176,7 @@ image::Layer render(const View& view,
     const PixelRays rays(view, *patch);
     Painter(view, light, placed, rays, options.stop, layer).paint(counts);
   }
-  layer.area_free_px = layer.area_seen_px;
+  layer.area_free_px = layer.area_clear_px = layer.area_seen_px;
   layer.area_alone_px = layer.area_alone_in_frame_px;
   for (std::size_t a = 0; a < placed.size(); ++a)
     if (search[a]) layer.area_alone_px[a] += area_outside(view, placed[a], *search[a]);

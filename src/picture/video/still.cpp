@@ -210,7 +210,8 @@ std::string png_of(const Grey& grey) {
 
 Grey read_grey(const fs::path& path) {
   const auto frame = Reader(path, {.frame_count = 1, .threads = 1, .with_timing = false}).next();
-  if (!frame || frame->picture.plane_count != 1) throw Error("is no grey picture", {path.string()});
+  if (!frame || frame->picture.plane_count != 1)
+    throw Error("is no grey picture; expected one channel of 8 bits", {path.string()});
   const image::Picture& picture = frame->picture;
   Grey grey{picture.width, picture.height, {}};
   for (int y = 0; y < grey.height; ++y)

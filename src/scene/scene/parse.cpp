@@ -75,6 +75,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
            "realism",
            "intruder",
            "distractor",
+            "occluder",
            "truth",
            "render",
            "composite",
@@ -100,6 +101,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
             "has {} tables [[intruder]]; expected at most {}", scene.intruders.size(), kMaxThings),
         scene.intruders[kMaxThings].where);
   add_distractors(root, scene);
+  scene.occluders = occluders_in(root);
   scene.truth = truth_in(root);
   scene.render = render_in(root);
   scene.composite = composite_in(root);

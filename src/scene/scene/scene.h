@@ -79,10 +79,13 @@ struct Camera {
   // Time of the clip's first frame on the video's clock. It follows from [background] first_frame
   // and the video (sequence/setup/from_scene.h).
   double clip_start_s = 0;
-  // With a log: whether the scene states the position and the attitude at the first frame; the
-  // log's are used where it does not.
+  // Whether the scene states the position and the attitude at the first frame. Those of a log are
+  // used where it does not, and an attitude that nothing states is found
+  // (sequence/setup/level_camera.h).
   bool position_is_stated = false;
   bool attitude_is_stated = false;
+  // False: such an attitude is level. A catalogue draws its encounters before a frame is read.
+  bool by_horizon = true;
   // With a log: true where the attitude follows the log throughout, which is so for motion
   // `smoothed`. Otherwise it is that of the first frame, from where the measured motion turns it.
   bool follows_log_attitude = false;
@@ -258,6 +261,17 @@ struct TruthVolume {
   double coaltitude_s = 0;
 };
 
+// [[occluder]]: what stands in the picture before the intruders that are farther from the camera.
+// Exactly one of mask and beyond_horizon is present.
+struct Occluder {
+  double range_m = 0;
+  // A grey picture, or numbered ones, a picture for each frame of the clip: white hides.
+  std::optional<fs::path> mask;
+  // What is below the horizon.
+  bool beyond_horizon = false;
+  Where where;
+};
+
 // [truth]: what the truth says of an encounter beside its measures.
 struct Truth {
   // Names of known volumes.
@@ -311,6 +325,7 @@ struct Scene {
   std::vector<Intruder> intruders;
   // The distractors on the lens.
   std::vector<LensMark> lens_marks;
+  std::vector<Occluder> occluders;
   Truth truth;
   Render render;
   Composite composite;

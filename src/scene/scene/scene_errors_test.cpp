@@ -238,5 +238,21 @@ TEST(SceneErrors, MissingFilesAreErrorsThatNameThem) {
             "/: has no name, and none can be made from the file's");
 }
 
+TEST(SceneErrors, Occluders) {
+  EXPECT_EQ(
+      with_rest("[[occluder]]\nmask = 'hill.png'"),
+      "s.toml:10:1: [[occluder]] has no range_m; expected its distance, beyond which it hides");
+  EXPECT_EQ(with_rest("[[occluder]]\nrange_m = 0\nmask = 'hill.png'"),
+            "s.toml:11:11: range_m is 0; expected metres from 0.1 to 1e6");
+  EXPECT_EQ(with_rest("[[occluder]]\nrange_m = 800"),
+            "s.toml:10:1: [[occluder]] has no mask; expected mask, or beyond_horizon = true");
+  EXPECT_EQ(with_rest("[[occluder]]\nrange_m = 800\nmask = 'hill.png'\nbeyond_horizon = true"),
+            "s.toml:10:1: [[occluder]] has a mask and beyond_horizon; expected one of them");
+  std::string many;
+  for (int i = 0; i < 33; ++i) many += "[[occluder]]\nrange_m = 800\nbeyond_horizon = true\n";
+  EXPECT_EQ(with_rest(many),
+            "s.toml:106:1: more than 32 [[occluder]] tables; expected at most so many");
+}
+
 }  // namespace
 }  // namespace airtruth::scene

@@ -153,6 +153,22 @@ TEST(Scene, WeatherIsReadAndWrittenAgain) {
   EXPECT_NEAR(weather_facts(scene).at("visibility_m"), 7824.05, 0.01);
 }
 
+TEST(Scene, OccludersReadBackTheSame) {
+  const Scene scene = parse_scene(paper() +
+                                      "[[occluder]]\nrange_m = 800\nmask = \"hill/%05d.png\"\n"
+                                      "[[occluder]]\nrange_m = 4e3\nbeyond_horizon = true\n",
+                                  "/data/a.toml");
+  const Scene again = parse_scene(toml_from_scene(scene), "/elsewhere/b.toml");
+  ASSERT_EQ(again.occluders.size(), 2u);
+  EXPECT_EQ(again.occluders[0].range_m, 800);
+  EXPECT_EQ(again.occluders[0].mask, fs::path("/data/hill/%05d.png"));
+  EXPECT_FALSE(again.occluders[0].beyond_horizon);
+  EXPECT_EQ(again.occluders[1].range_m, 4000);
+  EXPECT_TRUE(again.occluders[1].beyond_horizon && !again.occluders[1].mask);
+  const std::vector<fs::path> files = stated_files(scene);
+  EXPECT_NE(std::find(files.begin(), files.end(), "/data/hill/%05d.png"), files.end());
+}
+
 // The shipped examples are valid scenes, and the first names every key that exists.
 TEST(Scene, ExamplesAreGood) {
   int count = 0;
@@ -240,6 +256,7 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "pixel",
                                 "range_m",
                                 "width_px",
+                                "beyond_horizon",
                                 "volumes",
                                 "lookahead_s",
                                 "quality",

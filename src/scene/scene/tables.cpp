@@ -229,6 +229,32 @@ Light light_in(const TableReader& parent) {
   return light;
 }
 
+std::vector<Occluder> occluders_in(const TableReader& parent) {
+  // Each still mask takes a byte for each pixel of the frame.
+  constexpr std::size_t kMost = 32;
+  std::vector<Occluder> occluders;
+  for (const TableReader& table :
+       parent.tables("occluder", {"range_m", "mask", "beyond_horizon"})) {
+    const auto range_m = table.number("range_m", kRangeToAircraft);
+    Occluder occluder{
+        0, table.path("mask"), table.truth("beyond_horizon").value_or(false), table.where()};
+    if (!range_m)
+      throw Error("[[occluder]] has no range_m; expected its distance, beyond which it hides",
+                  table.where());
+    if (occluder.mask.has_value() == occluder.beyond_horizon)
+      throw Error(occluder.mask
+                      ? "[[occluder]] has a mask and beyond_horizon; expected one of them"
+                      : "[[occluder]] has no mask; expected mask, or beyond_horizon = true",
+                  table.where());
+    if (occluders.size() == kMost)
+      throw Error(fmt::format("more than {} [[occluder]] tables; expected at most so many", kMost),
+                  table.where());
+    occluder.range_m = *range_m;
+    occluders.push_back(std::move(occluder));
+  }
+  return occluders;
+}
+
 namespace {
 
 void take_encoder(Output& output, const TableReader& table) {

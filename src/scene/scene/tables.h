@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/scene/scene.h"
 #include "scene/scene/table_reader.h"
@@ -27,6 +28,7 @@ CameraModel camera_model_in(const TableReader& parent);
 Weather weather_in(const TableReader& parent);
 Realism realism_in(const TableReader& parent);
 Light light_in(const TableReader& parent);
+std::vector<Occluder> occluders_in(const TableReader& parent);
 Truth truth_in(const TableReader& parent);
 Output output_in(const TableReader& parent);
 Render render_in(const TableReader& parent);

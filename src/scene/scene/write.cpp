@@ -247,6 +247,12 @@ void add_things(Text& text, const Scene& scene) {
   for (const Intruder& intruder : scene.intruders)
     is_aircraft(intruder) ? add_intruder(text, intruder) : add_distractor(text, intruder);
   for (const LensMark& mark : scene.lens_marks) add_mark(text, mark);
+  for (const Occluder& occluder : scene.occluders) {
+    text.heading("[[occluder]]");
+    text.add("range_m", occluder.range_m);
+    text.add("mask", occluder.mask);
+    if (occluder.beyond_horizon) text.add("beyond_horizon", true);
+  }
 }
 
 void add_truth(Text& text, const Truth& truth) {
@@ -276,6 +282,7 @@ std::vector<fs::path> stated_files(const Scene& scene) {
   add(scene.camera.path_file);
   add(scene.camera.log);
   for (const Intruder& intruder : scene.intruders) add(intruder.path_file);
+  for (const Occluder& occluder : scene.occluders) add(occluder.mask);
   return files;
 }
 

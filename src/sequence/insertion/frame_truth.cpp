@@ -100,22 +100,28 @@ void add_pixels(annotation::Intruder& truth,
   const double alone = layer.area_alone_px[i];
   const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
   truth.hidden_by_own_aircraft = fraction(layer.area_seen_px[i] - layer.area_free_px[i]);
+  double by_occluder = fraction(layer.area_free_px[i] - layer.area_clear_px[i]);
   truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - layer.area_seen_px[i]);
   truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
   constexpr double kRounding = 1e-6;  // sums of float coverages
-  for (double* share :
-       {&truth.hidden_by_own_aircraft, &truth.hidden_by_intruder, &truth.cut_by_frame})
+  for (double* share : {&truth.hidden_by_own_aircraft,
+                        &by_occluder,
+                        &truth.hidden_by_intruder,
+                        &truth.cut_by_frame})
     if (*share < kRounding) *share = 0;
+  if (truth.hidden_by_occluder) truth.hidden_by_occluder = by_occluder;
 }
 
 // What is on the lens has boxes alone.
 annotation::Intruder mark_truth(const setup::World& world,
                                 const setup::Moment& moment,
                                 std::size_t mark,
-                                const image::Layer& layer,
-                                const std::vector<composite::Visible>& visible) {
+                                const Painted& painted) {
   using annotation::State;
+  const image::Layer& layer = painted.layer;
+  const std::vector<composite::Visible>& visible = painted.visible;
   annotation::Intruder truth;
+  if (painted.has_occluders) truth.hidden_by_occluder = 0;
   truth.id = world.lens_marks[mark].id;
   truth.aircraft = truth.object_class = enum_name(world.lens_marks[mark].kind);
   if (!setup::is_there(world.lens_marks[mark], moment.time_s)) return truth;
@@ -135,14 +141,16 @@ annotation::Intruder mark_truth(const setup::World& world,
 
 std::vector<annotation::Intruder> intruders_of(const setup::World& world,
                                                const setup::Moment& moment,
-                                               const image::Layer& layer,
-                                               const std::vector<composite::Visible>& visible) {
+                                               const Painted& painted) {
+  const image::Layer& layer = painted.layer;
+  const std::vector<composite::Visible>& visible = painted.visible;
   std::vector<annotation::Intruder> result;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
     annotation::Intruder truth;
     truth.id = world.actors[i].id;
     truth.aircraft = world.actors[i].aircraft;
     truth.object_class = world.actors[i].object_class;
+    if (painted.has_occluders) truth.hidden_by_occluder = 0;
     if (moment.states[i]) {
       add_geometry(truth, moment, *moment.states[i]);
       truth.encounter = encounter_of(world, moment.camera, *moment.states[i]);
@@ -154,7 +162,7 @@ std::vector<annotation::Intruder> intruders_of(const setup::World& world,
     result.push_back(std::move(truth));
   }
   for (std::size_t mark = 0; mark < world.lens_marks.size(); ++mark)
-    result.push_back(mark_truth(world, moment, mark, layer, visible));
+    result.push_back(mark_truth(world, moment, mark, painted));
   return result;
 }
 
@@ -174,7 +182,7 @@ annotation::Frame frame_truth(const setup::World& world,
   truth.shake = shake;
   truth.camera_position_ned_m = moment.camera.position_in_world;
   truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
-  truth.intruders = intruders_of(world, moment, painted.layer, painted.visible);
+  truth.intruders = intruders_of(world, moment, painted);
   for (annotation::Intruder& intruder : truth.intruders)
     if (const auto box = annotation::box_to_show(intruder))
       intruder.contrast_to_noise = image::contrast_to_noise(frame.picture, *box);

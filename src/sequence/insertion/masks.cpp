@@ -34,13 +34,12 @@ std::string mask_name(const std::string& intruder_id, std::int64_t frame) {
 
 std::vector<MaskFile> mask_files(const annotation::Frame& truth,
                                  const image::Layer& layer,
-                                 const image::Mask* own_aircraft,
                                  const lens::ImageSize& size) {
   std::vector<MaskFile> files;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
     if (intruder.state != annotation::State::kVisible) continue;
-    const composite::AlphaMask mask = composite::alpha_mask(layer, i, own_aircraft);
+    const composite::AlphaMask mask = composite::alpha_mask(layer, i);
     if (!mask.empty())
       files.push_back(
           {mask_name(intruder.id, truth.frame), video::png_of(whole_frame(mask, size))});

@@ -29,7 +29,6 @@ std::string mask_name(const std::string& intruder_id, std::int64_t frame);
 // Returns the masks of all intruders of one frame. The layer's intruders are in the truth's order.
 std::vector<MaskFile> mask_files(const annotation::Frame& truth,
                                  const image::Layer& layer,
-                                 const image::Mask* own_aircraft,
                                  const lens::ImageSize& size);
 
 // Reads the mask of an intruder back, over the whole frame; returns empty where the file does not

@@ -73,7 +73,7 @@ class Matte : public Painter {
     if (setup::has_codec(scene_.camera_model) && !coder_)
       coder_.emplace(*scene_.camera_model.codec_step);
     if (!painted.layer.empty()) {
-      composite::MatteOptions options{.own_aircraft = mask_};
+      composite::MatteOptions options;
       options.sensor = setup::sensor_of(setup::camera_in_weather(scene_));
       options.seed = scene_.seed;
       options.frame = moment.frame;
@@ -106,8 +106,7 @@ void add_pixel(composite::Visible& visible, int x, int y) {
 std::vector<composite::Visible> changed(const image::Picture& before,
                                         const image::Picture& after,
                                         const image::Layer& layer,
-                                        const setup::Moment& moment,
-                                        const image::Mask* own_aircraft) {
+                                        const setup::Moment& moment) {
   // Reach of the Lanczos kernel: its 8x8 samples spread an edge by four pixels.
   constexpr double kLanczosReachPx = 5;
   std::vector<composite::Visible> visible(moment.search.size());
@@ -123,15 +122,9 @@ std::vector<composite::Visible> changed(const image::Picture& before,
         if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
     }
     if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
-    visible[i].covered = composite::covered(layer, i, own_aircraft);
-    for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
-      for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
-        const double coverage = layer.coverage[i][layer.index(x, y)];
-        visible[i].alpha_before_mask_px += coverage;
-        if (own_aircraft == nullptr || own_aircraft->is_free(x, y))
-          visible[i].alpha_sum_px += coverage;
-      }
-    }
+    visible[i].covered = composite::covered(layer, i);
+    for (std::size_t k = 0; k < layer.coverage[i].size(); ++k)
+      if (layer.is_open(k)) visible[i].alpha_sum_px += layer.coverage[i][k];
   }
   return visible;
 }
@@ -140,10 +133,10 @@ class ChromaKey : public Painter {
  public:
   ChromaKey(const scene::Scene& scene,
             const setup::World& world,
-            const image::Mask* mask,
+            Occluders occluders,
             std::unique_ptr<backdrop::Backdrop> opened,
             std::stop_token stop)
-      : Painter(scene, world, mask, std::move(stop)), backdrop_(std::move(opened)) {
+      : Painter(scene, world, std::move(occluders), std::move(stop)), backdrop_(std::move(opened)) {
     check(backdrop_ != nullptr, "the chroma-key method has its OpenGL");
   }
 
@@ -168,9 +161,11 @@ class ChromaKey : public Painter {
                                                         light,
                                                         instances);
     const image::Picture before = picture.clone();
-    composite::composite_chroma_key(
-        picture, virtual_image, moment.sight.frame_from_nominal, {.own_aircraft = mask_});
-    painted.visible = changed(before, picture, painted.layer, moment, mask_);
+    composite::composite_chroma_key(picture,
+                                    virtual_image,
+                                    moment.sight.frame_from_nominal,
+                                    {.own_aircraft = occluders_.own_aircraft()});
+    painted.visible = changed(before, picture, painted.layer, moment);
   }
 
  private:
@@ -179,16 +174,21 @@ class ChromaKey : public Painter {
 
 }  // namespace
 
-Painted Painter::draw(const setup::Moment& moment, const Ambient& ambient) const {
+Painted Painter::draw(const image::Picture& background,
+                      const setup::Moment& moment,
+                      const Ambient& ambient) const {
+  const Occluders::InFrame before = occluders_.in_frame(moment, background);
   Painted painted;
-  painted.layer = render_layer(scene_, world_, moment, ambient, mask_, stop_);
+  painted.layer = render_layer(scene_, world_, moment, ambient, before.occlusion, stop_);
+  painted.has_occluders = occluders_.has_others();
+  painted.horizon_is_assumed = before.horizon_is_assumed;
   return painted;
 }
 
 Painted Painter::paint(image::Picture& picture,
                        const setup::Moment& moment,
                        const Ambient& ambient) {
-  Painted painted = draw(moment, ambient);
+  Painted painted = draw(picture, moment, ambient);
   compose(picture, moment, ambient, painted);
   return painted;
 }
@@ -197,7 +197,7 @@ image::Layer render_layer(const scene::Scene& scene,
                           const setup::World& world,
                           const setup::Moment& moment,
                           const Ambient& ambient,
-                          const image::Mask* own_aircraft,
+                          const composite::Occlusion& occlusion,
                           const std::stop_token& stop) {
   const render::View view{&world.lens,
                           moment.sight.cam_from_world.inverse(),
@@ -227,13 +227,14 @@ image::Layer render_layer(const scene::Scene& scene,
   if (any) {
     layer = render::render(
         view, light, instances, moment.search, {.quality = scene.render.quality, .stop = stop});
-    if (own_aircraft != nullptr) composite::find_free_area(layer, *own_aircraft);
-    if (has_spots) composite::hide_behind(layer, covers, own_aircraft);
+    composite::find_areas(layer, occlusion);
+    if (has_spots) composite::hide_behind(layer, covers, occlusion);
     layer = through_air_and_lens(std::move(layer), camera, ambient, size);
+    composite::hide(layer, occlusion);
   }
   if (!has_spots) return layer;
   return composite::with_spots(
-      std::move(layer), world.actors.size(), on_lens, covers, own_aircraft, margin_px(camera));
+      std::move(layer), world.actors.size(), on_lens, covers, margin_px(camera));
 }
 
 void check_method(const scene::Scene& scene, const lens::Lens& lens) {
@@ -243,6 +244,10 @@ void check_method(const scene::Scene& scene, const lens::Lens& lens) {
                             "expected method = \"matte\", or no ") +
                     enum_name(scene.lens_marks.front().kind),
                 scene.lens_marks.front().where);
+  if (!scene.occluders.empty())
+    throw Error(
+        "composite.method chroma-key has no [[occluder]]; expected method = \"matte\", or none",
+        scene.occluders.front().where);
   if (!std::holds_alternative<lens::Pinhole>(lens.model()))
     throw Error(std::string("composite.method chroma-key draws with OpenGL, which has the pinhole "
                             "alone; the lens is ") +
@@ -269,12 +274,12 @@ std::unique_ptr<backdrop::Backdrop> open_backdrop(const scene::Scene& scene,
 
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
                                       const setup::World& world,
-                                      const image::Mask* mask,
+                                      Occluders occluders,
                                       std::unique_ptr<backdrop::Backdrop> opened,
                                       const std::stop_token& stop) {
   if (scene.composite.method == scene::CompositeMethod::kChromaKey)
-    return std::make_unique<ChromaKey>(scene, world, mask, std::move(opened), stop);
-  return std::make_unique<Matte>(scene, world, mask, stop);
+    return std::make_unique<ChromaKey>(scene, world, std::move(occluders), std::move(opened), stop);
+  return std::make_unique<Matte>(scene, world, std::move(occluders), stop);
 }
 
 std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size) {

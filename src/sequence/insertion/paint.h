@@ -13,6 +13,7 @@
 #include "picture/composite/matte.h"
 #include "scene/scene/scene.h"
 #include "sequence/insertion/ambient.h"
+#include "sequence/insertion/occluders.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
 
@@ -24,18 +25,24 @@ struct Painted {
   image::Layer layer;
   // By intruder; empty where none is in view.
   std::vector<composite::Visible> visible;
+  // True where the scene has an [[occluder]], and where its horizon is assumed (occluders.h).
+  bool has_occluders = false;
+  bool horizon_is_assumed = false;
 };
 
 class Painter {
  public:
   Painter(const scene::Scene& scene,
           const setup::World& world,
-          const image::Mask* mask,
+          Occluders occluders,
           std::stop_token stop)
-      : scene_(scene), world_(world), mask_(mask), stop_(std::move(stop)) {}
+      : scene_(scene), world_(world), occluders_(std::move(occluders)), stop_(std::move(stop)) {}
   virtual ~Painter() = default;
-  // Renders the layer of a moment. matte: in any thread and order; chroma-key: in one thread.
-  Painted draw(const setup::Moment& moment, const Ambient& ambient) const;
+  // Renders the layer of a moment. `background`: its picture without intruders. matte: in any
+  // thread and order; chroma-key: in one thread.
+  Painted draw(const image::Picture& background,
+               const setup::Moment& moment,
+               const Ambient& ambient) const;
   // Composites the layer into the picture and adds the resulting changes to `painted`.
   virtual void compose(image::Picture& picture,
                        const setup::Moment& moment,
@@ -52,11 +59,11 @@ class Painter {
  protected:
   const scene::Scene& scene_;
   const setup::World& world_;
-  const image::Mask* mask_;
+  Occluders occluders_;
   std::stop_token stop_;
 };
 
-// Error where the scene's method cannot draw through the lens.
+// Error where the scene's method cannot draw through the lens, or what the scene has.
 void check_method(const scene::Scene& scene, const lens::Lens& lens);
 // Error where the scene has a codec_step and H.264 does not have the clip's layout (4:4:0).
 void check_codec(const scene::Scene& scene, const image::Colour& colour);
@@ -70,20 +77,20 @@ std::unique_ptr<backdrop::Backdrop> open_backdrop(const scene::Scene& scene,
 // The painter of the scene's method. `opened`: as open_backdrop() returns it for this scene.
 std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
                                       const setup::World& world,
-                                      const image::Mask* mask,
+                                      Occluders occluders,
                                       std::unique_ptr<backdrop::Backdrop> opened = nullptr,
                                       const std::stop_token& stop = {});
 
 // The scene's mask of the own aircraft, if it has one.
 std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size);
 
-// Renders the layer of one moment for the matte method. The layer is incomplete once `stop` is
-// requested. `own_aircraft`, where present, only reduces the layer's area_free_px.
+// Renders the layer of one moment for the matte method, without what the occlusion hides. The layer
+// is incomplete once `stop` is requested.
 image::Layer render_layer(const scene::Scene& scene,
                           const setup::World& world,
                           const setup::Moment& moment,
                           const Ambient& ambient,
-                          const image::Mask* own_aircraft = nullptr,
+                          const composite::Occlusion& occlusion = {},
                           const std::stop_token& stop = {});
 
 }  // namespace airtruth::insertion

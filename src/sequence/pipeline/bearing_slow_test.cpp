@@ -35,7 +35,8 @@ TEST(BearingOnARealClip, AgreesWithThePixelAndNotWithTheNominalBoresight) {
         std::string("name = \"") + model + "\"\n[background]\nvideo = \"" + clip.string() +
         "\"\nfirst_frame = 300\nframe_count = 240\n"
         "[lens]\nvertical_fov_deg = 50\n[camera]\nposition_ned_m = [0, 0, -150]\n"
-        "velocity_ned_mps = [20, 0, 0]\n[motion]\nmodel = \"" +
+        "velocity_ned_mps = [20, 0, 0]\nattitude_yaw_pitch_roll_deg = [0, 0, 0]\n[motion]\nmodel = "
+        "\"" +
         model +
         "\"\nreference = \"smoothed\"\n[[intruder]]\naircraft = \"738/738-Ryanair\"\n"
         "waypoints_ned_m = [[500, -40, -160], [660, 60, -160]]\ntimes_s = [0, 8]\n"

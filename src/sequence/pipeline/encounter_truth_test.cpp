@@ -28,6 +28,7 @@ constexpr double kRate_hz = 10;
 const std::string kScene =
     "name = 'met'\n[background]\nvideo = 'flight.mkv'\n[lens]\nvertical_fov_deg = 75\n"
     "[camera]\nposition_ned_m = [0, 0, -150]\nvelocity_ned_mps = [30, 5, -1]\n"
+    "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n"
     "[motion]\nmodel = 'none'\n[output]\nvideo = 'mkv'\n[render]\nquality = 1\n"
     "[truth]\nvolumes = ['f3442', 'nmac']\n[[truth.volume]]\nname = 'own'\nhorizontal_m = 40\n"
     "vertical_m = 20\n"
@@ -226,7 +227,7 @@ TEST_F(EncounterTruth, AnUnknownVolumeIsAnError) {
     FAIL() << "expected an error";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("scene.toml:15:1: [truth] volumes has 'nmca', which is "
+                  .find("scene.toml:16:1: [truth] volumes has 'nmca', which is "
                         "unknown; did you mean 'nmac'?"),
               std::string::npos)
         << error.what();

@@ -18,7 +18,7 @@ FrameMaker::FrameMaker(ResolvedScene resolved, const std::stop_token& stop)
       stop_(stop),
       painter_(insertion::make_painter(resolved_.scene,
                                        resolved_.world,
-                                       resolved_.mask.get(),
+                                       resolved_.occluders,
                                        std::move(resolved_.backdrop),
                                        stop)),
       ambient_(resolved_.scene.light,
@@ -49,7 +49,8 @@ void FrameMaker::locate(Work& work, const Shake& shake) {
 }
 
 void FrameMaker::draw(Work& work) const {
-  work.painted = painter_->draw(work.moment, work.ambient);
+  work.painted = painter_->draw(work.frame.picture, work.moment, work.ambient);
+  work.horizon_is_assumed = work.painted.horizon_is_assumed;
 }
 
 void FrameMaker::compose(Work& work) {
@@ -62,8 +63,7 @@ void FrameMaker::describe(Work& work) const {
   work.truth = insertion::frame_truth(
       resolved_.world, work.frame, state, work.moved.shake, work.moment, work.painted);
   if (resolved_.scene.output.masks)
-    work.masks = insertion::mask_files(
-        work.truth, work.painted.layer, resolved_.mask.get(), resolved_.world.lens.size());
+    work.masks = insertion::mask_files(work.truth, work.painted.layer, resolved_.world.lens.size());
   work.painted = {};
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include "picture/video/still.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/motion_source.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::pipeline {
@@ -173,8 +175,12 @@ std::vector<Checksum> input_files(const scene::Scene& scene,
   const auto add = [&](const fs::path& file) {
     result.push_back({file.string(), inputs.sha256_of_file(file)});
   };
+  std::set<fs::path> masks;
+  for (const scene::Occluder& occluder : scene.occluders)
+    if (occluder.mask && masks.insert(*occluder.mask).second)
+      result.push_back({occluder.mask->string(), setup::sha256_of_video(*occluder.mask, inputs)});
   for (const fs::path& file : scene::stated_files(scene))
-    if (file != scene.background.video) add(file);
+    if (file != scene.background.video && !masks.contains(file)) add(file);
   for (const fs::path& model : model_files(world)) add(model);
   return result;
 }

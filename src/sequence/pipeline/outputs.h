@@ -73,8 +73,8 @@ class Outputs {
 std::vector<fs::path> model_files(const setup::World& world);
 
 // Every file that a run reads, with its SHA-256, for sequence.json: video, mask, camera file, lens
-// file, path files, and the files of the aircraft's models by name. `scene` is the one the user
-// gave. `video_sha256` is empty for a pattern of numbered images, which is then left out.
+// file, path files, masks of occluders, and the files of the aircraft's models by name. `scene` is
+// the one the user gave. An empty `video_sha256` is left out. A series of pictures has one SHA-256.
 std::vector<Checksum> input_files(const scene::Scene& scene,
                                   const setup::World& world,
                                   const std::string& video_sha256,

@@ -73,6 +73,7 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
     const std::shared_ptr<const video::Frame> frame(work, &work->frame);
     outputs.write(frame, work->truth, work->masks);
     add_frame(tally, *frame, work->moved.motion.state, work->ambient, work->truth);
+    tally.frames_without_horizon += work->horizon_is_assumed ? 1 : 0;
     if (options.progress)
       options.progress({tally.frames, maker.resolved().info.frame_count_estimate});
   });
@@ -121,7 +122,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   const auto limit = thread_limit(options.threads);
   const fs::path folder = out / scene.name;
   RunFiles files;
-  for (const fs::path& file : scene::stated_files(scene)) files.reads(file);
+  for (const fs::path& file : setup::files_read(scene)) files.reads(file);
   files.replaces(folder).check();
   StagedFolder staged(folder, options.overwrite, options.warn);
 
@@ -143,6 +144,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   maker.store_motion();
   warn_of_run(tally, resolved.scene, resolved.world, resolved.background, options.warn);
   Summary summary = summary_of(tally, clocks, resolved.motion->is_from_cache());
+  summary.attitude_words = resolved.attitude_words;
   outputs->finish(resolved.scene,
                   input_files(scene, resolved.world, resolved.video_sha256, *resolved.inputs),
                   encounter_records(resolved.world, tally.first_seen, tally.last_time_s),

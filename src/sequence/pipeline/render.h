@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/options.h"
@@ -46,6 +47,8 @@ struct Summary {
   double seconds = 0;
   StageTimes stages;
   bool motion_from_cache = false;
+  // Where the camera's attitude was taken from (sequence/setup/level_camera.h); "": it was stated.
+  std::string attitude_words;
 };
 
 // Writes <out>/<name>/ (docs/formats/output.md) whole or not at all: all files are written to a

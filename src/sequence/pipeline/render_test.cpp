@@ -57,7 +57,8 @@ class Sequence : public testing::Test {
     const std::string text = "name = \"" + name + "\"\n[background]\nvideo = \"flight.mkv\"\n" +
                              background +
                              "[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 75\n"
-                             "[camera]\nposition_ned_m = [0, 0, -150]\n" +
+                             "[camera]\nposition_ned_m = [0, 0, -150]\n"
+                             "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n" +
                              more + intruders + "[output]\nvideo = \"mkv\"\n";
     return scene::parse_scene(text, root_ / "scene.toml");
   }
@@ -423,6 +424,68 @@ TEST_F(Sequence, ACameraFileOfAnotherClipIsRefusedAndWhatCannotBeMeasuredIsSaid)
              options);
   EXPECT_GT(summary.frames_visible, 0);
   EXPECT_FALSE(warnings.empty());
+}
+
+// A virtual flight states its attitude; its first frame is banked by more than 10 degrees.
+TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
+  synthetic::FlightOptions options;
+  options.width = 320;
+  options.height = 240;
+  options.frame_count = 24;
+  options.own_aircraft = false;
+  options.hills_deg = 0;
+  options.roll_deg = 30;
+  options.seed = 2;
+  const synthetic::Flight flight(options);
+  demo::VirtualFlightOptions how;
+  how.format = video::Format::kMkv;
+  demo::write_flight(flight, out_ / "banked.mkv", how);
+  const YawPitchRoll expected = yaw_pitch_roll(flight.camera(0).world_from_body);
+  EXPECT_GT(std::abs(expected.roll_deg), 10);
+  const std::string text =
+      "name = \"banked\"\n[background]\nvideo = \"banked.mkv\"\nframe_count = 3\n[lens]\n"
+      "vertical_fov_deg = 75\n[motion]\nmodel = \"none\"\n[output]\nvideo = \"mkv\"\n" +
+      crossing("a", "c172/news", 60);
+  const Summary summary = render(scene::parse_scene(text, out_ / "s.toml"), out_, {});
+  EXPECT_THAT(summary.attitude_words,
+              testing::StartsWith("[camera] has no attitude_yaw_pitch_roll_deg: pitch "));
+  const replay::Finished finished = replay::open_finished(summary.folder);
+  const YawPitchRoll found = finished.truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
+  // A pixel is 0.37 degrees, and the visible horizon lies 0.4 degrees below level at 150 m.
+  EXPECT_NEAR(found.pitch_deg, expected.pitch_deg, 0.75);
+  EXPECT_NEAR(found.roll_deg, expected.roll_deg, 0.5);
+  EXPECT_NEAR(found.yaw_deg, 0, 1e-9);
+  // What sequence.json holds is stated: the same frames are made from it.
+  EXPECT_TRUE(finished.scene->camera.attitude_is_stated);
+  EXPECT_TRUE(replay::recompose(finished, 1, {}).faults.empty());
+  const Summary stated =
+      render(scene::parse_scene(text + "[camera]\nattitude_yaw_pitch_roll_deg = [0, 0, 0]\n",
+                                out_ / "s.toml"),
+             out_,
+             {.overwrite = true});
+  EXPECT_EQ(stated.attitude_words, "");
+  EXPECT_EQ(replay::open_finished(stated.folder)
+                .truth.frames[0]
+                .camera_attitude_yaw_pitch_roll_deg.roll_deg,
+            0);
+}
+
+TEST_F(Sequence, WithoutAHorizonTheCameraIsLevelAndItIsSaid) {
+  image::Rgb8 grey = image::make_rgb8(kWidth, kHeight);
+  std::fill_n(grey.samples.get(), std::size_t{kWidth} * kHeight * 3, std::uint8_t{120});
+  for (int k = 0; k < 3; ++k) video::write_still(out_ / ("f" + std::to_string(k) + ".png"), grey);
+  const Summary summary = render(
+      scene::parse_scene("name = \"grey\"\n[background]\nvideo = \"f%d.png\"\nframe_rate_hz = "
+                         "30\n[lens]\nvertical_fov_deg = 75\n[motion]\nmodel = \"none\"\n" +
+                             crossing("a", "c172/news", 60),
+                         out_ / "s.toml"),
+      out_,
+      {.use_cache = false});
+  EXPECT_THAT(summary.attitude_words, testing::HasSubstr("it is level, since "));
+  const auto attitude =
+      replay::open_finished(summary.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
+  EXPECT_EQ(attitude.pitch_deg, 0);
+  EXPECT_EQ(attitude.roll_deg, 0);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "sequence/insertion/ambient.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/level_camera.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/world.h"
 
@@ -384,6 +385,12 @@ OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
   if (auto read = insertion::read_mask(opened, size))
     mask = std::make_unique<const image::Mask>(std::move(*read));
   auto inputs = inputs_of(options);
+  const std::string attitude_words = setup::state_attitude(
+      opened.camera,
+      setup::lens_of(opened.lens, size),
+      mask.get(),
+      [&] { return open_background(scene, options); },
+      options.stop);
   setup::World world = setup::load_world(opened, size, options.warn, options.stop, inputs.get());
   auto backdrop = insertion::open_backdrop(
       opened, world.lens, {.gpu = options.gpu, .software = options.software_gl});
@@ -395,12 +402,18 @@ OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
       opened.intruders[i].catalogue_scale = scale;
   const video::StreamInfo info = used_stream(background.info(), scene.background);
   setup::check_camera_path(world.camera, info);
+  // A container may state a frame or two more than it holds.
+  const std::int64_t at_least = scene.background.frame_count.value_or(
+      std::max<std::int64_t>(0, info.frame_count_estimate - 2));
+  insertion::Occluders occluders(opened, world.lens, mask.get(), at_least);
   return {{std::move(background),
            info,
            std::move(mask),
+           std::move(occluders),
            std::move(inputs),
            std::move(world),
-           std::move(backdrop)},
+           std::move(backdrop),
+           attitude_words},
           std::move(as_stated)};
 }
 
@@ -503,9 +516,11 @@ void calibrate_ahead(const scene::Scene& scene, const Options& options) {
 
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
   const lens::ImageSize size{info.width, info.height};
-  insertion::read_mask(scene, size);
+  const auto mask = insertion::read_mask(scene, size);
   const StatedScene with_camera = stated(scene, info);
   const lens::Lens lens = setup::lens_of(scene.lens, size);
+  insertion::Occluders(
+      scene, lens, mask ? &*mask : nullptr, scene.background.frame_count.value_or(0));
   setup::motion_model(scene);
   insertion::check_method(scene, lens);
   setup::check_paths(with_camera.scene, info);

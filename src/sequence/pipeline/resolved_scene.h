@@ -50,13 +50,17 @@ struct SceneInputs {
   video::Reader background;                 // the scene's part of it
   video::StreamInfo info;                   // with the number of frames that this scene makes of it
   std::unique_ptr<const image::Mask> mask;  // of the own aircraft; null: none
+  insertion::Occluders occluders;           // it and the others
   std::shared_ptr<setup::SharedInputs> inputs;  // of the process, else of this run
   setup::World world;
   std::unique_ptr<backdrop::Backdrop> backdrop;  // of the chroma-key method
+  // Where the camera's attitude was taken from, for the user; "": the scene states it.
+  std::string attitude_words;
 };
 
-// A scene whose files are all opened and checked, before a frame is measured: faults of the user's
-// input are found here.
+// A scene whose files are all opened and checked, before the clip is measured: faults of the user's
+// input are found here. Of its frames only the first few are read, where the camera's attitude is
+// not stated.
 struct OpenedScene : SceneInputs {
   StatedScene stated;
 };

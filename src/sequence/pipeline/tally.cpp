@@ -145,6 +145,12 @@ void warn_of_run(const Tally& tally,
                  const Warn& to_warn) {
   warn_of_video(tally, scene.background, reader, to_warn);
   warn_of_motion(tally, scene.background, to_warn);
+  if (tally.frames_without_horizon > 0)
+    warn(to_warn,
+         fmt::format("[[occluder]] beyond_horizon: {} frames show no horizon; in them it is where "
+                     "the camera's attitude and its measured motion have it",
+                     tally.frames_without_horizon));
+  setup::warn_below_ground(scene, world, tally.last_time_s, to_warn);
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
     setup::warn_not_flyable(scene.intruders[i], world.actors[i].path, tally.last_time_s, to_warn);
     warn_nearer(scene.intruders[i], world.actors[i], world.camera, tally.last_time_s, to_warn);

@@ -25,7 +25,9 @@ struct Tally {
   std::int64_t frames_turned = 0;   // of these: the camera has turned beyond a homography's reach
   std::int64_t frames_damaged = 0;  // the background's data was corrupt
   std::int64_t frames_black = 0;    // the light of the intruders is assumed
-  std::vector<std::int64_t> cuts;   // frames that begin a shot
+  // An occluder's horizon was put where the camera's attitude has it.
+  std::int64_t frames_without_horizon = 0;
+  std::vector<std::int64_t> cuts;  // frames that begin a shot
   // Per intruder with a range: the first frame that shows it; empty: never visible.
   std::vector<std::optional<FirstSeen>> first_seen;
   double last_time_s = 0;  // of the last frame
@@ -39,8 +41,8 @@ void add_frame(Tally& tally,
                const annotation::Frame& truth);
 
 // Warns of what a user should know about a finished run: corrupt or missing frames, bridged motion,
-// cuts, intruders that fly beyond their type's limits, that come nearer than their stated closest
-// approach, and that are never visible.
+// cuts, horizons that were not found, intruders that fly below the ground or beyond their type's
+// limits, that come nearer than their stated closest approach, and that are never visible.
 void warn_of_run(const Tally& tally,
                  const scene::Scene& scene,
                  const setup::World& world,

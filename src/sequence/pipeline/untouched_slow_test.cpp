@@ -24,6 +24,7 @@ class Untouched : public testing::Test {
             std::to_string(first_frame) + "\nframe_count = " + std::to_string(frame_count) +
             "\n[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 50\n"
             "[camera]\nposition_ned_m = [0, 0, -150]\n"
+            "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n"
             "[motion]\nreference = \"smoothed\"\n"
             "[[intruder]]\nid = \"far\"\naircraft = \"738/738-Ryanair\"\n"
             "waypoints_ned_m = [[400, -80, -190], [410, 200, -195]]\nspeed_mps = 90\n"

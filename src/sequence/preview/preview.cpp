@@ -46,7 +46,7 @@ class Previewer {
         parties_(parties_of(opened_.stated.scene)),
         motion_(known_motion()),
         painter_(insertion::make_painter(
-            opened_.stated.scene, world(), opened_.mask.get(), nullptr, options.stop)),
+            opened_.stated.scene, world(), opened_.occluders, nullptr, options.stop)),
         rate_hz_(opened_.info.frame_rate.value()),
         duration_s_(
             static_cast<double>(std::max<std::int64_t>(0, opened_.info.frame_count_estimate - 1)) /
@@ -57,13 +57,15 @@ class Previewer {
 
   Preview make() {
     warn_of_length();
-    // What an aircraft cannot fly is said before it is rendered.
+    // What cannot be flown is said before it is rendered.
+    setup::warn_below_ground(scene(), world(), duration_s_, options_.warn);
     for (std::size_t i = 0; i < world().actors.size(); ++i)
       setup::warn_not_flyable(
           scene().intruders[i], world().actors[i].path, duration_s_, options_.warn);
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
     result.has_motion = motion_.has_value();
+    result.attitude_words = opened_.attitude_words;
     result.rows =
         preview_rows(world(), parties_, times, [&](double time_s) { return moment(time_s); });
     result.approaches = approach_lines(world(), parties_, result.rows, duration_s_);

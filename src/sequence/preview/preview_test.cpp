@@ -34,7 +34,9 @@ scene::Scene head_on(const fs::path& video) {
   return scene::parse_scene(
       "[background]\nvideo = \"" + video.string() +
           "\"\n[lens]\nvertical_fov_deg = 60\n[camera]\nposition_ned_m = [0, 0, -150]\n"
-          "velocity_ned_mps = [25, 0, 0]\n[[intruder]]\nid = \"near\"\naircraft = \"c172/g-boix\"\n"
+          "velocity_ned_mps = [25, 0, 0]\n"
+          "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n[[intruder]]\nid = \"near\"\naircraft = "
+          "\"c172/g-boix\"\n"
           "[intruder.encounter]\ncpa_time_s = 4\ncpa_right_m = 20\ncpa_above_m = 10\ncourse_deg = "
           "180\n"
           "speed_mps = 50\n",

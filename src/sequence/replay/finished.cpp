@@ -186,13 +186,16 @@ image::Rgb8 inspect(const Finished& sequence,
   const setup::World world =
       setup::load_world(scene, {before.picture.width, before.picture.height}, {});
   const setup::Moment moment = setup::moment_at(world, truth.frame, truth.time_s, truth.shake);
-  const image::Layer layer = insertion::render_layer(scene, world, moment, insertion::Ambient{});
   const bool matte = scene.composite.method == scene::CompositeMethod::kMatte;
-  const auto mask = insertion::read_mask(scene, {before.picture.width, before.picture.height});
-  return drawing::closeup({&before.picture,
-                           &after.picture,
-                           matte ? &layer : nullptr,
-                           mask && !layer.is_masked ? &*mask : nullptr},
+  const auto mask = insertion::read_mask(scene, world.lens.size());
+  const insertion::Occluders occluders(scene, world.lens, mask ? &*mask : nullptr, 0);
+  const image::Layer layer =
+      insertion::render_layer(scene,
+                              world,
+                              moment,
+                              insertion::Ambient{},
+                              occluders.in_frame(moment, before.picture).occlusion);
+  return drawing::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
                           truth,
                           area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),
                           zoom);

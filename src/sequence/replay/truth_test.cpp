@@ -62,7 +62,8 @@ class TruthOf : public testing::Test {
     const std::string text = "name = \"" + name + "\"\n[background]\nvideo = \"flight.mkv\"\n" +
                              background +
                              "[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 75\n"
-                             "[camera]\nposition_ned_m = [0, 0, -150]\n" +
+                             "[camera]\nposition_ned_m = [0, 0, -150]\n"
+                             "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n" +
                              tables + intruders + "[output]\nvideo = \"mkv\"\n" + output;
     pipeline::Options options;
     options.use_cache = false;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -11,6 +12,7 @@
 
 #include "aircraft/fleet/flight_limits.h"
 #include "foundation/geometry/transform.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::setup {
 namespace {
@@ -22,6 +24,17 @@ constexpr double kTurnStep_s = 0.01;    // over which the turn rate is taken
 constexpr double kHeadingMps = 1;
 // Tolerance as a share of a limit, so that a path drawn at the limit is within it.
 constexpr double kToleratedShare = 1e-3;
+
+// The times at which paths are looked at.
+std::vector<double> sampled_times(double begin_s, double end_s) {
+  const int samples =
+      1 + std::clamp(
+              static_cast<int>(std::min((end_s - begin_s) / kSampleStep_s, 1e6)), 1, kMaxSamples);
+  std::vector<double> times(static_cast<std::size_t>(samples));
+  for (int i = 0; i < samples; ++i)
+    times[static_cast<std::size_t>(i)] = begin_s + (end_s - begin_s) * i / (samples - 1);
+  return times;
+}
 
 double ground_speed_mps(const Vector3& v) { return std::hypot(v.x(), v.y()); }
 
@@ -84,13 +97,9 @@ std::vector<BeyondLimit> beyond_limits(const std::string& aircraft,
   begin_s = std::max(begin_s, path.start_s());
   end_s = std::min(end_s, path.end_s());
   if (limits == nullptr || !(end_s >= begin_s)) return {};
-  const int samples =
-      1 + std::clamp(
-              static_cast<int>(std::min((end_s - begin_s) / kSampleStep_s, 1e6)), 1, kMaxSamples);
   std::array<BeyondLimit, 5> worst;
   std::array<double, 5> excess{};
-  for (int i = 0; i < samples; ++i) {
-    const double time_s = begin_s + (end_s - begin_s) * i / (samples - 1);
+  for (const double time_s : sampled_times(begin_s, end_s)) {
     const auto values = flown(path, time_s);
     for (std::size_t k = 0; values && k < kLimited.size(); ++k) {
       const double limit = limits->*kLimited[k].limit;
@@ -131,6 +140,52 @@ void warn_not_flyable(const scene::Intruder& intruder,
   if (!words.empty())
     warn(to_warn,
          fmt::format("{}: intruder '{}': {}", to_string(intruder.where), intruder.id, words));
+}
+
+namespace {
+
+struct Lowest {
+  double down_m = -std::numeric_limits<double>::infinity();
+  double time_s = 0;
+};
+
+// Where a path is lowest from 0 to end_s.
+Lowest lowest(const trajectory::Path& path, double end_s) {
+  Lowest lowest;
+  for (const double time_s : sampled_times(0, end_s))
+    if (const auto state = path.at(time_s); state && state->position_in_world.z() > lowest.down_m)
+      lowest = {state->position_in_world.z(), time_s};
+  return lowest;
+}
+
+}  // namespace
+
+void warn_below_ground(const scene::Scene& scene,
+                       const World& world,
+                       double end_s,
+                       const Warn& to_warn) {
+  if (lowest(world.camera, end_s).down_m >= 0) return;
+  for (std::size_t i = 0; i < world.actors.size();) {
+    const Where where = scene.intruders[i].where;
+    Lowest worst;
+    std::string id;
+    int below = 0;
+    for (; i < world.actors.size() && to_string(scene.intruders[i].where) == to_string(where);
+         ++i) {
+      const Lowest here = lowest(world.actors[i].path, end_s);
+      if (!(here.down_m > 0)) continue;
+      ++below;
+      if (here.down_m > worst.down_m) worst = here, id = world.actors[i].id;
+    }
+    if (below > 0)
+      warn(to_warn,
+           fmt::format("{}: intruder '{}'{} is {:.1f} m below the ground (down = 0) at {:.2f} s",
+                       to_string(where),
+                       id,
+                       below > 1 ? fmt::format(", the lowest of {},", below) : "",
+                       worst.down_m,
+                       worst.time_s));
+  }
 }
 
 }  // namespace airtruth::setup

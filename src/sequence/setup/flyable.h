@@ -8,7 +8,10 @@
 #include "scene/scene/scene.h"
 #include "scene/trajectory/path.h"
 
+// What of a scene's paths cannot be flown.
 namespace airtruth::setup {
+
+struct World;
 
 // A limit of an aircraft's class that its path exceeds, at the instant of the greatest excess.
 struct BeyondLimit {
@@ -40,5 +43,14 @@ void warn_not_flyable(const scene::Intruder& intruder,
                       const trajectory::Path& path,
                       double end_s,
                       const Warn& to_warn);
+
+// Warns, at the place of each table of the scene, where the paths of its intruders go below the
+// ground from 0 to end_s: a flock is one table. A scene knows of the ground that it is at down = 0,
+// the height from which its own is counted, as long as the camera flies above that; where the
+// camera does not, nothing is known and nothing is said.
+void warn_below_ground(const scene::Scene& scene,
+                       const World& world,
+                       double end_s,
+                       const Warn& to_warn);
 
 }  // namespace airtruth::setup

@@ -9,6 +9,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "aircraft/fleet/flight_limits.h"
 #include "foundation/base/error.h"
+#include "sequence/setup/world.h"
 
 namespace airtruth::setup {
 namespace {
@@ -75,6 +76,34 @@ TEST(Flyable, OnlyTheTimeOfTheClipCountsAndAnUnknownTypeHasNoLimits) {
   EXPECT_TRUE(beyond_limits("c172/news", path, 10, 12).empty());
   EXPECT_TRUE(beyond_limits("mine.ac", straight(3000), 0, 10).empty());
   EXPECT_TRUE(beyond_limits("balloon/balloon", straight(1), 0, 10).empty());
+}
+
+// A path through (0, 0, -10) and (100, 0, 10) at 50 m/s is 10 m below the ground after 2 s.
+TEST(Flyable, APathBelowTheGroundIsSaidOnceForATable) {
+  const auto warnings_of = [](double camera_down_m, double end_s) {
+    const scene::Scene scene = scene::parse_scene(
+        "[background]\nvideo = 'a.mp4'\n[lens]\nvertical_fov_deg = 50\n[camera]\n"
+        "position_ned_m = [0, 0, " +
+            std::to_string(camera_down_m) +
+            "]\n[[distractor]]\nkind = 'balloon'\nposition_ned_m = [50, 0, -100]\n"
+            "velocity_ned_mps = [0, 0, 52]\n"
+            "[[distractor]]\nkind = 'bird'\ncount = 6\nspread_m = 0.5\n"
+            "waypoints_ned_m = [[0, 0, -10], [100, 0, 10]]\nspeed_mps = 50\n",
+        "s.toml");
+    const World world = load_world(scene, {320, 240}, {});
+    std::vector<std::string> said;
+    warn_below_ground(scene, world, end_s, [&](const std::string& text) { said.push_back(text); });
+    return said;
+  };
+  const auto said = warnings_of(-150, 2);
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(said[0],
+            "s.toml:7:1: intruder 'balloon-1' is 4.0 m below the ground (down = 0) at 2.00 s");
+  EXPECT_NE(said[1].find("the lowest of 6, is "), std::string::npos) << said[1];
+  EXPECT_NE(said[1].find("m below the ground (down = 0) at 2.0"), std::string::npos) << said[1];
+  // Not within the clip; and where the own aircraft is no higher, down = 0 is no ground.
+  EXPECT_TRUE(warnings_of(-150, 0.9).empty());
+  EXPECT_TRUE(warnings_of(0, 2).empty());
 }
 
 // The ranges that are drawn from are within the limits, and no class is without sense.

@@ -11,6 +11,7 @@
 #include "foundation/base/files.h"
 #include "labels/annotation/lens_facts.h"
 #include "picture/video/metadata.h"
+#include "picture/video/numbered_images.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::setup {
@@ -36,16 +37,24 @@ std::string words_of(const lens::Lens& lens) {
 }
 
 std::string sha256_of_video(const fs::path& video, SharedInputs& inputs) {
-  if (fs::is_regular_file(video)) return inputs.sha256_of_file(video);
-  if (!fs::is_directory(video)) return "";
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(video))
-    if (entry.is_regular_file()) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  const auto images = video::numbered_images(video);
+  if (!images) return fs::is_regular_file(video) ? inputs.sha256_of_file(video) : "";
   std::string all;
-  for (const fs::path& file : files)
+  for (const fs::path& file : images->files)
     all += file.filename().string() + ' ' + inputs.sha256_of_file(file) + '\n';
   return sha256_of(all);
+}
+
+std::vector<fs::path> files_read(const scene::Scene& scene) {
+  std::vector<fs::path> files = scene::stated_files(scene);
+  const auto add_series = [&](const fs::path& path) {
+    if (const auto images = video::numbered_images(path))
+      files.insert(files.end(), images->files.begin(), images->files.end());
+  };
+  add_series(scene.background.video);
+  for (const scene::Occluder& occluder : scene.occluders)
+    if (occluder.mask) add_series(*occluder.mask);
+  return files;
 }
 
 scene::MotionModel motion_model(const scene::Scene& scene) {

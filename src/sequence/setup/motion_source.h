@@ -25,9 +25,11 @@ class SharedInputs;
 
 namespace fs = std::filesystem;
 
-// SHA-256 of a video file's bytes, or over the files of a folder of images; "" for a pattern of
-// numbered images.
+// SHA-256 of a file's bytes, or over the names and bytes of numbered pictures; "" for neither.
 std::string sha256_of_video(const fs::path& video, SharedInputs& inputs);
+
+// The files that a scene reads, as scene::stated_files(), with the pictures of each series.
+std::vector<fs::path> files_read(const scene::Scene& scene);
 
 // Text with every number of a lens, so that two lenses never share an entry of the cache.
 std::string words_of(const lens::Lens& lens);

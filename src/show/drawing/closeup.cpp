@@ -13,16 +13,15 @@
 namespace airtruth::drawing {
 namespace {
 
-image::Rgb8 alpha_picture(const image::Layer& layer,
-                          const PixelBox& area,
-                          const image::Mask* own_aircraft) {
+image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
   image::Rgb8 result = image::make_rgb8(area.width, area.height);
   const auto common = layer.empty() ? std::nullopt : intersection(layer.patch, area);
   if (!common) return result;
   for (int y = common->y; y < common->bottom(); ++y) {
     for (int x = common->x; x < common->right(); ++x) {
-      if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) continue;
-      const float alpha = std::clamp(layer.pixels[layer.index(x, y)].alpha, 0.0f, 1.0f);
+      const std::size_t i = layer.index(x, y);
+      if (!layer.is_open(i)) continue;
+      const float alpha = std::clamp(layer.pixels[i].alpha, 0.0f, 1.0f);
       std::fill_n(result.at(x - area.x, y - area.y),
                   3,
                   static_cast<std::uint8_t>(std::lround(alpha * 255)));
@@ -111,9 +110,8 @@ image::Rgb8 closeup(const Closeup& what,
       image::rgb8_from_picture(*what.background, area.x, area.y, area.width, area.height);
   const image::Rgb8 after =
       image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
-  const image::Rgb8 middle = what.layer != nullptr
-                                 ? alpha_picture(*what.layer, area, what.own_aircraft)
-                                 : difference_picture(before, after);
+  const image::Rgb8 middle =
+      what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
   const int panel = area.width * zoom;
   const int slot = std::max(panel, kMinSlotPx);
   cv::Mat canvas(kHeadingPx + area.height * zoom + kPanelGapPx,

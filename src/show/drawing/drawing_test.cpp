@@ -157,10 +157,8 @@ TEST(Closeup, IsBoundedAndShowsNoAlphaOfTheOwnAircraft) {
   layer.patch = {10, 10, 20, 10};
   layer.pixels.assign(200, {});
   for (auto& pixel : layer.pixels) pixel.alpha = 1;
-  image::Mask mask{400, 300, std::vector<unsigned char>(400 * 300, 255)};
-  for (int y = 0; y < 300; ++y)
-    for (int x = 20; x < 400; ++x) mask.free[static_cast<std::size_t>(y * 400 + x)] = 0;
-  const image::Rgb8 result = closeup({&picture, &picture, &layer, &mask}, truth, {0, 0, 50, 40}, 4);
+  for (std::size_t i = 0; i < 200; ++i) layer.closed.push_back(i % 20 < 10 ? 0 : 1);
+  const image::Rgb8 result = closeup({&picture, &picture, &layer}, truth, {0, 0, 50, 40}, 4);
   const int alpha = 24 + (result.width - 48) / 3;
   EXPECT_EQ(result.at(alpha + 4 * 15, 52 + 4 * 15)[0], 255);
   EXPECT_EQ(result.at(alpha + 4 * 25, 52 + 4 * 15)[0], 0);

@@ -51,8 +51,6 @@ struct Closeup {
   const image::Picture* result = nullptr;
   // The layer whose alpha is shown; nullptr: |result - background| is shown instead.
   const image::Layer* layer = nullptr;
-  // Where it is not free the layer is not drawn; nullptr: everywhere is free.
-  const image::Mask* own_aircraft = nullptr;
 };
 
 // Shows background, alpha and result side by side, each pixel enlarged `largest_zoom` times

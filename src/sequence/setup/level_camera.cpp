@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequence/setup/level_camera.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "calibration/camera_file/level.h"
+#include "camera/motion/estimator.h"
+#include "foundation/base/error.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::setup {
+namespace {
+
+bool states_attitude(const scene::Camera& camera) {
+  return camera.path_file || camera.attitude_is_stated ||
+         (camera.log && !read_log(*camera.log).attitudes.empty());
+}
+
+// Every kLevelEvery-th frame of the beginning, up to a cut, with its rotation since the first.
+std::vector<camera_file::SampledFrame> sampled_frames(video::Reader reader,
+                                                      const lens::Lens& lens,
+                                                      const image::Mask* own_aircraft,
+                                                      const std::stop_token& stop) {
+  std::vector<camera_file::SampledFrame> sampled;
+  motion::Estimator turning(lens, motion::Options{}, own_aircraft);
+  for (std::int64_t k = 0; k < kLevelFrames; ++k) {
+    if (stop.stop_requested()) throw Interrupted();
+    const auto frame = reader.next();
+    if (!frame || (k > 0 && frame->begins_shot)) break;
+    const motion::FrameMotion moved =
+        turning.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
+    if (k % kLevelEvery != 0) continue;
+    sampled.push_back({frame->picture.clone(), k, {}});
+    if (motion::is_known(moved.state)) sampled.back().cam_from_first = moved.rotation;
+  }
+  return sampled;
+}
+
+std::string level_words(const std::string& why) {
+  return "[camera] has no attitude_yaw_pitch_roll_deg: it is level, since " + why;
+}
+
+}  // namespace
+
+std::string state_attitude(scene::Camera& camera,
+                           const lens::Lens& lens,
+                           const image::Mask* own_aircraft,
+                           const std::function<video::Reader()>& open,
+                           const std::stop_token& stop) {
+  if (states_attitude(camera)) return "";
+  const auto first = camera_path(camera).at(0);
+  YawPitchRoll& attitude = camera.attitude_yaw_pitch_roll_deg;
+  if (first) attitude.yaw_deg = yaw_pitch_roll(first->world_from_body).yaw_deg;
+  camera.attitude_is_stated = true;
+  if (!camera.by_horizon) return "";
+  const auto frames = sampled_frames(open(), lens, own_aircraft, stop);
+  const horizon::HorizonFinder finder(lens, own_aircraft);
+  const camera_file::Horizons horizons = camera_file::accepted_horizons(finder, frames, [&] {
+    if (stop.stop_requested()) throw Interrupted();
+  });
+  const auto cam_from_world = camera_file::level_attitude(frames, horizons.found, attitude.yaw_deg);
+  if (!cam_from_world)
+    return level_words(horizons.why_none.empty() ? "no motion between its first frames is known"
+                                                 : "of its first frames " + horizons.why_none);
+  const YawPitchRoll found = yaw_pitch_roll(cam_from_world->conjugate() * cam_from_body());
+  attitude.pitch_deg = found.pitch_deg;
+  attitude.roll_deg = found.roll_deg;
+  return fmt::format(
+      "[camera] has no attitude_yaw_pitch_roll_deg: pitch {:.1f} and roll {:.1f} degrees are those "
+      "of the horizon in {} of its first {} frames",
+      attitude.pitch_deg,
+      attitude.roll_deg,
+      std::count_if(
+          horizons.found.begin(), horizons.found.end(), [](const auto& one) { return !!one; }),
+      frames.empty() ? 0 : frames.back().frame + 1);
+}
+
+}  // namespace airtruth::setup
