@@ -19,8 +19,9 @@ namespace airtruth::catalogue {
 
 // Upper bound for every number of a frame in a catalogue: the length of its video bounds the cost.
 constexpr std::int64_t kMost = 1'000'000'000;
-// Most sequences of a rule, and of a catalogue: 5 TB of records and previews. Chosen.
-constexpr std::int64_t kMostSequences = 10'000'000;
+// Most sequences of a rule, and of a catalogue: 0.5 TB of records and previews, and a minute to
+// plan. Chosen.
+constexpr std::int64_t kMostSequences = 1'000'000;
 // Most intruders of a sequence: chosen.
 constexpr std::int64_t kMaxIntruders = 100;
 

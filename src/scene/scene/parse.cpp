@@ -75,7 +75,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
            "realism",
            "intruder",
            "distractor",
-            "occluder",
+           "occluder",
            "truth",
            "render",
            "composite",

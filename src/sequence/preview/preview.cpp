@@ -30,6 +30,9 @@ constexpr int kWidthPx = 1960;  // that of a contact sheet of three tiles
 // Widths of the picture at the left and of the plan and the heights at its right, 10 px apart.
 constexpr int kMainWidthPx = 1270;
 constexpr int kSideWidthPx = kWidthPx - kMainWidthPx - 10;
+// The height of the picture at most, and of the plan and the heights together at least.
+constexpr int kMainHeightPx = 1600;
+constexpr int kSideHeightPx = 300;
 // Number of moments that are shown: the contact sheet has as many tiles in a row.
 constexpr std::size_t kTiles = 3;
 constexpr double kPathStepS = 0.05;  // between the points of a drawn path: chosen
@@ -195,12 +198,15 @@ class Previewer {
       painter_->paint(frame.picture, here, ambient);
     }
     image::Rgb8 rgb = image::rgb8_from_picture(frame.picture);
-    const double scale = static_cast<double>(kMainWidthPx) / rgb.width;
-    image::Rgb8 scaled =
-        drawing::resized(rgb,
-                         kMainWidthPx,
-                         std::max(1, static_cast<int>(std::lround(rgb.height * scale))),
-                         scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+    const double scale = std::min(static_cast<double>(kMainWidthPx) / rgb.width,
+                                  static_cast<double>(kMainHeightPx) / rgb.height);
+    const auto scaled_px = [&](int px) {
+      return std::max(1, static_cast<int>(std::lround(px * scale)));
+    };
+    image::Rgb8 scaled = drawing::resized(rgb,
+                                          scaled_px(rgb.width),
+                                          scaled_px(rgb.height),
+                                          scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
     cv::Mat canvas = drawing::view(scaled).clone();
     for (std::size_t i = 0; i < parties_.size(); ++i) draw_path(canvas, i, scale);
     draw_ticks(canvas, scale);
@@ -278,16 +284,17 @@ class Previewer {
     for (std::size_t i = 0; i < parties_.size(); ++i)
       lines.push_back(flight_of(
           parties_[i].name, world().actors[parties_[i].middle].path, drawing::intruder_colour(i)));
-    const int plan_px = main.rows * 2 / 3;
+    const int height_px = std::max(main.rows, kSideHeightPx);
+    const int plan_px = height_px * 2 / 3;
     const auto camera = world().camera.at(0);
     image::Rgb8 plan = drawing::plan_view(
         lines, yaw_pitch_roll(camera->world_from_body).yaw_deg, view_deg(), kSideWidthPx, plan_px);
-    image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, main.rows - plan_px);
-    cv::Mat canvas(main.rows, kWidthPx, CV_8UC3, drawing::kDarkPaper);
+    image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, height_px - plan_px);
+    cv::Mat canvas(height_px, kWidthPx, CV_8UC3, drawing::kDarkPaper);
     main.copyTo(canvas(cv::Rect(0, 0, main.cols, main.rows)));
     drawing::view(plan).copyTo(canvas(cv::Rect(kWidthPx - kSideWidthPx, 0, kSideWidthPx, plan_px)));
     drawing::view(height).copyTo(
-        canvas(cv::Rect(kWidthPx - kSideWidthPx, plan_px, kSideWidthPx, main.rows - plan_px)));
+        canvas(cv::Rect(kWidthPx - kSideWidthPx, plan_px, kSideWidthPx, height_px - plan_px)));
     return canvas;
   }
 
