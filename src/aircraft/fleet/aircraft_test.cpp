@@ -102,6 +102,21 @@ TEST_F(Models, APropellersDiscIsFaintAndDark) {
     EXPECT_EQ(named(other).opacity, 1) << other;
 }
 
+// A disc's part of the picture counts, not the airframe's: 51 of 255 in its right half.
+TEST_F(Models, APropellersDiscMayShareItsPicture) {
+  std::string tga("\0\0\2\0\0\0\0\0\0\0\0\0\4\0\1\0\40\10", 18);
+  for (const int alpha : {255, 255, 51, 51}) tga += {'\0', '\0', '\0', static_cast<char>(alpha)};
+  write_file(folder_ / "skin.tga", tga);
+  std::string text =
+      "AC3Db\nMATERIAL \"m\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 trans 0\n"
+      "OBJECT world\nkids 1\nOBJECT poly\nname \"Propeller.Fast\"\n"
+      "texture \"skin.tga\"\nnumvert 3\n0 0 0\n0 1 0\n0 0 1\nnumsurf 1\n"
+      "SURF 0x20\nmat 0\nrefs 3\n0 0.6 0.1\n1 0.9 0.1\n2 0.7 0.9\nkids 0\n";
+  write_file(folder_ / "a.ac", text);
+  const auto mesh = load_aircraft((folder_ / "a.ac").string()).mesh;
+  EXPECT_FLOAT_EQ(mesh.materials.at(0).opacity, 0.1f / 0.2f);
+}
+
 TEST_F(Models, SelectRotateAndSpinAreHonoured) {
   fs::create_directories(folder_ / "AI/Aircraft/t");
   write_file(folder_ / "AI/Aircraft/t/a.ac", asymmetric_ac());

@@ -25,16 +25,41 @@ constexpr std::size_t kMaxPictureBytes = std::size_t{256} << 20;
 constexpr float kDiscOpacity = 0.1f;
 constexpr float kBladeAlbedo = 0.06f;  // linear; black or grey paint, behind tips of any colour
 
-void make_propeller_disc(model::Material& material, const texture_file::Picture* picture) {
-  float cover = 1;  // the mean opacity of the texels that are not transparent
-  if (picture != nullptr) {
-    constexpr int kMinAlphaCodes = 8;  // of 255; chosen: fainter texels are rounding of the file
-    double sum = 0;
-    double count = 0;
-    for (std::size_t i = 3; i < picture->rgba.size(); i += 4)
-      if (picture->rgba[i] >= kMinAlphaCodes) sum += picture->rgba[i] / 255.0, count += 1;
-    if (count > 0) cover = static_cast<float>(sum / count);
+int texel_alpha(const texture_file::Picture& picture, const Eigen::Vector2f& uv) {
+  const auto place = [](float share, int size) {
+    return std::clamp(
+        static_cast<int>((share - std::floor(share)) * static_cast<float>(size)), 0, size - 1);
+  };
+  const auto x = static_cast<std::size_t>(place(uv.x(), picture.width));
+  const auto y = static_cast<std::size_t>(place(uv.y(), picture.height));
+  return picture.rgba[4 * (y * static_cast<std::size_t>(picture.width) + x) + 3];
+}
+
+// The mean opacity of a batch's own texels, without the transparent ones. A disc may share its
+// picture with the airframe.
+float cover_of(const ac3d::Batch& batch, const texture_file::Picture& picture) {
+  constexpr int kMinAlphaCodes = 8;  // of 255; chosen: fainter texels are rounding of the file
+  constexpr int kSteps = 6;          // samples along a side of a triangle
+  double sum = 0;
+  double weight = 0;
+  for (const auto& [i, j, k] : batch.triangles) {
+    const Eigen::Vector2f a = batch.uvs[i], b = batch.uvs[j] - a, c = batch.uvs[k] - a;
+    const double area = std::abs(static_cast<double>(b.x()) * c.y() - b.y() * c.x());
+    if (!std::isfinite(area)) continue;
+    for (int m = 0; m < kSteps; ++m)
+      for (int n = 0; m + n < kSteps; ++n) {
+        const float along_b = (static_cast<float>(m) + 1.0f / 3) / kSteps;
+        const float along_c = (static_cast<float>(n) + 1.0f / 3) / kSteps;
+        const int alpha = texel_alpha(picture, a + along_b * b + along_c * c);
+        if (alpha < kMinAlphaCodes) continue;
+        sum += area * alpha / 255.0;
+        weight += area;
+      }
   }
+  return weight > 0 ? static_cast<float>(sum / weight) : 1;
+}
+
+void make_propeller_disc(model::Material& material, float cover) {
   material.opacity = std::min(material.opacity, kDiscOpacity / cover);
   material.diffuse = {kBladeAlbedo, kBladeAlbedo, kBladeAlbedo};
   material.emission = {};
@@ -128,7 +153,8 @@ std::uint32_t Assembly::material_of(const ac3d::Batch& batch,
   if (choice.is_propeller_disc)
     make_propeller_disc(
         material,
-        texture < 0 ? nullptr : &model_.pictures[static_cast<std::size_t>(texture)].picture);
+        texture < 0 ? 1
+                    : cover_of(batch, model_.pictures[static_cast<std::size_t>(texture)].picture));
   auto& materials = model_.mesh.materials;
   const auto same = std::find(materials.begin(), materials.end(), material);
   const auto index = static_cast<std::uint32_t>(same - materials.begin());

@@ -62,14 +62,14 @@ TEST(Catalogue, WhatItNamesMustBeThere) {
 TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
   const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
       std::string(test_support::kCatalogue) +
-          "[[random]]\ncount = 1000000\nframe_count = 30\naircraft = [\"738/*\", \"c172/*\"]\n",
+          "[[random]]\ncount = 999996\nframe_count = 30\naircraft = [\"738/*\", \"c172/*\"]\n",
       "c.toml");
   const catalogue::Expansion expansion(catalogue);
-  EXPECT_EQ(expansion.size(), 1000004);
-  const catalogue::Item last = expansion.at(1000003);
-  EXPECT_EQ(last.name, "r999999");
+  EXPECT_EQ(expansion.size(), 1000000);
+  const catalogue::Item last = expansion.at(999999);
+  EXPECT_EQ(last.name, "r999995");
   // The items do not depend on the order of the calls.
-  const catalogue::Item again = catalogue::Expansion(catalogue).at(1000003);
+  const catalogue::Item again = catalogue::Expansion(catalogue).at(999999);
   EXPECT_EQ(again.scene.intruders[0].waypoints_ned_m, last.scene.intruders[0].waypoints_ned_m);
 }
 
