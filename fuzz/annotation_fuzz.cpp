@@ -2,15 +2,31 @@
 // Any bytes are an annotation or an Error; what was read is written and reads back the same.
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
 #include <string_view>
 
+#include <unistd.h>
+
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "labels/annotation/evision.h"
 #include "labels/annotation/truth.h"
 
 namespace {
 
 using namespace airtruth::annotation;
+
+std::string written_again(const Evision& evision) {
+  static const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("airtruth_annotation_fuzz_" + std::to_string(::getpid()));
+  EvisionWriter writer(file);
+  for (std::size_t i = 0; i < evision.frames.size(); ++i)
+    writer.add(evision.frames[i], evision.camera_ned_m[i]);
+  writer.finish();
+  return airtruth::read_file(file);
+}
 
 void try_evision(std::string_view text) {
   Evision evision;
@@ -19,9 +35,9 @@ void try_evision(std::string_view text) {
   } catch (const airtruth::Error&) {
     return;
   }
-  const std::string written = evision_xml(evision.frames, evision.camera_ned_m);
+  const std::string written = written_again(evision);
   const Evision again = parse_evision(written, "again.xml");
-  if (evision_xml(again.frames, again.camera_ned_m) != written) std::abort();
+  if (written_again(again) != written) std::abort();
 }
 
 void try_truth(std::string_view text) {
