@@ -2,6 +2,7 @@
 #include "sequence/setup/level_camera.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,10 @@
 
 namespace airtruth::setup {
 namespace {
+
+// A camera that nothing states to be upside down is not: a bright field below dark clouds or a test
+// pattern looks like it.
+constexpr double kMostRollDeg = 90;
 
 bool states_attitude(const scene::Camera& camera) {
   return camera.path_file || camera.attitude_is_stated ||
@@ -67,6 +72,10 @@ std::string state_attitude(scene::Camera& camera,
     return level_words(horizons.why_none.empty() ? "no motion between its first frames is known"
                                                  : "of its first frames " + horizons.why_none);
   const YawPitchRoll found = yaw_pitch_roll(cam_from_world->conjugate() * cam_from_body());
+  if (std::abs(found.roll_deg) > kMostRollDeg)
+    return level_words(
+        fmt::format("the horizon of its first frames stands upside down (roll {:.1f} degrees)",
+                    found.roll_deg));
   attitude.pitch_deg = found.pitch_deg;
   attitude.roll_deg = found.roll_deg;
   return fmt::format(

@@ -21,8 +21,8 @@ inline constexpr std::int64_t kLevelEvery = 5;
 // roll of the first frame are the median of the horizons in the first kLevelFrames frames, each
 // carried to the first by the rotation that is measured between them
 // (calibration/camera_file/level.h). Yaw stays. Where these frames show no horizon, or
-// `by_horizon` of the camera is false, the camera is level. Returns what was done in words, for the
-// user; "" where the attitude was stated or need not be found.
+// one that stands upside down, or `by_horizon` of the camera is false, the camera is level. Returns
+// what was done in words, for the user; "" where the attitude was stated or need not be found.
 //
 // `open` gives a reader from the scene's first frame on, and is called where frames are needed.
 std::string state_attitude(scene::Camera& camera,
