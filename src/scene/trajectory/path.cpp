@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "foundation/base/error.h"
 #include "scene/trajectory/path_impl.h"
@@ -40,14 +43,27 @@ bool has_heading(const Vector3& v) {
 }
 
 // The headings to keep where the path goes straight up or down or the object stands still: the last
-// defined heading before there, else the first one after.
+// defined heading before there, else the first one after. They are looked for once, when one is
+// needed.
 class KeptHeadings {
  public:
+  // The spline must outlive it.
   explicit KeptHeadings(const CubicSpline<Vector3>& spline)
-      : begin_(spline.begin()), step_((spline.end() - spline.begin()) / kSteps) {
+      : spline_(spline), step_((spline.end() - spline.begin()) / kSteps) {}
+  double deg_at(double u) const {
+    std::call_once(once_, [this] { look(); });
+    const double step = std::clamp((u - spline_.begin()) / step_, 0.0, static_cast<double>(kSteps));
+    return yaw_deg_[static_cast<std::size_t>(step)];
+  }
+
+ private:
+  // Number of equal parts of the path at whose ends a heading is looked for.
+  static constexpr int kSteps = 1024;
+
+  void look() const {
     std::vector<std::optional<double>> defined(kSteps + 1);
     for (int i = 0; i <= kSteps; ++i) {
-      const Vector3 v = spline.at(begin_ + step_ * i, 1);
+      const Vector3 v = spline_.at(spline_.begin() + step_ * i, 1);
       if (has_heading(v)) defined[static_cast<std::size_t>(i)] = degrees(std::atan2(v.y(), v.x()));
     }
     const auto first =
@@ -55,17 +71,11 @@ class KeptHeadings {
     double kept_deg = first == defined.end() ? 0.0 : **first;
     for (const auto& yaw : defined) yaw_deg_.push_back(kept_deg = yaw.value_or(kept_deg));
   }
-  double deg_at(double u) const {
-    const double step = std::clamp((u - begin_) / step_, 0.0, static_cast<double>(kSteps));
-    return yaw_deg_[static_cast<std::size_t>(step)];
-  }
 
- private:
-  // Number of equal parts of the path at whose ends a heading is looked for.
-  static constexpr int kSteps = 1024;
-  double begin_;
+  const CubicSpline<Vector3>& spline_;
   double step_;
-  std::vector<double> yaw_deg_;
+  mutable std::once_flag once_;
+  mutable std::vector<double> yaw_deg_;
 };
 
 // Heading and climb angle from the velocity, bank angle from a coordinated turn: tan(bank) = v_h *
@@ -101,8 +111,9 @@ State state_along(const Vector3& position,
                   const AttitudeOverride& stated,
                   const KeptHeadings& kept,
                   double u) {
+  const double kept_yaw_deg = has_heading(velocity) ? 0.0 : kept.deg_at(u);
   return state_with(
-      position, velocity, attitude_along(velocity, acceleration, kept.deg_at(u)), stated);
+      position, velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated);
 }
 
 class AtTimes : public Path::Impl {
