@@ -101,13 +101,16 @@ const std::vector<float>& Shares::past_all(std::size_t intruder) {
 void find_areas(image::Layer& layer, const Occlusion& occlusion) {
   if (occlusion.occluders.empty()) return;
   Shares shares(occlusion, layer.patch);
-  for (std::size_t a = 0; a < layer.coverage.size(); ++a)
+  const std::vector<float>& free = shares.past_own_aircraft();
+  for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
+    const std::vector<float>& clear = shares.past_all(a);
     for (std::size_t i = 0; i < layer.coverage[a].size(); ++i) {
       const double coverage = layer.coverage[a][i];
       if (!(coverage > 0)) continue;
-      layer.area_free_px[a] -= (1 - share_of(shares.past_own_aircraft(), i)) * coverage;
-      layer.area_clear_px[a] -= (1 - share_of(shares.past_all(a), i)) * coverage;
+      layer.area_free_px[a] -= (1 - share_of(free, i)) * coverage;
+      layer.area_clear_px[a] -= (1 - share_of(clear, i)) * coverage;
     }
+  }
 }
 
 void hide(image::Layer& layer, const Occlusion& occlusion) {

@@ -154,19 +154,20 @@ Occluders::InFrame Occluders::in_frame(const setup::Moment& moment,
   ranges_m = ranges_of(moment);
   if (impl_->own != nullptr) occluders.push_back(composite::own_aircraft(*impl_->own));
   const double farthest = farthest_m(moment, ranges_m);
+  std::optional<Horizon> horizon;
   for (const Stated& one : impl_->stated) {
     if (!(one.range_m < farthest)) continue;
     if (one.still || !one.series.empty()) {
       occluders.push_back({one.range_m, impl_->cover(one, moment.frame)});
       continue;
     }
-    const Horizon horizon = horizon_in(*impl_->finder, picture, moment.sight);
-    result.horizon_is_assumed = horizon.is_assumed;
-    occluders.push_back({one.range_m, [horizon, lens = *impl_->lens](int x, int y) {
+    if (!horizon) horizon = horizon_in(*impl_->finder, picture, moment.sight);
+    occluders.push_back({one.range_m, [line = *horizon, lens = *impl_->lens](int x, int y) {
                            return horizon::share_below(
-                               lens, horizon.up_in_cam, horizon.nominal_from_frame, x, y);
+                               lens, line.up_in_cam, line.nominal_from_frame, x, y);
                          }});
   }
+  result.horizon_is_assumed = horizon && horizon->is_assumed;
   return result;
 }
 

@@ -72,8 +72,7 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
     const Timed timed(clocks.write);
     const std::shared_ptr<const video::Frame> frame(work, &work->frame);
     outputs.write(frame, work->truth, work->masks);
-    add_frame(tally, *frame, work->moved.motion.state, work->ambient, work->truth);
-    tally.frames_without_horizon += work->horizon_is_assumed ? 1 : 0;
+    add_frame(tally, *work);
     if (options.progress)
       options.progress({tally.frames, maker.resolved().info.frame_count_estimate});
   });

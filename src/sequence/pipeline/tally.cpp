@@ -116,11 +116,10 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
 
 }  // namespace
 
-void add_frame(Tally& tally,
-               const video::Frame& frame,
-               motion::State motion,
-               const insertion::Ambient& ambient,
-               const annotation::Frame& truth) {
+void add_frame(Tally& tally, const Work& work) {
+  const video::Frame& frame = work.frame;
+  const annotation::Frame& truth = work.truth;
+  const motion::State motion = work.moved.motion.state;
   ++tally.frames;
   tally.last_time_s = frame.time_s;
   tally.first_seen.resize(truth.intruders.size());
@@ -134,7 +133,8 @@ void add_frame(Tally& tally,
   tally.frames_bridged += motion::is_known(motion) ? 0 : 1;
   tally.frames_turned += motion == motion::State::kTurnedAway ? 1 : 0;
   tally.frames_damaged += frame.damaged ? 1 : 0;
-  tally.frames_black += ambient.is_assumed ? 1 : 0;
+  tally.frames_black += work.ambient.is_assumed ? 1 : 0;
+  tally.frames_without_horizon += work.horizon_is_assumed ? 1 : 0;
   if (frame.begins_shot) tally.cuts.push_back(frame.index);
 }
 

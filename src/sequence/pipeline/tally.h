@@ -5,13 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "camera/motion/motion.h"
 #include "foundation/base/log.h"
-#include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"
-#include "sequence/insertion/ambient.h"
 #include "sequence/pipeline/encounter_record.h"
+#include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/setup/world.h"
 
@@ -33,12 +31,8 @@ struct Tally {
   double last_time_s = 0;  // of the last frame
 };
 
-// Counts one more frame; frames come in order.
-void add_frame(Tally& tally,
-               const video::Frame& frame,
-               motion::State motion,
-               const insertion::Ambient& ambient,
-               const annotation::Frame& truth);
+// Counts one more frame that has been through all stages; frames come in order.
+void add_frame(Tally& tally, const Work& work);
 
 // Warns of what a user should know about a finished run: corrupt or missing frames, bridged motion,
 // cuts, horizons that were not found, intruders that fly below the ground or beyond their type's
