@@ -5,6 +5,7 @@ The rules: a run ends by itself, never by a signal that nobody sent; its code is
 wrong, 130 after an interrupt, or 1 where a check (verify) found something; never the 1 of a fault of airtruth.
 """
 
+import argparse
 import hashlib
 import os
 import resource
@@ -189,6 +190,24 @@ def keep(source, name):
     else:
         shutil.copy(source, place)
     return place
+
+
+def campaign_arguments():
+    """AIRTRUTH [--cases N] [--first I] [--kinds a,b] [--seed S]"""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("airtruth", type=os.path.abspath)
+    parser.add_argument("--cases", type=int, default=10)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--kinds", default="")
+    parser.add_argument("--seed", default="1")
+    how = parser.parse_args()
+    how.wants = lambda kind: not how.kinds or kind in how.kinds.split(",")
+    return how
+
+
+def expect_none_broken(broken):
+    if broken:
+        raise Broken("\n  ".join([f"{len(broken)} broke a rule:", *broken]))
 
 
 def main(body):

@@ -7,7 +7,6 @@ MOST_S of processor time and MOST_BYTES of memory, whatever the values are. A ca
 ./airtruth-broken).
 """
 
-import argparse
 import collections
 import os
 import random
@@ -152,20 +151,13 @@ class Campaign:
 
 
 def body():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("airtruth")
-    parser.add_argument("--cases", type=int, default=10)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--kinds", default="")
-    parser.add_argument("--seed", default="1")
-    how = parser.parse_args()
+    how = common.campaign_arguments()
     with tempfile.TemporaryDirectory(prefix="airtruth_consumed_") as root:
-        campaign = Campaign(os.path.abspath(how.airtruth), root, how.seed)
+        campaign = Campaign(how.airtruth, root, how.seed)
         for kind in KINDS:
-            if not how.kinds or kind in how.kinds.split(","):
+            if how.wants(kind):
                 campaign.run(kind, how.first, how.cases)
-        if campaign.broken:
-            raise Broken("\n  ".join([f"{len(campaign.broken)} broke a rule:", *campaign.broken]))
+        common.expect_none_broken(campaign.broken)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ bytes as at the start. A file that broke a rule is kept (AIRTRUTH_BROKEN, else .
 --first I --cases 1 runs it again.
 """
 
-import argparse
 import collections
 import os
 import random
@@ -343,21 +342,14 @@ class Campaign:
 
 
 def body():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("airtruth")
-    parser.add_argument("--cases", type=int, default=10)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--kinds", default="")
-    parser.add_argument("--seed", default="1")
-    how = parser.parse_args()
+    how = common.campaign_arguments()
     with tempfile.TemporaryDirectory(prefix="airtruth_mutations_") as root:
-        campaign = Campaign(os.path.abspath(how.airtruth), root, how.seed)
+        campaign = Campaign(how.airtruth, root, how.seed)
         prepare(campaign.airtruth, campaign.data)
         for kind in kinds(campaign.airtruth, campaign.data):
-            if not how.kinds or kind.name in how.kinds.split(","):
+            if how.wants(kind.name):
                 campaign.run(kind, how.first, how.cases)
-        if campaign.broken:
-            raise Broken("\n  ".join([f"{len(campaign.broken)} broke a rule:", *campaign.broken]))
+        common.expect_none_broken(campaign.broken)
 
 
 if __name__ == "__main__":

@@ -234,7 +234,6 @@ std::pair<int, int> range_of(const std::vector<TruthClip>& truths) {
   return evaluation::within_curves(evaluation::eao_range(lengths), longest);
 }
 
-// Where a curve ends before the range over which its mean is taken. last: the range's last index.
 // Takes the results away for sequences of which nothing was asked.
 void leave_out_others(const fs::path& folder,
                       const std::vector<TruthClip>& truths,
@@ -249,6 +248,7 @@ void leave_out_others(const fs::path& folder,
     throw Error("holds no result for any sequence for which --where holds", {folder.string()});
 }
 
+// Where a curve ends before the range over which its mean is taken. last: the range's last index.
 void warn_of_short_curve(const std::string& tracker,
                          const char* protocol,
                          std::size_t points,
