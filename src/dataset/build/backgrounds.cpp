@@ -69,7 +69,14 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
   files.height = info.height;
   files.frame_rate_hz = info.frame_rate.value();
   files.frames = info.frame_count_estimate;
+  files.clip_start_s = clip_start_s(background, files.video);
   return files;
+}
+
+double clip_start_s(const catalogue::Background& background, const fs::path& video) {
+  if (!background.camera.log) return 0;
+  return video::time_of_first_frame_s(
+      video, {.first_frame = background.first_frame, .picture_rate_hz = background.frame_rate_hz});
 }
 
 video::StreamInfo stream_of(const catalogue::Background& background) {

@@ -58,8 +58,11 @@ class Planner {
 
   void add(catalogue::Item& item) {
     const Facts& facts = facts_of(item.background);
-    const catalogue::Draws draws = catalogue::draw_in_view(
-        item, {.width = facts.width, .height = facts.height, .frame_rate_hz = facts.frame_rate_hz});
+    const catalogue::Draws draws = catalogue::draw_in_view(item,
+                                                           {.width = facts.width,
+                                                            .height = facts.height,
+                                                            .frame_rate_hz = facts.frame_rate_hz,
+                                                            .clip_start_s = facts.clip_start_s});
     plan_.draws += draws.drawn;
     plan_.never_in_view += draws.unseen;
     const std::int64_t frames = frames_of(item, facts);
@@ -146,6 +149,7 @@ class Planner {
     double size = 1;
     int width = 0;
     int height = 0;
+    double clip_start_s = 0;        // BackgroundFiles::clip_start_s
     std::int64_t moved_frames = 0;  // whose motion is measured for all sequences
   };
 
@@ -159,6 +163,8 @@ class Planner {
                                            double(info.width) * info.height / kUsualPixels,
                                            info.width,
                                            info.height});
+    if (const auto* video = std::get_if<fs::path>(&background.source))
+      facts.clip_start_s = clip_start_s(background, *video);
     const double whole = static_cast<double>(facts.frames) * facts.size;
     if (std::holds_alternative<synthetic::FlightOptions>(background.source))
       plan_.core_s += whole * kCosts.flown;

@@ -222,14 +222,16 @@ void begin_at_random(Item& item, const Background& background, const BackgroundF
                             "first frames; expected start = \"first\", or a log",
                             background.name),
                 item.rule->where);
-  const double start_s = camera.log_offset_s ? setup::clip_start_s(placed) : 0;
   placed.first_frame = random_first_frame(item, background.first_frame, files);
-  if (camera.log_offset_s) *camera.log_offset_s += setup::clip_start_s(placed) - start_s;
+  if (!camera.log) return;
+  camera.clip_start_s = setup::clip_start_s(placed);
+  if (camera.log_offset_s) *camera.log_offset_s += camera.clip_start_s - files.clip_start_s;
 }
 
 }  // namespace
 
 Draws draw_in_view(Item& item, const BackgroundFiles& files) {
+  item.scene.camera.clip_start_s = files.clip_start_s;
   if (item.encounter_rule == nullptr) return {};
   check_length(item, files);
   const Views views{setup::lens_of(item.scene.lens, {files.width, files.height}),
@@ -255,7 +257,6 @@ void place(Item& item,
   draw_in_view(item, files);
   if (item.rule != nullptr && item.rule->start == ClipStart::kRandom)
     begin_at_random(item, background, files);
-  setup::take_clip_start(item.scene);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
   const std::int64_t left = files.frames - placed.first_frame;
   if (left > 0) clip.frames = clip.frames > 0 ? std::min(clip.frames, left) : left;

@@ -24,6 +24,8 @@ struct BackgroundFiles {
   int height = 0;
   double frame_rate_hz = 0;  // 0: unknown
   std::int64_t frames = 0;   // counted from the video's first frame; 0: unknown
+  // Time of the background's first_frame on the video's clock; needed where its camera has a log.
+  double clip_start_s = 0;
 };
 
 // One sequence of a catalogue.

@@ -606,10 +606,10 @@ double time_of_first_frame_s(const std::filesystem::path& path, const ReaderOpti
   if (options.first_frame == 0) return 0;
   ReaderOptions one{.frame_count = 1, .picture_rate_hz = options.picture_rate_hz, .threads = 1};
   Reader begin(path, one);
+  if (numbered_images(path))
+    return static_cast<double>(options.first_frame) / begin.info().frame_rate.value();
   one.first_frame = options.first_frame;
   Reader there(path, one);
-  const double rate_hz = begin.info().frame_rate.value();
-  if (numbered_images(path)) return static_cast<double>(options.first_frame) / rate_hz;
   return static_cast<double>(there.next()->pts - begin.next()->pts) *
          begin.info().time_base.value();
 }

@@ -108,7 +108,7 @@ TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
   // A clip that begins 2 s into the video begins 2 s into the log.
   scene::Scene later = scene;
   later.background.first_frame = 60;
-  setup::take_clip_start(later);
+  later.camera.clip_start_s = setup::clip_start_s(later.background);
   EXPECT_NEAR(later.camera.clip_start_s, 2, 1e-9);
   EXPECT_NEAR(
       setup::camera_path(later.camera).end_s(), setup::camera_path(scene.camera).end_s() - 2, 1e-9);

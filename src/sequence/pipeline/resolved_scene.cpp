@@ -346,7 +346,7 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   expect_standard_range(scene, info);
   take_pixel_shape(result.scene, info);
   take_angle(result.scene, info);
-  setup::take_clip_start(result.scene);
+  if (scene.camera.log) result.scene.camera.clip_start_s = setup::clip_start_s(scene.background);
   scene::CameraFile file;
   if (scene.realism.file) file = file_of(scene, {info.width, info.height});
   fill_from_file(result.scene, file);

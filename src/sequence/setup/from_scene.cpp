@@ -69,11 +69,6 @@ double clip_start_s(const scene::Background& background) {
       {.first_frame = background.first_frame, .picture_rate_hz = background.frame_rate_hz});
 }
 
-void take_clip_start(scene::Scene& scene) {
-  if (scene.camera.log && !scene.camera.log_offset_s)
-    scene.camera.clip_start_s = clip_start_s(scene.background);
-}
-
 namespace {
 
 // Nose down for each metre a second of a multirotor's speed, and at most: a camera drone leans by

@@ -29,12 +29,8 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn = {});
 
-// Sets the camera's clip_start_s where its log is on the video's clock and the clip begins later
-// than the video. Errors as of video::Reader.
-void take_clip_start(scene::Scene& scene);
-
-// Time of the background's first_frame in seconds from the video's first frame. Errors as of
-// video::Reader.
+// The camera's clip_start_s: time of the background's first_frame in seconds from the video's first
+// frame. Errors as of video::Reader.
 double clip_start_s(const scene::Background& background);
 
 // [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is
