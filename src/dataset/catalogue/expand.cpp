@@ -198,7 +198,7 @@ Item Expansion::at(std::int64_t index) const {
 
 namespace {
 
-// The number of a random frame of its background at which a clip fits.
+// The first frame of a clip at a random position of its background at which it fits.
 std::int64_t random_first_frame(const Item& item,
                                 std::int64_t first_frame,
                                 const BackgroundFiles& files) {
@@ -211,21 +211,6 @@ std::int64_t random_first_frame(const Item& item,
       std::max<std::int64_t>(1, files.frames - first_frame - item.frame_count + 1);
   const auto place = static_cast<std::int64_t>(item.drawn.start_share * double(places));
   return first_frame + std::min(place, places - 1);
-}
-
-// A log's offset belongs to the background's first_frame, and follows the clip's.
-void begin_at_random(Item& item, const Background& background, const BackgroundFiles& files) {
-  scene::Camera& camera = item.scene.camera;
-  scene::Background& placed = item.scene.background;
-  if (camera.path_file)
-    throw Error(fmt::format("start is random, but the path_file of background '{}' is that of its "
-                            "first frames; expected start = \"first\", or a log",
-                            background.name),
-                item.rule->where);
-  placed.first_frame = random_first_frame(item, background.first_frame, files);
-  if (!camera.log) return;
-  camera.clip_start_s = setup::clip_start_s(placed);
-  if (camera.log_offset_s) *camera.log_offset_s += camera.clip_start_s - files.clip_start_s;
 }
 
 }  // namespace
@@ -256,7 +241,7 @@ void place(Item& item,
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
   draw_in_view(item, files);
   if (item.rule != nullptr && item.rule->start == ClipStart::kRandom)
-    begin_at_random(item, background, files);
+    placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
   const std::int64_t left = files.frames - placed.first_frame;
   if (left > 0) clip.frames = clip.frames > 0 ? std::min(clip.frames, left) : left;
