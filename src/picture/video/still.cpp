@@ -162,6 +162,9 @@ void check_still_output(const fs::path& path, bool overwrite) {
 namespace {
 
 image::Picture first_picture(const fs::path& path) {
+  std::error_code unknown;
+  if (!fs::exists(path, unknown))
+    throw Error("does not exist; expected a picture", {path.string()});
   ReaderOptions options;
   options.frame_count = 1;
   options.threads = 1;
@@ -209,10 +212,9 @@ std::string png_of(const Grey& grey) {
 }
 
 Grey read_grey(const fs::path& path) {
-  const auto frame = Reader(path, {.frame_count = 1, .threads = 1, .with_timing = false}).next();
-  if (!frame || frame->picture.plane_count != 1)
+  const image::Picture picture = first_picture(path);
+  if (picture.plane_count != 1)
     throw Error("is no grey picture; expected one channel of 8 bits", {path.string()});
-  const image::Picture& picture = frame->picture;
   Grey grey{picture.width, picture.height, {}};
   for (int y = 0; y < grey.height; ++y)
     grey.samples.insert(
