@@ -184,7 +184,7 @@ class FlightReader {
   Clip read() {
     const JsonObject about = flight_.object("metadata");
     if (!about.maybe_truth("fps_is_nominal").value_or(false))
-      clip_.frame_rate_hz = about.maybe_number("fps");
+      clip_.frame_rate_hz = rate_of(about.maybe_number("fps"));
     has_times_ = !about.maybe_truth("time_is_nominal").value_or(false);
     origin_ns_ = about.maybe_integer("time_origin_ns");
     if (about.has("resolution")) {

@@ -64,7 +64,7 @@ class CocoReader {
     for (const JsonObject& video : json_.objects("videos")) {
       Video& about = videos_[video.whole("id")];
       about.name = video.has("name") ? video.text("name") : video.text("file_name");
-      about.frame_rate_hz = video.maybe_number("frame_rate_hz");
+      about.frame_rate_hz = rate_of(video.maybe_number("frame_rate_hz"));
     }
   }
 

@@ -14,6 +14,7 @@
 #include "foundation/json/or_null.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/python_json.h"
+#include "labels/exchange/text.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -21,10 +22,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "airtruth labels 1";
-// The class of a region in which detections count neither way.
-
-constexpr std::int64_t kLongestSide_px = 1'000'000;
-constexpr double kHighestRate_hz = 1e6;
 
 int side(const JsonObject& json, const char* key) {
   return json.has(key) ? static_cast<int>(json.whole(key, 1, kLongestSide_px)) : 0;
@@ -32,7 +29,7 @@ int side(const JsonObject& json, const char* key) {
 
 std::optional<double> rate(const JsonObject& json, const char* key) {
   const auto found = json.maybe_number(key);
-  if (found && !(*found > 0 && *found <= kHighestRate_hz))
+  if (found && !rate_of(found))
     json.fail(key, fmt::format("a number above 0, up to {}", kHighestRate_hz));
   return found;
 }

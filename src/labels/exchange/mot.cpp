@@ -186,8 +186,7 @@ class SequenceFolder {
   void about(const fs::path& file) {
     const auto about = settings_of(file);
     if (const auto named = about.find("name"); named != about.end()) clip_.name = named->second;
-    if (const auto rate = number_in(about, "frameRate"); rate && *rate > 0)
-      clip_.frame_rate_hz = rate;
+    clip_.frame_rate_hz = rate_of(number_in(about, "frameRate"));
     clip_.width = side_of(number_in(about, "imWidth"));
     clip_.height = side_of(number_in(about, "imHeight"));
     const auto frames = whole_in(number_in(about, "seqLength").value_or(0), 0, kMaxFrames);
@@ -197,7 +196,7 @@ class SequenceFolder {
       if (line.text == kNoVisibility) knows_visibility_ = false;
       if (!line.text.starts_with(kExactRate)) continue;
       const auto rate = numbers_of({line.number, line.text.substr(kExactRate.size())}, file);
-      if (rate.size() == 1 && rate[0] > 0) clip_.frame_rate_hz = rate[0];
+      if (rate.size() == 1 && rate_of(rate[0])) clip_.frame_rate_hz = rate[0];
     }
   }
 

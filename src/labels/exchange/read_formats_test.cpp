@@ -31,6 +31,40 @@ TEST(Yolo, TheSizeOfPicturesComesFromTheCaller) {
   EXPECT_EQ(clips[0].frames.at(0).labels.at(0).box_px, (Box{24, 12, 16, 24}));
 }
 
+// Labels of our own hold no such rate: a clip with it could be read, and not written and read
+// again.
+TEST(FrameRates, BeyondEveryCameraCountAsUnknown) {
+  for (const char* rate : {"1.1e19", "-25", "0"}) {
+    const Folder folder;
+    folder.file("coco.json",
+                fmt::format(R"({{"videos":[{{"id":1,"name":"a","frame_rate_hz":{}}}],)"
+                            R"("images":[{{"id":1,"file_name":"a/1.png","video_id":1,"width":9,)"
+                            R"("height":9}}],"annotations":[],"categories":[]}})",
+                            rate));
+    folder.file("aot.json",
+                fmt::format(R"({{"samples":{{"f":{{"metadata":{{"fps":{},"number_of_frames":1}},)"
+                            R"("entities":[]}}}}}})",
+                            rate));
+    folder.file("mot/train/a/seqinfo.ini",
+                fmt::format("frameRate={0}\nseqLength=1\n; exact frame rate: {0}\n", rate));
+    folder.file("mot/train/a/gt/gt.txt", "1,1,1,1,3,3,1,1,1\n");
+    folder.file("vot/a/sequence", fmt::format("fps={0}\nexact_fps={0}\nwidth=9\nheight=9\n", rate));
+    folder.file("vot/a/groundtruth.txt", "1,1,3,3\n");
+    folder.file("got/a/meta_info.ini", fmt::format("anno_fps: {}Hz\nresolution: (9, 9)\n", rate));
+    folder.file("got/a/groundtruth.txt", "1,1,3,3\n");
+    const auto expect_unknown = [&](Format format, const char* place) {
+      const auto clips = read_clips(format, folder.path() / place, {}, {});
+      ASSERT_EQ(clips.size(), 1u) << place;
+      EXPECT_EQ(clips[0].frame_rate_hz, std::nullopt) << place << " " << rate;
+    };
+    expect_unknown(Format::kCoco, "coco.json");
+    expect_unknown(Format::kAot, "aot.json");
+    expect_unknown(Format::kMot, "mot");
+    expect_unknown(Format::kVot, "vot");
+    expect_unknown(Format::kGot10k, "got");
+  }
+}
+
 TEST(Coco, OfOthersMayHaveGapsPolygonsAndBoxesOutside) {
   const Folder folder;
   const fs::path file = folder.file("foreign.json", R"({

@@ -95,7 +95,11 @@ std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_
 }
 
 int side_of(const std::optional<double>& value) {
-  return static_cast<int>(value ? whole_in(*value, 1, 1'000'000).value_or(0) : 0);
+  return static_cast<int>(value ? whole_in(*value, 1, kLongestSide_px).value_or(0) : 0);
+}
+
+std::optional<double> rate_of(const std::optional<double>& value) {
+  return value && *value > 0 && *value <= kHighestRate_hz ? value : std::nullopt;
 }
 
 std::string padded(std::int64_t number, int digits) {
