@@ -36,6 +36,8 @@ struct RenderOptions {
 struct RenderedFrame {
   FramePicture picture;
   FrameTruth truth;
+
+  bool operator==(const RenderedFrame&) const = default;
 };
 
 // Puts a scene's intruders into its video, frame by frame, in memory: the same pictures and truth
