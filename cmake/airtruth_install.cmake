@@ -43,7 +43,7 @@ set(evaluation_headers box dataset error export labels lens metrics statistics t
 airtruth_library(evaluation airtruth-evaluation MODULES ${evaluation_modules} HEADERS ${evaluation_headers})
 # All of it.
 airtruth_library(airtruth airtruth
-  MODULES ${evaluation_modules} pictures HEADERS ${evaluation_headers} picture renderer video)
+  MODULES ${evaluation_modules} pictures HEADERS ${evaluation_headers} picture renderer stream video)
 
 include(CMakePackageConfigHelpers)
 install(TARGETS airtruth RUNTIME)

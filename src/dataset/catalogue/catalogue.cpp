@@ -192,6 +192,31 @@ void add_rules(const TableReader& root, Catalogue& catalogue) {
         {catalogue.file.string()});
 }
 
+StreamTable stream_in(const TableReader& root) {
+  constexpr std::int64_t kMostFrames = 64;  // chosen: two seconds
+  constexpr std::int64_t kMostReuse = 1000;
+  constexpr std::int64_t kMostMemory_mb = 1'000'000;
+  constexpr scene::Limits kSide{
+      .expected = "a side in pixels, 16 to 16384", .low = 16, .high = 16384};
+  const TableReader table =
+      root.table("stream", {"picture", "size_px", "frames", "intruders", "reuse", "memory_mb"});
+  StreamTable stream;
+  if (table.choice("picture", {"crop", "frame"}).value_or("crop") == "crop") {
+    const auto size =
+        table.tuple("size_px", {kSide, kSide}).value_or(std::vector<double>{256, 256});
+    stream.crop_px = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+    if ((*stream.crop_px)[0] != size[0] || (*stream.crop_px)[1] != size[1])
+      table.fail("size_px", "size_px is no whole number of pixels; expected whole numbers");
+  } else if (table.has("size_px")) {
+    table.fail("size_px", "size_px is for picture = \"crop\"; a frame has its own size");
+  }
+  stream.frames = table.whole("frames", 1, kMostFrames).value_or(stream.frames);
+  stream.intruders = whole_range(table, "intruders", kMaxIntruders);
+  stream.reuse = table.whole("reuse", 1, kMostReuse).value_or(stream.reuse);
+  stream.memory_mb = table.whole("memory_mb", 1, kMostMemory_mb).value_or(stream.memory_mb);
+  return stream;
+}
+
 }  // namespace
 
 Catalogue read_catalogue(const fs::path& file) {
@@ -218,6 +243,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
                           "render",
                           "composite",
                           "output",
+                          "stream",
                           "slurm"});
   Catalogue catalogue;
   catalogue.file = file;
@@ -229,6 +255,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.render = scene::render_in(root);
   catalogue.composite = scene::composite_in(root);
   catalogue.output = scene::output_in(root);
+  catalogue.stream = stream_in(root);
   catalogue.slurm = slurm_in(root);
   catalogue.negatives = root.number("negatives", scene::kShare).value_or(0);
   add_parts(root, catalogue);

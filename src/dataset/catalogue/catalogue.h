@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -77,6 +78,21 @@ struct Product {
   double negatives = 0;
 };
 
+// [stream]: how a training stream draws pictures from the rules (dataset/stream/stream.h). Data
+// sets are built without it.
+struct StreamTable {
+  // Width and height of the part of a frame that is shown; empty: the whole frame.
+  std::optional<std::array<int, 2>> crop_px;
+  // Number of consecutive frames of a sample.
+  std::int64_t frames = 1;
+  // How many aircraft a sample has that is not without any; empty: as many as its rule says.
+  std::optional<WholeRange> intruders;
+  // Number of samples that are made of a decoded frame.
+  std::int64_t reuse = 8;
+  // For decoded frames, in MB of 10^6 bytes.
+  std::int64_t memory_mb = 1500;
+};
+
 using Rule = std::variant<Product, Drawn, EncounterRule>;
 
 struct Catalogue {
@@ -94,6 +110,7 @@ struct Catalogue {
   scene::Render render;
   scene::Composite composite;
   scene::Output output;
+  StreamTable stream;
   // Options "--name=value" for sbatch, from the table [slurm].
   std::vector<std::string> slurm;
   fs::path file;

@@ -90,11 +90,14 @@ void take_weather(const DrawnSequence& drawn, scene::Scene& scene) {
 
 // The random values of a rule of [[random]] for one sequence. Until place() knows the background,
 // its paths are provisional and belong to a clip at kAssumedRateHz.
-Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) {
+Item item_of(const Catalogue& catalogue,
+             const Drawn& rule,
+             std::int64_t index,
+             DrawnSequence drawn) {
   Item item;
   item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
   item.rule = &rule;
-  item.drawn = draw(rule, catalogue.backgrounds, catalogue.seed, index);
+  item.drawn = std::move(drawn);
   item.background = item.drawn.background;
   item.frame_count = rule.frame_count;
   item.scene = scene_over(catalogue, item.background);
@@ -115,6 +118,10 @@ Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) 
     item.scene.intruders.push_back(std::move(intruder));
   }
   return item;
+}
+
+Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) {
+  return item_of(catalogue, rule, index, draw(rule, catalogue.backgrounds, catalogue.seed, index));
 }
 
 Item item_of(const Catalogue& catalogue, const EncounterRule& rule, std::int64_t index) {
@@ -167,6 +174,20 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
   scene.background.frame_rate_hz = background.frame_rate_hz;
   scene.background.where = background.where;
   return scene;
+}
+
+Item stream_item(const Catalogue& catalogue,
+                 const Drawn& rule,
+                 const StreamPlace& place,
+                 std::uint64_t seed) {
+  DrawnSequence drawn = draw(rule, catalogue.backgrounds, seed, place.index);
+  drawn.background = place.background;
+  Item item = item_of(catalogue, rule, place.index, std::move(drawn));
+  item.index = place.index;
+  item.first_frame = place.first_frame;
+  item.scene.name = item.name;
+  item.distractors = draw_distractors(catalogue.distractors, seed, place.index);
+  return item;
 }
 
 Expansion::Expansion(const Catalogue& catalogue) : catalogue_(catalogue) {
@@ -237,10 +258,10 @@ void place(Item& item,
   scene::Background& placed = item.scene.background;
   placed.video = files.video;
   placed.mask = files.mask;
-  placed.first_frame = background.first_frame;
+  placed.first_frame = item.first_frame.value_or(background.first_frame);
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
   draw_in_view(item, files);
-  if (item.rule != nullptr && item.rule->start == ClipStart::kRandom)
+  if (!item.first_frame && item.rule != nullptr && item.rule->start == ClipStart::kRandom)
     placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
   const std::int64_t left = files.frames - placed.first_frame;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Item {
   scene::Scene scene;
   const Drawn* rule = nullptr;  // the rule of [[random]]; nullptr for a listed sequence
   DrawnSequence drawn;          // valid where there is a rule
+  // In place of the background's first_frame, and of the rule's start.
+  std::optional<std::int64_t> first_frame;
   // In the scene already, with provisional places until place().
   DrawnDistractors distractors;
   // Of a sequence of [[encounter_model]]: its rule, and its number there. Until place() its
@@ -60,6 +63,18 @@ class Expansion {
   std::vector<std::int64_t> first_;  // index of the first item of each rule
   std::int64_t size_ = 0;
 };
+
+// An item of a rule that has no end: where it lies is stated, and `seed` decides all else.
+struct StreamPlace {
+  std::size_t background = 0;
+  std::int64_t first_frame = 0;
+  // Of the item in its rule; indices in a row are stratified as the rule's sequences.
+  std::int64_t index = 0;
+};
+Item stream_item(const Catalogue& catalogue,
+                 const Drawn& rule,
+                 const StreamPlace& place,
+                 std::uint64_t seed);
 
 // Makes a scene over the background with this index in the catalogue. It lacks [background],
 // intruders and name.

@@ -93,11 +93,15 @@ std::optional<double> Differences::add(const Picture& picture) {
   return difference;
 }
 
-bool is_cut(std::span<const double> before, double here, std::span<const double> after) {
+bool is_cut(std::span<const double> differences, std::size_t here) {
+  constexpr std::size_t kReach = kCutNeighbours;
   double around = 0;
-  for (const double d : before) around = std::max(around, d);
-  for (const double d : after) around = std::max(around, d);
-  return here >= kMinCutDifferenceCodes && here > kMinRatioToNeighbours * around;
+  for (std::size_t i = here - std::min(here, kReach);
+       i < std::min(differences.size(), here + kReach + 1);
+       ++i)
+    if (i != here) around = std::max(around, differences[i]);
+  return differences[here] >= kMinCutDifferenceCodes &&
+         differences[here] > kMinRatioToNeighbours * around;
 }
 
 }  // namespace airtruth::image

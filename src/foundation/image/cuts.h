@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -25,10 +26,10 @@ class Differences {
 // The number of differences before and after a frame with which its own difference is compared.
 inline constexpr int kCutNeighbours = 2;
 
-// Whether a frame whose difference to the frame before is `here` begins a shot. It does where
-// `here` is at least 6 code values and more than three times the difference of each neighbour (up
-// to kCutNeighbours before and after). A pan or a change of exposure takes several frames and
-// therefore does not count.
-bool is_cut(std::span<const double> before, double here, std::span<const double> after);
+// Whether a frame begins a shot: the one whose difference to the frame before is differences[here].
+// It does where that is at least 6 code values and more than three times the difference of each
+// neighbour, up to kCutNeighbours before and after as far as there are any. A pan or a change of
+// exposure takes several frames and therefore does not count.
+bool is_cut(std::span<const double> differences, std::size_t here);
 
 }  // namespace airtruth::image

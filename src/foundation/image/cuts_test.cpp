@@ -11,15 +11,9 @@ namespace {
 
 // The frames that begin a shot, from 1 on. differences[k]: of frame k to frame k + 1.
 std::vector<std::int64_t> cuts_of(const std::vector<double>& differences) {
-  const std::span<const double> all(differences);
-  constexpr auto kReach = static_cast<std::size_t>(kCutNeighbours);
   std::vector<std::int64_t> cuts;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::size_t first = i - std::min(i, kReach);
-    const std::size_t after = std::min(kReach, all.size() - i - 1);
-    if (is_cut(all.subspan(first, i - first), all[i], all.subspan(i + 1, after)))
-      cuts.push_back(static_cast<std::int64_t>(i) + 1);
-  }
+  for (std::size_t i = 0; i < differences.size(); ++i)
+    if (is_cut(differences, i)) cuts.push_back(static_cast<std::int64_t>(i) + 1);
   return cuts;
 }
 

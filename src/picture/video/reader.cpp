@@ -523,10 +523,7 @@ bool Reader::State::begins_shot(std::int64_t index) {
   }
   if (index < first_difference) return false;
   const std::vector<double> around(differences.begin(), differences.end());
-  const std::span<const double> all(around);
-  const auto here = static_cast<std::size_t>(index - first_difference);
-  const std::size_t after = std::min(all.size() - here - 1, std::size_t{image::kCutNeighbours});
-  return image::is_cut(all.first(here), all[here], all.subspan(here + 1, after));
+  return image::is_cut(around, static_cast<std::size_t>(index - first_difference));
 }
 
 std::unique_ptr<Reader::State> Reader::State::opened(const std::filesystem::path& path,

@@ -27,7 +27,7 @@ FrameMaker::FrameMaker(ResolvedScene resolved, const std::stop_token& stop)
 
 WorkPtr FrameMaker::decode() {
   if (stop_.stop_requested()) return nullptr;
-  auto frame = resolved_.background.next();
+  auto frame = resolved_.background->next();
   if (!frame) return nullptr;
   auto work = std::make_shared<Work>();
   work->frame = std::move(*frame);

@@ -141,7 +141,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   clocks.end_s = process_cpu_seconds();
 
   maker.store_motion();
-  warn_of_run(tally, resolved.scene, resolved.world, resolved.background, options.warn);
+  warn_of_run(tally, resolved.scene, resolved.world, *resolved.background, options.warn);
   Summary summary = summary_of(tally, clocks, resolved.motion->is_from_cache());
   summary.attitude_words = resolved.attitude_words;
   outputs->finish(resolved.scene,

@@ -242,7 +242,8 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
   return info;
 }
 
-// A reader of the scene's part of its background.
+}  // namespace
+
 video::Reader open_background(const scene::Scene& scene, const Options& options) {
   video::ReaderOptions reader_options;
   reader_options.first_frame = scene.background.first_frame;
@@ -259,6 +260,8 @@ video::Reader open_background(const scene::Scene& scene, const Options& options)
         scene.background.where);
   return reader;
 }
+
+namespace {
 
 // The frame of a known motion that a moment of [[intruder.seen]] is about.
 setup::FramePose frame_near(const setup::MotionSource& motion,
@@ -377,13 +380,21 @@ scene::Scene with_measured_camera(StatedScene stated,
 
 OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
   video::Reader background = open_background(scene, options);
-  StatedScene as_stated = stated(scene, background.info());
+  OpenedScene opened = open_over(background.info(), scene, options);
+  opened.background.emplace(std::move(background));
+  return opened;
+}
+
+OpenedScene open_over(const video::StreamInfo& of_video,
+                      const scene::Scene& scene,
+                      const Options& options) {
+  StatedScene as_stated = stated(scene, of_video);
   scene::Scene& opened = as_stated.scene;
   if (options.is_preview) simplify_for_preview(opened);
-  const lens::ImageSize size = size_of(background.info());
-  std::unique_ptr<const image::Mask> mask;
+  const lens::ImageSize size = size_of(of_video);
+  std::shared_ptr<const image::Mask> mask;
   if (auto read = insertion::read_mask(opened, size))
-    mask = std::make_unique<const image::Mask>(std::move(*read));
+    mask = std::make_shared<const image::Mask>(std::move(*read));
   auto inputs = inputs_of(options);
   const std::string attitude_words = setup::state_attitude(
       opened.camera,
@@ -400,13 +411,13 @@ OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
   for (std::size_t i = 0; i < world.actors.size(); ++i)
     if (const double scale = world.actors[i].type->aircraft->catalogue_scale; scale != 1)
       opened.intruders[i].catalogue_scale = scale;
-  const video::StreamInfo info = used_stream(background.info(), scene.background);
+  const video::StreamInfo info = used_stream(of_video, scene.background);
   setup::check_camera_path(world.camera, info);
   // A container may state a frame or two more than it holds.
   const std::int64_t at_least = scene.background.frame_count.value_or(
       std::max<std::int64_t>(0, info.frame_count_estimate - 2));
   insertion::Occluders occluders(opened, world.lens, mask.get(), at_least);
-  return {{std::move(background),
+  return {{std::nullopt,
            info,
            std::move(mask),
            std::move(occluders),
@@ -439,13 +450,18 @@ void place_seen(OpenedScene& opened,
       opened.inputs.get());
 }
 
-ResolvedScene resolve(OpenedScene opened, const Options& options) {
+void measure_camera(OpenedScene& opened, const Options& options) {
   scene::Scene& scene = opened.stated.scene;
   scene = with_measured_camera(
       std::move(opened.stated), size_of(opened.info), opened.mask.get(), *opened.inputs, options);
-  insertion::check_codec(scene, opened.background.info().colour);
+  insertion::check_codec(scene, opened.info.colour);
   opened.world.shutter = setup::shutter_of(scene.camera_model);
   opened.world.to_sun_in_world = setup::to_sun_in_world(scene.light);
+}
+
+ResolvedScene resolve(OpenedScene opened, const Options& options) {
+  measure_camera(opened, options);
+  const scene::Scene& scene = opened.stated.scene;
   const std::string video_sha256 = setup::sha256_of_video(scene.background.video, *opened.inputs);
   const bool has_seen = is_given_by_what_is_seen(scene);
   setup::MotionSource motion(motion_inputs(opened, video_sha256, options),

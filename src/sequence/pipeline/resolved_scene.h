@@ -47,9 +47,10 @@ scene::Scene with_measured_camera(StatedScene stated,
 
 // What a scene names, opened and checked.
 struct SceneInputs {
-  video::Reader background;                 // the scene's part of it
+  // The scene's part of it; empty where the caller has its frames (open_over()).
+  std::optional<video::Reader> background;
   video::StreamInfo info;                   // with the number of frames that this scene makes of it
-  std::unique_ptr<const image::Mask> mask;  // of the own aircraft; null: none
+  std::shared_ptr<const image::Mask> mask;  // of the own aircraft; null: none
   insertion::Occluders occluders;           // it and the others
   std::shared_ptr<setup::SharedInputs> inputs;  // of the process, else of this run
   setup::World world;
@@ -65,6 +66,13 @@ struct OpenedScene : SceneInputs {
   StatedScene stated;
 };
 OpenedScene open_scene(const scene::Scene& scene, const Options& options);
+// The same without a reader: the caller has the frames. `info` is that of the scene's whole video.
+OpenedScene open_over(const video::StreamInfo& info,
+                      const scene::Scene& scene,
+                      const Options& options);
+// A reader of the scene's part of its background. Throws Error as video::Reader does, and for
+// numbered pictures whose rate the scene does not state.
+video::Reader open_background(const scene::Scene& scene, const Options& options);
 
 // A scene with all that must be known of the whole clip before its first frame: frames are made
 // from it alone. It is complete: what sequence.json records and what a frame is made from again.
@@ -77,6 +85,10 @@ struct ResolvedScene : SceneInputs {
 
 // The scene of a finished sequence, which leaves nothing to measure.
 ResolvedScene resolved_by_truth(OpenedScene opened);
+
+// Measures the values of [realism] that the scene leaves to the clip, which completes the scene but
+// for the intruders of [[intruder.seen]]. Decodes the whole clip where they are not in the cache.
+void measure_camera(OpenedScene& opened, const Options& options);
 
 // Measures what the scene leaves to the clip: the exposure, noise and other values of [realism],
 // and the motion where it is needed ahead. Decodes the whole clip where these are not in the cache.

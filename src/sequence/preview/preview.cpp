@@ -148,7 +148,7 @@ class Previewer {
 
   video::Frame frame_at(double time_s) {
     stop_if_asked();
-    auto frame = opened_.background.at(time_s);
+    auto frame = opened_.background->at(time_s);
     if (!frame)
       throw Error(fmt::format("holds no frame at {:.2f} s", time_s),
                   {scene().background.video.string()});

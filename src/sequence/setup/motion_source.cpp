@@ -105,6 +105,21 @@ std::optional<MotionSource> MotionSource::from_cache(const MotionInputs& inputs)
   return source;
 }
 
+MotionSource MotionSource::of_frames(MotionInputs inputs, std::span<const video::Frame> frames) {
+  inputs.cache = {};
+  MotionSource source(inputs);
+  std::vector<motion::FrameMotion> measured;
+  for (const video::Frame& frame : frames)
+    measured.push_back(source.none_ ? still_at(frame) : source.measured(frame));
+  if (source.none_) {
+    source.all_ = std::move(measured);
+    source.ready_ = true;
+  } else {
+    source.set_pass(std::move(measured));
+  }
+  return source;
+}
+
 motion::Estimator MotionSource::estimator(int width, int height) const {
   return lens_ ? motion::Estimator(*lens_, options_, mask_)
                : motion::Estimator(width, height, options_, mask_);
@@ -139,10 +154,10 @@ MotionSource::Measured MotionSource::next(const video::Frame& frame) {
     return {motion, motion::shake_of({motion}, 0)};
   }
   check(frame.index < static_cast<std::int64_t>(all_.size()), "motion is known for every frame");
-  return known(static_cast<std::size_t>(frame.index));
+  return at(static_cast<std::size_t>(frame.index));
 }
 
-MotionSource::Measured MotionSource::known(std::size_t k) const {
+MotionSource::Measured MotionSource::at(std::size_t k) const {
   if (none_) return {all_[k], {}};
   return {all_[k], needs_change_ ? motion::shake_of(all_, k) : motion::shake_of({all_[k]}, 0)};
 }
@@ -155,7 +170,7 @@ MotionSource::Measured MotionSource::nearest(double time_s) const {
       });
   auto k = static_cast<std::size_t>(after - all_.begin());
   if (k == all_.size() || (k > 0 && time_s - all_[k - 1].time_s <= all_[k].time_s - time_s)) --k;
-  return known(k);
+  return at(k);
 }
 
 motion::FrameMotion MotionSource::measured(const video::Frame& frame) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -64,12 +65,17 @@ class MotionSource {
   // The motion that an earlier run has measured; empty where the cache does not hold it.
   static std::optional<MotionSource> from_cache(const MotionInputs& inputs);
 
+  // The motion of all frames of a scene, which are in memory. The cache of `inputs` is not used.
+  static MotionSource of_frames(MotionInputs inputs, std::span<const video::Frame> frames);
+
   // Frames in order.
   struct Measured {
     motion::FrameMotion motion;
     Shake shake;
   };
   Measured next(const video::Frame& frame);
+  // Frame k, where all are known.
+  Measured at(std::size_t k) const;
   // The frame nearest to a time; only where all are known ahead and the clip has a frame.
   Measured nearest(double time_s) const;
   // Stores the measured motion for the next run, after the last frame.
@@ -84,8 +90,6 @@ class MotionSource {
   void measure(const MotionPass& pass);
   void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
-  // Frame k, where all are known.
-  Measured known(std::size_t k) const;
   bool is_to_be_stored() const { return cache_.keeps() && !from_cache_; }
 
   motion::Estimator estimator(int width, int height) const;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "dataset/catalogue/catalogue.h"
+#include "foundation/geometry/box.h"
+#include "foundation/image/picture.h"
+#include "labels/annotation/lens_facts.h"
+#include "labels/annotation/truth.h"
+#include "scene/scene/scene.h"
+#include "sequence/pipeline/options.h"
+
+// Labelled pictures of a catalogue without end, made when they are asked for.
+//
+// The rules of [[random]] are drawn as for data sets, but for where their sequences lie: a sample
+// is a sequence of [stream] `frames` frames at the place of its index (places.h). A sample depends
+// on the catalogue, the seed and its index alone. It is made by the stages of a run
+// (sequence/pipeline/frame_maker.h), so render() of scene() gives the same pictures and truth.
+namespace airtruth::stream {
+
+struct Sample {
+  std::string background;        // its name
+  std::int64_t first_frame = 0;  // in its video
+  // The part of the frames that the pictures show. Its corner is even.
+  PixelBox crop{};
+  struct Frame {
+    image::Picture picture;   // of the crop alone
+    annotation::Frame truth;  // of the whole frame, in its pixels
+  };
+  std::vector<Frame> frames;
+};
+
+// Threads may use a Stream at the same time.
+class Stream {
+ public:
+  // Throws Error where the catalogue has a rule or a background that a stream cannot use. Of
+  // `options`, overwrite, is_preview, gpu and progress are ignored, and `threads` draw one sample.
+  Stream(catalogue::Catalogue catalogue, std::uint64_t seed, pipeline::Options options);
+  ~Stream();
+
+  // Throw Error for faults in what the sample needs, and Interrupted after options.stop.
+  Sample sample(std::int64_t index) const;
+  scene::Scene scene(std::int64_t index) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace airtruth::stream

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/stream/stream.h"
+
+#include <fstream>
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "dataset/stream/places.h"
+#include "foundation/base/error.h"
+#include "labels/annotation/truth.h"
+#include "picture/video/reader.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/pipeline/render.h"
+#include "support/temporary_folder.h"
+
+namespace airtruth::stream {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+TEST(Places, LanesTakeTurnsAndAFrameIsUsedOftenBeforeTheNext) {
+  const Place later = place_of(8 * 64 * 8 + 3, 8);  // the lanes' first runs are over
+  EXPECT_EQ(place_of(9, 8).run, 1);
+  EXPECT_EQ(place_of(9, 8).step, 0);
+  EXPECT_EQ(place_of(9, 8).sample_of_run, 1);
+  EXPECT_EQ(place_of(64, 8).run, 0);
+  EXPECT_EQ(place_of(64, 8).step, 1);
+  EXPECT_EQ(later.run, 8 + 3);
+  EXPECT_EQ(later.step, 0);
+}
+
+TEST(Places, EverySampleOfARunHasANumberOfItsOwn) {
+  std::set<std::pair<std::int64_t, std::int64_t>> seen;
+  for (std::int64_t i = 0; i < 5000; ++i) {
+    const Place place = place_of(i, 3);
+    EXPECT_LT(place.step, kRunFrames);
+    EXPECT_LT(place.sample_of_run, kRunFrames * 3);
+    seen.insert({place.run, place.sample_of_run});
+  }
+  EXPECT_EQ(seen.size(), 5000u);
+}
+
+class StreamOfFlights : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test_support::TemporaryFolder();
+    for (const int seed : {3, 4}) {
+      synthetic::FlightOptions options;
+      options.seed = static_cast<std::uint64_t>(seed);
+      options.width = 320;
+      options.height = 240;
+      options.frame_count = 24;
+      options.own_aircraft = false;
+      demo::write_flight(synthetic::Flight(options),
+                         folder_->path() / ("flight" + std::to_string(seed) + ".mp4"),
+                         {});
+    }
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string background(const std::string& name, const std::string& more = "") {
+    return "[[background]]\nname = \"" + name + "\"\nvideo = \"" + name +
+           ".mp4\"\nlens = { vertical_fov_deg = 60 }\ncamera = { position_ned_m = [0, 0, -300], "
+           "velocity_ned_mps = [25, 0, 0] }\n" +
+           more;
+  }
+  static constexpr const char* kRule =
+      "[[random]]\ncount = 100\naircraft = [\"738/*\", \"c172/*\"]\nsize_px = [10, 60]\n"
+      "azimuth_deg = [-25, 25]\nelevation_deg = [-15, 15]\nnegatives = 0.2\n";
+
+  static catalogue::Catalogue catalogue_of(const std::string& text) {
+    return catalogue::parse_catalogue(text, folder_->path() / "c.toml");
+  }
+  static pipeline::Options options() {
+    pipeline::Options options;
+    options.use_cache = false;
+    options.threads = 1;
+    return options;
+  }
+  static Stream stream_of(const std::string& text, std::uint64_t seed = 7) {
+    return {catalogue_of(text), seed, options()};
+  }
+
+  static inline test_support::TemporaryFolder* folder_ = nullptr;
+};
+
+void expect_same(const Sample& a, const Sample& b) {
+  EXPECT_EQ(a.background, b.background);
+  EXPECT_EQ(a.first_frame, b.first_frame);
+  EXPECT_EQ(a.crop, b.crop);
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (std::size_t k = 0; k < a.frames.size(); ++k) {
+    EXPECT_TRUE(image::identical(a.frames[k].picture, b.frames[k].picture));
+    EXPECT_EQ(annotation::jsonl_line(a.frames[k].truth, {}),
+              annotation::jsonl_line(b.frames[k].truth, {}));
+  }
+}
+
+// render() of the sample's scene, read back from its text, gives the same pictures and truth.
+void expect_as_rendered(const Stream& stream, std::int64_t index, const fs::path& out) {
+  const Sample sample = stream.sample(index);
+  const scene::Scene scene =
+      scene::parse_scene(scene::toml_from_scene(stream.scene(index)), out / "scene.toml");
+  pipeline::Options how;
+  how.use_cache = false;
+  const fs::path made = pipeline::render(scene, out, how).folder;
+  video::Reader video(made / (scene.name + ".mkv"));
+  const annotation::Truth truth = annotation::read_truth(made / "truth.jsonl");
+  ASSERT_EQ(sample.frames.size(), truth.frames.size());
+  for (std::size_t k = 0; k < sample.frames.size(); ++k) {
+    const auto frame = video.next();
+    ASSERT_TRUE(frame);
+    EXPECT_TRUE(
+        image::identical(sample.frames[k].picture, image::crop(frame->picture, sample.crop)))
+        << "sample " << index << ", frame " << k;
+    EXPECT_EQ(annotation::jsonl_line(sample.frames[k].truth, truth.lens),
+              annotation::jsonl_line(truth.frames[k], truth.lens));
+  }
+}
+
+TEST_F(StreamOfFlights, SamplesAreWhatRenderMakesOfTheirScenes) {
+  const Stream stream = stream_of(background("flight3") + background("flight4") + kRule +
+                                  "[stream]\nsize_px = [128, 96]\nintruders = [1, 3]\n");
+  for (const std::int64_t index : {0, 1, 7, 8, 64, 65, 513, 4099})
+    expect_as_rendered(stream, index, folder_->path() / "plain");
+}
+
+TEST_F(StreamOfFlights, SoAreSeveralFramesWithACameraAndDistractors) {
+  const Stream stream = stream_of(
+      background("flight3",
+                 "shutter = { exposure_s = 0.01 }\noptics = { point_spread_px = 0.6 }\n"
+                 "sensor = { noise_gain = 1e-4, noise_floor = 1e-5, codec_step = 6 }\n") +
+      background("flight4", "motion = { reference = \"smoothed\" }\n") + kRule +
+      "[[distractor]]\nkind = \"bird\"\n[stream]\npicture = \"frame\"\nframes = 3\nreuse = 2\n");
+  for (const std::int64_t index : {0, 1, 2, 3, 5, 16, 17, 1030})
+    expect_as_rendered(stream, index, folder_->path() / "frames");
+}
+
+TEST_F(StreamOfFlights, ASampleDependsOnItsIndexAndTheSeedAlone) {
+  const std::string text = background("flight3") + background("flight4") + kRule +
+                           "[stream]\nsize_px = [128, 128]\nreuse = 2\nframes = 2\n";
+  const Stream forwards = stream_of(text);
+  const Stream backwards = stream_of(text);
+  std::vector<Sample> samples;
+  for (std::int64_t i = 0; i < 24; ++i) samples.push_back(forwards.sample(i));
+  for (std::int64_t i = 23; i >= 0; --i)
+    expect_same(backwards.sample(i), samples[static_cast<std::size_t>(i)]);
+  const Sample other = stream_of(text, 8).sample(0);
+  EXPECT_FALSE(other.first_frame == samples[0].first_frame && other.crop == samples[0].crop &&
+               image::identical(other.frames[0].picture, samples[0].frames[0].picture));
+}
+
+TEST_F(StreamOfFlights, ACropShowsOneAircraftWholeAndAShareOfSamplesHasNone) {
+  const Stream stream = stream_of(background("flight3") + kRule + "[stream]\nsize_px = [96, 80]\n");
+  int without = 0;
+  for (std::int64_t i = 0; i < 40; ++i) {
+    const Sample sample = stream.sample(i);
+    EXPECT_EQ(sample.frames[0].picture.width, 96);
+    EXPECT_EQ(sample.frames[0].picture.height, 80);
+    EXPECT_GE(sample.crop.x, 0);
+    EXPECT_LE(sample.crop.right(), 320);
+    EXPECT_LE(sample.crop.bottom(), 240);
+    const auto& intruders = sample.frames[0].truth.intruders;
+    if (intruders.empty()) {
+      ++without;
+      continue;
+    }
+    const auto& box = intruders[0].covered_box_px;
+    if (!box) continue;
+    EXPECT_EQ(bounds(*box, sample.crop), sample.crop) << i;
+  }
+  EXPECT_NEAR(without, 8, 2);
+}
+
+TEST_F(StreamOfFlights, WhatAStreamCannotUseIsSaidAtOnce) {
+  const auto message = [&](const std::string& text) -> std::string {
+    try {
+      stream_of(text).sample(0);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(message(background("flight3") + kRule + "[stream]\nsize_px = [400, 96]\n"),
+              HasSubstr("size_px is 400 x 96; the frames of background 'flight3' are 320 x 240"));
+  EXPECT_THAT(message(background("flight3") + kRule + "[stream]\npicture = \"frame\"\n" +
+                      "size_px = [64, 64]\n"),
+              HasSubstr("size_px is for picture = \"crop\""));
+  EXPECT_THAT(message(background("flight3") +
+                      "[[aircraft]]\nname = \"a\"\naircraft = \"c172\"\n"
+                      "[[trajectory]]\nname = \"t\"\nwaypoints_ned_m = [[100, 0, -300], [100, 9, "
+                      "-300]]\nspeed_mps = 40\n[[product]]\n"),
+              HasSubstr("a stream draws from [[random]]"));
+  EXPECT_THAT(message(background("nowhere") + kRule), HasSubstr("nowhere.mp4"));
+}
+
+}  // namespace
+}  // namespace airtruth::stream
