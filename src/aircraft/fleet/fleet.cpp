@@ -19,6 +19,7 @@
 #include "aircraft/wrapper/model_files.h"
 #include "aircraft/wrapper/part_names.h"
 #include "aircraft/wrapper/reader.h"
+#include "aircraft/wrapper/scope.h"
 #include "aircraft/wrapper/wrapper.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -398,21 +399,12 @@ Aircraft load_aircraft(const std::string& name,
 
 namespace {
 
-// All that a wrapper derives from the state at cruise, as text: whether each condition holds, and
-// the value of each animation. Two states with the same outcomes give the same model.
+// All that the model depends on and the state at cruise decides, as text. Two states with the same
+// outcomes give the same model.
 std::string outcomes_of(const wrapper::Wrapper& wrapper) {
-  // Every bit of a number counts.
-  const auto outcome = [](const std::optional<bool>& condition) {
-    return condition ? int{*condition} : -1;
-  };
-  std::string text = fmt::format("({}", outcome(wrapper.condition));
+  std::string text = fmt::format("({}", wrapper.condition ? int{*wrapper.condition} : -1);
   for (const wrapper::Animation& animation : wrapper.animations)
-    text += fmt::format("|{},{:a},{:a},{:a},{:a}",
-                        outcome(animation.condition),
-                        animation.value,
-                        animation.scale.x(),
-                        animation.scale.y(),
-                        animation.scale.z());
+    text += '|' + wrapper::effect_of(animation);
   for (const wrapper::Wrapper& nested : wrapper.nested) text += outcomes_of(nested);
   return text + ")";
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "aircraft/wrapper/part_names.h"
 
 namespace airtruth::wrapper {
@@ -30,15 +32,27 @@ Eigen::Affine3d motion_of(const Animation& animation) {
   return Eigen::Affine3d(Eigen::Translation3d(animation.value * axis));
 }
 
-std::optional<Spin> spin_of(const Animation& animation, const Eigen::Affine3d& body_from_model) {
-  const double rpm = std::clamp(animation.value, -kFastestPropellerRpm, kFastestPropellerRpm);
+double rpm_of(const Animation& animation) {
   // Wheels do not turn in the air, although many wrappers turn them with the airspeed.
-  const bool has_wheel = std::any_of(animation.objects.begin(), animation.objects.end(), is_wheel);
-  if (rpm == 0 || !(animation.axis.norm() > 1e-9) || has_wheel) return std::nullopt;
+  if (std::any_of(animation.objects.begin(), animation.objects.end(), is_wheel)) return 0;
+  return std::clamp(animation.value, -kFastestPropellerRpm, kFastestPropellerRpm);
+}
+
+std::optional<Spin> spin_of(const Animation& animation, const Eigen::Affine3d& body_from_model) {
+  const double rpm = rpm_of(animation);
+  if (rpm == 0 || !(animation.axis.norm() > 1e-9)) return std::nullopt;
   return Spin{animation.objects.empty() ? "spinning" : animation.objects.front(),
               (body_from_model.linear() * animation.axis).normalized().cast<float>(),
               (body_from_model * animation.centre).cast<float>(),
               rpm / 60};
+}
+
+bool is_lamp(const std::string& type) {
+  return type == "billboard" || type == "flash" || type == "dist-scale" || type == "timed";
+}
+
+float opacity_of(const Animation& animation) {
+  return 1 - static_cast<float>(std::clamp(animation.value, 0., 1.));
 }
 
 void apply(const Animation& animation, Animated& result) {
@@ -49,12 +63,12 @@ void apply(const Animation& animation, Animated& result) {
   } else if (type == "range") {
     result.hidden =
         result.hidden || kSeenFrom_m < animation.least_m || kSeenFrom_m >= animation.most_m;
-  } else if (type == "billboard" || type == "flash" || type == "dist-scale" || type == "timed") {
-    result.hidden = true;  // lamps
+  } else if (is_lamp(type)) {
+    result.hidden = true;
   } else if (!applies) {
     return;
   } else if (type == "blend") {
-    result.opacity *= 1 - static_cast<float>(std::clamp(animation.value, 0., 1.));
+    result.opacity *= opacity_of(animation);
   } else if (type == "material") {
     if (!animation.texture.empty()) result.texture = animation.texture;
   } else if (type == "spin") {
@@ -65,6 +79,20 @@ void apply(const Animation& animation, Animated& result) {
 }
 
 }  // namespace
+
+std::string effect_of(const Animation& animation) {
+  const std::string& type = animation.type;
+  if (type == "range" || is_lamp(type)) return "";
+  if (!animation.condition.value_or(true)) return "-";
+  // Every bit of a number counts.
+  if (type == "blend") return fmt::format("{:a}", opacity_of(animation));
+  if (type == "spin") return fmt::format("{:a}", rpm_of(animation));
+  if (type == "rotate" || type == "translate") return fmt::format("{:a}", animation.value);
+  if (type == "scale")
+    return fmt::format(
+        "{:a},{:a},{:a}", animation.scale.x(), animation.scale.y(), animation.scale.z());
+  return "";
+}
 
 Scope Scope::inside(const Wrapper& wrapper) const {
   Scope scope = *this;

@@ -14,6 +14,7 @@
 #include "dataset/catalogue/expand.h"
 #include "dataset/stream/frames.h"
 #include "dataset/stream/places.h"
+#include "encounter/pairing/strata.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
@@ -35,13 +36,56 @@ struct Clip {
   video::StreamInfo info;
 };
 
+// Aircraft that a rule flies at a time, and for how many samples each does. A livery takes as long
+// to load as tens of samples take to draw, and the hundreds of a catalogue are too many for memory.
+// One aircraft changes every 512 samples. Chosen.
+constexpr std::size_t kFleet = 16;
+constexpr std::int64_t kSamplesOfAircraft = 8192;
+
+// A rule of [[random]], which is drawn with a few of its types at a time.
+struct Rule {
+  catalogue::Drawn drawn;  // without types
+  std::vector<catalogue::AircraftType> types;
+};
+
 // The frames that a run of samples is over.
 struct Run {
-  const catalogue::Drawn* rule = nullptr;
+  const Rule* rule = nullptr;
   std::size_t background = 0;
   std::int64_t first_frame = 0;  // in the video
   std::int64_t frames = 1;       // at which a sample may begin
 };
+
+std::vector<Rule> rules_of(const catalogue::Catalogue& catalogue) {
+  std::vector<Rule> rules;
+  for (const catalogue::Rule& rule : catalogue.rules) {
+    Rule& one = rules.emplace_back(Rule{std::get<catalogue::Drawn>(rule), {}});
+    one.types = std::exchange(one.drawn.types, {});
+  }
+  return rules;
+}
+
+// The aircraft that fly in a sample: the types take turns.
+std::vector<catalogue::AircraftType> fleet_of(const Rule& rule,
+                                              std::uint64_t seed,
+                                              std::int64_t index) {
+  std::size_t liveries = 0;
+  for (const catalogue::AircraftType& type : rule.types) liveries += type.liveries.size();
+  if (liveries <= kFleet) return rule.types;
+  const pairing::Strata turns(
+      Seed(seed).stream("turns of types of " + rule.drawn.name)(), rule.types.size(), 1);
+  std::vector<catalogue::AircraftType> fleet;
+  for (std::size_t slot = 0; slot < kFleet; ++slot) {
+    const auto begin = static_cast<std::int64_t>(slot) * kSamplesOfAircraft / std::int64_t{kFleet};
+    const auto number =
+        static_cast<std::uint64_t>((index + begin) / kSamplesOfAircraft) * kFleet + slot;
+    Random random = Seed(seed).stream("aircraft of " + rule.drawn.name, number);
+    const catalogue::AircraftType& type =
+        catalogue::one_at(turns.middle(number % rule.types.size(), 0), rule.types);
+    fleet.push_back({type.name, {catalogue::one_of(random, type.liveries)}});
+  }
+  return fleet;
+}
 
 // The rules as the stream draws them.
 catalogue::Catalogue adapted(catalogue::Catalogue catalogue) {
@@ -82,6 +126,7 @@ int placed(double share, int low, int high) {
 struct Stream::State {
   State(catalogue::Catalogue given, std::uint64_t seed_value, pipeline::Options wanted)
       : catalogue(adapted(std::move(given))),
+        rules(rules_of(catalogue)),
         seed(Seed(catalogue.seed).stream("stream", seed_value)()),
         options(std::move(wanted)),
         frames(static_cast<std::size_t>(catalogue.stream.memory_mb) * 1'000'000),
@@ -121,7 +166,7 @@ struct Stream::State {
   Run run_of(std::int64_t number) {
     Random random = Seed(seed).stream("run", static_cast<std::uint64_t>(number));
     Run run{&drawn_rule(random), 0, 0, 1};
-    run.background = drawn_background(random, run.rule->backgrounds);
+    run.background = drawn_background(random, run.rule->drawn.backgrounds);
     const Clip& of = clip(run.background);
     if (of.files.frames <= 0)
       throw Error(of.files.video.string() +
@@ -137,17 +182,15 @@ struct Stream::State {
   }
 
   // A rule as often as it has sequences.
-  const catalogue::Drawn& drawn_rule(Random& random) const {
+  const Rule& drawn_rule(Random& random) const {
     std::int64_t all = 0;
-    for (const catalogue::Rule& rule : catalogue.rules)
-      all += std::get<catalogue::Drawn>(rule).count;
+    for (const Rule& rule : rules) all += rule.drawn.count;
     auto left = static_cast<std::int64_t>(random.uniform() * static_cast<double>(all));
-    for (const catalogue::Rule& rule : catalogue.rules) {
-      const auto& drawn = std::get<catalogue::Drawn>(rule);
-      if (left < drawn.count) return drawn;
-      left -= drawn.count;
+    for (const Rule& rule : rules) {
+      if (left < rule.drawn.count) return rule;
+      left -= rule.drawn.count;
     }
-    return std::get<catalogue::Drawn>(catalogue.rules.back());
+    return rules.back();
   }
 
   std::size_t drawn_background(Random& random, const std::vector<std::size_t>& among) const {
@@ -163,6 +206,7 @@ struct Stream::State {
 
   // The scene of a sample, and the run that it belongs to.
   struct Planned {
+    std::unique_ptr<const catalogue::Drawn> rule;  // of the item
     catalogue::Item item;
     Place place;
   };
@@ -171,9 +215,11 @@ struct Stream::State {
     const Place place = place_of(index, catalogue.stream.reuse);
     const Run run = run_of(place.run);
     const std::int64_t samples_of_run = kRunFrames * catalogue.stream.reuse;
+    auto rule = std::make_unique<catalogue::Drawn>(run.rule->drawn);
+    rule->types = fleet_of(*run.rule, seed, index);
     catalogue::Item item =
         catalogue::stream_item(catalogue,
-                               *run.rule,
+                               *rule,
                                {run.background,
                                 run.first_frame + place.step % run.frames,
                                 place.run * samples_of_run + place.sample_of_run},
@@ -184,7 +230,7 @@ struct Stream::State {
         Seed(seed).stream("frame",
                           static_cast<std::uint64_t>(place.run * kRunFrames + place.step))() >>
         1;
-    return {std::move(item), place};
+    return {std::move(rule), std::move(item), place};
   }
 
   std::shared_ptr<const Shot> shot_of(const Planned& planned, const pipeline::OpenedScene& opened) {
@@ -294,6 +340,7 @@ struct Stream::State {
   static constexpr std::int64_t kMostIndex = std::int64_t{1} << 53;
 
   const catalogue::Catalogue catalogue;
+  const std::vector<Rule> rules;
   const std::uint64_t seed;
   pipeline::Options options;
   Frames frames;

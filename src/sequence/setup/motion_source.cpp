@@ -17,6 +17,15 @@
 namespace airtruth::setup {
 namespace {
 
+// The motion of the frame that all others are measured against.
+motion::FrameMotion reference_at(const video::Frame& frame, bool is_rotation) {
+  motion::FrameMotion reference;
+  reference.frame = frame.index;
+  reference.time_s = frame.time_s;
+  if (is_rotation) reference.rotation = Quaternion::Identity();
+  return reference;
+}
+
 // The motion of a frame of a clip that does not shake.
 motion::FrameMotion still_at(const video::Frame& frame) {
   motion::FrameMotion still;
@@ -110,7 +119,9 @@ MotionSource MotionSource::of_frames(MotionInputs inputs, std::span<const video:
   MotionSource source(inputs);
   std::vector<motion::FrameMotion> measured;
   for (const video::Frame& frame : frames)
-    measured.push_back(source.none_ ? still_at(frame) : source.measured(frame));
+    measured.push_back(source.none_         ? still_at(frame)
+                       : frames.size() == 1 ? reference_at(frame, source.lens_.has_value())
+                                            : source.measured(frame));
   if (source.none_) {
     source.all_ = std::move(measured);
     source.ready_ = true;

@@ -2,6 +2,8 @@
 #include "sequence/setup/shared_inputs.h"
 
 #include <array>
+#include <set>
+#include <string>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -133,6 +135,24 @@ TEST(Configuration, FollowsTheLimitsOfTheWrapper) {
   EXPECT_EQ(at(250), at(250, 30'000));
   EXPECT_NE(at(170), at(190));  // gear
   EXPECT_NE(at(75), at(80));    // the nose, which is turned by a table between 70 and 90
+}
+
+// The wheels of most wrappers turn with the airspeed, and those of no model do.
+TEST(Configuration, IsThatOfWhatTheModelShows) {
+  std::set<std::string> types;
+  for (const fleet::Entry& entry : fleet::list_aircraft()) {
+    if (!types.insert(entry.name.substr(0, entry.name.find('/'))).second) continue;
+    model::LoadOptions slower;
+    slower.airspeed_kt = 250;
+    slower.altitude_agl_ft = 3000;
+    model::LoadOptions faster = slower;
+    faster.airspeed_kt = 251.5;
+    if (fleet::configuration_of(entry.name, slower) == fleet::configuration_of(entry.name, faster))
+      continue;
+    EXPECT_FALSE(fleet::load_aircraft(entry.name, slower).mesh ==
+                 fleet::load_aircraft(entry.name, faster).mesh)
+        << entry.name;
+  }
 }
 
 TEST(Configuration, OfABareModelFileIsEmpty) {
