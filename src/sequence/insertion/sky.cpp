@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 namespace airtruth::insertion {
 namespace {
@@ -91,24 +93,45 @@ double overcast_over_zenith(double elevation_deg) {
   return overcast_at(std::sin(radians(elevation_deg)));
 }
 
-Skies skies(const Vector3& to_sun_in_world) {
+namespace {
+
+double overcast_sky(const Vector3& d) {
+  return d.z() > 0 ? 0.0 : overcast_at(sine_of_elevation(d));
+}
+
+// What does not depend on the sun.
+struct UnderAnySun {
+  double overcast_level = level_of(overcast_sky);
+  shade::Environment overcast =
+      grey([&](const Vector3& d) { return overcast_sky(d) / overcast_level; });
+  shade::Environment ground = grey([](const Vector3& d) { return d.z() > 0 ? 1.0 : 0.0; });
+};
+
+Skies skies_of(const Vector3& to_sun_in_world) {
+  static const UnderAnySun under_any_sun;
   const double zenith = clear_at_zenith(degrees(std::asin(sine_of_elevation(to_sun_in_world))));
   const auto clear = [&](const Vector3& d) {
     if (d.z() > 0) return 0.0;
     return perez(sine_of_elevation(d), cosine_between(d, to_sun_in_world)) / zenith;
   };
-  const auto overcast = [](const Vector3& d) {
-    return d.z() > 0 ? 0.0 : overcast_at(sine_of_elevation(d));
-  };
   Skies result;
   result.to_sun = to_sun_in_world;
   result.clear_zenith = zenith;
   result.clear_level = level_of(clear);
-  result.overcast_level = level_of(overcast);
+  result.overcast_level = under_any_sun.overcast_level;
   result.clear = grey([&](const Vector3& d) { return clear(d) / result.clear_level; });
-  result.overcast = grey([&](const Vector3& d) { return overcast(d) / result.overcast_level; });
-  result.ground = grey([](const Vector3& d) { return d.z() > 0 ? 1.0 : 0.0; });
+  result.overcast = under_any_sun.overcast;
+  result.ground = under_any_sun.ground;
   return result;
+}
+
+}  // namespace
+
+Skies skies(const Vector3& to_sun_in_world) {
+  // Scenes one after the other often have one sun.
+  thread_local std::optional<Skies> last;
+  if (!last || last->to_sun != to_sun_in_world) last = skies_of(to_sun_in_world);
+  return *last;
 }
 
 double Skies::clear_seen(const Vector3& direction_in_world) const {
