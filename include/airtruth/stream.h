@@ -41,6 +41,9 @@ struct StreamSample {
   // video, from 0.
   std::string background;
   std::int64_t first_frame = 0;
+  // How many encounters of real traffic the sample stands for, up to a factor that a stream shares;
+  // empty where it is not drawn from a model of traffic.
+  std::optional<double> weight;
   // The part of the background's frame that the pictures show, in its pixels. Its corner is even.
   PixelBox crop{};
   // As many as the catalogue's [stream] frames. The pictures show `crop`; the truth is that of the
@@ -62,14 +65,14 @@ AIRTRUTH_API std::optional<Box> in_crop(const Box& box_px, const PixelBox& crop)
 //   const Stream stream("training.toml", {.seed = 7});
 //   for (std::int64_t i = 0; i < 64 * 1000; ++i) learn_from(stream.sample(i));
 //
-// A sample depends on the catalogue, the seed and its index alone, whatever was asked for before and
-// by which thread or process. `airtruth render` of scene(index) makes the same pictures and truth,
-// bit by bit. Indices in a row share decoded frames ([stream] reuse), and are therefore made fastest;
-// they are already mixed, from eight places of the backgrounds at a time.
+// A sample depends on the catalogue, the seed and its index alone, whatever was asked for before
+// and by which thread or process. `airtruth render` of scene(index) makes the same pictures and
+// truth, bit by bit. Indices in a row share decoded frames ([stream] reuse), and are therefore made
+// fastest; they are already mixed, from eight places of the backgrounds at a time.
 //
-// Threads may use a Stream at the same time. The constructor reads the catalogue alone; a background
-// and an aircraft are opened where a sample first needs them. Throws Error for faults in the
-// catalogue and in the files that it names.
+// Threads may use a Stream at the same time. The constructor reads the catalogue alone; a
+// background and an aircraft are opened where a sample first needs them. Throws Error for faults in
+// the catalogue and in the files that it names.
 class AIRTRUTH_API Stream {
  public:
   explicit Stream(const std::filesystem::path& catalogue_file, const StreamOptions& options = {});
@@ -82,7 +85,7 @@ class AIRTRUTH_API Stream {
   Stream(Stream&&) noexcept;
   Stream& operator=(Stream&&) noexcept;
 
-  // index: from 0 to 2^53. Throws Interrupted after a stop.
+  // index: from 0 to 2^40. Throws Interrupted after a stop.
   StreamSample sample(std::int64_t index) const;
 
   // The sample's scene as the text of a scene file, with absolute paths.

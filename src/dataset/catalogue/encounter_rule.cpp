@@ -365,28 +365,39 @@ const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, 
       static_cast<double>(rule.types.size()))];
 }
 
+// Of a long clip not every frame is looked at.
+std::int64_t look_step(const Views& views) { return 1 + views.frames / kMostLooks; }
+
 // How long the reference point of an intruder is in the view, in all.
 double seen_s(const scene::Intruder& intruder, const scene::Camera& camera, const Views& views) {
+  const auto looks = std::ssize(frames_in_view(intruder, camera, views));
+  return static_cast<double>(looks * look_step(views)) / views.frame_rate_hz;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> frames_in_view(const scene::Intruder& intruder,
+                                         const scene::Camera& camera,
+                                         const Views& views) {
   const trajectory::Path own = setup::camera_path(camera);
   const trajectory::Path path = setup::path_of(intruder, own);
   const lens::ImageSize size = views.lens.size();
-  std::int64_t frames = 0;
-  // Of a long clip not every frame is looked at.
-  const std::int64_t step = 1 + views.frames / kMostLooks;
-  for (std::int64_t i = 0; i < views.frames; i += step) {
+  std::vector<std::int64_t> frames;
+  for (std::int64_t i = 0; i < views.frames; i += look_step(views)) {
     const double time_s = static_cast<double>(i) / views.frame_rate_hz;
     const auto from = own.at(time_s);
     const auto to = path.at(time_s);
     if (!from || !to) continue;
     const projection::Sight sight = setup::sight_of(views.lens, {}, own, *from, time_s, {});
     const auto pixel = views.lens.pixel_from_cam(sight.cam_from_world * to->position_in_world);
-    frames += pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < size.width &&
-                      pixel->y() < size.height
-                  ? step
-                  : 0;
+    if (pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < size.width &&
+        pixel->y() < size.height)
+      frames.push_back(i);
   }
-  return static_cast<double>(frames) / views.frame_rate_hz;
+  return frames;
 }
+
+namespace {
 
 struct DrawnIntruder {
   scene::Intruder intruder;

@@ -64,6 +64,12 @@ struct Views {
   double frame_rate_hz = 0;
 };
 
+// The frames in which the reference point of an intruder is in the view; of a clip of more than a
+// few thousand every few of them are looked at.
+std::vector<std::int64_t> frames_in_view(const scene::Intruder& intruder,
+                                         const scene::Camera& camera,
+                                         const Views& views);
+
 // How often the intruders of a sequence were drawn.
 struct Draws {
   std::int64_t drawn = 0;

@@ -190,6 +190,24 @@ Item stream_item(const Catalogue& catalogue,
   return item;
 }
 
+Item stream_item(const Catalogue& catalogue,
+                 const EncounterRule& rule,
+                 const StreamPlace& place,
+                 std::uint64_t seed) {
+  Item item;
+  item.index = place.index;
+  item.name = filled(rule.name, "{index}", fmt::format("{:06}", place.index));
+  item.frame_count = rule.frame_count;
+  item.background = place.background;
+  item.scene = scene_over(catalogue, item.background);
+  item.scene.name = item.name;
+  item.encounter_rule = &rule;
+  item.index_in_rule = place.index % rule.count;
+  item.first_frame = place.first_frame;
+  item.distractors = draw_distractors(catalogue.distractors, seed, place.index);
+  return item;
+}
+
 Expansion::Expansion(const Catalogue& catalogue) : catalogue_(catalogue) {
   for (const Rule& rule : catalogue.rules) {
     first_.push_back(size_);

@@ -76,6 +76,13 @@ Item stream_item(const Catalogue& catalogue,
                  const StreamPlace& place,
                  std::uint64_t seed);
 
+// The intruders are drawn by place(), by the rule's own seed, which should be another after each
+// count of the rule. `seed` decides the distractors.
+Item stream_item(const Catalogue& catalogue,
+                 const EncounterRule& rule,
+                 const StreamPlace& place,
+                 std::uint64_t seed);
+
 // Makes a scene over the background with this index in the catalogue. It lacks [background],
 // intruders and name.
 scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);

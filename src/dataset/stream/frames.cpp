@@ -88,9 +88,8 @@ std::shared_ptr<const Shot> Frames::read(Run& run, const Wanted& wanted) {
     if (!frame) {
       const std::int64_t end = run.next_frame;
       run.reader.reset();
-      throw Error(fmt::format("ends before frame {}, {} frames earlier than it states",
-                              wanted.first_frame + wanted.count - 1,
-                              wanted.first_frame + wanted.count - end));
+      throw Error(fmt::format("ends after {} frames, and states more", end),
+                  {wanted.video.string()});
     }
     run.kept.push_back(std::move(*frame));
     ++run.next_frame;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -34,6 +35,7 @@ class Frames {
   explicit Frames(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   struct Wanted {
+    std::filesystem::path video;  // for messages
     std::int64_t run = 0;
     std::int64_t first_frame = 0;  // in the video
     std::int64_t count = 1;

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "dataset/catalogue/catalogue.h"
@@ -14,16 +16,16 @@
 #include "sequence/pipeline/options.h"
 
 // Labelled pictures of a catalogue without end, made when they are asked for.
-//
-// The rules of [[random]] are drawn as for data sets, but for where their sequences lie: a sample
-// is a sequence of [stream] `frames` frames at the place of its index (places.h). A sample depends
-// on the catalogue, the seed and its index alone. It is made by the stages of a run
+// A sample is a sequence of [stream] `frames` frames (plan.h) at the place of its index (places.h).
+// It depends on the catalogue, the seed and its index alone. It is made by the stages of a run
 // (sequence/pipeline/frame_maker.h), so render() of scene() gives the same pictures and truth.
 namespace airtruth::stream {
 
 struct Sample {
   std::string background;        // its name
   std::int64_t first_frame = 0;  // in its video
+  // How many encounters of real traffic it stands for, as scene::Scene::weight.
+  std::optional<double> weight;
   // The part of the frames that the pictures show. Its corner is even.
   PixelBox crop{};
   struct Frame {

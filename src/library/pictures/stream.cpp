@@ -49,7 +49,7 @@ Stream& Stream::operator=(Stream&&) noexcept = default;
 
 StreamSample Stream::sample(std::int64_t index) const {
   const stream::Sample made = state_->stream.sample(index);
-  StreamSample sample{index, made.background, made.first_frame, made.crop, {}};
+  StreamSample sample{index, made.background, made.first_frame, made.weight, made.crop, {}};
   for (const stream::Sample::Frame& frame : made.frames)
     sample.frames.push_back({public_picture(frame.picture), public_truth(frame.truth)});
   return sample;

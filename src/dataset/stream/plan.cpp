@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/stream/plan.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "dataset/catalogue/meeting.h"
+#include "dataset/stream/fleet.h"
+#include "dataset/stream/places.h"
+#include "foundation/base/error.h"
+#include "sequence/setup/from_scene.h"
+
+namespace airtruth::stream {
+namespace {
+
+// A container may state a frame or two more than it holds.
+constexpr std::int64_t kFramesInDoubt = 2;
+
+// Where a sequence of the rule is longer than a sample.
+bool is_passage(const catalogue::Drawn& rule) { return rule.approach.has_value(); }
+bool is_passage(const catalogue::EncounterRule&) { return true; }
+
+// The scene of what happens from `time_s` on. Its paths are those of [[random]] and
+// [[encounter_model]].
+void begin_later(scene::Scene& scene, double time_s) {
+  scene.camera.position_ned_m += time_s * scene.camera.velocity_ned_mps;
+  for (scene::Intruder& intruder : scene.intruders) {
+    for (double& at_s : intruder.times_s) at_s -= time_s;
+    if (intruder.encounter) intruder.encounter->cpa_time_s -= time_s;
+  }
+}
+
+}  // namespace
+
+Planner::Planner(const catalogue::Catalogue& catalogue,
+                 std::uint64_t seed,
+                 std::function<const catalogue::BackgroundFiles&(std::size_t)> files,
+                 setup::SharedInputs& shared)
+    : catalogue_(catalogue), seed_(seed), files_(std::move(files)), shared_(shared) {
+  for (const catalogue::Rule& given : catalogue.rules) {
+    Rule rule{checked(given), {}, 1};
+    std::visit(
+        [&](auto& drawing) {
+          check_backgrounds(drawing.backgrounds);
+          rule.types = std::exchange(drawing.types, {});
+          rule.seed = Seed(seed).stream(drawing.name)();
+        },
+        rule.drawing);
+    rules_.push_back(std::move(rule));
+  }
+}
+
+Planner::Drawing Planner::checked(const catalogue::Rule& rule) const {
+  if (const auto* encounters = std::get_if<catalogue::EncounterRule>(&rule)) return *encounters;
+  if (std::holds_alternative<catalogue::Product>(rule))
+    throw Error(
+        "a stream draws from [[random]] and [[encounter_model]]; expected a catalogue without "
+        "[[sequence]] and [[product]]",
+        {catalogue_.file.string()});
+  auto drawn = std::get<catalogue::Drawn>(rule);
+  if (!drawn.seen.empty())
+    throw Error(
+        "[[random.seen]] is about frames of a whole sequence, which a stream does not have; "
+        "expected size_px, range_m or [random.encounter]",
+        drawn.where);
+  if (!is_passage(drawn)) drawn.frame_count = catalogue_.stream.frames;
+  if (catalogue_.stream.intruders) {
+    drawn.intruders = *catalogue_.stream.intruders;
+    drawn.numbers_intruders = true;
+  }
+  return drawn;
+}
+
+void Planner::check_backgrounds(const std::vector<std::size_t>& places) const {
+  for (const std::size_t place : places) {
+    const catalogue::Background& background = catalogue_.backgrounds[place];
+    if (background.camera.path_file || background.camera.log)
+      throw Error("the camera of background '" + background.name +
+                      "' has a path_file or log, which belongs to its first frame; expected a "
+                      "stated camera, as a stream's samples are of any frames",
+                  background.where);
+  }
+}
+
+// A rule as often as it has sequences.
+const Planner::Rule& Planner::drawn_rule(Random& random) const {
+  const auto count_of = [](const Rule& rule) {
+    return std::visit([](const auto& drawing) { return drawing.count; }, rule.drawing);
+  };
+  std::int64_t all = 0;
+  for (const Rule& rule : rules_) all += count_of(rule);
+  auto left = static_cast<std::int64_t>(random.uniform() * static_cast<double>(all));
+  for (const Rule& rule : rules_) {
+    if (left < count_of(rule)) return rule;
+    left -= count_of(rule);
+  }
+  return rules_.back();
+}
+
+std::size_t Planner::drawn_background(Random& random, const std::vector<std::size_t>& among) const {
+  double all = 0;
+  for (const std::size_t place : among) all += catalogue_.backgrounds[place].weight;
+  double left = random.uniform() * all;
+  for (const std::size_t place : among) {
+    left -= catalogue_.backgrounds[place].weight;
+    if (left < 0) return place;
+  }
+  return among.back();
+}
+
+Planner::Run Planner::run_of(std::int64_t number) const {
+  Random random = Seed(seed_).stream("run", static_cast<std::uint64_t>(number));
+  Run run{&drawn_rule(random), 0, 0, 1};
+  run.background =
+      drawn_background(random,
+                       std::visit(
+                           [](const auto& drawing) -> const auto& { return drawing.backgrounds; },
+                           run.rule->drawing));
+  const catalogue::Background& background = catalogue_.backgrounds[run.background];
+  const catalogue::BackgroundFiles& files = files_(run.background);
+  if (files.frames <= 0)
+    throw Error(
+        files.video.string() + " does not state how many frames it has; expected a file that does",
+        background.where);
+  const std::int64_t places = std::max<std::int64_t>(
+      1, files.frames - kFramesInDoubt - background.first_frame - catalogue_.stream.frames + 1);
+  run.frames = std::min(kRunFrames, places);
+  run.first_frame =
+      background.first_frame +
+      static_cast<std::int64_t>(random.uniform() * static_cast<double>(places - run.frames + 1));
+  return run;
+}
+
+Planned Planner::at(std::int64_t index) const {
+  const Place place = place_of(index, catalogue_.stream.reuse);
+  const Run run = run_of(place.run);
+  const std::int64_t first_frame = run.first_frame + place.step % run.frames;
+  const std::int64_t samples_of_run = kRunFrames * catalogue_.stream.reuse;
+  Planned planned{
+      scene_of(*run.rule,
+               {run.background, first_frame, place.run * samples_of_run + place.sample_of_run},
+               index),
+      run.background,
+      place.run};
+  // The samples of one frame share their motion, and with it their seed.
+  const std::uint64_t seed_of_run =
+      Seed(seed_).stream("seeds of run", static_cast<std::uint64_t>(place.run))();
+  planned.scene.seed =
+      Seed(seed_of_run).stream("frame", static_cast<std::uint64_t>(first_frame))() >> 1;
+  return planned;
+}
+
+scene::Scene Planner::scene_of(const Rule& rule,
+                               const catalogue::StreamPlace& place,
+                               std::int64_t index) const {
+  return std::visit(
+      [&](auto drawing) {
+        // An encounter's track needs a type that flies it.
+        constexpr bool kEveryType = std::is_same_v<decltype(drawing), catalogue::EncounterRule>;
+        if constexpr (kEveryType)
+          drawing.seed = Seed(rule.seed).stream(
+              "count", static_cast<std::uint64_t>(place.index / drawing.count))();
+        drawing.types = fleet_of(rule.types, rule.seed, index, kEveryType);
+        catalogue::Item item = catalogue::stream_item(catalogue_, drawing, place, rule.seed);
+        catalogue::place(item, catalogue_, files_(place.background), &shared_);
+        if (is_passage(drawing))
+          keep_part_in_view(
+              item, Seed(rule.seed).stream("part", static_cast<std::uint64_t>(place.index)));
+        return std::move(item.scene);
+      },
+      rule.drawing);
+}
+
+// Keeps as many frames of the item's sequence as a sample has: some that show an aircraft, where
+// there are any.
+void Planner::keep_part_in_view(catalogue::Item& item, Random random) const {
+  const catalogue::BackgroundFiles& files = files_(item.background);
+  const lens::ImageSize size{files.width, files.height};
+  const catalogue::Views views{
+      setup::lens_of(item.scene.lens, size), item.frame_count, files.frame_rate_hz};
+  const std::int64_t last = std::max<std::int64_t>(0, item.frame_count - catalogue_.stream.frames);
+  std::vector<std::int64_t> frames;
+  for (const scene::Intruder& intruder : item.scene.intruders)
+    if (scene::is_aircraft(intruder))
+      for (const std::int64_t frame : catalogue::frames_in_view(intruder, item.scene.camera, views))
+        if (frame <= last) frames.push_back(frame);
+  const double share = random.uniform();
+  const std::int64_t first =
+      frames.empty() ? static_cast<std::int64_t>(share * static_cast<double>(last + 1))
+                     : frames[static_cast<std::size_t>(share * static_cast<double>(frames.size()))];
+  begin_later(item.scene, static_cast<double>(first) / files.frame_rate_hz);
+  item.scene.background.frame_count = catalogue_.stream.frames;
+  catalogue::lay_distractors(item.scene,
+                             item.distractors,
+                             {catalogue_.stream.frames, files.frame_rate_hz},
+                             size,
+                             &shared_);
+}
+
+}  // namespace airtruth::stream

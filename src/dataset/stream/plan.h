@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <variant>
+#include <vector>
+
+#include "dataset/catalogue/catalogue.h"
+#include "dataset/catalogue/expand.h"
+#include "foundation/base/seed.h"
+#include "scene/scene/scene.h"
+
+// What each sample of a stream is of: its scene, before a frame is read.
+namespace airtruth::stream {
+
+// The scene of a sample, and the run of frames that it belongs to (places.h).
+struct Planned {
+  scene::Scene scene;
+  std::size_t background = 0;
+  std::int64_t run = 0;
+};
+
+// A sample of [[random]] is a sequence of the rule that is as long as the sample; its meeting
+// moment lies within. Of an encounter, by [random.encounter] or [[encounter_model]], it is a part
+// of the sequence: one that shows the intruder, where there is one.
+class Planner {
+ public:
+  // `files` gives the files of a background by its place in the catalogue, and `shared` the
+  // aircraft. Throws Error for what a stream cannot draw: rules that list their sequences, paths by
+  // what is seen, and cameras whose path belongs to the first frame.
+  Planner(const catalogue::Catalogue& catalogue,
+          std::uint64_t seed,
+          std::function<const catalogue::BackgroundFiles&(std::size_t)> files,
+          setup::SharedInputs& shared);
+
+  // Throws Error where the background or an aircraft cannot be read.
+  Planned at(std::int64_t index) const;
+
+ private:
+  using Drawing = std::variant<catalogue::Drawn, catalogue::EncounterRule>;
+  // A rule without its types, of which it flies a few at a time (fleet.h).
+  struct Rule {
+    Drawing drawing;
+    std::vector<catalogue::AircraftType> types;
+    std::uint64_t seed = 1;
+  };
+  // The frames that a run of samples is over, and the rule that they are drawn by.
+  struct Run {
+    const Rule* rule = nullptr;
+    std::size_t background = 0;
+    std::int64_t first_frame = 0;  // in the video
+    std::int64_t frames = 1;       // at which a sample may begin
+  };
+
+  Drawing checked(const catalogue::Rule& rule) const;
+  void check_backgrounds(const std::vector<std::size_t>& places) const;
+  const Rule& drawn_rule(Random& random) const;
+  std::size_t drawn_background(Random& random, const std::vector<std::size_t>& among) const;
+  Run run_of(std::int64_t number) const;
+  scene::Scene scene_of(const Rule& rule,
+                        const catalogue::StreamPlace& place,
+                        std::int64_t index) const;
+  void keep_part_in_view(catalogue::Item& item, Random random) const;
+
+  const catalogue::Catalogue& catalogue_;
+  std::uint64_t seed_;
+  std::function<const catalogue::BackgroundFiles&(std::size_t)> files_;
+  setup::SharedInputs& shared_;
+  std::vector<Rule> rules_;
+};
+
+}  // namespace airtruth::stream
