@@ -58,6 +58,25 @@ def check_render(examples, scene, sequence):
     fails_with([f"{examples}/render_in_memory", "/no_such.toml"], "/no_such.toml")
 
 
+def check_stream(examples, folder):
+    catalogue = f"{folder}/stream.toml"
+    with open(catalogue, "w") as file:
+        file.write('[[background]]\nname = "sky"\nvideo = "flight.mkv"\nlens = { vertical_fov_deg = 75 }\n'
+                   '[[random]]\naircraft = ["738/738-Ryanair", "c172/news"]\nsize_px = [10, 40]\n'
+                   '[stream]\nsize_px = [64, 48]\n')
+    boxes = []
+    for line in run(f"{examples}/train_from_stream", catalogue, 6).splitlines():
+        if line.startswith("  "):
+            kind, x, y, width, height = line.split()
+            boxes.append((kind, *map(float, (x, y, width, height))))
+        else:
+            assert re.fullmatch(r"\d sky \d+ 64x48", line), line
+    assert len(boxes) == 6, boxes
+    for kind, x, y, width, height in boxes:
+        assert kind == "aircraft" and x >= 0 and y >= 0 and x + width <= 64 and y + height <= 48, boxes
+    fails_with([f"{examples}/train_from_stream", "/no_such.toml", "1"], "/no_such.toml")
+
+
 def luma_of(video):
     """The luma planes, decoded by ffmpeg; nothing where there is none."""
     if shutil.which("ffmpeg") is None:
@@ -140,6 +159,7 @@ def main(program, examples):
                 file.write(SCENE.format(name=name, aircraft=aircraft))
             run(program, "render", f"{folder}/scenes/{name}.toml", "--out", data_set, "--no-cache")
         check_render(examples, f"{folder}/scenes/738.toml", f"{data_set}/738")
+        check_stream(examples, folder)
         check_read(examples, data_set, names)
         check_scores(program, examples, data_set, names, folder)
     print("the examples print what the program's own files hold")
