@@ -19,7 +19,9 @@ function(airtruth_library name output)
     OUTPUT_NAME ${output} EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${soversion})
   target_link_libraries(airtruth_${name}_shared PRIVATE ${arg_MODULES})
   set(exports ${PROJECT_SOURCE_DIR}/cmake/exports.map)
-  target_link_options(airtruth_${name}_shared PRIVATE -Wl,--version-script=${exports})
+  target_link_options(airtruth_${name}_shared PRIVATE -Wl,--version-script=${exports}
+    # What comes out of an archive is not for export, though gcc gives functions of several versions (vectors.h) to all.
+    -Wl,--exclude-libs,ALL)
   set_target_properties(airtruth_${name}_shared PROPERTIES LINK_DEPENDS ${exports})
   target_compile_features(airtruth_${name}_shared INTERFACE cxx_std_20)
   target_include_directories(airtruth_${name}_shared INTERFACE
@@ -39,7 +41,7 @@ endfunction()
 # Metrics and formats for authors of trackers: without OpenSceneGraph, Embree, OpenCV and codecs. It can be installed by
 # itself: cmake --install BUILD --component evaluation.
 set(evaluation_modules base matching statistics measures exchange records)
-set(evaluation_headers box dataset error export labels lens metrics statistics truth vot)
+set(evaluation_headers average_precision box dataset error export labels lens metrics statistics truth vot)
 airtruth_library(evaluation airtruth-evaluation MODULES ${evaluation_modules} HEADERS ${evaluation_headers})
 # All of it.
 airtruth_library(airtruth airtruth
@@ -74,7 +76,7 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "flightgear-data-ai, libgl1-mesa-dri, libegl-mesa0")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "flightgear-data-ai, libgl1-mesa-dri, libegl-mesa0${AIRTRUTH_PYTHON_DEPENDS}")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/triggers)

@@ -56,6 +56,13 @@ SCENE
 "$airtruth" render "$place/scene.toml" --out "$place" --no-cache >"$place/render.log" 2>&1 || { cat "$place/render.log"; fail "render"; }
 [ -s "$place/one/one.mp4" ] || fail "render: no video"
 
+if [ -z "$installed" ] && ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+  echo "installed_test: the Python package was not tried, for want of python3-numpy"
+else
+  PYTHONPATH=$prefix/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c 'import sys, airtruth
+assert airtruth.DataSet(sys.argv[1])["one"].frame(5).rgb.shape == (120, 160, 3)' "$place/one" || fail "import airtruth"
+fi
+
 for scene in "$prefix"/share/airtruth/examples/*.toml "$prefix"/share/airtruth/catalogues/*.toml; do
   [ -s "$scene" ] || fail "there is no $scene"
 done

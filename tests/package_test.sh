@@ -229,6 +229,26 @@ check_late_libraries() { # check_late_libraries PREFIX: the program starts witho
     >"$place/late.log" 2>&1 || fail "the installed program measures no motion or draws no backdrop: $(cat "$place/late.log")"
 }
 
+check_python() { # check_python PREFIX, after check_late_libraries: the package is imported and reads a set, and finds its libraries by itself
+  local packages=$1/lib/python3/dist-packages
+  local -r set=$(mktemp -d -p "$place")
+  if [ ! -d "$packages/airtruth" ]; then
+    grep -q '^AIRTRUTH_PYTHON:BOOL=ON' "$build/CMakeCache.txt" && /usr/bin/python3 -c 'import sysconfig, os; exit(not os.path.exists(
+      sysconfig.get_path("include") + "/Python.h"))' && [ -d /usr/include/pybind11 ] && fail "the Python package is not installed"
+    echo "package_test: no Python package, for want of pybind11-dev or python3-dev"
+    return 0
+  fi
+  sed '/composite/,$d' "$place/late.toml" >"$place/python.toml"
+  "$1/bin/airtruth" render "$place/python.toml" --out "$set" --no-cache >"$place/python.log" 2>&1 || fail "the set for Python"
+  env -u LD_LIBRARY_PATH -u AIRTRUTH_MODEL_READER PYTHONPATH="$packages" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c 'import sys, airtruth
+folder, scene, packages = sys.argv[1:]
+assert airtruth.__file__.startswith(packages), airtruth.__file__
+read = airtruth.DataSet(folder)["late"].frame(3)
+made = [frame for frame in airtruth.render(scene, cache=False) if frame.index == 3]
+assert (read.intruders[0].covered_box == made[0].intruders[0].covered_box).all() and read.rgb.shape == (120, 160, 3)
+' "$set" "$place/python.toml" "$packages" || fail "the installed Python package does not read the set"
+}
+
 version=$(sed -n 's/^project(airtruth VERSION \([0-9.]*\).*/\1/p' "$source/CMakeLists.txt")
 cmake --install "$build" --prefix "$place/usr" >"$place/install.log"
 check_headers "$place/usr"
@@ -240,6 +260,7 @@ check_examples "$place/usr"
 check_model_reader "$place/usr"
 check_network_runner "$place/usr"
 check_late_libraries "$place/usr"
+check_python "$place/usr"
 check_help_and_pages "$place/usr"
 check_completion "$place/usr"
 check_files "$place/usr"
@@ -258,6 +279,7 @@ check_completion "$place/root/usr"
 "$place/root/usr/bin/airtruth" --help >/dev/null || fail "the packaged program does not run"
 check_model_reader "$place/root/usr"
 check_network_runner "$place/root/usr"
+check_python "$place/root/usr"
 (cd "$place/usr" && find . \( -type f -o -type l \) | sort) >"$place/installed"
 (cd "$place/root/usr" && find . \( -type f -o -type l \) | sort) >"$place/packaged"
 diff "$place/installed" "$place/packaged" || fail "the package holds other files than an installation"

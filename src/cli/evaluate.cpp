@@ -61,7 +61,7 @@ std::string row(const std::array<std::string, 11>& cells) {
 }
 
 std::string row_of(const scores::DetectorScore& detector) {
-  const measures::AveragePrecision& ap = detector.average_precision;
+  const evaluation::AveragePrecision& ap = detector.average_precision;
   const bool has_point = detector.point.has_value();
   const measures::FrocPoint point = detector.point.value_or(measures::FrocPoint{});
   const bool has_trials = has_point && point.detection.trials > 0;

@@ -29,18 +29,18 @@ void add_point(Series& series, double x, const statistics::Proportion& share) {
 }
 
 Plot precision_plot(const scores::Assessment& assessment,
-                    std::optional<measures::PrecisionCurve> measures::AveragePrecision::*curve,
-                    std::optional<measures::PrecisionBand> measures::AveragePrecision::*band) {
+                    std::optional<evaluation::PrecisionCurve> evaluation::AveragePrecision::*curve,
+                    std::optional<evaluation::PrecisionBand> evaluation::AveragePrecision::*band) {
   Plot plot{.x = {.label = "recall", .min = 0, .max = 1},
             .y = {.label = "precision", .min = 0, .max = 1}};
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    const measures::AveragePrecision& ap = assessment.detectors[k].average_precision;
+    const evaluation::AveragePrecision& ap = assessment.detectors[k].average_precision;
     if (!(ap.*curve)) continue;
     Series series = series_of(assessment, k, plot::Mark::kLine);
-    for (std::size_t i = 0; i < measures::kRecallSteps; ++i) {
+    for (std::size_t i = 0; i < evaluation::kRecallSteps; ++i) {
       const double precision = (ap.*curve)->precision[i];
       add_point(series,
-                static_cast<double>(i) / (measures::kRecallSteps - 1),
+                static_cast<double>(i) / (evaluation::kRecallSteps - 1),
                 precision,
                 ap.*band ? (ap.*band)->low[i] : precision,
                 ap.*band ? (ap.*band)->high[i] : precision);
@@ -211,12 +211,12 @@ std::vector<report::NamedPlot> detection_plots(const scores::Assessment& assessm
   std::vector<report::NamedPlot> plots = {
       {"precision",
        precision_plot(assessment,
-                      &measures::AveragePrecision::curve_centre,
-                      &measures::AveragePrecision::band_centre)},
+                      &evaluation::AveragePrecision::curve_centre,
+                      &evaluation::AveragePrecision::band_centre)},
       {"precision_50",
        precision_plot(assessment,
-                      &measures::AveragePrecision::curve_50,
-                      &measures::AveragePrecision::band_50)},
+                      &evaluation::AveragePrecision::curve_50,
+                      &evaluation::AveragePrecision::band_50)},
       {"froc",
        froc_plot(assessment,
                  "false alarms an image",
@@ -239,7 +239,7 @@ std::vector<report::NamedPlot> detection_plots(const scores::Assessment& assessm
 plot::Plot ranking_plot(const scores::Assessment& assessment) {
   std::vector<report::Ranked> detectors;
   for (const scores::DetectorScore& detector : assessment.detectors) {
-    const measures::AveragePrecision& ap = detector.average_precision;
+    const evaluation::AveragePrecision& ap = detector.average_precision;
     if (ap.ap_centre) detectors.push_back({detector.name, *ap.ap_centre, ap.ap_centre_interval});
   }
   return report::ranking_plot("average precision", detectors);

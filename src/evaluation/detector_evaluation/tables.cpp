@@ -15,8 +15,8 @@ namespace {
 using report::Json;
 using report::json_of;
 
-Json json_of(const std::optional<measures::PrecisionCurve>& curve,
-             const std::optional<measures::PrecisionBand>& band) {
+Json json_of(const std::optional<evaluation::PrecisionCurve>& curve,
+             const std::optional<evaluation::PrecisionBand>& band) {
   if (!curve) return {};
   Json json = {{"precision", curve->precision},
                {"score", curve->score},
@@ -68,7 +68,7 @@ Json json_of(const std::optional<scores::WeightedMean>& mean) {
   return {{"mean", mean->mean}, {"interval_95", json_of(mean->interval)}, {"count", mean->count}};
 }
 
-Json json_of(const measures::AveragePrecision& ap) {
+Json json_of(const evaluation::AveragePrecision& ap) {
   return {{"ap", or_null(ap.ap)},
           {"ap_50", or_null(ap.ap_50)},
           {"ap_50_interval_95", json_of(ap.ap_50_interval)},
@@ -455,7 +455,7 @@ Json recalls_of(const Json& curve) {
   Json rows = Json::array();
   for (std::size_t i = 0; !curve.is_null() && i < curve["score"].size(); ++i) {
     Json& row = rows.emplace_back();
-    row["recall"] = static_cast<double>(i) / (measures::kRecallSteps - 1);
+    row["recall"] = static_cast<double>(i) / (evaluation::kRecallSteps - 1);
     for (const char* key : {"score", "precision", "low_95", "high_95"})
       if (curve.contains(key)) row[key] = curve[key][i];
   }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluation/measures/average_precision.h"
-
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
+#include <airtruth/average_precision.h>
+#include <airtruth/metrics.h>
+
 #include "evaluation/matching/boxes.h"
 #include "evaluation/statistics/bootstrap.h"
 
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 namespace {
 
 // A detection after the matching of its image.
@@ -233,7 +234,7 @@ std::vector<PrecisionCurve> drawn_curves(const Ranking& ranking) {
 struct Curves {
   std::optional<PrecisionCurve> curve;
   std::optional<PrecisionBand> band;
-  std::optional<evaluation::Interval> interval;
+  std::optional<Interval> interval;
 };
 
 Curves curves_of(std::span<const ImageList> sequences, Likeness likeness, double threshold) {
@@ -253,7 +254,7 @@ Curves curves_of(std::span<const ImageList> sequences, Likeness likeness, double
     std::transform(drawn.begin(), drawn.end(), values.begin(), [i](const PrecisionCurve& curve) {
       return curve.precision[i];
     });
-    const evaluation::Interval limits = statistics::percentile_interval(values);
+    const Interval limits = statistics::percentile_interval(values);
     result.band->low[i] = limits.low;
     result.band->high[i] = limits.high;
   }
@@ -299,4 +300,4 @@ AveragePrecision average_precision(std::span<const std::vector<ScoredImage>> seq
   return result;
 }
 
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

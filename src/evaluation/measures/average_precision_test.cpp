@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values worked by hand; tests/detection_measures_test.py compares random sets with COCO's rules
 // written down once more, and with the public toolkit where it is at hand.
-#include "evaluation/measures/average_precision.h"
-
+#include <airtruth/average_precision.h>
 #include <gtest/gtest.h>
 
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 namespace {
 
 const Box kFirst{10, 10, 20, 10};
@@ -112,4 +111,4 @@ TEST(AveragePrecision, TheIntervalIsThatOfTheSequences) {
 }
 
 }  // namespace
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

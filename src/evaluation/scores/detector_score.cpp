@@ -72,9 +72,9 @@ bool is_in_the_air(const TruthObject& object) {
 // The functions below give a sequence's truth and detections in the form that each measure takes.
 // Aircraft that count are truths; those that do not, and ignored regions, are regions. Detections
 // that claim something else than an aircraft are left out, here and below.
-std::vector<measures::ScoredImage> images_of(const TruthSequence& truth,
-                                             const ScoredDetections& scored) {
-  std::vector<measures::ScoredImage> images(scored.matches.size());
+std::vector<evaluation::ScoredImage> images_of(const TruthSequence& truth,
+                                               const ScoredDetections& scored) {
+  std::vector<evaluation::ScoredImage> images(scored.matches.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
     for (const TruthObject& object : truth.frames[i].objects)
       if (object.is_aircraft())
@@ -221,7 +221,7 @@ class Scoring {
   const TruthSequence& truth(const ScoredDetections& scored) const { return truths_[scored.truth]; }
 
   void score_precision() {
-    std::vector<std::vector<measures::ScoredImage>> images;
+    std::vector<std::vector<evaluation::ScoredImage>> images;
     for (const ScoredDetections& scored : result_.sequences)
       images.push_back(images_of(truth(scored), scored));
     result_.average_precision = average_precision(images, options_.centre_px);

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/average_precision.h>
+
 #include "evaluation/measures/aot.h"
-#include "evaluation/measures/average_precision.h"
 #include "evaluation/measures/bearing_error.h"
 #include "evaluation/measures/froc.h"
 #include "evaluation/measures/track_measures.h"
@@ -46,7 +47,7 @@ struct DetectorScore {
   std::vector<ScoredDetections> sequences;
   std::int64_t detections = 0;
 
-  measures::AveragePrecision average_precision;
+  evaluation::AveragePrecision average_precision;
   measures::Froc froc;
   // The threshold of `by`, bearings, false alarms and misses, and what holds there. Empty where
   // there is no detection.

@@ -3,13 +3,12 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <airtruth/box.h>
+#include <airtruth/export.h>
 #include <airtruth/statistics.h>
 
 // Average precision by the rules of COCO (Lin et al. 2014; cocodataset/cocoapi,
@@ -22,7 +21,7 @@
 // Example: two truths in one image, and three detections with the scores 0.9 (hits the first), 0.8
 // (hits nothing) and 0.7 (hits the second). Precision is 1 up to a recall of 0.5 and 2/3 beyond, so
 // AP = (51 * 1 + 50 * 2/3) / 101 = 0.8350.
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 
 struct LabelledBox {
   Box box_px;
@@ -44,8 +43,8 @@ struct ScoredImage {
   std::vector<ScoredBox> detections;
 };
 
-// How a detection resembles a truth, and the thresholds: overlap (intersection over union), or
-// distance of the centres with the rule of matching/boxes.h.
+// How a detection resembles a truth: overlap (intersection over union), or distance of the centres,
+// which reaches a threshold in pixels where it is at most that or half of the truth's longer side.
 enum class Likeness { kOverlap, kCentre };
 
 struct AreaRange {
@@ -62,7 +61,7 @@ constexpr int kRecallSteps = 101;  // cocoeval.py: 0, 0.01 .. 1
 
 struct PrecisionOptions {
   Likeness likeness = Likeness::kOverlap;
-  // Least overlap; with kCentre the radius of matching/boxes.h, px.
+  // Least overlap; with kCentre largest distance, px.
   double threshold = 0.5;
   AreaRange areas = kAllAreas;
   int max_detections = 100;
@@ -87,8 +86,8 @@ struct PrecisionBand {
 };
 
 // Empty where no truth counts: the measure is not defined.
-std::optional<PrecisionCurve> precision_curve(std::span<const ScoredImage> images,
-                                              const PrecisionOptions& options);
+AIRTRUTH_API std::optional<PrecisionCurve> precision_curve(std::span<const ScoredImage> images,
+                                                           const PrecisionOptions& options);
 
 // The numbers that COCO prints, and that at a centre distance. Empty: not defined.
 struct AveragePrecision {
@@ -101,14 +100,14 @@ struct AveragePrecision {
   std::optional<double> ar_small, ar_medium, ar_large;
   std::optional<double> ap_centre;
   // 95 % intervals: percentile bootstrap over sequences, 1000 draws.
-  std::optional<evaluation::Interval> ap_50_interval, ap_centre_interval;
+  std::optional<Interval> ap_50_interval, ap_centre_interval;
   // For plots: at an overlap of 0.5, and at the centre distance, each with its 95 % band.
   std::optional<PrecisionCurve> curve_50, curve_centre;
   std::optional<PrecisionBand> band_50, band_centre;
 };
 
 // `sequences`: the images of each.
-AveragePrecision average_precision(std::span<const std::vector<ScoredImage>> sequences,
-                                   double centre_px);
+AIRTRUTH_API AveragePrecision average_precision(std::span<const std::vector<ScoredImage>> sequences,
+                                                double centre_px);
 
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

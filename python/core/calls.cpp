@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calls.h"
+
+#include <chrono>
+
+#include <airtruth/error.h>
+#include <unistd.h>
+
+#include "values.h"
+
+namespace airtruth::python {
+
+Process::Process() : id_(::getpid()) {}
+bool Process::is_this() const { return id_ == ::getpid(); }
+void Process::expect_this(const char* what) const {
+  if (!is_this())
+    throw Error(std::string(what) + " was made before this process was forked; make it anew here");
+}
+
+int checked_threads(int threads) {
+  constexpr int kMost = 256;
+  if (threads < 0 || threads > kMost)
+    throw py::value_error("threads is " + std::to_string(threads) + "; expected 0 to " +
+                          std::to_string(kMost));
+  return threads;
+}
+
+void Warnings::add(const std::string& message) {
+  const std::lock_guard lock(mutex_);
+  messages_.push_back(message);
+}
+
+void Warnings::hand_over() {
+  std::vector<std::string> messages;
+  {
+    const std::lock_guard lock(mutex_);
+    messages.swap(messages_);
+  }
+  // The second frame is that of whoever called the package.
+  for (const std::string& message : messages)
+    py::module_::import("warnings").attr("warn")(text(message), py::arg("stacklevel") = 2);
+}
+
+std::optional<py::error_already_set> await(std::mutex& mutex,
+                                           std::condition_variable& changed,
+                                           const std::function<bool()>& is_done,
+                                           const std::function<bool()>& goes_on) {
+  constexpr std::chrono::milliseconds kLook{50};
+  std::optional<py::error_already_set> raised;
+  const py::gil_scoped_release released;
+  std::unique_lock lock(mutex);
+  while (!changed.wait_for(lock, kLook, is_done)) {
+    lock.unlock();
+    {
+      const py::gil_scoped_acquire held;
+      if (!raised && PyErr_CheckSignals() != 0) {
+        raised.emplace();
+        if (!goes_on()) return raised;
+      }
+    }
+    lock.lock();
+  }
+  return raised;
+}
+
+Worker::Worker() : thread_([this] { loop(); }) {}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Worker::loop() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [&] { return is_over_ || work_ != nullptr; });
+    if (is_over_) return;
+    lock.unlock();
+    std::exception_ptr failure;
+    try {
+      (*work_)();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    lock.lock();
+    failure_ = failure;
+    work_ = nullptr;
+    changed_.notify_all();
+  }
+}
+
+void Worker::post(const std::function<void()>& work) {
+  const std::lock_guard lock(mutex_);
+  if (work_ != nullptr) throw Error("another thread is in a call of this object");
+  work_ = &work;
+  changed_.notify_all();
+}
+
+void Worker::run(const std::function<void()>& work) {
+  post(work);
+  std::exception_ptr failure;
+  const auto raised = await(
+      mutex_,
+      changed_,
+      [&] {
+        if (work_ == nullptr) failure = failure_;
+        return work_ == nullptr;
+      },
+      [&] {
+        stop_.request_stop();
+        return true;
+      });
+  if (raised) throw *raised;
+  if (failure) std::rethrow_exception(failure);
+}
+
+void Worker::run_to_the_end(const std::function<void()>& work) {
+  post(work);
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return work_ == nullptr; });
+}
+
+}  // namespace airtruth::python

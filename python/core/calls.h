@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl/filesystem.h>
+#include <sys/types.h>
+
+// How calls of Python reach objects that hold threads, decoders and files.
+namespace airtruth::python {
+
+namespace py = pybind11;
+
+// The process that made an object. A fork copies memory and no threads, so that what holds threads
+// is of no use in the other process: neither to be called nor to be destroyed.
+class Process {
+ public:
+  Process();
+  bool is_this() const;
+  // Throws Error in any other process.
+  void expect_this(const char* what) const;
+
+ private:
+  pid_t id_;
+};
+
+// 0 (one for each core) to 256; ValueError for any other.
+int checked_threads(int threads);
+
+// Where measured motion is kept: True and False, or a folder. `Options` has use_cache and cache.
+template <typename Options>
+void take_cache(const py::object& cache, Options& options) {
+  if (py::isinstance<py::bool_>(cache))
+    options.use_cache = cache.cast<bool>();
+  else
+    options.cache = cache.cast<std::filesystem::path>();
+}
+
+// What the library warns of, kept until the caller's thread hands it to Python's `warnings`.
+class Warnings {
+ public:
+  void add(const std::string& message);
+  // With the GIL held. Throws where a filter of Python makes an error of a warning.
+  void hand_over();
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::string> messages_;
+};
+
+// Waits without the GIL until is_done(), which is called with the mutex locked, and lets Python
+// handle its signals every 50 ms. Where a handler raises (KeyboardInterrupt) the exception is
+// returned: at once, or, where goes_on() says so, when all is done.
+std::optional<py::error_already_set> await(std::mutex& mutex,
+                                           std::condition_variable& changed,
+                                           const std::function<bool()>& is_done,
+                                           const std::function<bool()>& goes_on);
+
+// The result of a long computation that cannot be stopped. An exception of a signal's handler
+// leaves it to end by itself, so that `work` must own what it uses.
+template <typename Work>
+auto left_alone(Work work) {
+  struct State {
+    explicit State(Work wanted) : work(std::move(wanted)) {}
+    Work work;
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::optional<decltype(work())> result;
+    std::exception_ptr failure;
+  };
+  const auto state = std::make_shared<State>(std::move(work));
+  std::thread([state] {
+    std::optional<decltype(work())> result;
+    std::exception_ptr failure;
+    try {
+      result.emplace(state->work());
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    const std::lock_guard lock(state->mutex);
+    state->result = std::move(result);
+    state->failure = failure;
+    state->changed.notify_all();
+  }).detach();
+  const auto raised = await(
+      state->mutex,
+      state->changed,
+      [&] { return state->result || state->failure; },
+      [] { return false; });
+  if (raised) throw *raised;
+  if (state->failure) std::rethrow_exception(state->failure);
+  return std::move(*state->result);
+}
+
+// A thread that runs the calls of one object, one after the other. An exception of a signal's
+// handler requests the stop, waits for the call to end, and is thrown.
+class Worker {
+ public:
+  Worker();
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  std::stop_token stop() const { return stop_.get_token(); }
+  bool is_stopped() const { return stop_.stop_requested(); }
+  // With the GIL held. Rethrows what `work` throws. Throws Error where a call is under way already.
+  void run(const std::function<void()>& work);
+  // The same without a look at signals, for the end of the object.
+  void run_to_the_end(const std::function<void()>& work);
+
+ private:
+  void loop();
+  void post(const std::function<void()>& work);
+
+  std::stop_source stop_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  const std::function<void()>* work_ = nullptr;
+  std::exception_ptr failure_;
+  bool is_over_ = false;
+  std::thread thread_;
+};
+
+}  // namespace airtruth::python

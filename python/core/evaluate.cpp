@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include <airtruth/average_precision.h>
+#include <airtruth/metrics.h>
+#include <airtruth/statistics.h>
+#include <airtruth/vot.h>
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+#include "calls.h"
+#include "values.h"
+
+namespace airtruth::python {
+namespace {
+
+using namespace evaluation;
+
+using Size = std::optional<std::pair<std::int64_t, std::int64_t>>;
+
+// Width and height of a picture; (0, 0): unknown.
+std::pair<int, int> picture_size(const Size& size) {
+  if (!size) return {0, 0};
+  return {size_of(size->first, "width"), size_of(size->second, "height")};
+}
+
+void expect_equal(std::size_t a, std::size_t b, const char* what) {
+  if (a != b)
+    throw py::value_error(std::string(what) + ": " + std::to_string(a) + " and " +
+                          std::to_string(b) + " rows; expected as many");
+}
+
+std::vector<FramePair> pairs_of(const py::object& truth, const py::object& answers) {
+  const auto truths = boxes_of(truth, "truth");
+  const auto boxes = boxes_of(answers, "answers");
+  expect_equal(truths.size(), boxes.size(), "truth and answers");
+  std::vector<FramePair> pairs;
+  for (std::size_t i = 0; i < truths.size(); ++i) pairs.push_back({truths[i], boxes[i], 0});
+  return pairs;
+}
+
+// visit(name, value) for each field of a score; `S` is Score or const Score.
+template <typename Visit, typename S>
+void each_field(Visit&& visit, S& s) {
+  visit("frames", s.frames);
+  visit("counted", s.counted);
+  visit("x_mean_px", s.x_mean_px);
+  visit("x_rmse_px", s.x_rmse_px);
+  visit("x_most_px", s.x_most_px);
+  visit("y_mean_px", s.y_mean_px);
+  visit("y_rmse_px", s.y_rmse_px);
+  visit("y_most_px", s.y_most_px);
+  visit("centre_mean_px", s.centre_mean_px);
+  visit("success", s.success);
+  visit("precision", s.precision);
+  visit("auc", s.auc);
+  visit("precision_20px", s.precision_20px);
+  visit("normalised", s.normalised);
+  visit("normalised_auc", s.normalised_auc);
+  visit("average_overlap", s.average_overlap);
+  visit("success_50", s.success_50);
+  visit("success_75", s.success_75);
+  visit("frames_per_second", s.frames_per_second);
+  visit("frames_per_second_median", s.frames_per_second_median);
+}
+
+py::dict score_dict(const Score& score) {
+  py::dict dict;
+  each_field(IntoDict{dict}, score);
+  return dict;
+}
+
+// The fields of an airtruth.evaluate.Score.
+struct FromPython {
+  const py::handle& object;
+  template <typename T>
+  void operator()(const char* name, T& value) const {
+    value = object.attr(name).cast<T>();
+  }
+};
+
+py::dict score_of(const py::object& truth,
+                  const py::object& answers,
+                  const py::object& seconds,
+                  const Size& size) {
+  std::vector<FramePair> pairs = pairs_of(truth, answers);
+  if (!seconds.is_none()) {
+    const std::vector<double> times = list_of(seconds, "seconds");
+    expect_equal(pairs.size(), times.size(), "truth and seconds");
+    for (std::size_t i = 0; i < times.size(); ++i) pairs[i].seconds = times[i];
+  }
+  const auto [width, height] = picture_size(size);
+  return score_dict(score(pairs, width, height));
+}
+
+py::dict mean(const py::list& scores) {
+  std::vector<Score> values;
+  for (const py::handle& one : scores) each_field(FromPython{one}, values.emplace_back());
+  return score_dict(mean_of(values));
+}
+
+py::array overlaps(const py::object& a, const py::object& b) {
+  const auto first = boxes_of(a, "a");
+  const auto second = boxes_of(b, "b");
+  expect_equal(first.size(), second.size(), "a and b");
+  std::vector<double> values;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    values.push_back(first[i] && second[i] ? overlap(*first[i], *second[i]) : 0);
+  const py::ssize_t count = std::ssize(values);
+  return array_of(std::move(values), {count});
+}
+
+py::object interval_tuple(const std::optional<Interval>& interval) {
+  if (!interval) return py::none();
+  return py::make_tuple(interval->low, interval->high);
+}
+
+std::vector<double> finite_list_of(const py::object& value, const char* what) {
+  std::vector<double> values = list_of(value, what);
+  for (const double one : values)
+    if (!std::isfinite(one)) throw py::value_error(std::string(what) + " holds no finite number");
+  return values;
+}
+
+py::object bootstrap(const py::object& values, const py::object& weights) {
+  const std::vector<double> numbers = finite_list_of(values, "values");
+  if (weights.is_none()) return interval_tuple(left_alone([=] { return bootstrap_mean(numbers); }));
+  const std::vector<double> shares = finite_list_of(weights, "weights");
+  expect_equal(numbers.size(), shares.size(), "values and weights");
+  for (const double share : shares)
+    if (share <= 0) throw py::value_error("weights holds a number that is not above 0");
+  return interval_tuple(left_alone([=] { return bootstrap_mean(numbers, shares); }));
+}
+
+py::dict paired_dict(const py::object& a, const py::object& b) {
+  const std::vector<double> first = finite_list_of(a, "a");
+  const std::vector<double> second = finite_list_of(b, "b");
+  expect_equal(first.size(), second.size(), "a and b");
+  const Paired result = left_alone([=] { return paired(first, second); });
+  py::dict dict;
+  const IntoDict into{dict};
+  into("difference", result.difference);
+  dict["interval"] = interval_tuple(result.interval);
+  into("p_value", result.p_value);
+  into("wins", result.wins);
+  into("losses", result.losses);
+  into("ties", result.ties);
+  return dict;
+}
+
+std::optional<double> tau(const py::object& a, const py::object& b) {
+  const std::vector<double> first = finite_list_of(a, "a");
+  const std::vector<double> second = finite_list_of(b, "b");
+  expect_equal(first.size(), second.size(), "a and b");
+  return left_alone([=] { return kendall_tau(first, second); });
+}
+
+// (truth n x 4, ignored n, detections m x 4, scores m).
+ScoredImage image_of(const py::handle& item) {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  const auto [truth, ignored, detections, scores] =
+      item.cast<std::tuple<py::object, py::object, py::object, py::object>>();
+  const auto truths = boxes_of(truth, "truth");
+  const std::vector<double> flags = list_of(ignored, "ignored");
+  const auto boxes = boxes_of(detections, "detections");
+  const std::vector<double> numbers = finite_list_of(scores, "scores");
+  expect_equal(truths.size(), flags.size(), "truth and ignored");
+  expect_equal(boxes.size(), numbers.size(), "detections and scores");
+  ScoredImage image;
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    if (truths[i]) image.truths.push_back({.box_px = *truths[i], .is_ignored = flags[i] != 0});
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (boxes[i]) image.detections.push_back({*boxes[i], numbers[i]});
+  return image;
+}
+
+py::object curve_dict(const std::optional<PrecisionCurve>& curve) {
+  if (!curve) return py::none();
+  py::dict dict;
+  const IntoDict into{dict};
+  into("precision", curve->precision);
+  into("score", curve->score);
+  into("average_precision", curve->average_precision);
+  into("recall", curve->recall);
+  into("truths", curve->truths);
+  return dict;
+}
+
+// `sequences`: the images of each.
+py::dict precision_dict(const py::list& sequences, double centre_px) {
+  if (!(centre_px >= 0) || std::isinf(centre_px))
+    throw py::value_error("centre_px is no finite number of 0 or more");
+  std::vector<std::vector<ScoredImage>> images;
+  for (const py::handle& sequence : sequences) {
+    images.emplace_back();
+    for (const py::handle& image : sequence.cast<py::list>())
+      images.back().push_back(image_of(image));
+  }
+  const AveragePrecision ap = left_alone(
+      [images = std::move(images), centre_px] { return average_precision(images, centre_px); });
+  py::dict dict;
+  const IntoDict into{dict};
+  into("ap", ap.ap);
+  into("ap_50", ap.ap_50);
+  into("ap_75", ap.ap_75);
+  into("ap_small", ap.ap_small);
+  into("ap_medium", ap.ap_medium);
+  into("ap_large", ap.ap_large);
+  into("ar_1", ap.ar_1);
+  into("ar_10", ap.ar_10);
+  into("ar_100", ap.ar_100);
+  into("ar_small", ap.ar_small);
+  into("ar_medium", ap.ar_medium);
+  into("ar_large", ap.ar_large);
+  into("ap_centre", ap.ap_centre);
+  dict["ap_50_interval"] = interval_tuple(ap.ap_50_interval);
+  dict["ap_centre_interval"] = interval_tuple(ap.ap_centre_interval);
+  dict["curve_50"] = curve_dict(ap.curve_50);
+  dict["curve_centre"] = curve_dict(ap.curve_centre);
+  return dict;
+}
+
+VotTruth vot_truth(const py::object& truth, const Size& size) {
+  const auto [width, height] = picture_size(size);
+  return {boxes_of(truth, "truth"), width, height};
+}
+
+Mark mark_of(double number) {
+  if (number == 0) return Mark::kUnknown;
+  if (number == 1) return Mark::kBegun;
+  if (number == 2) return Mark::kFailed;
+  if (number == 3) return Mark::kAnswer;
+  throw py::value_error("marks holds another number than 0, 1, 2 and 3");
+}
+
+Trajectory trajectory_of(const py::object& boxes, const py::object& marks) {
+  const auto answers = boxes_of(boxes, "boxes");
+  const std::vector<double> numbers = list_of(marks, "marks");
+  expect_equal(answers.size(), numbers.size(), "boxes and marks");
+  Trajectory trajectory;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    trajectory.push_back({mark_of(numbers[i]), answers[i]});
+  return trajectory;
+}
+
+// (truth, size, runs) with runs (boxes, marks).
+std::vector<RestartRuns> restart_runs(const py::iterable& sequences) {
+  std::vector<RestartRuns> result;
+  for (const py::handle& item : sequences) {
+    const auto [truth, size, runs] = item.cast<std::tuple<py::object, Size, py::list>>();
+    RestartRuns& sequence = result.emplace_back();
+    sequence.truth = vot_truth(truth, size);
+    for (const py::handle& run : runs) {
+      const auto [boxes, marks] = run.cast<std::tuple<py::object, py::object>>();
+      sequence.runs.push_back(trajectory_of(boxes, marks));
+      expect_equal(sequence.truth.boxes.size(), sequence.runs.back().size(), "truth and a run");
+    }
+  }
+  return result;
+}
+
+// (truth, size, runs) with runs (anchor, is_backward, boxes, marks).
+std::vector<MultiStartRuns> multistart_runs(const py::iterable& sequences) {
+  std::vector<MultiStartRuns> result;
+  for (const py::handle& item : sequences) {
+    const auto [truth, size, runs] = item.cast<std::tuple<py::object, Size, py::list>>();
+    MultiStartRuns& sequence = result.emplace_back();
+    sequence.truth = vot_truth(truth, size);
+    const std::int64_t frames = std::ssize(sequence.truth.boxes);
+    for (const py::handle& run : runs) {
+      const auto [anchor, is_backward, boxes, marks] =
+          run.cast<std::tuple<std::int64_t, bool, py::object, py::object>>();
+      if (anchor < 0 || anchor >= frames) throw py::value_error("an anchor is not in its sequence");
+      sequence.runs.push_back({anchor, is_backward, trajectory_of(boxes, marks)});
+      expect_equal(static_cast<std::size_t>(is_backward ? anchor + 1 : frames - anchor),
+                   sequence.runs.back().frames.size(),
+                   "the sequence from an anchor and its run");
+    }
+  }
+  return result;
+}
+
+std::pair<int, int> range_of(const std::pair<std::int64_t, std::int64_t>& range) {
+  constexpr std::int64_t kMost = 1'000'000;
+  if (range.first < 0 || range.second < range.first || range.second > kMost)
+    throw py::value_error("eao_range is (" + std::to_string(range.first) + ", " +
+                          std::to_string(range.second) + "); expected 0 <= low <= high <= 1000000");
+  return {static_cast<int>(range.first), static_cast<int>(range.second)};
+}
+
+py::dict restart_dict(const py::iterable& sequences,
+                      const std::pair<std::int64_t, std::int64_t>& range) {
+  const Restart result = left_alone(
+      [runs = restart_runs(sequences), to = range_of(range)] { return restart_score(runs, to); });
+  py::dict dict;
+  const IntoDict into{dict};
+  into("accuracy", result.accuracy);
+  into("failures", result.failures);
+  into("reliability", result.reliability);
+  into("eao", result.eao);
+  into("eao_curve", result.eao_curve);
+  return dict;
+}
+
+py::dict multistart_dict(const py::iterable& sequences,
+                         const std::pair<std::int64_t, std::int64_t>& range) {
+  const MultiStart result = left_alone([runs = multistart_runs(sequences), to = range_of(range)] {
+    return multistart_score(runs, to);
+  });
+  py::dict dict;
+  const IntoDict into{dict};
+  into("accuracy", result.accuracy);
+  into("robustness", result.robustness);
+  into("eao", result.eao);
+  into("eao_curve", result.eao_curve);
+  return dict;
+}
+
+py::list anchors(const py::object& truth, std::int64_t step) {
+  if (step < 1 || step > 1'000'000)
+    throw py::value_error("step is " + std::to_string(step) + "; expected 1 to 1000000");
+  py::list result;
+  for (const Anchor& anchor : anchors_of(vot_truth(truth, {}), static_cast<int>(step)))
+    result.append(py::make_tuple(anchor.frame, anchor.is_backward));
+  return result;
+}
+
+std::pair<int, int> lengths_range(const std::vector<std::int64_t>& lengths) {
+  for (const std::int64_t length : lengths)
+    if (length < 1 || length > 1'000'000)
+      throw py::value_error("a length is " + std::to_string(length) + "; expected 1 to 1000000");
+  return eao_range(lengths);
+}
+
+}  // namespace
+
+void bind_evaluate(py::module_& core) {
+  core.def("score", &score_of);
+  core.def("mean_of", &mean);
+  core.def("first_loss", [](const py::object& truth, const py::object& answers) {
+    return first_loss(pairs_of(truth, answers));
+  });
+  core.def("overlap", &overlaps);
+  core.def("average_precision", &precision_dict);
+  core.def("bootstrap_mean", &bootstrap);
+  core.def("paired", &paired_dict);
+  core.def("kendall_tau", &tau);
+  core.def("restart_score", &restart_dict);
+  core.def("multistart_score", &multistart_dict);
+  core.def("anchors_of", &anchors);
+  core.def("eao_range", &lengths_range);
+}
+
+}  // namespace airtruth::python

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+
+#include <airtruth/lens.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "bindings.h"
+#include "values.h"
+
+namespace airtruth::python {
+namespace {
+
+using Two = std::array<double, 2>;
+using Coefficients = std::vector<double>;
+
+// Each row of numbers through the lens; a row of NaN where it gives none. Other threads of Python
+// run meanwhile, and signals are seen.
+template <std::size_t From, std::size_t To, typename Map>
+Doubles mapped(const py::handle& rows, const char* what, Map map) {
+  constexpr py::ssize_t kAtATime = 20'000;
+  const Doubles from = rows_of(rows, what, From);
+  Doubles to(std::vector<py::ssize_t>{from.shape(0), To});
+  const double* source = from.data();
+  double* target = to.mutable_data();
+  for (py::ssize_t begin = 0; begin < from.shape(0); begin += kAtATime) {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const py::gil_scoped_release released;
+    for (py::ssize_t i = begin; i < std::min(begin + kAtATime, from.shape(0)); ++i) {
+      std::array<double, From> point;
+      std::copy_n(source + i * py::ssize_t{From}, From, point.begin());
+      const std::optional<std::array<double, To>> image = map(point);
+      for (std::size_t k = 0; k < To; ++k)
+        target[i * py::ssize_t{To} + static_cast<py::ssize_t>(k)] =
+            image ? (*image)[k] : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return to;
+}
+
+Doubles pixels_of(const Lens& lens, const py::object& points) {
+  return mapped<3, 2>(points, "points", [&](const auto& p) { return lens.pixel_from_cam(p); });
+}
+
+Doubles rays_of(const Lens& lens, const py::object& pixels) {
+  return mapped<2, 3>(pixels, "pixels", [&](const auto& p) { return lens.ray_from_pixel(p); });
+}
+
+}  // namespace
+
+void bind_lens(py::module_& core) {
+  py::class_<Lens>(core, "Lens")
+      .def_static("pinhole",
+                  [](const Two& focal_px, const Two& centre_px, std::int64_t w, std::int64_t h) {
+                    return Lens::pinhole(
+                        focal_px, centre_px, size_of(w, "width"), size_of(h, "height"));
+                  })
+      .def_static("pinhole_from_vertical_fov",
+                  [](double fov_deg, std::int64_t w, std::int64_t h) {
+                    return Lens::pinhole_from_vertical_fov(
+                        fov_deg, size_of(w, "width"), size_of(h, "height"));
+                  })
+      .def_static("brown_conrady",
+                  [](const Two& focal_px,
+                     const Two& centre_px,
+                     const Coefficients& k,
+                     std::int64_t w,
+                     std::int64_t h) {
+                    return Lens::brown_conrady(
+                        focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
+                  })
+      .def_static("fisheye",
+                  [](const Two& focal_px,
+                     const Two& centre_px,
+                     const Coefficients& k,
+                     std::int64_t w,
+                     std::int64_t h) {
+                    return Lens::fisheye(
+                        focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
+                  })
+      .def_static("from_file",
+                  [](const std::filesystem::path& file, std::int64_t w, std::int64_t h) {
+                    return Lens::from_file(file, size_of(w, "width"), size_of(h, "height"));
+                  })
+      .def("pixel_from_cam", &pixels_of)
+      .def("ray_from_pixel", &rays_of)
+      .def_property_readonly("width", &Lens::width)
+      .def_property_readonly("height", &Lens::height)
+      .def_property_readonly("model", &Lens::model)
+      .def_property_readonly("focal_px", [](const Lens& l) { return python_of(l.focal_px()); })
+      .def_property_readonly("principal_point_px",
+                             [](const Lens& l) { return python_of(l.principal_point_px()); })
+      .def_property_readonly("distortion", [](const Lens& l) { return python_of(l.distortion()); })
+      .def_property_readonly("horizontal_fov_deg", &Lens::horizontal_fov_deg)
+      .def_property_readonly("vertical_fov_deg", &Lens::vertical_fov_deg);
+}
+
+}  // namespace airtruth::python

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <string>
+
+#include <airtruth/error.h>
+#include <airtruth/version.h>
+
+#include "bindings.h"
+#include "values.h"
+
+namespace airtruth::python {
+namespace {
+
+// Raises airtruth.Error. The message is one line, whatever bytes a file's name in it has.
+void raise_error(const std::string& message) {
+  std::string line;
+  for (const char c : message) {
+    if (c == '\n')
+      line += "\\n";
+    else
+      line += static_cast<unsigned char>(c) < ' ' ? '?' : c;
+  }
+  const py::object type = py::module_::import("airtruth._error").attr("Error");
+  PyErr_SetObject(type.ptr(), text(line).ptr());
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const Error& error) {
+    raise_error(error.what());
+  } catch (const Interrupted& interrupted) {
+    raise_error(interrupted.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    raise_error(error.path1().string().substr(0, 80) + ": " + error.code().message());
+  } catch (const py::cast_error& error) {
+    PyErr_SetString(PyExc_TypeError, error.what());
+  }
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, core) {
+  py::register_exception_translator(&translate);
+  core.attr("version") = kVersion;
+  bind_lens(core);
+  bind_pictures(core);
+  bind_stream(core);
+  bind_labels(core);
+  bind_dataset(core);
+  bind_evaluate(core);
+}
+
+}  // namespace airtruth::python

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <airtruth/renderer.h>
+#include <airtruth/video.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "bindings.h"
+#include "calls.h"
+#include "values.h"
+
+namespace airtruth::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+py::dict info_dict(const VideoInfo& info) {
+  py::dict dict;
+  const IntoDict into{dict};
+  into("width", info.width);
+  into("height", info.height);
+  into("frame_rate_hz", info.frame_rate_hz);
+  into("frame_count_estimate", info.frame_count_estimate);
+  into("codec", info.codec);
+  into("pixel_format", info.pixel_format);
+  return dict;
+}
+
+// The frames of a scene. A thread of its own makes them (Worker), as OpenGL's context needs.
+class PyRenderer {
+ public:
+  PyRenderer(const py::object& scene,
+             const fs::path& folder,
+             int threads,
+             const py::object& cache) {
+    RenderOptions options;
+    options.threads = checked_threads(threads);
+    take_cache(cache, options);
+    options.warn = [warnings = warnings_](const std::string& message) { warnings->add(message); };
+    options.stop = worker_->stop();
+    try {
+      open(scene, folder, options);
+    } catch (...) {
+      close();  // an interrupted renderer ends on the thread that made it
+      throw;
+    }
+  }
+  // A process that was forked off has neither the worker's thread nor those of the renderer: both
+  // are left as they are.
+  ~PyRenderer() {
+    close();
+    static_cast<void>(worker_.release());
+    static_cast<void>(renderer_.release());
+  }
+  PyRenderer(const PyRenderer&) = delete;
+  PyRenderer& operator=(const PyRenderer&) = delete;
+
+  // (picture, truth), or None after the last frame.
+  py::object next() {
+    expect_open();
+    std::optional<RenderedFrame> frame;
+    run([&] { frame = renderer_->next(); });
+    if (!frame) return py::none();
+    return py::make_tuple(picture_tuple(std::move(frame->picture)), truth_dict(frame->truth));
+  }
+
+  py::dict info() {
+    expect_open();
+    return info_dict(renderer_->info());
+  }
+  Lens lens() {
+    expect_open();
+    return renderer_->lens();
+  }
+
+  void close() {
+    if (worker_ == nullptr || !process_.is_this()) return;
+    worker_->run_to_the_end([&] { renderer_.reset(); });
+    worker_.reset();
+  }
+
+ private:
+  void open(const py::object& scene, const fs::path& folder, const RenderOptions& options) {
+    if (py::isinstance<py::str>(scene)) {
+      const auto words = scene.cast<std::string>();
+      run([&] {
+        renderer_ = std::make_unique<Renderer>(Renderer::from_text(words, folder, options));
+      });
+    } else {
+      const auto file = scene.cast<fs::path>();
+      run([&] { renderer_ = std::make_unique<Renderer>(file, options); });
+    }
+  }
+
+  void run(const std::function<void()>& work) {
+    worker_->run(work);
+    warnings_->hand_over();
+  }
+
+  void expect_open() const {
+    process_.expect_this("the rendering");
+    if (worker_ == nullptr || !renderer_) throw Error("the rendering is closed");
+    if (worker_->is_stopped()) throw Error("the rendering was interrupted; begin it anew");
+  }
+
+  Process process_;
+  std::shared_ptr<Warnings> warnings_ = std::make_shared<Warnings>();
+  std::unique_ptr<Worker> worker_ = std::make_unique<Worker>();
+  std::unique_ptr<Renderer> renderer_;
+};
+
+// The frames of a video. One thread at a time.
+class PyVideoReader {
+ public:
+  PyVideoReader(const fs::path& video, std::int64_t first_frame) {
+    if (first_frame < 0)
+      throw py::value_error("first_frame is " + std::to_string(first_frame) +
+                            "; expected 0 or more");
+    const Warn warn = [warnings = warnings_](const std::string& message) {
+      warnings->add(message);
+    };
+    reader_ = left_alone([=] { return std::make_unique<VideoReader>(video, first_frame, warn); });
+    warnings_->hand_over();
+  }
+  // The decoder's threads do not exist in a process that was forked off.
+  ~PyVideoReader() {
+    if (!process_.is_this()) static_cast<void>(reader_.release());
+  }
+  PyVideoReader(const PyVideoReader&) = delete;
+  PyVideoReader& operator=(const PyVideoReader&) = delete;
+
+  py::object next() {
+    const Use use(*this);
+    std::optional<VideoFrame> frame;
+    {
+      const py::gil_scoped_release released;
+      frame = reader_->next();
+    }
+    warnings_->hand_over();
+    if (!frame) return py::none();
+    return py::make_tuple(
+        picture_tuple(std::move(frame->picture)), frame->index, frame->time_s, frame->damaged);
+  }
+
+  py::dict info() {
+    const Use use(*this);
+    return info_dict(reader_->info());
+  }
+
+  void close() {
+    if (!process_.is_this() || !reader_) return;
+    const Use use(*this);
+    reader_.reset();
+  }
+
+ private:
+  // One call at a time.
+  class Use {
+   public:
+    explicit Use(PyVideoReader& reader) : reader_(reader) {
+      reader.process_.expect_this("the reader");
+      if (!reader.reader_) throw Error("the reader is closed");
+      if (reader.is_used_) throw Error("another thread is in a call of this reader");
+      reader.is_used_ = true;
+    }
+    ~Use() { reader_.is_used_ = false; }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    PyVideoReader& reader_;
+  };
+
+  Process process_;
+  std::shared_ptr<Warnings> warnings_ = std::make_shared<Warnings>();
+  std::unique_ptr<VideoReader> reader_;
+  // Changes with the GIL held.
+  bool is_used_ = false;
+};
+
+// Planes of Python as a picture; rgb_of() checks the rest.
+FramePicture picture_of(const py::sequence& planes,
+                        const std::string& pixel_format,
+                        const std::string& matrix,
+                        bool is_full_range) {
+  FramePicture picture{0, 0, pixel_format, matrix, is_full_range, {}};
+  for (const py::handle& item : planes) {
+    if (!py::isinstance<py::array_t<std::uint8_t>>(item))
+      throw py::type_error("a plane is no array of uint8");
+    const auto plane = py::array_t<std::uint8_t, py::array::c_style>::ensure(item);
+    if (plane.ndim() != 2) throw py::value_error("a plane has not 2 dimensions");
+    const int height = size_of(plane.shape(0), "a plane's height");
+    const int width = size_of(plane.shape(1), "a plane's width");
+    picture.planes.push_back({width, height, {plane.data(), plane.data() + plane.size()}});
+  }
+  if (picture.planes.empty()) throw py::value_error("there is no plane");
+  picture.width = picture.planes[0].width;
+  picture.height = picture.planes[0].height;
+  return picture;
+}
+
+py::array rgb(const py::sequence& planes,
+              const std::string& pixel_format,
+              const std::string& matrix,
+              bool is_full_range) {
+  const FramePicture picture = picture_of(planes, pixel_format, matrix, is_full_range);
+  std::vector<std::uint8_t> samples;
+  {
+    const py::gil_scoped_release released;
+    samples = rgb_of(picture);
+  }
+  return array_of(std::move(samples), {picture.height, picture.width, 3});
+}
+
+}  // namespace
+
+py::tuple picture_tuple(FramePicture picture) {
+  py::list planes;
+  for (SamplePlane& plane : picture.planes)
+    planes.append(array_of(std::move(plane.samples), {plane.height, plane.width}));
+  return py::make_tuple(
+      py::tuple(planes), picture.pixel_format, picture.matrix, picture.is_full_range);
+}
+
+void bind_pictures(py::module_& core) {
+  py::class_<PyRenderer>(core, "Renderer")
+      .def(py::init<const py::object&, const fs::path&, int, const py::object&>())
+      .def("next", &PyRenderer::next)
+      .def("info", &PyRenderer::info)
+      .def("lens", &PyRenderer::lens)
+      .def("close", &PyRenderer::close);
+  py::class_<PyVideoReader>(core, "VideoReader")
+      .def(py::init<const fs::path&, std::int64_t>())
+      .def("next", &PyVideoReader::next)
+      .def("info", &PyVideoReader::info)
+      .def("close", &PyVideoReader::close);
+  core.def("rgb", &rgb);
+}
+
+}  // namespace airtruth::python

@@ -1,0 +1,622 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Python package beside the program's own files: python3 python_package_test.py AIRTRUTH SOURCE PACKAGES
+
+PACKAGES is the folder that holds `airtruth`. A small clip and a set are made by the program. Frames and truth in memory are those of
+the files; the examples of the docstrings give what they show; no argument of the table of hostile ones ends the process; Ctrl-C ends
+a rendering within 2 s; what is made before a fork is refused after it. mypy checks the package where it is installed.
+Without PACKAGES (the package was not built) the test is skipped.
+"""
+
+import base64
+import doctest
+import json
+import math
+import multiprocessing
+import os
+import pathlib
+import pickle
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+import zlib
+
+if len(sys.argv) < 4:
+    print("python_package_test: skipped, the package was not built: it needs pybind11-dev and python3-dev")
+    sys.exit(77)
+AIRTRUTH, SOURCE, PACKAGES = map(os.path.abspath, sys.argv[1:4])
+sys.path.insert(0, PACKAGES)
+
+import numpy as np
+
+import airtruth
+from airtruth import _core, evaluate
+
+if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
+    np.set_printoptions(legacy="1.25")  # the examples show numbers without their types
+
+MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "evaluate")
+SCENE = """name = "across"
+[background]
+video = "clip.mkv"
+[lens]
+vertical_fov_deg = 60
+[camera]
+position_ned_m = [0, 0, -150]
+[motion]
+model = "none"
+[[intruder]]
+id = "a"
+aircraft = "c172/news"
+waypoints_ned_m = [[30, -8, -150], [30, 80, -150]]
+speed_mps = 40
+[output]
+video = "mkv"
+"""
+SCENE_DICT = {
+    "name": "across", "background": {"video": pathlib.Path("clip.mkv")}, "lens": {"vertical_fov_deg": 60},
+    "camera": {"position_ned_m": (0, 0, np.int64(-150))}, "motion": {"model": "none"},
+    "intruder": [{"id": "a", "aircraft": "c172/news", "waypoints_ned_m": np.array([[30, -8, -150], [30, 80, -150.0]]),
+                  "speed_mps": np.float32(40)}],
+}
+TRAINING = """[stream]
+picture = "crop"
+size_px = [64, 64]
+[[background]]
+name = "clip"
+video = "clip.mkv"
+lens = { vertical_fov_deg = 60 }
+motion = { model = "none" }
+camera = { position_ned_m = [0, 0, -300], velocity_ned_mps = [25, 0, 0] }
+[[random]]
+count = 100
+aircraft = ["c172/*"]
+size_px = [10, 30]
+azimuth_deg = [-20, 20]
+elevation_deg = [-10, 10]
+negatives = 0.2
+"""
+CALIBRATION = """%YAML:1.0
+image_width: 640
+image_height: 480
+camera_matrix: !!opencv-matrix
+   rows: 3
+   cols: 3
+   dt: d
+   data: [ 500., 0., 320., 0., 500., 240., 0., 0., 1. ]
+distortion_coefficients: !!opencv-matrix
+   rows: 5
+   cols: 1
+   dt: d
+   data: [ -0.2, 0.03, 0., 0., 0. ]
+"""
+
+
+def run(*arguments):
+    done = subprocess.run([AIRTRUTH, *arguments], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise AssertionError(f"{arguments}: {done.stderr}")
+
+
+def make_inputs():
+    run("synth", "-o", "clip.mkv", "--width", "160", "--height", "120", "--frames", "6", "--no-own-aircraft")
+    pathlib.Path("scene.toml").write_text(SCENE)
+    pathlib.Path("training.toml").write_text(TRAINING)
+    pathlib.Path("calibration.yml").write_text(CALIBRATION)
+    run("render", "scene.toml", "--out", "set")
+    run("dataset", "export", "set", "-f", "coco", "-o", "coco")
+
+
+def equal(a, b):
+    """Whether two values of truth are the same, arrays and NaN included."""
+    if isinstance(a, np.ndarray):
+        return isinstance(b, np.ndarray) and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+    if hasattr(a, "__dict__"):
+        return all(equal(value, getattr(b, name)) for name, value in vars(a).items())
+    if isinstance(a, (list, tuple)):
+        return len(a) == len(b) and all(map(equal, a, b))
+    return a == b
+
+
+def same_frame(a, b):
+    return all(map(np.array_equal, a.planes, b.planes)) and equal(a.truth, b.truth)
+
+
+class Frames(unittest.TestCase):
+    def test_a_rendering_is_the_file_that_render_writes(self):
+        with open("set/across/truth.jsonl") as file:
+            lines = [json.loads(line) for line in file]
+        made = list(airtruth.render("scene.toml", cache=False))
+        read = list(airtruth.VideoReader("set/across/across.mkv"))
+        self.assertEqual([len(made), len(read)], [6, 6])
+        for frame, file, line in zip(made, read, lines):
+            self.assertTrue(all(map(np.array_equal, frame.planes, file.planes)))
+            self.assertTrue(np.array_equal(frame.rgb, file.rgb))
+            self.assertTrue(np.shares_memory(frame.gray, frame.planes[0]))
+            self.assertEqual([frame.index, frame.time_s], [line["frame"], line["time_s"]])
+            self.check_intruder(frame.intruders[0], line["intruders"][0])
+
+    def check_intruder(self, intruder, line):
+        encounter = line.pop("encounter")
+        volumes = encounter.pop("volumes")
+        for key, value in line.items():
+            found = getattr(intruder, key)
+            self.assertEqual(found.tolist() if isinstance(found, np.ndarray) else found, value, key)
+        for key, value in encounter.items():
+            self.assertEqual(getattr(intruder.encounter, key), value, key)
+        self.assertEqual(len(intruder.encounter.volumes), len(volumes))
+        self.assertTrue(np.array_equal(intruder.covered_box, line["covered_box_px"]))
+
+    def test_path_text_and_dict_are_one_scene(self):
+        wanted = list(airtruth.render("scene.toml", threads=2))
+        for scene in (pathlib.Path("scene.toml"), SCENE, SCENE_DICT, airtruth.toml_of(SCENE_DICT)):
+            made = list(airtruth.render(scene, threads=1, cache="cache of mine"))
+            self.assertTrue(len(made) == 6 and all(map(same_frame, made, wanted)))
+        elsewhere = list(airtruth.render(SCENE_DICT, folder=os.getcwd()))
+        self.assertTrue(all(map(same_frame, elsewhere, wanted)))
+
+    def test_progress_is_told_and_its_exception_arrives(self):
+        told = []
+        list(airtruth.render("scene.toml", progress=lambda done, total: told.append((done, total))))
+        self.assertEqual(told, [(k + 1, 6) for k in range(6)])
+        with self.assertRaises(ZeroDivisionError):
+            list(airtruth.render("scene.toml", progress=lambda done, total: 1 / 0))
+
+    def test_frames_outlive_what_made_them_and_travel(self):
+        with airtruth.render("scene.toml") as frames:
+            frame = next(frames)
+            lens = frames.lens
+        del frames
+        copy = pickle.loads(pickle.dumps(frame))
+        self.assertTrue(same_frame(copy, frame))
+        frame.planes[0][:] = 0
+        self.assertGreater(copy.gray.max(), 0)
+        self.assertEqual(lens.width, 160)
+
+    def test_warnings_are_pythons(self):
+        with self.assertWarnsRegex(UserWarning, "state no class"):
+            airtruth.read_labels("coco", "coco")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertRaises(UserWarning, airtruth.read_labels, "coco", "coco")
+
+    def test_a_notebook_shows_the_picture_with_its_box(self):
+        frame = airtruth.DataSet("set")["across"].frame(3)
+        page = frame._repr_html_()
+        png = base64.b64decode(re.search(r"base64,([^\"]+)\"", page).group(1))
+        at = png.index(b"IDAT")
+        length = struct.unpack(">I", png[at - 4:at])[0]
+        rows = np.frombuffer(zlib.decompress(png[at + 4:at + 4 + length]), np.uint8).reshape(120, 1 + 160 * 3)
+        shown = rows[:, 1:].reshape(120, 160, 3)
+        x, y, width, height = frame.intruders[0].covered_box
+        drawn = np.zeros((120, 160), bool)
+        drawn[y - 1:y + height + 1, x - 1:x + width + 1] = True
+        drawn[y:y + height, x:x + width] = False
+        self.assertTrue((shown[drawn] == (255, 160, 0)).all())
+        self.assertTrue(np.array_equal(shown[~drawn], frame.rgb[~drawn]))
+        frame.intruders[0].covered_box_px = None
+        frame.intruders[0].exact_box_px = np.array([-1e300, -5, 1e301, 1e9])
+        self.assertIn("<img", frame._repr_html_())
+        self.assertIn("across", airtruth.DataSet("set")._repr_html_())
+
+    def test_gray_of_rgb_is_luma(self):
+        planes = tuple(np.full((2, 2), value, np.uint8) for value in (200, 50, 100))  # G, B, R
+        frame = airtruth.Frame(0, 0.0, planes, "gbrp", "rgb", True)
+        self.assertEqual(frame.gray[0, 0], round(0.2126 * 100 + 0.7152 * 200 + 0.0722 * 50))
+        self.assertEqual(frame.rgb[0, 0].tolist(), [100, 200, 50])
+
+
+def same_sample(a, b):
+    return [a.index, a.background, a.first_frame] == [b.index, b.background, b.first_frame] and all(map(same_frame, a.frames, b.frames))
+
+
+class Streams(unittest.TestCase):
+    def test_a_sample_is_what_render_makes_of_its_scene(self):
+        stream = airtruth.Stream(TRAINING, seed=3)
+        objects = 0
+        for index in (0, 1, 17):
+            frame = stream[index].frames[0]
+            whole = next(airtruth.render(stream.scene(index)))
+            x, y, width, height = frame.crop
+            self.assertTrue(np.array_equal(frame.gray, whole.gray[y:y + height, x:x + width]))
+            self.assertTrue(equal(frame.intruders, whole.intruders))
+            for box, intruder in zip(frame.boxes(), frame.intruders):
+                objects += 1
+                if intruder.covered_box is None:
+                    self.assertTrue(np.isnan(box).all())
+                    continue
+                left, top, w, h = intruder.covered_box
+                seen = np.array([max(0, left - x), max(0, top - y), min(width, left + w - x), min(height, top + h - y)])
+                if (seen[2:] > seen[:2]).all():
+                    self.assertEqual(box.tolist(), [*seen[:2], *(seen[2:] - seen[:2])])
+            self.assertIn("<img", frame._repr_html_())
+        self.assertGreater(objects, 0)
+
+    def test_samples_are_the_same_whatever_asks_for_them(self):
+        stream = airtruth.Stream("training.toml", seed=5)
+        wanted = [stream[index] for index in range(6)]
+        self.assertTrue(same_sample(airtruth.Stream("training.toml", seed=5, threads=2)[4], wanted[4]))
+        self.assertFalse(all(map(same_sample, wanted, airtruth.Stream("training.toml", seed=6))))
+        found = [None] * 6
+
+        def take(index):
+            found[index] = stream[index]
+
+        threads = [threading.Thread(target=take, args=(index,)) for index in range(6)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertTrue(all(map(same_sample, found, wanted)))
+        for method in ("fork", "spawn"):
+            with multiprocessing.get_context(method).Pool(2) as pool:
+                self.assertTrue(all(map(same_sample, pool.map(stream.__getitem__, range(6), chunksize=3), wanted)), method)
+
+
+class Sets(unittest.TestCase):
+    def test_columns_are_the_truth_of_each_frame(self):
+        sequence = airtruth.DataSet("set")["across"]
+        for k in range(len(sequence)):
+            intruder = sequence.frame(k).intruders[0]
+            for name, column in sequence.truth.items():
+                value = getattr(intruder, name, None)
+                if value is None:
+                    value = getattr(intruder.encounter, name, None)
+                if name not in ("frame", "time_s"):
+                    wanted = np.nan if value is None else value
+                    self.assertTrue(np.array_equal(column[k], wanted, equal_nan=column.dtype.kind == "f"), name)
+        self.assertEqual(sequence.frames["frame_from_reference"].shape, (6, 9))
+        self.assertEqual([frame.index for frame in sequence], list(range(6)))
+        self.assertTrue(same_frame(sequence.frame(-1), sequence.frame(5)))
+        self.assertTrue(same_frame(pickle.loads(pickle.dumps(sequence)).frame(2), sequence.frame(2)))
+
+    def test_a_table_is_flat(self):
+        table = airtruth.DataSet("set").table()
+        self.assertEqual({(column.ndim, len(column)) for column in table.values()}, {(1, 6)})
+        try:
+            import pandas
+        except ImportError:
+            print("python_package_test: pandas is not installed; the table is not given to it")
+            return
+        self.assertEqual(pandas.DataFrame(table)["range_m"].tolist(), table["range_m"].tolist())
+
+    def test_an_imported_set_has_what_its_labels_tell(self):
+        run("dataset", "import", "coco", "-f", "coco", "-o", "imported")
+        data = airtruth.DataSet("imported")
+        sequence = data[data.names[0]]
+        self.assertTrue(sequence.is_imported and sequence.lens is None)
+        boxes = airtruth.DataSet("set")["across"].truth["covered_box_px"]
+        self.assertTrue(np.array_equal(sequence.truth["exact_box_px"], boxes[~np.isnan(boxes[:, 0])]))
+        self.assertEqual(sequence.frame(0).gray.shape, (120, 160))
+        self.assertIn("exact_box_px_x", data.table())
+
+    def test_labels_survive_a_conversion(self):
+        before = airtruth.read_labels("coco", "coco")[0]
+        for format in ("yolo", "mot", "voc", "got10k"):
+            airtruth.convert_labels("coco", "coco", "as " + format, format)
+            if format == "yolo":
+                continue
+            after = airtruth.read_labels("as " + format, format, size=(160, 120))[0]
+            boxes = [[label.box_px.tolist() for frame in clip.frames for label in frame.labels] for clip in (before, after)]
+            self.assertTrue(boxes[0] and np.allclose(boxes[0], boxes[1], atol=0.01), format)
+
+
+class Numbers(unittest.TestCase):
+    def test_a_pinhole_is_its_formula(self):
+        lens = airtruth.Lens.pinhole((500, 520), (320, 240), 640, 480)
+        points = np.random.default_rng(1).normal(size=(50_000, 3)) * (5, 5, 50)
+        pixels = lens.pixel_from_cam(points)
+        ahead = points[:, 2] > 0
+        self.assertTrue(np.isnan(pixels[~ahead]).all())
+        wanted = points[ahead, :2] / points[ahead, 2:] * (500, 520) + (320, 240)
+        self.assertTrue(np.allclose(pixels[ahead], wanted, rtol=1e-12))
+        rays = lens.ray_from_pixel(pixels[ahead])
+        self.assertTrue(np.allclose(rays, points[ahead] / np.linalg.norm(points[ahead], axis=1)[:, None], atol=1e-9))
+
+    def test_arrays_of_any_layout_are_read(self):
+        lens = airtruth.Lens.pinhole((500, 500), (320, 240), 640, 480)
+        points = np.arange(60.0).reshape(20, 3) + 1
+        wanted = lens.pixel_from_cam(points)
+        for same in (points[::-1][::-1], np.asfortranarray(points), points.astype(np.int16), points.astype(">f4"), points.tolist(),
+                     np.repeat(points, 2, axis=0)[::2]):
+            self.assertTrue(np.array_equal(lens.pixel_from_cam(same), wanted))
+        self.assertEqual(lens.pixel_from_cam([]).shape, (0, 2))
+        self.assertEqual(lens.pixel_from_cam(np.empty((0, 3))).shape, (0, 2))
+
+    def test_scores_are_those_of_the_definitions(self):
+        random = np.random.default_rng(2)
+        truth = np.column_stack([random.uniform(0, 100, (40, 2)), random.uniform(5, 20, (40, 2))])
+        answers = truth + random.normal(size=truth.shape)
+        answers[7] = np.nan
+        result = evaluate.score(truth, answers)
+        low, high = np.maximum(truth[:, :2], answers[:, :2]), np.minimum(truth[:, :2] + truth[:, 2:], answers[:, :2] + answers[:, 2:])
+        both = np.prod(np.maximum(high - low, 0), axis=1)
+        ious = np.nan_to_num(both / (truth[:, 2:].prod(axis=1) + answers[:, 2:].prod(axis=1) - both))
+        self.assertTrue(np.allclose(evaluate.overlap(truth, answers), ious))
+        self.assertAlmostEqual(result.average_overlap, ious[1:].mean())
+        self.assertEqual(result.success.shape, (21,))
+        self.assertEqual(evaluate.mean_of([result, result]).counted, 80)
+        self.assertEqual(pickle.loads(pickle.dumps(result)).auc, result.auc)
+
+    def test_intervals_of_average_precision_need_two_sequences(self):
+        box, none = [[10, 10, 20, 10]], np.empty((0, 4))
+        images = [box, box, box, box], [box, none, box, box], [[0.9], [], [0.8], [0.7]]
+        self.assertIsNone(evaluate.average_precision(*images).ap_50_interval)
+        ap = evaluate.average_precision(*images, sequences=[7, 7, 9, 9])
+        self.assertTrue(ap.ap_50_interval[0] <= ap.ap_50 <= ap.ap_50_interval[1])
+        flagged = evaluate.average_precision(*images, ignored=[[0], [1], [0], [0]])
+        self.assertEqual([flagged.curve_50.truths, round(flagged.ap_50, 9)], [3, 1])
+
+
+HOSTILE = [
+    None, True, -1, 0, 3, 2**31, 2**63, 2**70, -2**70, 1.5, math.nan, math.inf, 1e300, "", "x", "\0", "a\nb", "\ud800", b"\xff", "x" * 5000,
+    [], {}, (), [[]], [None], ["a"], {"a": object()}, object(), [1, 2, 3, 4], [[1, 2]], [[1, 2, 3]], [[1, 2, 3, 4]], [[1, 2, 3, -4]],
+    [[math.nan] * 4], [[math.inf] * 4], [[1e308] * 4], [[[1, 2, 3]]], [[1, 2], [3]], np.zeros((0, 4)), np.zeros((2, 3, 4)), np.zeros(3, complex),
+    np.array(["a"]), np.array([None]), np.zeros(4, "M8[s]"), np.zeros(2, [("a", "i4")]), np.broadcast_to(np.zeros((1, 1)), (4, 4)),
+    np.zeros((4, 8))[::2, ::2], np.zeros((3, 4), np.float16), (2, -3), (0, 0), (2**40, 2**40), pathlib.Path("."), pathlib.Path("scene.toml"),
+    lambda *a: None, int, sys, iter([1]), np.float64(3), np.ma.zeros((2, 2)),
+]
+EXPECTED = (airtruth.Error, TypeError, ValueError, OverflowError, IndexError, KeyError, AttributeError, OSError)
+
+
+def hostile_targets():
+    """Functions by name, and good arguments of each, of which one at a time is replaced."""
+    lens = airtruth.Lens.pinhole((500, 500), (320, 240), 640, 480)
+    data = airtruth.DataSet("set")
+    boxes = [[0, 0, 9, 9], [1, 1, 9, 9]]
+    score = evaluate.score(boxes, boxes)
+    run_ = (boxes, [1, 3])
+    frame = data["across"].frame(0)
+    stream = airtruth.Stream("training.toml", seed=1)
+
+    def html_of(frame, box, crop):
+        frame = pickle.loads(pickle.dumps(frame))
+        frame.intruders[0].covered_box_px, frame.crop = box, crop
+        return frame._repr_html_()
+
+    return {
+        "Lens": (airtruth.Lens, [lens._core]),
+        "Lens.pinhole": (airtruth.Lens.pinhole, [(500, 500), (320, 240), 640, 480]),
+        "Lens.pinhole_from_vertical_fov": (airtruth.Lens.pinhole_from_vertical_fov, [60, 640, 480]),
+        "Lens.brown_conrady": (airtruth.Lens.brown_conrady, [(500, 500), (320, 240), [0, 0, 0, 0], 640, 480]),
+        "Lens.fisheye": (airtruth.Lens.fisheye, [(500, 500), (320, 240), [0.1], 640, 480]),
+        "Lens.from_file": (airtruth.Lens.from_file, ["calibration.yml", 640, 480]),
+        "pixel_from_cam": (lens.pixel_from_cam, [[[0, 0, 1]]]),
+        "ray_from_pixel": (lens.ray_from_pixel, [[[0, 0]]]),
+        "render": (lambda *a: next(airtruth.render(a[0], threads=a[1], cache=a[2], progress=a[3], folder=a[4])),
+                   ["scene.toml", 1, True, None, None]),
+        "render dict": (lambda value: airtruth.render({**SCENE_DICT, "camera": value}), [{"position_ned_m": [0, 0, -150]}]),
+        "toml_of": (airtruth.toml_of, [{"a": 1}]),
+        "VideoReader": (lambda *a: next(airtruth.VideoReader(*a)), ["clip.mkv", 0]),
+        "DataSet": (lambda folder, boxes: airtruth.DataSet(folder, boxes=boxes)["across"], ["set", "covered"]),
+        "DataSet[]": (lambda name: data[name], ["across"]),
+        "in": (lambda name: name in data, ["across"]),
+        "Sequence.frame": (data["across"].frame, [0]),
+        "read_labels": (lambda *a: airtruth.read_labels(a[0], a[1], size=a[2], category=a[3]), ["coco", "coco", (160, 120), "x"]),
+        "convert_labels": (lambda *a: airtruth.convert_labels(*a[:4], part=a[4]), ["coco", "coco", "set", "mot", "p"]),
+        "rgb": (lambda *a: airtruth.Frame(0, 0.0, *a).rgb, [frame.planes, frame.pixel_format, frame.matrix, False]),
+        "rgb of a plane": (lambda plane: airtruth.Frame(0, 0.0, (plane,), "gray", "bt601", False).rgb, [frame.planes[0]]),
+        "boxes": (frame.boxes, ["covered"]),
+        "boxes of a crop": (lambda box, crop: html_of(frame, box, crop), [[0, 0, 9, 9], [2, 2, 9, 9]]),
+        "Stream": (lambda *a: airtruth.Stream(a[0], seed=a[1], threads=a[2], cache=a[3], folder=a[4])[0], ["training.toml", 1, 1, True, None]),
+        "Stream[]": (stream.__getitem__, [0]),
+        "Stream.scene": (stream.scene, [0]),
+        "score": (lambda *a: evaluate.score(a[0], a[1], seconds=a[2], size=a[3]), [boxes, boxes, [1, 1], (9, 9)]),
+        "mean_of": (evaluate.mean_of, [[score]]),
+        "mean_of one": (lambda one: evaluate.mean_of([one]), [score]),
+        "first_loss": (evaluate.first_loss, [boxes, boxes]),
+        "overlap": (evaluate.overlap, [boxes, boxes]),
+        "average_precision": (lambda *a: evaluate.average_precision(*a[:3], sequences=a[3], ignored=a[4], centre_px=a[5]),
+                              [[boxes], [boxes], [[1, 1]], [0], [[0, 0]], 10]),
+        "average_precision image": (lambda *a: evaluate.average_precision([a[0]], [a[1]], [a[2]]), [boxes, boxes, [1, 1]]),
+        "bootstrap_mean": (evaluate.bootstrap_mean, [[1, 2], [1, 1]]),
+        "paired": (evaluate.paired, [[1, 2], [1, 1]]),
+        "kendall_tau": (evaluate.kendall_tau, [[1, 2], [1, 1]]),
+        "restart_score": (evaluate.restart_score, [[(boxes, None, [run_])], (1, 2)]),
+        "restart_score sequence": (lambda *a: evaluate.restart_score([a], (0, 2)), [boxes, (9, 9), [run_]]),
+        "restart_score run": (lambda *a: evaluate.restart_score([(boxes, (9, 9), [a])], (0, 2)), [boxes, [1, 3]]),
+        "multistart_score": (evaluate.multistart_score, [[(boxes, None, [(0, False, *run_)])], (1, 2)]),
+        "multistart_score run": (lambda *a: evaluate.multistart_score([(boxes, (9, 9), [a])], (0, 2)), [0, False, boxes, [1, 3]]),
+        "anchors_of": (evaluate.anchors_of, [boxes, 1]),
+        "eao_range": (evaluate.eao_range, [[1, 2, 3]]),
+    }
+
+
+class Hostile(unittest.TestCase):
+    def test_every_function_refuses_or_answers(self):
+        refused = 0
+        for name, (function, good) in hostile_targets().items():
+            with self.subTest(name):
+                function(*good) if name != "convert_labels" else None
+                for position in range(len(good)):
+                    for value in HOSTILE:
+                        arguments = [*good[:position], value, *good[position + 1:]]
+                        with warnings.catch_warnings():
+                            warnings.simplefilter("ignore")
+                            try:
+                                function(*arguments)
+                            except EXPECTED as error:
+                                refused += 1
+                                if isinstance(error, airtruth.Error):
+                                    self.assertEqual(len(str(error).splitlines()), 1, f"{position} {value!r}: {error}")
+        self.assertGreater(refused, 2000)
+
+    def test_core_refuses_too(self):
+        """The private module, to which nothing stands between."""
+        for name in dir(_core):
+            function = getattr(_core, name)
+            if not callable(function):
+                continue
+            for count in range(5):
+                for value in HOSTILE:
+                    with warnings.catch_warnings():
+                        warnings.simplefilter("ignore")
+                        try:
+                            function(*[value] * count)
+                        except EXPECTED:
+                            pass
+
+    def test_values_that_are_wrong_are_named(self):
+        lens = airtruth.Lens.pinhole((500, 500), (320, 240), 640, 480)
+        for wrong, kind, words in (
+            (lambda: lens.pixel_from_cam([[1, 2]]), ValueError, r"points has the shape \(1, 2\); expected \(n, 3\)"),
+            (lambda: lens.pixel_from_cam([["a", "b", "c"]]), TypeError, "points has the dtype"),
+            (lambda: evaluate.overlap([[0, 0, -1, 1]], [[0, 0, 1, 1]]), ValueError, "row 0 of a is no box"),
+            (lambda: airtruth.render("no such.toml"), airtruth.Error, "no such.toml"),
+            (lambda: airtruth.render({"backgroud": {}}), airtruth.Error, "background"),
+            (lambda: airtruth.render("scene.toml", threads=-1), ValueError, "threads is -1"),
+            (lambda: airtruth.render({"a": object()}), TypeError, "a is a object"),
+            (lambda: airtruth.DataSet("set")["other"], airtruth.Error, "other"),
+            (lambda: airtruth.DataSet("set")["across"].frame(6), IndexError, ""),
+            (lambda: airtruth.VideoReader("clip.mkv", 6), airtruth.Error, "6 frames"),
+            (lambda: airtruth.read_labels("coco", "cocoo"), airtruth.Error, "coco"),
+        ):
+            with self.assertRaisesRegex(kind, words):
+                wrong()
+        deep = {}
+        deep["deep"] = deep
+        with self.assertRaises(ValueError):
+            airtruth.render(deep)
+
+    def test_use_after_close_is_an_error(self):
+        frames, video = airtruth.render("scene.toml"), airtruth.VideoReader("clip.mkv")
+        for one in (frames, video):
+            next(one)
+            one.close()
+            one.close()
+            with self.assertRaisesRegex(airtruth.Error, "is closed"):
+                next(one)
+        with self.assertRaisesRegex(airtruth.Error, "is closed"):
+            frames.lens
+
+    def test_two_threads_in_one_object_are_refused_or_take_turns(self):
+        outcomes = []
+
+        def take(source):
+            try:
+                outcomes.extend(frame.index for frame in source)
+            except airtruth.Error as error:
+                outcomes.append(str(error))
+
+        for source in (airtruth.render("scene.toml"), airtruth.VideoReader("clip.mkv")):
+            outcomes.clear()
+            threads = [threading.Thread(target=take, args=(source,)) for _ in range(4)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+            self.assertEqual(sorted(one for one in outcomes if isinstance(one, int)), list(range(6)))
+
+
+def frame_in_child(queue):
+    queue.put([next(airtruth.render("scene.toml")), airtruth.DataSet("set")["across"].frame(2)])
+
+
+class Processes(unittest.TestCase):
+    def test_fork_and_spawn(self):
+        wanted = [next(airtruth.render("scene.toml")), airtruth.DataSet("set")["across"].frame(2)]
+        for method in ("fork", "spawn"):
+            context = multiprocessing.get_context(method)
+            queue = context.Queue()
+            child = context.Process(target=frame_in_child, args=(queue,))
+            child.start()
+            got = queue.get(timeout=60)
+            child.join(60)
+            self.assertEqual(child.exitcode, 0, method)
+            self.assertTrue(all(map(same_frame, got, wanted)), method)
+
+    def test_what_was_made_before_a_fork_is_refused_and_left_alone(self):
+        objects = [airtruth.render("scene.toml"), airtruth.VideoReader("clip.mkv")]
+        sequence = airtruth.DataSet("set")["across"]
+        for one in objects:
+            next(one)
+        sequence.frame(0)
+        child = os.fork()
+        if child == 0:
+            refused = 0
+            for one in objects:
+                try:
+                    next(one)
+                except airtruth.Error as error:
+                    refused += "fork" in str(error)
+            works = sequence.frame(1).index == 1
+            del one, objects, sequence
+            os._exit(0 if refused == 2 and works else 1)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        self.assertEqual([next(one).index for one in objects], [1, 1])
+
+    def test_ctrl_c_ends_a_call_within_two_seconds(self):
+        run("synth", "-o", "long.mkv", "--width", "320", "--height", "240", "--frames", "150", "--no-own-aircraft")
+        measured = SCENE.replace("clip.mkv", "long.mkv").replace('model = "none"', 'model = "rotation"\n[realism]\nauto = true')
+        programs = {"while it measures": "for _ in range(9**9): airtruth.render(source, cache=False)",
+                    "while it draws": "for _ in range(9**9): list(airtruth.render(source, cache=False))",
+                    "while it streams": "list(stream)",
+                    "while it scores": "airtruth.evaluate.average_precision([source] * 20000, [source] * 20000, [range(30)] * 20000)"}
+        boxes = [[k, k, 20, 10] for k in range(30)]
+        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, boxes)):
+            code = (f"import sys; sys.path.insert(0, {PACKAGES!r}); import airtruth\nsource = {source!r}\n"
+                    f"stream = airtruth.Stream({TRAINING!r})\nprint('begun', flush=True)\n"
+                    f"try:\n  {line}\nexcept KeyboardInterrupt:\n  print('stopped', stream[7].index)\n")
+            child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            child.stdout.readline()
+            time.sleep(0.4)
+            begin = time.monotonic()
+            child.send_signal(signal.SIGINT)
+            told = child.stdout.readline()
+            self.assertLess(time.monotonic() - begin, 2, when)
+            rest, errors = child.communicate(timeout=60)
+            self.assertEqual([told + rest, errors, child.returncode], ["stopped 7\n", "", 0], when)
+
+
+class Pages(unittest.TestCase):
+    def test_examples(self):
+        options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE | doctest.IGNORE_EXCEPTION_DETAIL
+        tried = 0
+        for name in MODULES:
+            module = __import__("airtruth." + name, fromlist=["*"])
+            for test in doctest.DocTestFinder().find(module, "airtruth." + name, module=False, globs={"airtruth": airtruth, "np": np}):
+                result = doctest.DocTestRunner(optionflags=options).run(test)
+                self.assertEqual(result.failed, 0, test.name)
+                tried += len(test.examples) > 0
+        self.assertGreater(tried, 30)
+
+    def test_all_that_is_public_has_a_page(self):
+        page = os.path.join(SOURCE, "docs", "reference", "make_python.py")
+        checked = subprocess.run([sys.executable, page, PACKAGES, "--check"], capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+
+    def test_types(self):
+        if shutil.which("mypy") is None:
+            print("python_package_test: mypy is not installed; the types are not checked")
+            return
+        checked = subprocess.run(["mypy", "--strict", "--cache-dir", "mypy", os.path.join(SOURCE, "python", "airtruth")],
+                                 capture_output=True, text=True)
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+    def test_the_stub_names_what_the_module_has(self):
+        with open(os.path.join(SOURCE, "python", "airtruth", "_core.pyi")) as file:
+            stub = file.read()
+        for name in (name for name in dir(_core) if not name.startswith("_")):
+            self.assertRegex(stub, rf"(?m)^(class|def) {name}\b|^{name}: ")
+        for kind, body in re.findall(r"(?m)^class (\w+):\n((?: .*\n)+)", stub):
+            stated = set(re.findall(r"(?m)^    (?:def )?(\w+)[(:]", body)) - {"__init__"}
+            self.assertEqual(stated, {name for name in vars(getattr(_core, kind)) if not name.startswith("_")}, kind)
+
+
+if __name__ == "__main__":
+    folder = tempfile.mkdtemp(prefix="airtruth_python_")
+    os.environ["XDG_CACHE_HOME"] = os.path.join(folder, "cache")
+    os.chdir(folder)
+    try:
+        make_inputs()
+        unittest.main(argv=sys.argv[:1] + sys.argv[4:], warnings="ignore")
+    finally:
+        os.chdir("/")
+        shutil.rmtree(folder, ignore_errors=True)
