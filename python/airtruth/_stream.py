@@ -16,7 +16,7 @@ from ._frames import Frame, truth_of
 from ._source import Source, cache_of, source_of
 from ._video import Path
 
-_MOST_INDEX = 2**53
+_MOST_INDEX = 2**40
 
 
 @dataclass
@@ -35,13 +35,15 @@ class Sample:
     first_frame: int  # number of the first picture's frame in the background's video
     crop: NDArray[np.int64]  # (4,): the part of the frame that the pictures show
     frames: List[Frame]  # as many as the catalogue's [stream] frames
+    # How many encounters of real traffic it stands for, up to a factor that a stream shares; None where it is of no model of traffic.
+    weight: Optional[float] = None
 
 
 class Stream:
     """An endless series of labelled pictures of a catalogue, made when they are asked for: nothing is written but the cache. The
     catalogue is one that data sets are built from, with a table [stream]: a path, a text of several lines or a dict, as in render().
 
-    A sample depends on the catalogue, the seed (0 to 2^64 - 1) and its index (0 to 2^53) alone, whatever was asked for before and by
+    A sample depends on the catalogue, the seed (0 to 2^64 - 1) and its index (0 to 2^40) alone, whatever was asked for before and by
     which thread or process; `airtruth render` of scene(index) makes the same pictures and truth. Indices in a row are made fastest,
     and are mixed already. `threads` draw one sample; loaders with several workers take 1. `cache` as in render().
 
@@ -83,12 +85,12 @@ class Stream:
     def __getitem__(self, index: int) -> Sample:
         """The sample of that index."""
         number = _checked(index)
-        background, first_frame, crop, made = self._ready().sample(number)
+        background, first_frame, weight, crop, made = self._ready().sample(number)
         frames = []
         for picture, fields in made:
             truth = truth_of(fields)
             frames.append(Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth, crop=crop))
-        return Sample(number, background, first_frame, crop, frames)
+        return Sample(number, background, first_frame, crop, frames, weight)
 
     def __iter__(self) -> Iterator[Sample]:
         """All samples from index 0 on; it does not end."""

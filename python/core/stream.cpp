@@ -51,7 +51,7 @@ class PyStream {
   PyStream(const PyStream&) = delete;
   PyStream& operator=(const PyStream&) = delete;
 
-  // (background, first_frame, crop, [(picture, truth)])
+  // (background, first_frame, weight, crop, [(picture, truth)])
   py::tuple sample(std::int64_t index) {
     StreamSample sample;
     run([&] { sample = stream_->sample(index); });
@@ -60,7 +60,7 @@ class PyStream {
       frames.append(
           py::make_tuple(picture_tuple(std::move(frame.picture)), truth_dict(frame.truth)));
     return py::make_tuple(
-        text(sample.background), sample.first_frame, python_of(sample.crop), frames);
+        text(sample.background), sample.first_frame, sample.weight, python_of(sample.crop), frames);
   }
 
   py::str scene(std::int64_t index) {

@@ -99,7 +99,8 @@ struct Stream::State {
   }
 
   Planned planned(std::int64_t index) const {
-    check(index >= 0 && index <= kMostIndex, "a sample's index is from 0 to 2^40");
+    if (index < 0 || index > kMostIndex)
+      throw Error(fmt::format("the index of a sample is {}; expected 0 to {}", index, kMostIndex));
     return planner.at(index);
   }
 

@@ -214,6 +214,9 @@ TEST_F(StreamOfFlights, WhatAStreamCannotUseIsSaidAtOnce) {
                       "-300]]\nspeed_mps = 40\n[[product]]\n"),
               HasSubstr("a stream draws from [[random]] and [[encounter_model]]"));
   EXPECT_THAT(message(background("nowhere") + kRule), HasSubstr("nowhere.mp4"));
+  const Stream stream = stream_of(background("flight3") + kRule);
+  EXPECT_THROW(stream.sample(-1), Error);
+  EXPECT_THROW(stream.scene((std::int64_t{1} << 40) + 1), Error);
 }
 
 }  // namespace
