@@ -136,8 +136,8 @@ class Cutout {
     float texels = 1;
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2f d = mesh.uvs[vertex_[(k + 1) % 3]] - mesh.uvs[vertex_[k]];
-      texels = std::max(texels, std::abs(d.x()) * static_cast<float>(texture_.levels[0].width));
-      texels = std::max(texels, std::abs(d.y()) * static_cast<float>(texture_.levels[0].height));
+      texels = std::max(texels, std::abs(d.x()) * static_cast<float>(texture_.finest.width));
+      texels = std::max(texels, std::abs(d.y()) * static_cast<float>(texture_.finest.height));
     }
     // The comparison is false for NaN, which then takes the largest number of steps.
     const bool few = texels < static_cast<float>(kMaxSteps);

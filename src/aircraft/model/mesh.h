@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aircraft/model/finish.h"
+#include "aircraft/texture_file/picture.h"
 #include "foundation/geometry/transform.h"
 
 // An aircraft as triangles with materials and textures. Coordinates are in the body frame (x
@@ -19,18 +20,22 @@
 // revolution, 120 degrees, at time_s = 1/30.
 namespace airtruth::model {
 
-// A texture in linear light with premultiplied alpha. Its sRGB samples are decoded and
-// premultiplied before the mip chain is built. Level 0 has the full size; each further level has
-// half the size of the level before, down to 1x1.
+// Linear light, RGBA, with premultiplied alpha.
+using Texel = std::array<float, 4>;
+
+// A texture and its mip chain. Level 0 is the finest. Each coarser level has half the size of the
+// level before, down to 1x1, and is averaged from that level's texels.
 struct Texture {
   struct Level {
     int width = 0;
     int height = 0;
-    // Linear premultiplied RGBA. Row 0 is v = 0, the bottom of the picture, as in OpenGL.
-    std::vector<std::array<float, 4>> texels;
+    // Row 0 is v = 0, the bottom of the picture, as in OpenGL.
+    std::vector<Texel> texels;
     bool operator==(const Level&) const = default;
   };
-  std::vector<Level> levels;
+  // A texel is decoded when it is read (texture.h): bytes take a quarter of the memory of floats.
+  texture_file::Picture finest;
+  std::vector<Level> coarser;
   bool repeat_u = true;
   bool repeat_v = true;
   // Whether the alpha of any texel is below kOpaque.

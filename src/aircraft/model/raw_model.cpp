@@ -106,10 +106,9 @@ void check_model(const RawModel& model) {
 
 Mesh mesh_of(RawModel model) {
   Mesh mesh = std::move(model.mesh);
-  for (RawPicture& raw : model.pictures) {
-    mesh.textures.push_back(texture_from_picture(raw.picture, raw.repeat_u, raw.repeat_v));
-    raw.picture = {};
-  }
+  for (RawPicture& raw : model.pictures)
+    mesh.textures.push_back(
+        texture_from_picture(std::move(raw.picture), raw.repeat_u, raw.repeat_v));
   return mesh;
 }
 

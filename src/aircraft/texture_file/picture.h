@@ -16,6 +16,7 @@ struct Picture {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgba;
+  bool operator==(const Picture&) const = default;
 };
 
 struct PictureLimits {

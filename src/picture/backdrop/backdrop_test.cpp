@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "aircraft/model/texture.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
 
@@ -209,19 +210,10 @@ TEST_F(BackdropTest, TexelsDecideWhatIsSeen) {
   model::Mesh mesh = empty_mesh();
   model::Material material = plain(1, 1, 1);
   material.texture = 0;
-  model::Texture texture;
-  texture.levels.push_back({4, 2, {}});
-  for (int row = 0; row < 2; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      const bool clear = column >= 2;
-      texture.levels[0].texels.push_back(
-          clear ? std::array<float, 4>{0, 0, 0, 0}
-                : std::array<float, 4>{row == 0 ? 1.0f : 0.0f, 0, 1, 1});
-    }
-  }
-  texture.repeat_u = texture.repeat_v = false;
-  texture.has_translucency = true;
-  mesh.textures.push_back(texture);
+  const texture_file::Picture picture{
+      4, 2, {255, 0, 255, 255, 255, 0, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0,
+             0,   0, 255, 255, 0,   0, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0}};
+  mesh.textures.push_back(model::texture_from_picture(picture, false, false));
   add_rectangle(mesh, {-2, 2, -2, 2}, 10, material);
   const image::Rgb8 image = render(mesh);
   EXPECT_EQ(colour(image, 30, 16), (std::array<int, 3>{0, 0, 255}));    // top left: v near 1

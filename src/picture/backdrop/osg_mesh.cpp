@@ -7,6 +7,7 @@
 
 #include <osg/Image>
 
+#include "aircraft/model/texture.h"
 #include "picture/backdrop/osg_adapter.h"
 #include "picture/backdrop/shading.h"
 
@@ -14,10 +15,14 @@ namespace airtruth::backdrop {
 namespace {
 
 osg::ref_ptr<osg::Texture2D> osg_texture(const model::Texture& texture, float anisotropy) {
-  const model::Texture::Level& level = texture.levels.at(0);
+  const texture_file::Picture& finest = texture.finest;
   osg::ref_ptr<osg::Image> image = new osg::Image;
-  image->allocateImage(level.width, level.height, 1, GL_RGBA, GL_FLOAT);
-  std::memcpy(image->data(), level.texels.data(), level.texels.size() * sizeof(level.texels[0]));
+  image->allocateImage(finest.width, finest.height, 1, GL_RGBA, GL_FLOAT);
+  unsigned char* target = image->data();
+  for (std::size_t i = 0; i < finest.rgba.size(); i += 4, target += sizeof(model::Texel)) {
+    const model::Texel texel = model::kDecoding.texel(&finest.rgba[i]);
+    std::memcpy(target, texel.data(), sizeof(texel));
+  }
   image->setInternalTextureFormat(GL_RGBA16F_ARB);
   osg::ref_ptr<osg::Texture2D> result = new osg::Texture2D(image);
   result->setInternalFormat(GL_RGBA16F_ARB);

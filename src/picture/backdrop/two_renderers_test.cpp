@@ -3,11 +3,13 @@
 // textures and the model of the light.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <ostream>
 
 #include <gtest/gtest.h>
 
 #include "aircraft/fleet/fleet.h"
+#include "aircraft/model/texture.h"
 #include "foundation/base/error.h"
 #include "picture/backdrop/backdrop.h"
 #include "picture/render/renderer.h"
@@ -196,32 +198,14 @@ TEST(TwoRenderers, AgreeOnPanesBehindEachOther) {
 // A window in a painted plate: texels of 8x8 with a translucent middle.
 TEST(TwoRenderers, AgreeOnATextureThatIsTranslucentInPlaces) {
   model::Mesh mesh = empty_mesh();
-  model::Texture texture;
-  texture.has_translucency = true;
-  texture.repeat_u = texture.repeat_v = false;
-  for (int size = 8; size >= 1; size /= 2) {
-    model::Texture::Level level{size, size, {}};
-    for (int i = 0; i < size * size; ++i) {
-      if (size == 8) {
-        const bool middle = i % 8 >= 2 && i % 8 < 6 && i / 8 >= 2 && i / 8 < 6;
-        const float alpha = middle ? 0.25f : 1.0f;
-        level.texels.push_back(
-            {0.9f * alpha, 0.1f * static_cast<float>(i % 8) * alpha, 0.2f * alpha, alpha});
-        continue;
-      }
-      const model::Texture::Level& finer = texture.levels.back();
-      std::array<float, 4> mean{};
-      for (int k = 0; k < 4; ++k) {
-        const int x = 2 * (i % size) + k % 2;
-        const int y = 2 * (i / size) + k / 2;
-        for (std::size_t c = 0; c < 4; ++c)
-          mean[c] += 0.25f * finer.texels[static_cast<std::size_t>(y * 2 * size + x)][c];
-      }
-      level.texels.push_back(mean);
-    }
-    texture.levels.push_back(level);
+  texture_file::Picture picture{8, 8, {}};
+  for (int i = 0; i < 8 * 8; ++i) {
+    const bool middle = i % 8 >= 2 && i % 8 < 6 && i / 8 >= 2 && i / 8 < 6;
+    const auto green = static_cast<std::uint8_t>(31 * (i % 8));
+    const std::uint8_t alpha = middle ? 64 : 255;
+    picture.rgba.insert(picture.rgba.end(), {243, green, 124, alpha});
   }
-  mesh.textures.push_back(texture);
+  mesh.textures.push_back(model::texture_from_picture(picture, false, false));
   model::Material material = plain(1, 1, 1);
   material.texture = 0;
   add_plate(mesh, {0, -4, -3}, {0, 8, 0}, {0, 0, 6}, material);

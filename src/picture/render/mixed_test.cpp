@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "aircraft/model/texture.h"
 #include "picture/render/renderer.h"
 
 // A translucent pane in front of an opaque plate, in one aircraft, against areas and colours worked
@@ -145,15 +146,10 @@ TEST_P(Panes, OfDifferentOpacityInAPixelHaveTheirMean) {
   const Rectangle pane{10, 10, 20, 30};
   model::Mesh mesh;
   add(mesh, pane, kPaneM, 1, kPaneColour);
-  model::Texture texture;
-  texture.repeat_u = texture.repeat_v = false;
-  texture.has_translucency = true;
-  texture.levels.push_back({kTexels, kTexels, {}});
-  for (int i = 0; i < kTexels * kTexels; ++i) {
-    const float alpha = i % kTexels < 24 ? 1.0F : 0.0F;
-    texture.levels[0].texels.push_back({alpha, alpha, alpha, alpha});
-  }
-  mesh.textures.push_back(texture);
+  texture_file::Picture picture{kTexels, kTexels, {}};
+  for (int i = 0; i < kTexels * kTexels; ++i)
+    picture.rgba.insert(picture.rgba.end(), 4, i % kTexels < 24 ? 255 : 0);
+  mesh.textures.push_back(model::texture_from_picture(picture, false, false));
   mesh.materials[0].texture = 0;
   mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   const image::Layer layer = layer_of(mesh, GetParam() > 0);

@@ -70,12 +70,12 @@ RTCScene scene_of(RTCDevice device, const model::Mesh& mesh, const model::Part& 
 float density(const model::Mesh& mesh, const model::Triangle& triangle) {
   const int texture = mesh.materials[triangle.material].texture;
   if (texture < 0) return 0;
-  const auto& level = mesh.textures[static_cast<std::size_t>(texture)].levels.front();
+  const auto& finest = mesh.textures[static_cast<std::size_t>(texture)].finest;
   const auto& [a, b, c] = triangle.vertex;
   const Eigen::Vector2f p = mesh.uvs[b] - mesh.uvs[a];
   const Eigen::Vector2f q = mesh.uvs[c] - mesh.uvs[a];
   const float in_texels = std::abs(p.x() * q.y() - p.y() * q.x()) *
-                          static_cast<float>(level.width) * static_cast<float>(level.height);
+                          static_cast<float>(finest.width) * static_cast<float>(finest.height);
   const float in_m2 =
       (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).norm();
   return in_m2 > 1e-12f ? std::sqrt(in_texels / in_m2) : 0;

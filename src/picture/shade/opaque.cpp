@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "aircraft/model/texture.h"
+
 namespace airtruth::shade {
 namespace {
 
@@ -52,33 +54,33 @@ std::optional<TexelCorners> corners_in(const model::Texture& texture,
   low -= turns;
   high -= turns;
   if (!(low.minCoeff() >= 0 && high.maxCoeff() <= 1)) return std::nullopt;
-  const model::Texture::Level& level = texture.levels.front();
+  const texture_file::Picture& finest = texture.finest;
   TexelCorners corners;
   for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = {(uvs[k].x() - turns.x()) * static_cast<float>(level.width) - 0.5F,
-                  (uvs[k].y() - turns.y()) * static_cast<float>(level.height) - 0.5F};
+    corners[k] = {(uvs[k].x() - turns.x()) * static_cast<float>(finest.width) - 0.5F,
+                  (uvs[k].y() - turns.y()) * static_cast<float>(finest.height) - 0.5F};
   return corners;
 }
 
 // Calls use(y, from, to) for the texels [from, to) of row y within a triangle, or where it contains
 // none, for the texel in its middle.
 template <typename Use>
-void each_run(const model::Texture::Level& level, const TexelCorners& corners, const Use& use) {
+void each_run(const texture_file::Picture& finest, const TexelCorners& corners, const Use& use) {
   const auto [low, high] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
   bool has_texel = false;
-  for (int y = first_texel(low, level.height); y < end_texel(high, level.height); ++y) {
+  for (int y = first_texel(low, finest.height); y < end_texel(high, finest.height); ++y) {
     const Crossing crossing = crossing_of(corners, static_cast<float>(y));
     if (!(crossing.left <= crossing.right)) continue;
-    const int from = first_texel(crossing.left, level.width);
-    const int to = end_texel(crossing.right, level.width);
+    const int from = first_texel(crossing.left, finest.width);
+    const int to = end_texel(crossing.right, finest.width);
     if (from >= to) continue;
     has_texel = true;
     use(y, from, to);
   }
   if (has_texel) return;
   const Eigen::Vector2f middle = (corners[0] + corners[1] + corners[2]) / 3;
-  const int x = std::clamp(static_cast<int>(std::lround(middle.x())), 0, level.width - 1);
-  const int y = std::clamp(static_cast<int>(std::lround(middle.y())), 0, level.height - 1);
+  const int x = std::clamp(static_cast<int>(std::lround(middle.x())), 0, finest.width - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(middle.y())), 0, finest.height - 1);
   use(y, x, x + 1);
 }
 
@@ -88,15 +90,13 @@ std::array<float, 2> alphas_within(const model::Texture& texture,
                                    const std::array<Eigen::Vector2f, 3>& uvs) {
   const auto corners = corners_in(texture, uvs);
   if (!corners) return {0, 1};
-  const model::Texture::Level& level = texture.levels.front();
   float least = 1;
   float most = 0;
-  each_run(level, *corners, [&](int y, int from, int to) {
-    const auto* row =
-        level.texels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width);
+  each_run(texture.finest, *corners, [&](int y, int from, int to) {
     for (int x = from; x < to; ++x) {
-      least = std::min(least, row[x][3]);
-      most = std::max(most, row[x][3]);
+      const float alpha = model::kDecoding.alpha[model::finest_bytes(texture, x, y)[3]];
+      least = std::min(least, alpha);
+      most = std::max(most, alpha);
     }
   });
   return {least, most};

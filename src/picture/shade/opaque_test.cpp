@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "aircraft/model/texture.h"
+
 namespace airtruth::shade {
 namespace {
 
@@ -14,13 +16,10 @@ constexpr int kTexelsPerSide = 16;
 // one triangle.
 model::Mesh mesh_of(const std::array<Eigen::Vector2f, 3>& in_texels) {
   model::Mesh mesh;
-  model::Texture texture;
-  texture.levels.push_back({kTexelsPerSide, kTexelsPerSide, {}});
+  texture_file::Picture picture{kTexelsPerSide, kTexelsPerSide, {}};
   for (int i = 0; i < kTexelsPerSide * kTexelsPerSide; ++i)
-    texture.levels[0].texels.push_back(i % kTexelsPerSide < 8 ? std::array<float, 4>{1, 1, 1, 1}
-                                                              : std::array<float, 4>{0, 0, 0, 0});
-  texture.has_translucency = true;
-  mesh.textures.push_back(texture);
+    picture.rgba.insert(picture.rgba.end(), 4, i % kTexelsPerSide < 8 ? 255 : 0);
+  mesh.textures.push_back(model::texture_from_picture(picture, true, true));
   mesh.materials.emplace_back();
   mesh.materials[0].texture = 0;
   mesh.parts.push_back({.name = "triangle", .triangles = {{{0, 1, 2}, 0}}});

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "aircraft/model/texture.h"
+
 namespace airtruth::shade {
 namespace {
 
@@ -33,23 +35,49 @@ TexelPlace texel_place(float place) {
 // Four channels at once.
 using Channels = Eigen::Array4f;
 
-Channels bilinear(const model::Texture& texture, std::size_t index, float u, float v) {
-  const auto& level = texture.levels[index];
-  const auto [x, fx] = texel_place(u * static_cast<float>(level.width) - 0.5f);
-  const auto [y, fy] = texel_place(v * static_cast<float>(level.height) - 0.5f);
-  const int x0 = wrapped(x, level.width, texture.repeat_u);
-  const int x1 = wrapped(x + 1, level.width, texture.repeat_u);
-  const int y0 = wrapped(y, level.height, texture.repeat_v);
-  const int y1 = wrapped(y + 1, level.height, texture.repeat_v);
-  const auto at = [&](int i, int j) {
+// at(x, y) has the value of a texel.
+template <typename Value, typename At>
+Value bilinear(
+    const model::Texture& texture, int width, int height, const Eigen::Vector2f& uv, const At& at) {
+  const auto [x, fx] = texel_place(uv.x() * static_cast<float>(width) - 0.5f);
+  const auto [y, fy] = texel_place(uv.y() * static_cast<float>(height) - 0.5f);
+  const int x0 = wrapped(x, width, texture.repeat_u);
+  const int x1 = wrapped(x + 1, width, texture.repeat_u);
+  const int y0 = wrapped(y, height, texture.repeat_v);
+  const int y1 = wrapped(y + 1, height, texture.repeat_v);
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x1, y0)) +
+         fy * ((1 - fx) * at(x0, y1) + fx * at(x1, y1));
+}
+
+Channels finest_at(const model::Texture& texture, const Eigen::Vector2f& uv) {
+  const texture_file::Picture& finest = texture.finest;
+  return bilinear<Channels>(
+      texture, finest.width, finest.height, uv, [&](int i, int j) -> Channels {
+        const Texel texel = model::kDecoding.texel(model::finest_bytes(texture, i, j));
+        return Eigen::Map<const Channels>(texel.data());
+      });
+}
+
+float finest_alpha_at(const model::Texture& texture, const Eigen::Vector2f& uv) {
+  const texture_file::Picture& finest = texture.finest;
+  return bilinear<float>(texture, finest.width, finest.height, uv, [&](int i, int j) {
+    return model::kDecoding.alpha[model::finest_bytes(texture, i, j)[3]];
+  });
+}
+
+Channels coarser_at(const model::Texture& texture, std::size_t index, const Eigen::Vector2f& uv) {
+  const model::Texture::Level& level = texture.coarser[index];
+  return bilinear<Channels>(texture, level.width, level.height, uv, [&](int i, int j) {
     return Eigen::Map<const Channels>(
         level
             .texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(level.width) +
                     static_cast<std::size_t>(i)]
             .data());
-  };
-  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x1, y0)) +
-         fy * ((1 - fx) * at(x0, y1) + fx * at(x1, y1));
+  });
+}
+
+bool is_sound(const Eigen::Vector2f& uv) {
+  return uv.allFinite() && uv.cwiseAbs().maxCoeff() <= kFarthestRepeat;
 }
 
 }  // namespace
@@ -60,19 +88,30 @@ TriangleTexture::TriangleTexture(const model::Mesh& mesh, const Facet& facet, fl
   if (index < 0) return;
   texture_ = &mesh.textures[static_cast<std::size_t>(index)];
   const float texels = footprint_m * facet.texels_per_m;
-  const float deepest = static_cast<float>(texture_->levels.size() - 1);
+  const float deepest = static_cast<float>(texture_->coarser.size());
   const float level = std::clamp(texels > 1 ? std::log2(texels) : 0.0f, 0.0f, deepest);
   level_ = static_cast<std::size_t>(level + 0.5f);
 }
 
+Eigen::Vector2f TriangleTexture::uv(float u, float v) const {
+  return (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
+}
+
 Texel TriangleTexture::texel(float u, float v) const {
   if (texture_ == nullptr) return {1, 1, 1, 1};
-  const Eigen::Vector2f uv = (1 - u - v) * facet_->uv[0] + u * facet_->uv[1] + v * facet_->uv[2];
-  if (!uv.allFinite() || uv.cwiseAbs().maxCoeff() > kFarthestRepeat) return {1, 1, 1, 1};
+  const Eigen::Vector2f at = uv(u, v);
+  if (!is_sound(at)) return {1, 1, 1, 1};
   Texel result;
   Eigen::Map<Channels> channels(result.data());
-  channels = bilinear(*texture_, level_, uv.x(), uv.y());
+  channels = level_ == 0 ? finest_at(*texture_, at) : coarser_at(*texture_, level_ - 1, at);
   return result;
+}
+
+float TriangleTexture::alpha(float u, float v) const {
+  if (texture_ == nullptr) return 1;
+  const Eigen::Vector2f at = uv(u, v);
+  if (!is_sound(at)) return 1;
+  return level_ == 0 ? finest_alpha_at(*texture_, at) : coarser_at(*texture_, level_ - 1, at)[3];
 }
 
 Texel TriangleTexture::albedo(float u, float v) const {

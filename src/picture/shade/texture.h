@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-
 #include "picture/shade/model_impl.h"
 
 namespace airtruth::shade {
 
-// A texture's value: linear RGBA, premultiplied.
-using Texel = std::array<float, 4>;
+using model::Texel;
 
 // The texture of a triangle at the mip level nearest to one footprint (Williams 1983).
 class TriangleTexture {
@@ -17,10 +14,14 @@ class TriangleTexture {
   TriangleTexture(const model::Mesh& mesh, const Facet& facet, float footprint_m);
   // By barycentric coordinates, as in Hit; white without a texture.
   Texel texel(float u, float v) const;
-  // The same, without the holes that a coarse mip level mixes into an opaque triangle's own texels.
+  float alpha(float u, float v) const;
+  // The texel, without the holes that a coarse mip level mixes into an opaque triangle's own
+  // texels.
   Texel albedo(float u, float v) const;
 
  private:
+  Eigen::Vector2f uv(float u, float v) const;
+
   const Facet* facet_;
   // Null for a material without a texture.
   const model::Texture* texture_ = nullptr;

@@ -39,10 +39,13 @@ std::string type_key(const scene::Intruder& intruder, const trajectory::Path& pa
 std::size_t bytes_of(const model::Mesh& mesh) {
   // Of a triangle: its share of vertices, its BVH, and the ambient occlusion of its sides.
   constexpr std::size_t kBytesOfATriangle = 400;
-  std::size_t texels = 0;
-  for (const model::Texture& texture : mesh.textures)
-    for (const model::Texture::Level& level : texture.levels) texels += level.texels.size();
-  return texels * sizeof(std::array<float, 4>) + mesh.triangle_count() * kBytesOfATriangle;
+  std::size_t bytes = mesh.triangle_count() * kBytesOfATriangle;
+  for (const model::Texture& texture : mesh.textures) {
+    bytes += texture.finest.rgba.size();
+    for (const model::Texture::Level& level : texture.coarser)
+      bytes += level.texels.size() * sizeof(model::Texel);
+  }
+  return bytes;
 }
 
 std::vector<FileStamp> stamps_of(const fleet::Aircraft& aircraft) {
