@@ -6,11 +6,12 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <fstream>
 #include <string>
 
 #include <airtruth/stream.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
+#include <unistd.h>
 
 namespace {
 
@@ -18,10 +19,12 @@ double wall_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 double cpu_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-long peak_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss / 1000;
+long resident_mb() {
+  std::ifstream statm("/proc/self/statm");
+  long all = 0;
+  long resident = 0;
+  statm >> all >> resident;
+  return resident * sysconf(_SC_PAGESIZE) / 1'000'000;
 }
 
 void measure(const std::string& catalogue, std::int64_t samples) {
@@ -34,7 +37,9 @@ void measure(const std::string& catalogue, std::int64_t samples) {
   // Models, calibrations and clips are open after as many samples as two turns of all lanes take.
   std::int64_t next = 1;
   for (; next < 128; ++next) stream.sample(next);
-  fmt::print("samples 1 to 127: {:.1f} a second\n", 127 / (wall_s() - begin_s));
+  fmt::print("samples 1 to 127: {:.1f} a second; {} MB of memory\n",
+             127 / (wall_s() - begin_s),
+             resident_mb());
   std::int64_t objects = 0;
   const double wall_before_s = wall_s();
   const double cpu_before_s = cpu_s();
@@ -44,12 +49,12 @@ void measure(const std::string& catalogue, std::int64_t samples) {
   const auto n = static_cast<double>(samples);
   fmt::print(
       "then {} samples with {} visible objects: {:.1f} a second, {:.1f} a CPU second, "
-      "peak memory {} MB\n",
+      "{} MB of memory\n",
       samples,
       objects,
       n / (wall_s() - wall_before_s),
       n / (cpu_s() - cpu_before_s),
-      peak_mb());
+      resident_mb());
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ struct Animated {
   std::string texture;  // in place of the object's own
 };
 
-// What an animation does in the state that its wrapper was read for, as text. Animations that differ
-// only in a value without effect, such as the turns of a wheel, have the same.
+// What an animation does in the state that its wrapper was read for, as text. Animations that
+// differ only in a value without effect, such as the turns of a wheel, have the same.
 std::string effect_of(const Animation& animation);
 
 // FlightGear inserts an animation directly above each node that it names (or above the whole model
