@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -86,6 +87,34 @@ TEST_F(EncounterModel, AStatedGeometryPassesWithinATenthOfAMetre) {
     EXPECT_NEAR(closest.distance_m, 120, 0.1) << i;
     EXPECT_NEAR(closest.time_s, 4.3, 0.1) << i;
     EXPECT_LE(std::abs(closest.above_m), 60.1) << i;
+  }
+}
+
+// The own aircraft flies north, turns after 20 s of its log, and flies east: an encounter that is
+// drawn for another part of the log misses it by hundreds of metres.
+TEST_F(EncounterModel, OverALogTheyPassTheCameraAsItFliesFromTheFirstFrameOn) {
+  std::string log = "time_s,latitude_deg,longitude_deg,altitude_m\n";
+  constexpr double kDegreesOfAMetre = 1 / 111'320.0;  // on the equator
+  for (int s = 0; s <= 40; ++s)
+    log += fmt::format("{},{:.9f},{:.9f},900\n",
+                       s,
+                       1 + kDegreesOfAMetre * 40 * std::min(s, 20),
+                       1 + kDegreesOfAMetre * 40 * std::max(s - 20, 0));
+  write_file(folder_ / "flight.csv", log);
+  const Catalogue catalogue = parse_catalogue(
+      "[[background]]\nname = \"sky\"\nvideo = \"v.mp4\"\nfirst_frame = 600\n"
+      "lens = { vertical_fov_deg = 75 }\ncamera = { log = \"flight.csv\", log_offset_s = 0, "
+      "position_ned_m = [0, 0, -900] }\n[[encounter_model]]\naircraft = [\"c172/*\"]\n"
+      "kind = \"geometric\"\ncount = 5\nhmd_m = [0, 50]\nvmd_m = [-20, 20]\n"
+      "cpa_time_s = [3, 5]\nin_view = false\n",
+      folder_ / "c.toml");
+  const Expansion expansion(catalogue);
+  for (std::int64_t i = 0; i < 5; ++i) {
+    Item item = expansion.at(i);
+    place(item, catalogue, {"v.mp4", {}, 160, 120, 30, 1000, 18});
+    item.scene.camera.clip_start_s = 18;  // as render finds it in the video
+    const Closest closest = closest_of(item.scene, item.scene.intruders.at(0), 8);
+    EXPECT_LE(closest.distance_m, 51) << i;
   }
 }
 

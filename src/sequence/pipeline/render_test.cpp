@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
@@ -465,6 +466,40 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
              {.overwrite = true});
   EXPECT_EQ(stated.attitude_words, "");
   EXPECT_EQ(replay::open_finished(stated.folder)
+                .truth.frames[0]
+                .camera_attitude_yaw_pitch_roll_deg.roll_deg,
+            0);
+}
+
+// A camera that nothing states to be upside down is not: what looks like it is no horizon.
+TEST_F(Sequence, AHorizonThatStandsUpsideDownIsNone) {
+  synthetic::FlightOptions options;
+  options.width = 320;
+  options.height = 240;
+  options.frame_count = 3;
+  options.own_aircraft = false;
+  options.hills_deg = 0;
+  demo::VirtualFlightOptions how;
+  how.format = video::Format::kMkv;
+  demo::write_flight(synthetic::Flight(options), out_ / "level.mkv", how);
+  video::Reader reader(out_ / "level.mkv");
+  for (int k = 0; k < 3; ++k) {
+    image::Rgb8 picture = image::rgb8_from_picture(reader.next()->picture);
+    image::Rgb8 turned = image::make_rgb8(picture.width, picture.height);
+    const std::size_t pixels = std::size_t{320} * 240;
+    for (std::size_t i = 0; i < pixels; ++i)
+      std::copy_n(&picture.samples[3 * i], 3, &turned.samples[3 * (pixels - 1 - i)]);
+    video::write_still(out_ / ("f" + std::to_string(k) + ".png"), turned);
+  }
+  const Summary summary = render(
+      scene::parse_scene("name = \"turned\"\n[background]\nvideo = \"f%d.png\"\nframe_rate_hz = "
+                         "30\n[lens]\nvertical_fov_deg = 75\n[motion]\nmodel = \"none\"\n" +
+                             crossing("a", "c172/news", 60),
+                         out_ / "s.toml"),
+      out_,
+      {.use_cache = false});
+  EXPECT_THAT(summary.attitude_words, testing::HasSubstr("stands upside down"));
+  EXPECT_EQ(replay::open_finished(summary.folder)
                 .truth.frames[0]
                 .camera_attitude_yaw_pitch_roll_deg.roll_deg,
             0);
