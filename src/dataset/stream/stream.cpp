@@ -39,14 +39,10 @@ catalogue::Catalogue adapted(catalogue::Catalogue catalogue) {
   return catalogue;
 }
 
-// Of aircraft, in bytes: sixteen airliners of 50,000 triangles with a texture of 1024x1024 take
-// half. Those that do not fit are loaded each time.
-constexpr std::size_t kMostAircraft = std::size_t{1} << 30;
-
 std::shared_ptr<setup::SharedInputs> inputs_of(const pipeline::Options& options) {
   return options.shared ? options.shared
                         : std::make_shared<setup::SharedInputs>(
-                              pipeline::cache_folder(options, "ambient_occlusion"), kMostAircraft);
+                              pipeline::cache_folder(options, "ambient_occlusion"));
 }
 
 // An even offset from low to high, at a share from 0 to 1; where there is none, the one below high.

@@ -13,29 +13,6 @@
 namespace airtruth::setup {
 namespace {
 
-// What decides how an intruder's aircraft is loaded.
-std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
-  if (intruder.distractor) {
-    const scene::Distractor& one = *intruder.distractor;
-    return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}",
-                       enum_name(one.kind),
-                       one.size_m,
-                       enum_name(one.plumage),
-                       one.aspect_ratio,
-                       one.flap_hz,
-                       one.flap_phase,
-                       one.glide,
-                       one.rotors,
-                       fmt::join(one.colour, ","));
-  }
-  const model::LoadOptions options = load_options(intruder, path);
-  std::string key = intruder.aircraft + '|' + fleet::configuration_of(intruder.aircraft, options);
-  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
-  if (options.axes)
-    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
-  return key;
-}
-
 std::size_t bytes_of(const model::Mesh& mesh) {
   // Of a triangle: its share of vertices, its BVH, and the ambient occlusion of its sides.
   constexpr std::size_t kBytesOfATriangle = 400;
@@ -69,6 +46,44 @@ std::shared_ptr<const Type> prepared(std::shared_ptr<const fleet::Aircraft> airc
 }
 
 }  // namespace
+
+// What decides how an intruder's aircraft is loaded.
+std::string SharedInputs::type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
+  if (intruder.distractor) {
+    const scene::Distractor& one = *intruder.distractor;
+    return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}",
+                       enum_name(one.kind),
+                       one.size_m,
+                       enum_name(one.plumage),
+                       one.aspect_ratio,
+                       one.flap_hz,
+                       one.flap_phase,
+                       one.glide,
+                       one.rotors,
+                       fmt::join(one.colour, ","));
+  }
+  const model::LoadOptions options = load_options(intruder, path);
+  std::string key = intruder.aircraft + '|' + configuration_of(intruder.aircraft, options);
+  if (options.catalogue_scale) key += '*' + std::to_string(*options.catalogue_scale);
+  if (options.axes)
+    key += '|' + options.axes->forward + options.axes->up + std::to_string(options.axes->scale);
+  return key;
+}
+
+// A wrapper is read once for each state. Where its files change, the aircraft is loaded again all
+// the same, since its sources have.
+std::string SharedInputs::configuration_of(const std::string& aircraft,
+                                           const model::LoadOptions& options) {
+  const auto state = std::tuple(aircraft, options.airspeed_kt, options.altitude_agl_ft);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = configurations_.find(state);
+    if (found != configurations_.end()) return found->second;
+  }
+  std::string configuration = fleet::configuration_of(aircraft, options);
+  const std::lock_guard lock(mutex_);
+  return configurations_.emplace(state, std::move(configuration)).first->second;
+}
 
 std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intruder,
                                                   const trajectory::Path& path,

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "foundation/base/file_state.h"
@@ -64,6 +65,8 @@ class SharedInputs {
     std::string sha256;
   };
 
+  std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path);
+  std::string configuration_of(const std::string& aircraft, const model::LoadOptions& options);
   std::shared_ptr<Slot> slot_of(const std::string& key);
   std::shared_ptr<const Type> known(const Slot& slot) const;
   std::shared_ptr<const Type> twin_of(const fleet::Aircraft& loaded) const;
@@ -74,6 +77,8 @@ class SharedInputs {
   const std::size_t max_kept_bytes_;
   mutable std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Slot>> slots_;
+  // By aircraft, airspeed in knots and height in feet.
+  std::map<std::tuple<std::string, double, double>, std::string> configurations_;
   std::uint64_t uses_ = 0;
   std::map<std::string, Hashed> hashes_;
 };

@@ -21,6 +21,14 @@ namespace {
 constexpr double kMetresPerSecondInKnots = 1.943844;
 constexpr double kMetresInFeet = 3.280840;
 
+// An aircraft's configuration is that of the nearest of these steps. Propellers that turn with the
+// airspeed and flaps that follow it would else make each path's aircraft one of its own, with its
+// BVH and textures. Chosen: 20 kt are within a sixth of the slowest usual speed.
+constexpr double kAirspeedStepKt = 20;
+constexpr double kHeightStepFt = 100;
+
+double nearest_step(double value, double step) { return step * std::round(value / step); }
+
 struct Loaded {
   scene::Intruder intruder;  // with waypoints in place of what is seen
   Actor actor;
@@ -106,8 +114,10 @@ model::LoadOptions load_options(const scene::Intruder& intruder,
   // A path without a beginning begins with the clip.
   const double begin_s = std::isfinite(path.start_s()) ? path.start_s() : 0;
   if (const auto state = path.at(begin_s)) {
-    options.airspeed_kt = state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots;
-    options.altitude_agl_ft = std::max(0.0, -state->position_in_world.z()) * kMetresInFeet;
+    options.airspeed_kt = nearest_step(
+        state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots, kAirspeedStepKt);
+    options.altitude_agl_ft =
+        nearest_step(std::max(0.0, -state->position_in_world.z()) * kMetresInFeet, kHeightStepFt);
   }
   options.catalogue_scale = intruder.catalogue_scale;
   if (intruder.model_forward || intruder.model_up || intruder.model_scale) {

@@ -60,7 +60,7 @@ struct World {
 };
 
 // How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
-// beginning of its path.
+// beginning of its path, to the nearest 20 kt and 100 ft.
 model::LoadOptions load_options(const scene::Intruder& intruder,
                                 const trajectory::Path& path,
                                 const std::stop_token& stop = {});
