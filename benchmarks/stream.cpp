@@ -43,9 +43,11 @@ void measure(const std::string& catalogue, std::int64_t samples) {
   std::int64_t objects = 0;
   const double wall_before_s = wall_s();
   const double cpu_before_s = cpu_s();
-  for (std::int64_t i = 0; i < samples; ++i, ++next)
-    for (const auto& intruder : stream.sample(next).frames.front().truth.intruders)
+  for (std::int64_t i = 0; i < samples; ++i, ++next) {
+    const airtruth::StreamSample sample = stream.sample(next);
+    for (const auto& intruder : sample.frames.front().truth.intruders)
       objects += intruder.state == airtruth::IntruderState::kVisible ? 1 : 0;
+  }
   const auto n = static_cast<double>(samples);
   fmt::print(
       "then {} samples with {} visible objects: {:.1f} a second, {:.1f} a CPU second, "

@@ -150,9 +150,11 @@ TEST_F(StreamOfFlights, SoAreEncountersFromWhereTheyAreInView) {
   const Stream stream = stream_of(background("flight3") + encounters +
                                   "[stream]\nsize_px = [128, 96]\nframes = 2\nreuse = 2\n");
   int seen = 0;
-  for (std::int64_t index = 0; index < 24; ++index)
-    for (const annotation::Intruder& intruder : stream.sample(index).frames[0].truth.intruders)
+  for (std::int64_t index = 0; index < 24; ++index) {
+    const Sample sample = stream.sample(index);
+    for (const annotation::Intruder& intruder : sample.frames[0].truth.intruders)
       seen += intruder.state == annotation::State::kVisible ? 1 : 0;
+  }
   EXPECT_GE(seen, 20);
   for (const std::int64_t index : {0, 1, 2, 3})
     expect_as_rendered(stream, index, folder_->path() / "encounters");
