@@ -21,7 +21,7 @@ struct Case {
   Format format;
   const char* file;  // in the folder that is read
 };
-constexpr std::array<Case, 11> kCases = {{
+constexpr std::array<Case, 12> kCases = {{
     {Format::kCoco, "annotations/instances_x.json"},
     {Format::kAot, "ImageSets/groundtruth.json"},
     {Format::kVoc, "Annotations/a_000001.xml"},
@@ -33,6 +33,7 @@ constexpr std::array<Case, 11> kCases = {{
     {Format::kVot, "groundtruth.txt"},
     {Format::kCsv, "a.csv"},
     {Format::kYolo, "data.yaml"},
+    {Format::kWebdataset, "a.tar"},
 }};
 
 const fs::path& folder() {

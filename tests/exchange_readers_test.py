@@ -17,8 +17,10 @@ import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
+import tarfile
 import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
@@ -630,6 +632,74 @@ class Readers(unittest.TestCase):
             cv2.imwrite(str(folder / names[i]), numpy.full((48, 64, 3), 40 * i + 20, numpy.uint8))
         return [folder / name for name in names]
 
+    def test_webdataset(self):
+        """webdataset/tariterators.py: tar_file_iterator, base_plus_ext, group_by_keys."""
+        for out, clips, has_pictures in self.exports("webdataset", options=("--shard-mb", "1")):
+            got, keys = {clip.name: {} for clip in clips}, set()
+            for shard in sorted(out.glob("*.tar")):
+                self.assertRegex(shard.name, r"^(train|val|test|all)-\d{6}\.tar$")
+                for key, sample in self.samples_of(shard):
+                    self.assertNotIn(key, keys)
+                    keys.add(key)
+                    about = json.loads(sample["json"])
+                    got[about["clip"]][about["frame"]] = {label["track"]: tuple(label["box_px"]) for label in about["labels"]}
+                    self.assertEqual(set(sample), {"jpg", "json"} if has_pictures else {"json"})
+                    if has_pictures:
+                        picture = cv2.imdecode(numpy.frombuffer(sample["jpg"], numpy.uint8), cv2.IMREAD_COLOR)
+                        self.assertEqual(picture.shape, (HEIGHT, WIDTH, 3))
+            self.assertEqual(len(keys), sum(len(clip.frames) for clip in clips))
+            self.check_frames(got, clips)
+
+    @staticmethod
+    def samples_of(shard):
+        """Files that follow each other and have one key are one sample."""
+        samples = []
+        with tarfile.open(shard) as archive:
+            for member in archive:
+                key, ending = re.match(r"^((?:.*/|)[^.]+)[.]([^/]*)$", member.name).groups()
+                if not samples or samples[-1][0] != key:
+                    samples.append((key, {}))
+                samples[-1][1][ending] = archive.extractfile(member).read()
+        return samples
+
+    def test_table(self):
+        """Python's csv, as pandas.read_csv reads it too."""
+        for out, clips, _ in self.exports("table", images=("default",)):
+            with open(out / "frames.csv", newline="", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file, strict=True))
+            got = {clip.name: {} for clip in clips}
+            for row in rows:
+                self.assertNotIn(None, row.values())
+                box = tuple(float(row[f"box_px_{part}"]) for part in ("x", "y", "width", "height"))
+                got[row["sequence"]].setdefault(int(row["frame"]), {})[int(row["track"])] = box
+            self.check_frames(got, clips)
+            self.assertEqual(len(pandas.read_csv(out / "frames.csv")), len(rows))
+            if clips is self.built:
+                self.check_truth(out, rows)
+            else:
+                self.assertEqual(len(pandas.read_csv(out / "encounters.csv")), 0)
+
+    def check_truth(self, out, rows):
+        truth = {}
+        for sequence in (self.root / "built/sequences").iterdir():
+            for i, line in enumerate((sequence / "truth.jsonl").read_text().splitlines()):
+                truth[sequence.name, i] = json.loads(line)["intruders"][0]
+        for row in rows:
+            intruder = truth[row["sequence"], int(row["frame"])]
+            for column, value in (("id", intruder["id"]), ("range_m", intruder["range_m"]), ("azimuth_deg", intruder["azimuth_deg"]),
+                                  ("position_ned_m_down", intruder["position_ned_m"][2]), ("tcpa_s", intruder["encounter"]["tcpa_s"]),
+                                  ("exact_box_px_width", intruder["exact_box_px"][2]), ("centroid_px_y", intruder["centroid_px"][1])):
+                found = row[column] if isinstance(value, str) else float(row[column]) if row[column] else None
+                self.assertEqual(found, value, column)
+        with open(out / "encounters.csv", newline="", encoding="utf-8") as file:
+            encounters = list(csv.DictReader(file, strict=True))
+        self.assertEqual([row["sequence"] for row in encounters], [clip.name for clip in self.built])
+        for row in encounters:
+            record = json.loads((self.root / "built/sequences" / row["sequence"] / "sequence.json").read_text())["encounters"][0]
+            self.assertEqual(float(row["closest_approach_distance_m"]), record["closest_approach"]["distance_m"])
+            self.assertEqual(float(row["first_seen_to_closest_approach_s"]), record["first_seen"]["to_closest_approach_s"])
+            self.assertEqual([row["id"], row["meeting"] or None], [record["id"], record["meeting"]])
+
     def test_import_of_coco_by_its_own_names(self):
         """cocodataset.org: instances_val2017.json, val2017/000000000139.jpg: 12 digits, with gaps; iscrowd = 1."""
         self.where = "import of COCO"
@@ -665,7 +735,7 @@ class Readers(unittest.TestCase):
 
     def test_names(self):
         """Patterns of numbered pictures, shells, XML and JSON have their own idea of these characters."""
-        for name, forms in (("a%d $(b)", ("yolo", "otb", "vot")), ("<b>&\"'", ("voc", "cvat", "mot"))):
+        for name, forms in (("a%d $(b)", ("yolo", "otb", "vot")), ("<b>&\"'", ("voc", "cvat", "mot")), ("a.b,%2E", ("webdataset",))):
             self.where = f"clip {name!r}"
             csv_file = self.root / f"{name}.csv"
             csv_file.write_text((self.root / "boxes.csv").read_text())

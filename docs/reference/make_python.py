@@ -12,15 +12,16 @@ import inspect
 import os
 import re
 import sys
+import types
 
 PAGE = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "python.md")
 HEAD = """# airtruth in Python
 
 `import airtruth` after the installation of the Debian package, for Debian's own Python; `./dev python` builds it in a
-checkout and prints the environment in which Python finds it. It needs NumPy and nothing else. This page is written by
+checkout and prints the environment in which Python finds it. It needs NumPy and nothing else, but for airtruth.torch. This page is written by
 [`make_python.py`](reference/make_python.py) from the docstrings of `python/airtruth`; change those, not this page. The
 examples are run by `python_package_test`: "scene.toml" is a scene of 6 frames over "clip.mkv", and "set" the folder that
-`airtruth render scene.toml --out set` makes of it.
+`airtruth render scene.toml --out set` makes of it. Those of airtruth.torch are run by `python_torch_test`, where torch is installed.
 
 """
 
@@ -101,15 +102,25 @@ def page_of(title, thing, level="##"):
     return [f"{level} {title}{signature_of(thing)}", "", *body_of(thing.__doc__)]
 
 
+def stand_in_for_torch():
+    """The page is the same where torch is not installed."""
+    torch = types.ModuleType("torch")
+    torch.utils, torch.utils.data = types.ModuleType("torch.utils"), types.ModuleType("torch.utils.data")
+    torch.utils.data.Dataset = object
+    sys.modules.update({"torch": torch, "torch.utils": torch.utils, "torch.utils.data": torch.utils.data})
+
+
 def whole_page(airtruth):
     lines = [HEAD + inspect.cleandoc(airtruth.__doc__), ""]
-    for name in airtruth.__all__:
+    for name in [*airtruth.__all__, "torch"]:
         thing = getattr(airtruth, name)
         if not inspect.ismodule(thing):
             lines += page_of(f"airtruth.{name}", thing)
             continue
         lines += [f"## airtruth.{name}", "", *body_of(thing.__doc__)]
         for own in (own for own, one in vars(thing).items() if getattr(one, "__module__", "") == thing.__name__):
+            if own.startswith("_"):
+                continue
             lines += page_of(f"airtruth.{name}.{own}", getattr(thing, own), "###")
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).rstrip() + "\n"
 
@@ -119,6 +130,7 @@ def main():
     if len(arguments) != 1:
         sys.exit(__doc__)
     sys.path.insert(0, os.path.abspath(arguments[0]))
+    stand_in_for_torch()
     import airtruth
 
     page = whole_page(airtruth)

@@ -17,9 +17,9 @@
 #include <airtruth/export.h>
 
 // Labelled video in the terms that annotation formats share (boxes, tracks and classes by frame),
-// and the formats themselves: COCO, YOLO, MOT, VOC, CVAT, AOT, OTB, GOT-10k, VOT. A field without
-// information is empty and never holds a placeholder number. docs/formats/exchange.md has the
-// folders, origins and sources of each format.
+// and the formats themselves: COCO, YOLO, MOT, VOC, CVAT, AOT, OTB, GOT-10k, VOT, WebDataset and a
+// table. A field without information is empty and never holds a placeholder number.
+// docs/formats/exchange.md has the folders, origins and sources of each format.
 //
 // Example: a MOTChallenge set becomes a COCO set.
 //   const Part train{"train", read_clips(Format::kMot, "mot", {}, {})};
@@ -118,10 +118,14 @@ enum class Format {
   kEvision,
   // Read only: "frame,x,y,w,h".
   kCsv,
+  // Its shards are read without their pictures.
+  kWebdataset,
+  // Written only: frames.csv, a row for each label.
+  kTable,
 };
 
-// "coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "evision" or "csv". For any
-// other name it throws an Error that offers the nearest.
+// "coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "evision", "csv",
+// "webdataset" or "table". For any other name it throws an Error that offers the nearest.
 AIRTRUTH_API Format format_from_name(std::string_view name);
 AIRTRUTH_API const char* name(Format format);
 AIRTRUTH_API bool can_write(Format format);
@@ -163,8 +167,8 @@ struct ReadOptions {
 // Reads every clip of a set. `source` is the folder that write_clips() or `airtruth dataset export`
 // filled, or one of the same form. For COCO, CVAT and AOT it may also be the annotation file; for
 // E-Vision it is an XML file or a folder of them; for CSV (`frame,x,y,w,h`) it is a file or a
-// folder. Frames without an object are present and empty. Throws Error with file and line, and
-// warns of what it left out.
+// folder. Frames without an object are present and empty. Throws Error with file and line, and for
+// a format that can only be written; warns of what it left out.
 AIRTRUTH_API std::vector<Clip> read_clips(Format format,
                                           const std::filesystem::path& source,
                                           const ReadOptions& options,

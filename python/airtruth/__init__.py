@@ -9,6 +9,9 @@ ValueError. Long calls let other threads of Python run. Renderings and readers b
 sequences and data sets can be sent to others.
 """
 
+import importlib as _importlib
+from types import ModuleType as _ModuleType
+
 from . import evaluate
 from ._core import version as __version__
 from ._dataset import DataSet, Sequence
@@ -33,3 +36,10 @@ __all__ = [
 for _name in __all__:
     if isinstance(globals()[_name], type) or callable(globals()[_name]):
         globals()[_name].__module__ = __name__
+
+
+def __getattr__(name: str) -> _ModuleType:
+    """airtruth.torch is imported where it is first used; nothing else needs torch."""
+    if name == "torch":
+        return _importlib.import_module(".torch", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

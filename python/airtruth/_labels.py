@@ -65,9 +65,9 @@ def clip_of(fields: Dict[str, Any]) -> Clip:
 
 def read_labels(source: Path, format: str = "airtruth", *, size: Optional[Tuple[int, int]] = None, category: str = "aircraft") -> List[Clip]:
     """The clips of a labelled set. `format`: "airtruth" (one labels.jsonl), "coco", "yolo", "mot", "voc", "cvat", "aot", "otb",
-    "got10k", "vot", "evision" or "csv" (docs/formats/exchange.md says which file or folder `source` is). `size`: width and height
-    of the pictures where neither labels nor pictures state them. `category`: that of objects where the format has none.
-    airtruth.Error with file and line.
+    "got10k", "vot", "webdataset", "evision" or "csv" (docs/formats/exchange.md says which file or folder `source` is). `size`: width
+    and height of the pictures where neither labels nor pictures state them. `category`: that of objects where the format has none.
+    airtruth.Error with file and line, and for "table", which can only be written.
 
     >>> [clip.name for clip in airtruth.read_labels("coco", "coco")]
     ['across']
@@ -86,8 +86,8 @@ def convert_labels(
     category: str = "aircraft",
 ) -> None:
     """Writes the labels of a set, without its pictures, as another format into a new folder, as the part of that name. The other
-    arguments are those of read_labels(). airtruth.Error where the folder exists and is not empty, and for a format that can only
-    be read ("evision", "csv").
+    arguments are those of read_labels(); a "table" can be written too. airtruth.Error where the folder exists and is not empty, and
+    for a format that can only be read ("evision", "csv").
 
     >>> airtruth.convert_labels("coco", "coco", "mot", "mot")
     >>> [clip.name for clip in airtruth.read_labels("mot", "mot", size=(160, 120))]

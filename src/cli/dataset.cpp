@@ -134,19 +134,23 @@ void run_report(Report arguments, Context& context) {
   console.result(arguments.out);
 }
 
-constexpr const char* kWritten = "coco, yolo, mot, voc, cvat, aot, otb, got10k or vot";
+constexpr const char* kBothWays = "coco, yolo, mot, voc, cvat, aot, otb, got10k, vot";
 
 void add_export(CLI::App& group, Context& context) {
   auto [command, out] =
       add_command(group, context, "export", "Write a data set in a format of others", run_export);
   command->add_option("DIR", out->set, "A data set, or a folder that `render` made")->required();
-  command->add_option("--format,-f", out->format, kWritten)->required();
+  command
+      ->add_option(
+          "--format,-f", out->format, std::string(kBothWays) + ", webdataset or table (CSV)")
+      ->required();
   command
       ->add_option("--out,-o", out->out, "A new folder; an export that was stopped goes on in it")
       ->required();
   command->add_option("--images",
                       out->images,
-                      "jpg (default; for aot, whose readers open no jpg: png), png or none");
+                      "jpg (default; for aot, whose readers open no jpg: png), png or none (as a "
+                      "table is)");
   command->add_option(
       "--boxes",
       out->boxes,
@@ -182,6 +186,12 @@ void add_export(CLI::App& group, Context& context) {
   command->add_flag("--drop-faint",
                     out->options.drop_faint,
                     "Leave out what --min-contrast and --min-size refuse, in every format");
+  command
+      ->add_option("--shard-mb",
+                   out->options.shard_mb,
+                   "Of webdataset: a shard ends with the sample that makes it this large, in 10^6 "
+                   "bytes (default: 500)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}));
   add_jobs(*command, out->options.jobs, "Sequences at a time (default: one per core)");
 }
 
@@ -206,7 +216,9 @@ void add_import(CLI::App& group, Context& context) {
   command->add_option("SOURCE", in->source, "Its folder, or its annotation file")->required();
   command
       ->add_option(
-          "--format,-f", in->format, std::string(kWritten) + "; evision or csv (frame,x,y,w,h)")
+          "--format,-f",
+          in->format,
+          std::string(kBothWays) + "; webdataset (labels alone), evision or csv (frame,x,y,w,h)")
       ->required();
   command->add_option("--out,-o", in->out, "A new folder")->required();
   command->add_option(

@@ -28,6 +28,7 @@ def commands(airtruth, data):
         "render --overwrite": (lambda out: [a, "render", f"{data}/moving.toml", "--no-cache", "--overwrite", "--out", out], False),
         "export": (lambda out: [a, "dataset", "export", f"{data}/set", "-f", "coco", "-o", f"{out}/coco"], True),
         "export yolo": (lambda out: [a, "dataset", "export", f"{data}/set", "-f", "yolo", "--images", "png", "-o", f"{out}/yolo"], True),
+        "export webdataset": (lambda out: [a, "dataset", "export", f"{data}/set", "-f", "webdataset", "-o", f"{out}/shards"], True),
         "report": (lambda out: [a, "dataset", "report", f"{data}/set", "--overwrite", "-o", f"{out}/report.html"], False),
         "track": (lambda out: [a, "track", f"{data}/set", "-t", "opencv-mil", "-t", "am3", "-o", f"{out}/results"], True),
         "evaluate": (lambda out: [a, "evaluate", f"{data}/set", f"{data}/results/opencv-mil", "-o", f"{out}/evaluation"], True),

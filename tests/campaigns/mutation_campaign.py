@@ -226,7 +226,7 @@ def prepare(airtruth, data):
     shutil.copy(f"{data}/own.png", f"{data}/model/skin.png")
     common.write(f"{data}/set.toml", common.CATALOGUE)
     run("dataset", "build", f"{data}/set.toml", "--out", f"{data}/labels/set")
-    for form in ("coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot"):
+    for form in ("coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "webdataset"):
         run("dataset", "export", f"{data}/labels/set", "-f", form, "-o", f"{data}/labels/{form}", "--images", "png")
     run("track", f"{data}/labels/set", "-t", "opencv-mil", "-o", f"{data}/results/results")
     shutil.copytree(f"{data}/labels/set", f"{data}/results/set")
@@ -239,7 +239,7 @@ def label_files(data):
     found = []
     for root, _, files in os.walk(f"{data}/labels"):
         found += [os.path.relpath(os.path.join(root, name), f"{data}/labels") for name in files
-                  if is_text(name) and not name.endswith((".csv", ".md"))]
+                  if name.endswith(".tar") or is_text(name) and not name.endswith((".csv", ".md"))]
     return sorted(found)
 
 

@@ -141,7 +141,7 @@ class Names:
         self.run(f"verify of {label}", "dataset", "verify", "set", codes=(0,))
         self.run(f"report of {label}", "dataset", "report", "set", "-o", "r.html", codes=(0,))
         self.see_page(label, "r.html")
-        for form in ("coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot"):
+        for form in ("coco", "yolo", "mot", "voc", "cvat", "aot", "otb", "got10k", "vot", "webdataset"):
             if self.run(f"{form} of {label}", "dataset", "export", "set", "-f", form, "--images", "png", "-o", f"e-{form}").code == 0:
                 self.run(f"{form} of {label} again", "dataset", "import", f"e-{form}", "-f", form, "-o", f"i-{form}")
                 if os.path.exists(f"{self.work}/i-{form}"):

@@ -11,7 +11,7 @@
 // What the tests of formats have in common.
 namespace airtruth::exchange {
 
-// The formats that are written.
+// The formats that are written and read.
 inline constexpr Format kWritten[] = {Format::kCoco,
                                       Format::kYolo,
                                       Format::kMot,
@@ -20,7 +20,8 @@ inline constexpr Format kWritten[] = {Format::kCoco,
                                       Format::kAot,
                                       Format::kOtb,
                                       Format::kGot10k,
-                                      Format::kVot};
+                                      Format::kVot,
+                                      Format::kWebdataset};
 
 // A folder that is removed at the end.
 class Folder {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "dataset/labelled/truth_table.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
@@ -29,6 +30,12 @@ const char* extension_of(Images images) { return images == Images::kPng ? ".png"
 // kind.
 Images images_of(const ExportOptions& options) {
   const exchange::Pictures wanted = exchange::pictures_of(options.format);
+  if (wanted == exchange::Pictures::kNone) {
+    if (options.images.value_or(Images::kNone) != Images::kNone)
+      throw Error(std::string("images is ") + enum_name(*options.images) + ", and " +
+                  exchange::name(options.format) + " holds no pictures; expected none");
+    return Images::kNone;
+  }
   if (!options.images) return wanted == exchange::Pictures::kPngAlone ? Images::kPng : Images::kJpg;
   if (wanted == exchange::Pictures::kPngAlone && *options.images == Images::kJpg)
     throw Error(std::string("images is jpg, and the readers of ") + exchange::name(options.format) +
@@ -54,6 +61,7 @@ Json options_json(const fs::path& set, const ExportOptions& options) {
                {"boxes", enum_name(options.boxes)},
                {"one_class", options.one_class}};
   if (options.mot_classes) json["mot_classes"] = true;
+  if (options.shard_mb) json["shard_mb"] = *options.shard_mb;
   if (options.min_contrast > 0) json["min_contrast"] = options.min_contrast;
   if (options.min_size_px > 0) json["min_size_px"] = options.min_size_px;
   if (options.drop_faint) json["drop_faint"] = true;
@@ -77,6 +85,9 @@ std::string boxes_text(dataset::Boxes boxes) {
          "changed, with what blur, sharpening, noise and the codec's quantiser add around the "
          "aircraft.\n";
 }
+
+// The export's own folder in its place while the export is under way.
+constexpr const char* kOwnFolder = ".export";
 
 // The folder of an export while the export is under way. It is made by begin().
 class Place {
@@ -108,7 +119,7 @@ class Place {
   void finish(const Json& summary) const {
     flush_files(root_);
     write_file(record(), Json{{"options", options_}, {"summary", summary}}.dump(2) + "\n");
-    fs::remove_all(root_ / ".export");
+    fs::remove_all(root_ / kOwnFolder);
   }
   fs::path record() const { return root_ / "export.json"; }
 
@@ -121,7 +132,7 @@ class Place {
                     {root_.string()});
       complete_ = true;
       // A run that ended between its last two steps leaves this folder.
-      fs::remove_all(root_ / ".export");
+      fs::remove_all(root_ / kOwnFolder);
       return;
     }
     const bool begun = fs::exists(begun_file());
@@ -138,11 +149,11 @@ class Place {
   bool holds_only_own_folder() const {
     return fs::is_directory(root_) &&
            std::all_of(fs::directory_iterator(root_), fs::directory_iterator(), [](auto& entry) {
-             return entry.path().filename() == ".export";
+             return entry.path().filename() == kOwnFolder;
            });
   }
-  fs::path begun_file() const { return root_ / ".export" / "options.json"; }
-  fs::path done_folder() const { return root_ / ".export" / "done"; }
+  fs::path begun_file() const { return root_ / kOwnFolder / "options.json"; }
+  fs::path done_folder() const { return root_ / kOwnFolder / "done"; }
 
   fs::path root_;
   Json options_;
@@ -199,6 +210,14 @@ class Export {
     write_.image_extension = extension_of(*options_.images);
     write_.with_images = *options_.images != Images::kNone;
     write_.mot_classes = options_.mot_classes;
+    write_.staging = fs::path(kOwnFolder) / "pictures";
+    if (options_.shard_mb) write_.shard_bytes = *options_.shard_mb * 1'000'000;
+    if (is_table()) {
+      write_.columns = truth_columns();
+      write_.cells = [this](const exchange::Clip&,
+                            std::int64_t frame,
+                            const exchange::Label& label) { return cells_of(frame, label); };
+    }
     const std::vector<std::string> order = {"train", "val", "test", "trainval", "all"};
     for (const std::string& part : order)
       if (std::any_of(parts_.begin(), parts_.end(), [&](auto& p) { return p.second == part; }))
@@ -337,6 +356,25 @@ class Export {
     return places;
   }
 
+  bool is_table() const { return options_.format == exchange::Format::kTable; }
+
+  // The truth of the sequence whose labels are being written, for the table.
+  void read_truth(const std::string& name) {
+    truth_.clear();
+    if (set_.is_imported(name)) return;
+    const replay::Finished finished = replay::open_finished(set_.folder(name));
+    encounters_ += encounter_lines(finished, parts_.at(name));
+    for (const annotation::Frame& frame : finished.truth.frames)
+      truth_[frame.frame] = frame.intruders;
+  }
+
+  // The track of a label is the place of its intruder, from 1.
+  std::vector<std::string> cells_of(std::int64_t frame, const exchange::Label& label) const {
+    const auto found = truth_.find(frame);
+    if (found == truth_.end()) return std::vector<std::string>(write_.columns.size());
+    return truth_cells(found->second.at(static_cast<std::size_t>(label.track) - 1));
+  }
+
   void write_labels() {
     for (const std::string& name : set_.names()) {
       if (options_.stop.stop_requested()) throw Interrupted();
@@ -344,6 +382,7 @@ class Export {
       summary_.faint += sift(clip);
       const std::string& part = parts_.at(name);
       count_boxes(clip, set_.is_imported(name));
+      if (is_table()) read_truth(name);
       ++summary_.sequences;
       summary_.frames += std::ssize(clip.frames);
       summary_.frames_of_part[part] += std::ssize(clip.frames);
@@ -359,6 +398,7 @@ class Export {
       for (const exchange::Clip& one : clips) writer_->add(one, part);
     }
     writer_->finish();
+    if (is_table()) write_file(place_.root() / "encounters.csv", encounters_header() + encounters_);
   }
 
   void count_boxes(const exchange::Clip& clip, bool is_imported) {
@@ -403,6 +443,9 @@ class Export {
   exchange::WriteOptions write_;
   std::unique_ptr<exchange::Writer> writer_;
   std::map<std::string, std::string> parts_;
+  // For the table: the intruders by frame, and the lines of encounters so far.
+  std::map<std::int64_t, std::vector<annotation::Intruder>> truth_;
+  std::string encounters_;
   std::mutex mutex_;
   std::int64_t rendered_ = 0, imported_ = 0, boxes_ = 0;
   ExportSummary summary_;
@@ -417,6 +460,9 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   if (options.mot_classes && options.format != exchange::Format::kMot)
     throw Error(std::string("numbered classes are asked for, and ") +
                 exchange::name(options.format) + " holds its classes anyway; expected format mot");
+  if (options.shard_mb && options.format != exchange::Format::kWebdataset)
+    throw Error(std::string("a size of shards is asked for, and ") +
+                exchange::name(options.format) + " has none; expected format webdataset");
   const LabelledSet labelled(set);
   // The labels hold folder names in XML, JSON and YAML.
   require_utf8(fs::absolute(set));

@@ -25,7 +25,7 @@ constexpr auto enum_names(Images) {
 
 struct ExportOptions {
   exchange::Format format = exchange::Format::kCoco;
-  // Empty: JPEG, but PNG for AOT, whose reader opens no other kind.
+  // Empty: JPEG, but PNG for AOT, whose reader opens no other kind, and none for a table.
   std::optional<Images> images;
   std::int64_t every = 1;  // the export holds the frames 0, n, 2n, ...
   Split split = Split::kByBackground;
@@ -44,6 +44,8 @@ struct ExportOptions {
   bool one_class = false;
   // For MOT only: classes are numbered from 1. Otherwise every aircraft has class 1.
   bool mot_classes = false;
+  // For WebDataset only: the size at which a shard ends, in 10^6 bytes; empty: 500.
+  std::optional<std::int64_t> shard_mb;
   // Number of sequences that are exported at the same time; 0 means one per core.
   int jobs = 0;
   Warn warn;
@@ -65,9 +67,9 @@ struct ExportSummary {
 
 // Writes a data set in another format into the folder `out`: the labels, the pictures, LOSS.md
 // (what the format cannot hold) and, last, export.json. A call with the same options continues an
-// export that was stopped and keeps the pictures that are already whole. Throws Error where `out`
-// holds anything else, where the format's reader does not open the requested pictures, and where
-// mot_classes is set for a format other than MOT.
+// export that was stopped and keeps the pictures that are already whole. A table has encounters.csv
+// beside its frames. Throws Error where `out` holds anything else, where the format's reader does
+// not open the requested pictures, and where mot_classes or shard_mb is set for another format.
 ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportOptions& options);
 
 }  // namespace airtruth::labelled

@@ -17,6 +17,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/image/colour.h"
+#include "foundation/tar/tar.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/replay/finished.h"
@@ -131,26 +132,63 @@ TEST_F(Made, EveryFormatComesBackWithTheBoxesOfTheTruthAndPicturesOfTheVideo) {
 }
 
 TEST_F(Made, AnExportGoesOnWhereItStoppedAndTheSecondRunCostsNothing) {
+  for (const exchange::Format format : {exchange::Format::kMot, exchange::Format::kWebdataset}) {
+    SCOPED_TRACE(exchange::name(format));
+    ExportOptions options;
+    options.format = format;
+    const fs::path whole = fresh();
+    export_set(set(), whole, options);
+    const fs::path out = fresh();
+    std::stop_source source;
+    ExportOptions stopped = options;
+    stopped.jobs = 1;
+    stopped.stop = source.get_token();
+    stopped.progress = [&](std::int64_t done, std::int64_t) {
+      if (done == 2) source.request_stop();
+    };
+    EXPECT_THROW(export_set(set(), out, stopped), Interrupted);
+    EXPECT_FALSE(fs::exists(out / "export.json"));
+    const ExportSummary rest = export_set(set(), out, options);
+    EXPECT_EQ(rest.images, 16);  // of 32
+    EXPECT_EQ(files(out), files(whole));
+    for (const std::string& name : files(out))
+      EXPECT_EQ(sha256_of_file(out / name), sha256_of_file(whole / name)) << name;
+    EXPECT_TRUE(export_set(set(), out, options).was_there);
+  }
+}
+
+TEST_F(Made, ShardsHoldThePicturesAndLabelsOfOtherFormats) {
   ExportOptions options;
-  options.format = exchange::Format::kMot;
-  const fs::path whole = fresh();
-  export_set(set(), whole, options);
+  options.split = Split::kNone;
+  options.images = Images::kPng;
+  options.format = exchange::Format::kYolo;
+  const fs::path yolo = fresh();
+  export_set(set(), yolo, options);
+  options.format = exchange::Format::kWebdataset;
+  options.shard_mb = 1;
   const fs::path out = fresh();
-  std::stop_source source;
-  ExportOptions stopped = options;
-  stopped.jobs = 1;
-  stopped.stop = source.get_token();
-  stopped.progress = [&](std::int64_t done, std::int64_t) {
-    if (done == 2) source.request_stop();
-  };
-  EXPECT_THROW(export_set(set(), out, stopped), Interrupted);
-  EXPECT_FALSE(fs::exists(out / "export.json"));
-  const ExportSummary rest = export_set(set(), out, options);
-  EXPECT_EQ(rest.images, 16);  // of 32
-  EXPECT_EQ(files(out), files(whole));
-  for (const std::string& name : files(out))
-    EXPECT_EQ(sha256_of_file(out / name), sha256_of_file(whole / name)) << name;
-  EXPECT_TRUE(export_set(set(), out, options).was_there);
+  EXPECT_EQ(export_set(set(), out, options).images, 32);
+  EXPECT_THAT(files(out), testing::IsSupersetOf({"LOSS.md", "all-000000.tar", "export.json"}));
+  int pictures = 0;
+  for (const auto& shard : fs::directory_iterator(out)) {
+    if (shard.path().extension() != ".tar") continue;
+    EXPECT_LT(fs::file_size(shard), 1'100'000);
+    tar::each_file(shard, ".png", [&](const std::string& name, const std::string& bytes) {
+      ++pictures;
+      EXPECT_EQ(bytes, read_file(yolo / "images/all" / name)) << name;
+    });
+  }
+  EXPECT_EQ(pictures, 32);
+  ImportOptions back;
+  back.format = exchange::Format::kWebdataset;
+  const fs::path again = fresh();
+  import_set(out, again, back);
+  const LabelledSet made(set()), read(again);
+  ASSERT_EQ(read.names(), made.names());
+  for (const std::string& name : made.names())
+    EXPECT_EQ(read.clip(name).frames, made.clip(name).frames);
+  options.format = exchange::Format::kYolo;
+  EXPECT_THROW(export_set(set(), fresh(), options), Error);
 }
 
 TEST_F(Made, AnExportKilledBeforeItsOptionsAreWrittenIsBegunAnew) {

@@ -24,6 +24,13 @@ std::vector<std::string> cells_of(std::string_view line) {
   return cells;
 }
 
+std::string csv_cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  return quoted + "\"";
+}
+
 double finite_number(const std::string& cell, const Where& where) {
   double value = 0;
   const char* end = cell.data() + cell.size();

@@ -35,6 +35,10 @@ inline int line_of(std::string_view text, std::ptrdiff_t offset) {
 // Quotes have no meaning.
 std::vector<std::string> cells_of(std::string_view line);
 
+// The text as a cell of a CSV file: in quotes where it holds a comma, a quote or a line end (RFC
+// 4180).
+std::string csv_cell(std::string_view text);
+
 // The cell as a number. Throws Error where it is not a number or not finite.
 double finite_number(const std::string& cell, const Where& where);
 

@@ -22,7 +22,7 @@ struct About {
   Format format;
   const char* name;
   const char* title;
-  ReadFormat* read;
+  ReadFormat* read;   // null: the format can only be written
   MakeWriter* write;  // null: the format can only be read
   const char* kept = "";
   const char* lost = "";
@@ -32,7 +32,7 @@ constexpr const char* kPictures =
     "positions, velocities, attitudes, the camera's motion and lens, light, the boxes of the "
     "other two kinds, frames in which the aircraft is hidden or outside: see truth.jsonl";
 
-constexpr std::array<About, 11> kAll = {{
+constexpr std::array<About, 13> kAll = {{
     {Format::kCoco,
      "coco",
      "COCO, with videos and tracks",
@@ -117,6 +117,24 @@ constexpr std::array<About, 11> kAll = {{
      "last that shows it; where it begins in the video"},
     {Format::kEvision, "evision", "E-Vision", read_evision, nullptr},
     {Format::kCsv, "csv", "frame,x,y,w,h", read_csv, nullptr},
+    {Format::kWebdataset,
+     "webdataset",
+     "WebDataset",
+     read_webdataset,
+     webdataset_writer,
+     "box, category, class, track, area, time, visibility, occluded, truncated, range_m, "
+     "above_horizon, contrast_to_noise; size and frame rate of the clip",
+     ""},
+    {Format::kTable,
+     "table",
+     "the table",
+     nullptr,
+     table_writer,
+     "a row for each box: part, sequence, frame of the video and time, category, class, track, "
+     "area, "
+     "visibility, occluded, truncated, range_m, above_horizon, contrast_to_noise; the truth of the "
+     "intruder in rendered sequences; their encounters in encounters.csv",
+     "pictures"},
 }};
 
 const About& about(Format format) {
@@ -145,12 +163,14 @@ bool can_write(Format format) { return about(format).write != nullptr; }
 bool is_single_object(Format format) { return about(format).read == read_single_object; }
 
 bool has_ignore_mark(Format format) {
-  return format == Format::kCoco || format == Format::kVoc || format == Format::kMot;
+  return format == Format::kCoco || format == Format::kVoc || format == Format::kMot ||
+         format == Format::kWebdataset || format == Format::kTable;
 }
 
 Pictures pictures_of(Format format) {
   if (format == Format::kAot) return Pictures::kPngAlone;
   if (format == Format::kOtb || format == Format::kGot10k) return Pictures::kJpgExpected;
+  if (format == Format::kTable) return Pictures::kNone;
   return Pictures::kAny;
 }
 
@@ -214,6 +234,10 @@ std::string loss(Format format) {
   const About& a = about(format);
   std::string text = std::string("# What ") + a.title + " keeps\n\n";
   text += std::string("Kept: ") + a.kept + ".\n\nLost: ";
+  if (format == Format::kTable)
+    return text + a.lost +
+           ", the camera's motion and lens, light, the volumes of each frame, frames in which the "
+           "aircraft is hidden or outside: see truth.jsonl.\n";
   if (*a.lost != 0) text += std::string(a.lost) + "; ";
   text += kPictures;
   text += ".\n\nFrames are counted anew where only every n-th was taken.\n";
@@ -262,6 +286,9 @@ std::vector<Clip> read_clips(Format format,
                              const ReadOptions& options,
                              const Warn& warn) {
   if (!fs::exists(source)) throw Error("does not exist", {source.string()});
+  if (about(format).read == nullptr)
+    throw Error(std::string(name(format)) + " is a format that is written alone",
+                {source.string()});
   LeftOut left_out(warn);
   std::vector<Clip> clips = about(format).read({format, source, options, warn, left_out});
   classify(clips, options, warn);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +27,16 @@ struct WriteOptions {
   // MOT only. True: classes are numbered from 1; false: every object has the class 1, and what is
   // no aircraft is not to be considered.
   bool mot_classes = false;
+  // WebDataset only. Below this folder of the root the pictures wait to be packed (images() gives
+  // their places); who makes the export removes it at the end.
+  fs::path staging = "pictures";
+  // WebDataset only: a shard ends with the first sample that makes it this large.
+  std::int64_t shard_bytes = 500'000'000;
+  // The table only: the names of further columns, and their cells in the row of a label. `clip` is
+  // the one that is added.
+  std::vector<std::string> columns;
+  std::function<std::vector<std::string>(const Clip& clip, std::int64_t frame, const Label& label)>
+      cells;
 };
 
 // Writes a set into a folder, clip by clip. Of clips that are written it keeps only the names in
@@ -49,15 +61,16 @@ std::unique_ptr<Writer> make_writer(Format format,
 
 // The class of a region in which detections count neither way.
 inline constexpr const char* kIgnore = "ignore";
-// True where the format can say so of a box: COCO's iscrowd, VOC's difficult, MOT's seventh column.
+// True where the format can say so of a box: COCO's iscrowd, VOC's difficult, MOT's seventh column,
+// the class of a WebDataset and of a table.
 bool has_ignore_mark(Format format);
 
 // The clip without its distractors.
 Clip aircraft_alone(Clip clip);
 
 // What the format's own reader requires of pictures: AOT's opens PNG only, those of OTB and GOT-10k
-// look for *.jpg.
-enum class Pictures { kAny, kPngAlone, kJpgExpected };
+// look for *.jpg; a table holds none.
+enum class Pictures { kAny, kPngAlone, kJpgExpected, kNone };
 Pictures pictures_of(Format format);
 
 // The text of LOSS.md: what a format keeps of the truth, and what it cannot store.

@@ -12,7 +12,6 @@
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 #include "foundation/json/or_null.h"
-#include "labels/annotation/object_class.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
 
@@ -34,39 +33,14 @@ std::optional<double> rate(const JsonObject& json, const char* key) {
   return found;
 }
 
-Json json_of(const Label& label) {
-  const Box& b = label.box_px;
-  Json json = {{"track", label.track},
-               {"category", label.category},
-               {"box_px", {b.x, b.y, b.width, b.height}}};
-  if (!annotation::is_aircraft(label.object_class)) json["class"] = label.object_class;
-  each_known(
-      label, "visible", [&](const char* key, const auto& value) { json[key] = or_null(value); });
-  json["area_px"] = or_null(label.area_px);
-  return json;
-}
-
-Label label_of(const JsonObject& json) {
-  Label label;
-  label.track = json.whole("track");
-  label.category = json.text("category");
-  const auto box = json.numbers("box_px", 4);
-  label.box_px = {box[0], box[1], box[2], box[3]};
-  label.object_class = json.maybe_text("class").value_or(label.object_class);
-  if (!annotation::is_object_class(label.object_class) && label.object_class != kIgnore)
-    json.fail("class", "aircraft, bird, multirotor, balloon, glint, dirt, insect or ignore");
-  get_known(json, label, "visible");
-  label.area_px = json.maybe_number("area_px");
-  return label;
-}
-
 LabelledFrame frame_of(const JsonObject& json) {
   LabelledFrame frame;
   frame.frame = json.count("frame");
   frame.time_s = json.maybe_number("time_s");
   frame.picture = json.maybe_text("picture").value_or("");
   frame.image_id = json.maybe_integer("image_id");
-  for (const JsonObject& label : json.objects("labels")) frame.labels.push_back(label_of(label));
+  for (const JsonObject& label : json.objects("labels"))
+    frame.labels.push_back(label_of_json(label));
   return frame;
 }
 
@@ -105,7 +79,7 @@ std::string labels_jsonl(const Clip& clip) {
     json["picture"] = frame.picture.empty() ? Json() : Json(frame.picture);
     json["image_id"] = or_null(frame.image_id);
     json["labels"] = Json::array();
-    for (const Label& label : frame.labels) json["labels"].push_back(json_of(label));
+    for (const Label& label : frame.labels) json["labels"].push_back(json_of_label(label));
     text += text_of(json);
   }
   return text;

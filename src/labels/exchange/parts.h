@@ -41,7 +41,7 @@ using MakeWriter = std::unique_ptr<Writer>(Format format,
                                            const fs::path& root,
                                            const WriteOptions& options);
 MakeWriter coco_writer, yolo_writer, mot_writer, voc_writer, cvat_writer, aot_writer,
-    single_object_writer;
+    single_object_writer, webdataset_writer, table_writer;
 
 using Clips = std::vector<Clip>;
 
@@ -56,7 +56,7 @@ struct Reading {
 
 using ReadFormat = Clips(const Reading& in);
 ReadFormat read_coco, read_yolo, read_mot, read_voc, read_cvat, read_aot, read_single_object,
-    read_evision, read_csv;
+    read_evision, read_csv, read_webdataset;
 
 // The frame of that number in a clip that has its frames from 0 on; frames that are missing up to
 // it are added.

@@ -34,4 +34,9 @@ void each_known(AnyLabel& label, const char* visible_key, const Visit& visit) {
 }
 void get_known(const JsonObject& json, Label& label, const char* visible_key);
 
+// A label as labels.jsonl states it (docs/formats/labels.md), without its mask.
+nlohmann::ordered_json json_of_label(const Label& label);
+// Throws Error where it is not as described there.
+Label label_of_json(const JsonObject& json);
+
 }  // namespace airtruth::exchange

@@ -78,6 +78,7 @@ Clip held(Format format, Clip clip) {
   std::int64_t number = 0;
   for (LabelledFrame& frame : clip.frames) {
     frame.frame = number++;
+    if (format == Format::kWebdataset) continue;  // keeps all
     if (format != Format::kCoco && format != Format::kAot) frame.time_s.reset();
     std::int64_t place = 0;
     for (Label& label : frame.labels) {
@@ -168,6 +169,7 @@ TEST(RoundTrip, EveryFormatKeepsAllThatItCanHold) {
       WriteOptions options;
       options.categories = {"738", "c172 \"<&> é"};
       options.parts = {"train", "val"};
+      options.with_images = format != Format::kWebdataset;  // it packs the pictures
       auto writer = make_writer(format, folder.path(), options);
       std::vector<Clip> expected;
       for (std::size_t i = 0; i < clips.size(); ++i)
@@ -227,7 +229,8 @@ TEST(RoundTrip, WhatIsUnknownComesBackAsUnknown) {
   for (const Format format : kWritten) {
     SCOPED_TRACE(name(format));
     const Folder folder;
-    auto writer = make_writer(format, folder.path(), {{"738"}, {"train"}, ".jpg"});
+    auto writer = make_writer(
+        format, folder.path(), {{"738"}, {"train"}, ".jpg", format != Format::kWebdataset});
     for (const Clip& one : arranged(format, clip)) writer->add(one, "train");
     writer->finish();
     const auto read = read_clips(format, folder.path(), {{{64, 48}}, "738"}, {});

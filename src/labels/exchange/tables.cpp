@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
+#include "foundation/base/unfinished.h"
 #include "labels/annotation/evision.h"
 #include "labels/exchange/parts.h"
+#include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
 
 namespace airtruth::exchange {
@@ -159,6 +164,70 @@ Clips read_csv(const Reading& in) {
     clips.push_back(std::move(clip));
   }
   return clips;
+}
+
+namespace {
+
+std::string cell(const std::optional<double>& value) { return value ? number(*value) : ""; }
+std::string cell(const std::optional<bool>& value) { return !value ? "" : *value ? "1" : "0"; }
+
+// frames.csv: one row for each label, in the order of the clips and their frames. What is not known
+// is an empty cell; truths are 1 and 0.
+class TableWriter : public FolderWriter {
+ public:
+  TableWriter(const fs::path& root, const WriteOptions& options)
+      : FolderWriter(root, options),
+        unfinished_(Unfinished::path(part_path(file()))),
+        out_(part_path(file()), std::ios::binary) {
+    out_ << "part,sequence,frame,time_s,track,category,class,box_px_x,box_px_y,box_px_width,"
+            "box_px_height,visible,occluded,truncated,range_m,above_horizon,contrast_to_noise,"
+            "area_px";
+    for (const std::string& column : options.columns) out_ << ',' << csv_cell(column);
+    out_ << "\n";
+  }
+  // A failed run leaves no half-written file either.
+  ~TableWriter() override {
+    std::error_code ignored;
+    fs::remove(part_path(file()), ignored);
+  }
+  TableWriter(const TableWriter&) = delete;
+  TableWriter& operator=(const TableWriter&) = delete;
+
+  void add(const Clip& clip, const std::string& part) override {
+    for (const LabelledFrame& frame : clip.frames)
+      for (const Label& label : frame.labels) {
+        out_ << csv_cell(part) << ',' << csv_cell(clip.name) << ',' << frame.frame << ','
+             << cell(frame.time_s) << ',' << label.track << ',' << csv_cell(label.category) << ','
+             << label.object_class << ',' << number(label.box_px.x) << ',' << number(label.box_px.y)
+             << ',' << number(label.box_px.width) << ',' << number(label.box_px.height);
+        each_known(
+            label, "visible", [&](const char*, const auto& value) { out_ << ',' << cell(value); });
+        out_ << ',' << cell(label.area_px);
+        if (options_.cells)
+          for (const std::string& text : options_.cells(clip, frame.frame, label))
+            out_ << ',' << csv_cell(text);
+        out_ << "\n";
+      }
+  }
+
+  void finish() override {
+    out_.close();
+    if (!out_) throw Error("cannot be written: is the disk full?", {file().string()});
+    unfinished_.finish([&] { fs::rename(part_path(file()), file()); });
+  }
+
+ private:
+  fs::path file() const { return root_ / "frames.csv"; }
+  fs::path image(const Clip&, const std::string&, std::size_t) const override { return {}; }
+
+  Unfinished unfinished_;
+  std::ofstream out_;
+};
+
+}  // namespace
+
+std::unique_ptr<Writer> table_writer(Format, const fs::path& root, const WriteOptions& options) {
+  return std::make_unique<TableWriter>(root, options);
 }
 
 }  // namespace airtruth::exchange

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "foundation/tar/tar.h"
 #include "labels/exchange/exchange.h"
 #include "support/exchange_formats.h"
 
@@ -107,6 +109,15 @@ TEST_F(Origin, SingleObjectFolders) {
   EXPECT_EQ(read_file(folder_.path() / "train/s/anchor.value"), "1\n0\n0\n");
 }
 
+TEST_F(Origin, ATableHasARowForEachBox) {
+  EXPECT_EQ(written(Format::kTable, "frames.csv"),
+            "part,sequence,frame,time_s,track,category,class,box_px_x,box_px_y,box_px_width,"
+            "box_px_height,visible,occluded,truncated,range_m,above_horizon,contrast_to_noise,"
+            "area_px\n"
+            "train,s,0,0,1,738,aircraft,0,0,3,2,0.5,,,700,,,\n"
+            "train,s,2,0.08,1,738,aircraft,0,0,3,2,0.5,,,700,,,\n");
+}
+
 TEST_F(Origin, AotHasAnEntityForAFrameThatShowsNothing) {
   const std::string text = written(Format::kAot, "train/ImageSets/groundtruth.json");
   EXPECT_NE(text.find(R"("time":1500000000040000000,"blob":{"frame":1},"flight_id":"s",)"
@@ -141,6 +152,51 @@ std::size_t times_in(const std::string& text, const std::string& word) {
   for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
     ++count;
   return count;
+}
+
+// Keys end at the first dot of a name, and a shard with the sample that fills it.
+TEST(Webdataset, HasSamplesInShards) {
+  const Folder folder;
+  Clip clip;
+  clip.name = "a.b%";
+  for (std::int64_t i = 0; i < 5; ++i) clip.frames.push_back({i, {}, {}});
+  WriteOptions options;
+  options.shard_bytes =
+      6 * 512;  // a sample is of 5 blocks: two headers, and one and two of content
+  const auto writer = make_writer(Format::kWebdataset, folder.path(), options);
+  const std::vector<fs::path> pictures = writer->images(clip, "train");
+  for (const fs::path& picture : pictures) folder.file(picture.string(), std::string(513, 'p'));
+  writer->add(clip, "train");
+  writer->finish();
+  std::vector<std::string> names;
+  for (int shard = 0; shard < 3; ++shard)
+    tar::each_file(folder.path() / ("train-00000" + std::to_string(shard) + ".tar"),
+                   "",
+                   [&](const std::string& name, const std::string& bytes) {
+                     names.push_back(std::to_string(shard) + " " + name);
+                     EXPECT_EQ(bytes.size() == 513, name.ends_with(".jpg"));
+                   });
+  EXPECT_EQ(names.size(), 10u);
+  EXPECT_EQ(names.at(0), "0 a%2Eb%25_000000.jpg");
+  EXPECT_EQ(names.at(1), "0 a%2Eb%25_000000.json");
+  EXPECT_EQ(names.at(9), "2 a%2Eb%25_000004.json");
+}
+
+TEST(Webdataset, WhatIsNoSampleIsNamed) {
+  const auto refused = [](const std::string& json, const char* words) {
+    const Folder folder;
+    tar::Writer archive(folder.path() / "a.tar");
+    archive.add("x.json", json);
+    archive.finish();
+    EXPECT_THAT(error_of(Format::kWebdataset, folder.path()), testing::HasSubstr(words));
+  };
+  refused("{}", "a.tar/x.json: has no clip");
+  refused(R"({"clip": "a", "frame": -1, "labels": []})", "frame is -1");
+  refused(R"({"clip": "a", "frame": 0, "labels": [{"track": 1}]})", "labels[0] has no category");
+  refused("[", "x.json");
+  const Folder none;
+  EXPECT_THAT(error_of(Format::kWebdataset, none.path()), testing::HasSubstr("holds no sample"));
+  EXPECT_THAT(error_of(Format::kTable, none.path()), testing::HasSubstr("written alone"));
 }
 
 TEST(Distractors, AreNoTrackingTargets) {
