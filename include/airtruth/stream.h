@@ -28,7 +28,7 @@ struct StreamOptions {
   // As in RenderOptions.
   bool use_cache = true;
   std::filesystem::path cache;
-  // May be called from any thread that makes a sample, one call at a time.
+  // Each warning comes once, from any thread that makes a sample, one call at a time.
   Warn warn;
   // sample() throws Interrupted once a stop is requested.
   std::stop_token stop;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -74,7 +75,7 @@ struct Stream::State {
     if (options.warn)
       options.warn = [this, warn = options.warn](const std::string& text) {
         const std::lock_guard lock(warning);
-        warn(text);
+        if (said.size() < kMostSaid && said.insert(text).second) warn(text);
       };
   }
 
@@ -210,6 +211,8 @@ struct Stream::State {
     return intruder.covered_box_px ? intruder.covered_box_px : intruder.visible_box_px;
   }
 
+  // Different warnings that a stream passes on: chosen.
+  static constexpr std::size_t kMostSaid = 1000;
   static constexpr std::int64_t kMostIndex = std::int64_t{1} << 40;
 
   const catalogue::Catalogue catalogue;
@@ -221,6 +224,7 @@ struct Stream::State {
   std::mutex opening;
   std::vector<std::optional<Clip>> clips;
   std::mutex warning;
+  std::set<std::string> said;
   tbb::task_arena arena;
 };
 

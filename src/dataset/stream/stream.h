@@ -38,8 +38,9 @@ struct Sample {
 // Threads may use a Stream at the same time.
 class Stream {
  public:
-  // Throws Error where the catalogue has a rule or a background that a stream cannot use. Of
-  // `options`, overwrite, is_preview, gpu and progress are ignored, and `threads` draw one sample.
+  // Passes each warning to options.warn once. Throws Error where the catalogue has a rule or a
+  // background that a stream cannot use. Of `options`, overwrite, is_preview, gpu and progress are
+  // ignored, and `threads` draw one sample.
   Stream(catalogue::Catalogue catalogue, std::uint64_t seed, pipeline::Options options);
   ~Stream();
 
