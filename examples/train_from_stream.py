@@ -3,7 +3,7 @@
 python3 examples/train_from_stream.py VIDEO [--test VIDEO] [--fov DEG] [--steps N]. Needs airtruth (docs/python.md) and python3-torch."""
 import argparse
 import torch
-from torch.nn import BatchNorm2d, Conv2d, ReLU, Sequential, functional
+from torch.nn import BatchNorm2d, Conv2d, InstanceNorm2d, ReLU, Sequential, functional
 import airtruth
 
 SIDE, CELL = 192, 4  # px: of a picture, and of a cell of the answer: logit of heat, offset x and y in cells, logarithm of width and height
@@ -27,7 +27,7 @@ def loss_of(answer, targets):
         centre, size = (box[:2] + box[2:]) / 2 / CELL, box[2:] - box[:2]
         (x, y), (wide, high) = centre.long().tolist(), (size / CELL / 6).clamp(min=0.7)
         heat[k] = torch.maximum(heat[k], torch.exp(-((cells - x) / wide) ** 2 / 2 - ((cells[:, None] - y) / high) ** 2 / 2))
-        off = off + (answer[k, 1:, y, x] - torch.cat([centre - centre.floor(), size.log()])).abs().mean()
+        off = off + (answer[k, 1:, y, x] - torch.cat([centre - centre.floor(), size.log()])).abs().sum()
     p, peak = torch.sigmoid(answer[:, 0]).clamp(1e-4, 1 - 1e-4), heat == 1  # focal loss of Law and Deng 2018, equation 1
     return (off - torch.where(peak, (1 - p) ** 2 * p.log(), (1 - heat) ** 4 * p ** 2 * (1 - p).log()).sum()) / peak.sum().clamp(min=1)
 
@@ -44,17 +44,17 @@ if __name__ == "__main__":
     parser.add_argument("--fov", type=float, default=50, help="vertical field of view of the camera in degrees")
     parser.add_argument("--steps", type=int, default=400)
     options = parser.parse_args()
-    network = Sequential(layer(1, 16, 2), layer(16, 32, 2), layer(32, 32), layer(32, 32, 1, 2), layer(32, 32, 1, 4), Conv2d(32, 5, 1))
+    network = Sequential(InstanceNorm2d(1, 1e-3), layer(1, 16, 2), layer(16, 32, 2), layer(32, 32, 1, 2), layer(32, 32, 1, 4), Conv2d(32, 5, 1))
     network[-1].bias.data[:] = torch.tensor([-4.6, 0.5, 0.5, 3, 2])  # at first a peak in a hundred cells, and boxes of 20 x 7 px
-    optimiser = torch.optim.Adam(network.parameters(), lr=2e-3)
+    optimiser = torch.optim.Adam(network.parameters())
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 5e-3, options.steps)
     for step, (pictures, targets) in enumerate(loader_of(options.video, options.fov, 1, options.steps * 16)):
         loss = loss_of(network(pictures), targets)
-        optimiser.zero_grad(), loss.backward(), optimiser.step()
+        optimiser.zero_grad(), loss.backward(), optimiser.step(), schedule.step()
         if step % 20 == 0: print(f"step {step}: loss {loss.item():.3f}", flush=True)
     truth, found = [], []
-    with torch.no_grad():
-        for pictures, targets in loader_of(options.test or options.video, options.fov, 2, 160):
-            truth += [torch.cat([target["boxes"][:, :2], target["boxes"][:, 2:] - target["boxes"][:, :2]], 1).numpy() for target in targets]
-            found += [boxes_of(answer) for answer in network.eval()(pictures)]
+    for pictures, targets in loader_of(options.test or options.video, options.fov, 2, 160):
+        truth += [torch.cat([target["boxes"][:, :2], target["boxes"][:, 2:] - target["boxes"][:, :2]], 1).numpy() for target in targets]
+        found += [boxes_of(answer) for answer in network.eval()(pictures).detach()]
     ap = airtruth.evaluate.average_precision(truth, [boxes for boxes, _ in found], [scores for _, scores in found])
     print(f"{ap.curve_50.truths} aircraft in {len(truth)} pictures: AP at IoU 0.5 is {ap.ap_50:.3f}, by centre distance {ap.ap_centre:.3f}")

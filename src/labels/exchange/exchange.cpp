@@ -131,9 +131,8 @@ constexpr std::array<About, 13> kAll = {{
      nullptr,
      table_writer,
      "a row for each box: part, sequence, frame of the video and time, category, class, track, "
-     "area, "
-     "visibility, occluded, truncated, range_m, above_horizon, contrast_to_noise; the truth of the "
-     "intruder in rendered sequences; their encounters in encounters.csv",
+     "area, visibility, occluded, truncated, range_m, above_horizon, contrast_to_noise; the truth "
+     "of the intruder in rendered sequences; their encounters in encounters.csv",
      "pictures"},
 }};
 
@@ -261,6 +260,10 @@ void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& 
                               ? asked->second
                               : annotation::class_of_category(label.category).value_or("");
         }
+        // A class that the format itself states.
+        if (!annotation::is_aircraft(label.object_class) &&
+            !options.class_of.contains(label.category))
+          continue;
         if (!known->second.empty())
           label.object_class = known->second;
         else if (label.category != options.category)

@@ -182,6 +182,30 @@ TEST(Webdataset, HasSamplesInShards) {
   EXPECT_EQ(names.at(9), "2 a%2Eb%25_000004.json");
 }
 
+TEST(Webdataset, KeepsClassesThatNoCategoryStates) {
+  const Folder folder;
+  Clip clip;
+  clip.name = "a";
+  for (const char* object_class : {"ignore", "bird", "aircraft"}) {
+    Label label;
+    label.category = "aircraft";
+    label.object_class = object_class;
+    label.box_px = {1, 2, 3, 4};
+    clip.frames.push_back({std::ssize(clip.frames), {}, {label}});
+  }
+  WriteOptions options;
+  options.with_images = false;
+  const auto writer = make_writer(Format::kWebdataset, folder.path(), options);
+  writer->add(clip, "train");
+  writer->finish();
+  EXPECT_EQ(read_clips(Format::kWebdataset, folder.path(), {}, {}).at(0).frames, clip.frames);
+  ReadOptions all_birds;
+  all_birds.class_of["aircraft"] = "bird";
+  const Clip birds = read_clips(Format::kWebdataset, folder.path(), all_birds, {}).at(0);
+  for (const LabelledFrame& frame : birds.frames)
+    EXPECT_EQ(frame.labels.at(0).object_class, "bird");
+}
+
 TEST(Webdataset, WhatIsNoSampleIsNamed) {
   const auto refused = [](const std::string& json, const char* words) {
     const Folder folder;
