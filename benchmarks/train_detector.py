@@ -3,8 +3,9 @@
 """Trains a small aircraft detector on data sets that airtruth made, and writes it as ONNX for `airtruth detect`.
 
     python3 benchmarks/train_detector.py SET... -o aircraft.onnx [--minutes 12]
+    python3 benchmarks/train_detector.py CATALOGUE.toml -o aircraft.onnx     new pictures at each step, from a training stream
 
-Needs python3-torch, python3-onnx and python3-opencv of Debian 12. The network is fully convolutional and sees one grey picture;
+A stream needs the package airtruth (docs/python.md), and crops of 280 px or more in [stream] size_px. Needs python3-torch, python3-onnx and python3-opencv of Debian 12. The network is fully convolutional and sees one grey picture;
 it answers, for every cell of 4 x 4 px, how likely an aircraft's centre lies there, where in the cell, and how large it is
 (Zhou, Wang and Kraehenbuehl 2019, "Objects as Points"). Beside aircraft.onnx it writes aircraft.json, which says how its input and
 output are to be read (docs/formats/detector-model.md). The labels are the covered boxes of the sequences' truth.
@@ -15,6 +16,7 @@ import glob
 import json
 import math
 import os
+import pathlib
 import sys
 import time
 
@@ -111,28 +113,64 @@ class Frames:
                     self.add(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), json.loads(line))
 
     def add(self, picture, truth):
-        boxes, ignored = [], []
-        for intruder in truth["intruders"]:
-            if intruder["state"] != "visible" or intruder.get("object_class", "aircraft") != "aircraft":
-                continue
-            box = intruder.get("covered_box_px")
-            if box is None or max(box[2:]) > MOST_PX or intruder.get("cut_by_frame", 0) > 0.5:
-                ignored.append(box or intruder.get("visible_box_px"))
-            else:
-                boxes.append(box)
+        boxes, ignored = boxes_of(truth["intruders"])
         self.pictures.append(picture)
-        self.boxes.append(np.array(boxes, np.float32).reshape(-1, 4))
-        self.ignored.append(np.array([b for b in ignored if b], np.float32).reshape(-1, 4))
+        self.boxes.append(boxes)
+        self.ignored.append(ignored)
+
+    def draw(self, with_aircraft, random):
+        for _ in range(20):
+            index = random.integers(len(self.pictures))
+            if not with_aircraft or len(self.boxes[index]):
+                break
+        return self.pictures[index], self.boxes[index], self.ignored[index]
+
+    def words(self):
+        return f"{len(self.pictures)} frames, {sum(map(len, self.boxes))} boxes"
+
+
+class Streamed:
+    """The same from a training stream, whose samples are new each time."""
+
+    next = 0  # index of the sample that is drawn next
+
+    def __init__(self, catalogue, seed):
+        import airtruth
+        self.stream = airtruth.Stream(pathlib.Path(catalogue), seed=seed)
+
+    def draw(self, with_aircraft, random):
+        for _ in range(20):
+            sample = self.stream[self.next]
+            self.next += 1
+            frame = sample.frames[-1]
+            boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
+            if not with_aircraft or len(boxes):
+                break
+        for some in (boxes, ignored):
+            some[:, :2] -= sample.crop[:2]
+        return frame.gray, boxes, ignored
+
+    def words(self):
+        return "a stream"
+
+
+def boxes_of(intruders):
+    boxes, ignored = [], []
+    for intruder in intruders:
+        if intruder["state"] != "visible" or intruder.get("object_class", "aircraft") != "aircraft":
+            continue
+        box = intruder.get("covered_box_px")
+        if box is None or max(box[2:]) > MOST_PX or intruder.get("cut_by_frame", 0) > 0.5:
+            ignored.append(intruder.get("visible_box_px") if box is None else box)
+        else:
+            boxes.append(box)
+    return [np.array([b for b in some if b is not None], np.float32).reshape(-1, 4) for some in (boxes, ignored)]
 
 
 def crop_of(frames, random):
     """A square of a frame at a random scale, mirrored at random: half of them about an aircraft."""
     with_aircraft = random.random() < 0.5
-    for _ in range(20):
-        index = random.integers(len(frames.pictures))
-        if not with_aircraft or len(frames.boxes[index]):
-            break
-    picture, boxes, ignored = frames.pictures[index], frames.boxes[index], frames.ignored[index]
+    picture, boxes, ignored = frames.draw(with_aircraft, random)
     scale = math.exp(random.uniform(math.log(0.7), math.log(1.4)))
     side = int(round(CROP / scale))
     side = min(side, *picture.shape)
@@ -242,10 +280,10 @@ def given(options):
     return [[os.path.abspath(folder) for folder in options.sets], options.every, options.batch, options.seed]
 
 
-def save(network, optimiser, random, options, spent, step):
+def save(network, optimiser, random, frames, options, spent, step):
     unfinished = checkpoint_of(options) + ".part"
     torch.save({"network": network.state_dict(), "optimiser": optimiser.state_dict(), "random": random.bit_generator.state,
-                "spent": spent, "step": step, "given": given(options)}, unfinished)
+                "next": getattr(frames, "next", 0), "spent": spent, "step": step, "given": given(options)}, unfinished)
     os.replace(unfinished, checkpoint_of(options))
 
 
@@ -260,7 +298,7 @@ def train(network, frames, options):
         network.load_state_dict(state["network"])
         optimiser.load_state_dict(state["optimiser"])
         random.bit_generator.state = state["random"]
-        before, step = state["spent"], state["step"]
+        before, step, frames.next = state["spent"], state["step"], state["next"]
         print(f"goes on from {checkpoint_of(options)}: {before:.1f} min, step {step}", flush=True)
     begun, shown = time.process_time(), before
     network.train()
@@ -278,7 +316,7 @@ def train(network, frames, options):
         if spent - shown >= 0.5:
             shown = spent
             print(f"{spent:5.1f} min  step {step:5d}  loss {mean:.3f}", flush=True)
-            save(network, optimiser, random, options, spent, step)
+            save(network, optimiser, random, frames, options, spent, step)
     network.eval()
     return step
 
@@ -305,7 +343,7 @@ def write(network, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("sets", nargs="+", metavar="SET", help="folders of `airtruth dataset build`")
+    parser.add_argument("sets", nargs="+", metavar="SET", help="folders of `airtruth dataset build`, or one catalogue with a table [stream]")
     parser.add_argument("-o", "--output", required=True, help="the ONNX file; a .json is written beside it, and until then every half minute of training a .checkpoint, from which the same command goes on")
     parser.add_argument("--minutes", type=float, default=12, help="processor time to train for, on each thread (default 12)")
     parser.add_argument("--every", type=int, default=2, help="take every n-th frame (default 2): neighbours are alike")
@@ -318,12 +356,16 @@ def main():
     torch.set_num_threads(options.threads)
     cv2.setNumThreads(1)
     torch.manual_seed(options.seed)
-    frames = Frames()
-    for folder in options.sets:
-        frames.add_set(folder, options.every)
+    if any(source.endswith(".toml") for source in options.sets):
+        if len(options.sets) > 1:
+            parser.error("a catalogue stands alone; expected one catalogue, or data sets")
+        frames = Streamed(options.sets[0], options.seed)
+    else:
+        frames = Frames()
+        for folder in options.sets:
+            frames.add_set(folder, options.every)
     network = Network()
-    print(f"{len(frames.pictures)} frames, {sum(map(len, frames.boxes))} boxes, "
-          f"{sum(p.numel() for p in network.parameters())} parameters", flush=True)
+    print(f"{frames.words()}, {sum(p.numel() for p in network.parameters())} parameters", flush=True)
     step = train(network, frames, options)
     write(network, options.output)
     if os.path.exists(checkpoint_of(options)):
