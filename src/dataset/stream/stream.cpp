@@ -83,9 +83,15 @@ struct Stream::State {
     const std::lock_guard lock(opening);
     std::optional<Clip>& clip = clips[background];
     if (!clip) {
+      const catalogue::Background& stated = catalogue.backgrounds[background];
+      if (std::holds_alternative<synthetic::FlightOptions>(stated.source) && !options.use_cache)
+        throw Error("background '" + stated.name +
+                        "' is a virtual flight, which a stream makes in the cache; expected a "
+                        "video, or a cache",
+                    stated.where);
       build::BuildOptions how;
       how.stop = options.stop;
-      clip = Clip{build::prepare(catalogue.backgrounds[background], flights(), how), {}};
+      clip = Clip{build::prepare(stated, flights(), how), {}};
       scene::Scene scene = catalogue::scene_over(catalogue, background);
       scene.background.video = clip->files.video;
       clip->info = pipeline::open_background(scene, options).info();

@@ -392,10 +392,9 @@ OpenedScene open_over(const video::StreamInfo& of_video,
   scene::Scene& opened = as_stated.scene;
   if (options.is_preview) simplify_for_preview(opened);
   const lens::ImageSize size = size_of(of_video);
-  std::shared_ptr<const image::Mask> mask;
-  if (auto read = insertion::read_mask(opened, size))
-    mask = std::make_shared<const image::Mask>(std::move(*read));
   auto inputs = inputs_of(options);
+  std::shared_ptr<const image::Mask> mask;
+  if (opened.background.mask) mask = inputs->mask_of(*opened.background.mask, size);
   const std::string attitude_words = setup::state_attitude(
       opened.camera,
       setup::lens_of(opened.lens, size),

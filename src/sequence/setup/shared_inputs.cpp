@@ -9,6 +9,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/files.h"
+#include "picture/video/still.h"
 
 namespace airtruth::setup {
 namespace {
@@ -106,6 +107,21 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
   }
   for (const std::string& text : type->warnings) airtruth::warn(warn, text);
   return type;
+}
+
+std::shared_ptr<const image::Mask> SharedInputs::mask_of(const std::filesystem::path& file,
+                                                         const lens::ImageSize& size) {
+  const FileStamp stamp = file_stamp(file);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = masks_.find(file.string());
+    if (found != masks_.end() && found->second.stamp == stamp && found->second.size == size)
+      return found->second.mask;
+  }
+  auto mask = std::make_shared<const image::Mask>(video::read_mask(file, size.width, size.height));
+  const std::lock_guard lock(mutex_);
+  masks_[file.string()] = {stamp, size, mask};
+  return mask;
 }
 
 std::string SharedInputs::sha256_of_file(const std::filesystem::path& file) {

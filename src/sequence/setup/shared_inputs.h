@@ -12,8 +12,10 @@
 #include <tuple>
 #include <vector>
 
+#include "camera/lens/lens.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/log.h"
+#include "foundation/image/layer.h"
 #include "scene/scene/scene.h"
 #include "scene/trajectory/path.h"
 #include "sequence/setup/world.h"
@@ -46,6 +48,10 @@ class SharedInputs {
                                       const Warn& warn,
                                       const std::stop_token& stop);
 
+  // As video::read_mask; a file is read again only where its stamp has changed.
+  std::shared_ptr<const image::Mask> mask_of(const std::filesystem::path& file,
+                                             const lens::ImageSize& size);
+
   // As airtruth::sha256_of_file; a file is read again only where its stamp has changed.
   std::string sha256_of_file(const std::filesystem::path& file);
 
@@ -67,6 +73,12 @@ class SharedInputs {
 
   std::string type_key(const scene::Intruder& intruder, const trajectory::Path& path);
   std::string configuration_of(const std::string& aircraft, const model::LoadOptions& options);
+  struct ReadMask {
+    FileStamp stamp;
+    lens::ImageSize size;
+    std::shared_ptr<const image::Mask> mask;
+  };
+
   std::shared_ptr<Slot> slot_of(const std::string& key);
   std::shared_ptr<const Type> known(const Slot& slot) const;
   std::shared_ptr<const Type> twin_of(const fleet::Aircraft& loaded) const;
@@ -81,6 +93,7 @@ class SharedInputs {
   std::map<std::tuple<std::string, double, double>, std::string> configurations_;
   std::uint64_t uses_ = 0;
   std::map<std::string, Hashed> hashes_;
+  std::map<std::string, ReadMask> masks_;
 };
 
 }  // namespace airtruth::setup
