@@ -12,6 +12,8 @@ import re
 import subprocess
 import sys
 
+from written_page import argument, write_or_check
+
 PAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "commands.md")
 HEAD = """# Commands
 
@@ -95,17 +97,8 @@ def page_of(airtruth):
 
 
 def main():
-    arguments = [word for word in sys.argv[1:] if word != "--check"]
-    if len(arguments) != 1:
-        sys.exit(__doc__)
-    page = page_of(os.path.abspath(arguments[0]))
-    if "--check" not in sys.argv:
-        with open(PAGE, "w", encoding="utf-8") as opened:
-            opened.write(page)
-        return
-    with open(PAGE, encoding="utf-8") as opened:
-        if opened.read() != page:
-            sys.exit(f"{PAGE} is not what the help says; run: python3 docs/reference/make_commands.py PROGRAM")
+    page = page_of(os.path.abspath(argument(__doc__)))
+    write_or_check(page, PAGE, "the help says; run: python3 docs/reference/make_commands.py PROGRAM")
 
 
 if __name__ == "__main__":

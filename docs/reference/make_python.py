@@ -14,6 +14,8 @@ import re
 import sys
 import types
 
+from written_page import argument, write_or_check
+
 PAGE = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "python.md")
 HEAD = """# airtruth in Python
 
@@ -126,21 +128,12 @@ def whole_page(airtruth):
 
 
 def main():
-    arguments = [word for word in sys.argv[1:] if word != "--check"]
-    if len(arguments) != 1:
-        sys.exit(__doc__)
-    sys.path.insert(0, os.path.abspath(arguments[0]))
+    sys.path.insert(0, os.path.abspath(argument(__doc__)))
     stand_in_for_torch()
     import airtruth
 
     page = whole_page(airtruth)
-    if "--check" not in sys.argv:
-        with open(PAGE, "w", encoding="utf-8") as opened:
-            opened.write(page)
-        return
-    with open(PAGE, encoding="utf-8") as opened:
-        if opened.read() != page:
-            sys.exit(f"{PAGE} is not what the docstrings say; run: python3 docs/reference/make_python.py PACKAGES")
+    write_or_check(page, PAGE, "the docstrings say; run: python3 docs/reference/make_python.py PACKAGES")
 
 
 if __name__ == "__main__":

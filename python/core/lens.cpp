@@ -47,6 +47,17 @@ Doubles rays_of(const Lens& lens, const py::object& pixels) {
   return mapped<2, 3>(pixels, "pixels", [&](const auto& p) { return lens.ray_from_pixel(p); });
 }
 
+// A model of Lens whose distortion has coefficients, with checked sizes.
+auto with_coefficients(Lens (*make)(const Two&, const Two&, const Coefficients&, int, int)) {
+  return [make](const Two& focal_px,
+                const Two& centre_px,
+                const Coefficients& k,
+                std::int64_t w,
+                std::int64_t h) {
+    return make(focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
+  };
+}
+
 }  // namespace
 
 void bind_lens(py::module_& core) {
@@ -61,24 +72,8 @@ void bind_lens(py::module_& core) {
                     return Lens::pinhole_from_vertical_fov(
                         fov_deg, size_of(w, "width"), size_of(h, "height"));
                   })
-      .def_static("brown_conrady",
-                  [](const Two& focal_px,
-                     const Two& centre_px,
-                     const Coefficients& k,
-                     std::int64_t w,
-                     std::int64_t h) {
-                    return Lens::brown_conrady(
-                        focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
-                  })
-      .def_static("fisheye",
-                  [](const Two& focal_px,
-                     const Two& centre_px,
-                     const Coefficients& k,
-                     std::int64_t w,
-                     std::int64_t h) {
-                    return Lens::fisheye(
-                        focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
-                  })
+      .def_static("brown_conrady", with_coefficients(&Lens::brown_conrady))
+      .def_static("fisheye", with_coefficients(&Lens::fisheye))
       .def_static("from_file",
                   [](const std::filesystem::path& file, std::int64_t w, std::int64_t h) {
                     return Lens::from_file(file, size_of(w, "width"), size_of(h, "height"));

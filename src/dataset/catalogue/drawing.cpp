@@ -169,6 +169,19 @@ void draw_place(Random& random, const MeetingPlace& place, Encounter& encounter)
   encounter.heading_deg = drawn(random, place.heading_deg);
 }
 
+std::size_t background_at(double share,
+                          const std::vector<std::size_t>& among,
+                          const std::vector<Background>& backgrounds) {
+  double sum = 0;
+  for (const std::size_t place : among) sum += backgrounds[place].weight;
+  double left = sum * share;
+  for (const std::size_t place : among) {
+    left -= backgrounds[place].weight;
+    if (left < 0) return place;
+  }
+  return among.back();
+}
+
 std::size_t stratified_background(const std::vector<std::size_t>& among,
                                   const std::vector<Background>& backgrounds,
                                   std::uint64_t seed,
@@ -176,14 +189,8 @@ std::size_t stratified_background(const std::vector<std::size_t>& among,
                                   std::int64_t index) {
   const pairing::Strata strata(
       Seed(seed).stream("background")(), static_cast<std::uint64_t>(count), 1);
-  double sum = 0;
-  for (const std::size_t place : among) sum += backgrounds[place].weight;
-  double left = sum * strata.middle(static_cast<std::uint64_t>(index % count), 0);
-  for (const std::size_t place : among) {
-    left -= backgrounds[place].weight;
-    if (left < 0) return place;
-  }
-  return among.back();
+  return background_at(
+      strata.middle(static_cast<std::uint64_t>(index % count), 0), among, backgrounds);
 }
 
 DrawnSequence draw(const Drawn& rule,

@@ -60,6 +60,11 @@ DrawnSequence draw(const Drawn& rule,
                    std::uint64_t seed,
                    std::int64_t index);
 
+// The one of `among` at a share from 0 up to 1 of the sum of their weights.
+std::size_t background_at(double share,
+                          const std::vector<std::size_t>& among,
+                          const std::vector<Background>& backgrounds);
+
 // The background of sequence `index` of `count`, one of `among`: each has its weight's share of all
 // sequences, within one.
 std::size_t stratified_background(const std::vector<std::size_t>& among,

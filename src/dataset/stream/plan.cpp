@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "dataset/catalogue/drawing.h"
 #include "dataset/catalogue/meeting.h"
 #include "dataset/stream/fleet.h"
 #include "dataset/stream/places.h"
@@ -100,25 +101,15 @@ const Planner::Rule& Planner::drawn_rule(Random& random) const {
   return rules_.back();
 }
 
-std::size_t Planner::drawn_background(Random& random, const std::vector<std::size_t>& among) const {
-  double all = 0;
-  for (const std::size_t place : among) all += catalogue_.backgrounds[place].weight;
-  double left = random.uniform() * all;
-  for (const std::size_t place : among) {
-    left -= catalogue_.backgrounds[place].weight;
-    if (left < 0) return place;
-  }
-  return among.back();
-}
-
 Planner::Run Planner::run_of(std::int64_t number) const {
   Random random = Seed(seed_).stream("run", static_cast<std::uint64_t>(number));
   Run run{&drawn_rule(random), 0, 0, 1};
-  run.background =
-      drawn_background(random,
-                       std::visit(
-                           [](const auto& drawing) -> const auto& { return drawing.backgrounds; },
-                           run.rule->drawing));
+  run.background = catalogue::background_at(
+      random.uniform(),
+      std::visit(
+          [](const auto& drawing) -> const auto& { return drawing.backgrounds; },
+          run.rule->drawing),
+      catalogue_.backgrounds);
   const catalogue::Background& background = catalogue_.backgrounds[run.background];
   const catalogue::BackgroundFiles& files = files_(run.background);
   if (files.frames <= 0)

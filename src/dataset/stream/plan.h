@@ -57,7 +57,6 @@ class Planner {
   Drawing checked(const catalogue::Rule& rule) const;
   void check_backgrounds(const std::vector<std::size_t>& places) const;
   const Rule& drawn_rule(Random& random) const;
-  std::size_t drawn_background(Random& random, const std::vector<std::size_t>& among) const;
   Run run_of(std::int64_t number) const;
   scene::Scene scene_of(const Rule& rule,
                         const catalogue::StreamPlace& place,

@@ -2,6 +2,7 @@
 #include <airtruth/renderer.h>
 
 #include "library/pictures/public_picture.h"
+#include "library/pictures/run_options.h"
 #include "library/records/lens_state.h"
 #include "library/records/truth_values.h"
 #include "scene/scene/scene.h"
@@ -11,12 +12,7 @@ namespace airtruth {
 namespace {
 
 pipeline::Options options_from(const RenderOptions& wanted) {
-  pipeline::Options options;
-  options.threads = wanted.threads;
-  options.use_cache = wanted.use_cache;
-  options.cache = wanted.cache;
-  options.warn = wanted.warn;
-  options.stop = wanted.stop;
+  pipeline::Options options = run_options(wanted);
   if (wanted.progress)
     options.progress = [progress = wanted.progress](const pipeline::Progress& now) {
       progress(now.frames_done, now.frames_total);

@@ -7,22 +7,10 @@
 
 #include "dataset/catalogue/catalogue.h"
 #include "library/pictures/public_picture.h"
+#include "library/pictures/run_options.h"
 #include "library/records/truth_values.h"
 
 namespace airtruth {
-namespace {
-
-pipeline::Options stream_options(const StreamOptions& wanted) {
-  pipeline::Options options;
-  options.threads = wanted.threads;
-  options.use_cache = wanted.use_cache;
-  options.cache = wanted.cache;
-  options.warn = wanted.warn;
-  options.stop = wanted.stop;
-  return options;
-}
-
-}  // namespace
 
 struct Stream::State {
   stream::Stream stream;
@@ -32,7 +20,7 @@ Stream::Stream(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Stream::Stream(const std::filesystem::path& catalogue_file, const StreamOptions& options)
     : Stream(std::unique_ptr<State>(new State{stream::Stream(
-          catalogue::read_catalogue(catalogue_file), options.seed, stream_options(options))})) {}
+          catalogue::read_catalogue(catalogue_file), options.seed, run_options(options))})) {}
 
 Stream Stream::from_text(std::string_view catalogue,
                          const std::filesystem::path& folder,
@@ -40,7 +28,7 @@ Stream Stream::from_text(std::string_view catalogue,
   return Stream(std::unique_ptr<State>(
       new State{stream::Stream(catalogue::parse_catalogue(catalogue, folder / "catalogue"),
                                options.seed,
-                               stream_options(options))}));
+                               run_options(options))}));
 }
 
 Stream::~Stream() = default;

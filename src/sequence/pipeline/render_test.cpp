@@ -471,6 +471,17 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
             0);
 }
 
+// The pictures f0.png to f2.png of the folder as a clip, seen by a camera without an attitude.
+Summary render_pictures(const fs::path& folder, const std::string& intruder) {
+  return render(scene::parse_scene("name = \"pictures\"\n[background]\nvideo = \"f%d.png\"\n"
+                                   "frame_rate_hz = 30\n[lens]\nvertical_fov_deg = 75\n[motion]\n"
+                                   "model = \"none\"\n" +
+                                       intruder,
+                                   folder / "s.toml"),
+                folder,
+                {.use_cache = false});
+}
+
 // A camera that nothing states to be upside down is not: what looks like it is no horizon.
 TEST_F(Sequence, AHorizonThatStandsUpsideDownIsNone) {
   synthetic::FlightOptions options;
@@ -491,13 +502,7 @@ TEST_F(Sequence, AHorizonThatStandsUpsideDownIsNone) {
       std::copy_n(&picture.samples[3 * i], 3, &turned.samples[3 * (pixels - 1 - i)]);
     video::write_still(out_ / ("f" + std::to_string(k) + ".png"), turned);
   }
-  const Summary summary = render(
-      scene::parse_scene("name = \"turned\"\n[background]\nvideo = \"f%d.png\"\nframe_rate_hz = "
-                         "30\n[lens]\nvertical_fov_deg = 75\n[motion]\nmodel = \"none\"\n" +
-                             crossing("a", "c172/news", 60),
-                         out_ / "s.toml"),
-      out_,
-      {.use_cache = false});
+  const Summary summary = render_pictures(out_, crossing("a", "c172/news", 60));
   EXPECT_THAT(summary.attitude_words, testing::HasSubstr("stands upside down"));
   EXPECT_EQ(replay::open_finished(summary.folder)
                 .truth.frames[0]
@@ -509,13 +514,7 @@ TEST_F(Sequence, WithoutAHorizonTheCameraIsLevelAndItIsSaid) {
   image::Rgb8 grey = image::make_rgb8(kWidth, kHeight);
   std::fill_n(grey.samples.get(), std::size_t{kWidth} * kHeight * 3, std::uint8_t{120});
   for (int k = 0; k < 3; ++k) video::write_still(out_ / ("f" + std::to_string(k) + ".png"), grey);
-  const Summary summary = render(
-      scene::parse_scene("name = \"grey\"\n[background]\nvideo = \"f%d.png\"\nframe_rate_hz = "
-                         "30\n[lens]\nvertical_fov_deg = 75\n[motion]\nmodel = \"none\"\n" +
-                             crossing("a", "c172/news", 60),
-                         out_ / "s.toml"),
-      out_,
-      {.use_cache = false});
+  const Summary summary = render_pictures(out_, crossing("a", "c172/news", 60));
   EXPECT_THAT(summary.attitude_words, testing::HasSubstr("it is level, since "));
   const auto attitude =
       replay::open_finished(summary.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg;

@@ -17,21 +17,14 @@
 namespace airtruth::setup {
 namespace {
 
-// The motion of the frame that all others are measured against.
-motion::FrameMotion reference_at(const video::Frame& frame, bool is_rotation) {
+// The motion of the frame that all others are measured against, and of each in a clip that does not
+// shake.
+motion::FrameMotion reference_at(const video::Frame& frame, bool is_rotation = false) {
   motion::FrameMotion reference;
   reference.frame = frame.index;
   reference.time_s = frame.time_s;
   if (is_rotation) reference.rotation = Quaternion::Identity();
   return reference;
-}
-
-// The motion of a frame of a clip that does not shake.
-motion::FrameMotion still_at(const video::Frame& frame) {
-  motion::FrameMotion still;
-  still.frame = frame.index;
-  still.time_s = frame.time_s;
-  return still;
 }
 
 }  // namespace
@@ -119,15 +112,15 @@ MotionSource MotionSource::of_frames(MotionInputs inputs, std::span<const video:
   MotionSource source(inputs);
   std::vector<motion::FrameMotion> measured;
   for (const video::Frame& frame : frames)
-    measured.push_back(source.none_         ? still_at(frame)
-                       : frames.size() == 1 ? reference_at(frame, source.lens_.has_value())
-                                            : source.measured(frame));
-  if (source.none_) {
-    source.all_ = std::move(measured);
-    source.ready_ = true;
-  } else {
+    measured.push_back(source.none_ || frames.size() == 1
+                           ? reference_at(frame, source.lens_.has_value())
+                           : source.measured(frame));
+  if (!source.none_) {
     source.set_pass(std::move(measured));
+    return source;
   }
+  source.all_ = std::move(measured);
+  source.ready_ = true;
   return source;
 }
 
@@ -152,14 +145,14 @@ void MotionSource::measure(const MotionPass& pass) {
         reader, estimator(reader.info().width, reader.info().height), pass.stop, pass.seen));
   while (const auto frame = reader.next()) {
     if (pass.stop.stop_requested()) throw Interrupted();
-    all_.push_back(still_at(*frame));
+    all_.push_back(reference_at(*frame));
     if (pass.seen) pass.seen(std::ssize(all_));
   }
   ready_ = true;
 }
 
 MotionSource::Measured MotionSource::next(const video::Frame& frame) {
-  if (none_) return {still_at(frame), {}};
+  if (none_) return {reference_at(frame), {}};
   if (!ready_) {
     const motion::FrameMotion motion = guard_.next(measured(frame));
     return {motion, motion::shake_of({motion}, 0)};
