@@ -61,7 +61,7 @@ scene::Scene scene_beside(const scene::Scene& given,
   scene.background.frame_count = boxes.rbegin()->first - boxes.begin()->first + 1;
   scene.camera = {};
   scene.camera.position_ned_m = Vector3::Zero();
-  scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg = camera_pitch_deg;
+  scene.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{0, camera_pitch_deg, 0};
   scene.motion.model = scene::MotionModel::kNone;
   scene.intruders.resize(1);
   scene.lens_marks.clear();

@@ -33,7 +33,7 @@ scene::Scene scene_under(double azimuth_deg, double elevation_deg) {
   scene.name = "s";
   scene.lens.vertical_fov_deg = 10;
   scene.camera.position_ned_m = Vector3::Zero();
-  scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg = 20;
+  scene.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{0, 20, 0};
   scene.light.sun_azimuth_deg = azimuth_deg;
   scene.light.sun_elevation_deg = elevation_deg;
   scene.intruders.resize(1);

@@ -8,6 +8,7 @@
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/level_camera.h"
 #include "sequence/setup/world.h"
 
 namespace airtruth::build {
@@ -69,14 +70,16 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
   files.height = info.height;
   files.frame_rate_hz = info.frame_rate.value();
   files.frames = info.frame_count_estimate;
-  files.clip_start_s = clip_start_s(background, files.video);
+  files.log_start = log_start(background, files.video);
   return files;
 }
 
-double clip_start_s(const catalogue::Background& background, const fs::path& video) {
-  if (!background.camera.log) return 0;
-  return video::time_of_first_frame_s(
+catalogue::LogStart log_start(const catalogue::Background& background, const fs::path& video) {
+  if (!background.camera.log) return {};
+  scene::Camera camera = background.camera;
+  camera.clip_start_s = video::time_of_first_frame_s(
       video, {.first_frame = background.first_frame, .picture_rate_hz = background.frame_rate_hz});
+  return {camera.clip_start_s, setup::level_attitude(camera)};
 }
 
 video::StreamInfo stream_of(const catalogue::Background& background) {

@@ -14,9 +14,8 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                    const catalogue::Folder& folder,
                                    const BuildOptions& options);
 
-// Time of a background's first_frame on its video's clock; 0 where its camera has no log, which
-// alone needs it. Throws Error where the video cannot be read.
-double clip_start_s(const catalogue::Background& background, const fs::path& video);
+// Throws Error where the video or the camera's log cannot be read.
+catalogue::LogStart log_start(const catalogue::Background& background, const fs::path& video);
 
 // The size, rate and number of frames of a background: as its virtual flight states them, or as its
 // video does. Throws Error where the video cannot be read.

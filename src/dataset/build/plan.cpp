@@ -63,7 +63,7 @@ class Planner {
                                                            {.width = facts.width,
                                                             .height = facts.height,
                                                             .frame_rate_hz = facts.frame_rate_hz,
-                                                            .clip_start_s = facts.clip_start_s});
+                                                            .log_start = facts.log_start});
     plan_.draws += draws.drawn;
     plan_.never_in_view += draws.unseen;
     const std::int64_t frames = frames_of(item, facts);
@@ -150,7 +150,7 @@ class Planner {
     double size = 1;
     int width = 0;
     int height = 0;
-    double clip_start_s = 0;        // BackgroundFiles::clip_start_s
+    catalogue::LogStart log_start;
     std::int64_t moved_frames = 0;  // whose motion is measured for all sequences
   };
 
@@ -165,7 +165,7 @@ class Planner {
                                            info.width,
                                            info.height});
     if (const auto* video = std::get_if<fs::path>(&background.source))
-      facts.clip_start_s = clip_start_s(background, *video);
+      facts.log_start = log_start(background, *video);
     const double whole = static_cast<double>(facts.frames) * facts.size;
     if (std::holds_alternative<synthetic::FlightOptions>(background.source))
       plan_.core_s += whole * kCosts.flown;

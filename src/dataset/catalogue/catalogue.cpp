@@ -62,7 +62,11 @@ Background background_from(const TableReader& table) {
   background.lens = scene::lens_in(table);
   background.motion = scene::motion_in(table);
   background.camera = scene::camera_in(table, background.motion);
-  background.camera.by_horizon = false;
+  // Encounters are drawn before a frame is read, so that no horizon gives an attitude. That of a
+  // log without one is LogStart::level_attitude.
+  if (!background.camera.log && !background.camera.path_file &&
+      !background.camera.attitude_yaw_pitch_roll_deg)
+    background.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{};
   background.camera_model = scene::camera_model_in(table);
   background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);

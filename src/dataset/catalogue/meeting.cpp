@@ -187,7 +187,9 @@ void lay_path(scene::Intruder& intruder,
   const double meets_s = meeting_s(encounter, clip);
   const Vector3 meeting =
       camera.position_ned_m + meets_s * camera.velocity_ned_mps +
-      range_m * direction_in_world(encounter, world_from_body(camera.attitude_yaw_pitch_roll_deg));
+      range_m * direction_in_world(
+                    encounter,
+                    world_from_body(camera.attitude_yaw_pitch_roll_deg.value_or(YawPitchRoll{})));
   lay_through(intruder, encounter, meeting, clip);
 }
 

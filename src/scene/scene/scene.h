@@ -70,7 +70,9 @@ struct Lens {
 struct Camera {
   Vector3 position_ned_m{0, 0, -150};
   Vector3 velocity_ned_mps{0, 0, 0};
-  YawPitchRoll attitude_yaw_pitch_roll_deg;
+  // At the first frame. Empty: that of the log, else of the horizon
+  // (sequence/setup/level_camera.h).
+  std::optional<YawPitchRoll> attitude_yaw_pitch_roll_deg;
   std::optional<fs::path> path_file;
   // A log of the flight (scene/flight_log/flight_log.h).
   std::optional<fs::path> log;
@@ -79,13 +81,8 @@ struct Camera {
   // Time of the clip's first frame on the video's clock. It follows from [background] first_frame
   // and the video (sequence/setup/from_scene.h).
   double clip_start_s = 0;
-  // Whether the scene states the position and the attitude at the first frame. Those of a log are
-  // used where it does not, and an attitude that nothing states is found
-  // (sequence/setup/level_camera.h).
+  // Whether the scene states the position at the first frame; else it is that of a log.
   bool position_is_stated = false;
-  bool attitude_is_stated = false;
-  // False: such an attitude is level. A catalogue draws its encounters before a frame is read.
-  bool by_horizon = true;
   // With a log: true where the attitude follows the log throughout, which is so for motion
   // `smoothed`. Otherwise it is that of the first frame, from where the measured motion turns it.
   bool follows_log_attitude = false;

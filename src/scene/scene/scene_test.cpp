@@ -64,7 +64,7 @@ TEST(Scene, EveryValueArrives) {
   EXPECT_EQ(scene.background.frame_count, 322);
   EXPECT_EQ(scene.lens.vertical_fov_deg, 90.0);
   EXPECT_EQ(scene.camera.position_ned_m, Vector3(0, 0.5, -150));
-  EXPECT_EQ(scene.camera.attitude_yaw_pitch_roll_deg.pitch_deg, 2);
+  EXPECT_EQ(scene.camera.attitude_yaw_pitch_roll_deg->pitch_deg, 2);
   EXPECT_EQ(scene.motion.reference, MotionReference::kSmoothed);
   EXPECT_EQ(scene.light.sun_azimuth_deg, 120);
   ASSERT_EQ(scene.intruders.size(), 2u);

@@ -97,7 +97,6 @@ void read_log(const TableReader& table, Camera& camera) {
   camera.log = table.path("log");
   camera.log_offset_s = table.number("log_offset_s", kTime);
   camera.position_is_stated = table.has("position_ned_m");
-  camera.attitude_is_stated = table.has("attitude_yaw_pitch_roll_deg");
   if (!camera.log && camera.log_offset_s)
     table.fail("log_offset_s", "log_offset_s is stated without a log; expected log as well");
 }
@@ -122,7 +121,7 @@ Camera camera_in(const TableReader& parent, const Motion& motion) {
   camera.velocity_ned_mps =
       table.vector("velocity_ned_mps", kVelocity).value_or(camera.velocity_ned_mps);
   if (const auto angles = table.tuple("attitude_yaw_pitch_roll_deg", {kTurn, kPitch, kTurn}))
-    camera.attitude_yaw_pitch_roll_deg = {(*angles)[0], (*angles)[1], (*angles)[2]};
+    camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{(*angles)[0], (*angles)[1], (*angles)[2]};
   return camera;
 }
 

@@ -99,8 +99,7 @@ void add_camera(Text& text, const Camera& camera) {
   text.add("log_offset_s", camera.log_offset_s);
   if (!camera.log || camera.position_is_stated) text.add("position_ned_m", camera.position_ned_m);
   if (!camera.log) text.add("velocity_ned_mps", camera.velocity_ned_mps);
-  if (!camera.log || camera.attitude_is_stated)
-    text.add("attitude_yaw_pitch_roll_deg", camera.attitude_yaw_pitch_roll_deg);
+  text.add("attitude_yaw_pitch_roll_deg", camera.attitude_yaw_pitch_roll_deg);
 }
 
 void add_light(Text& text, const Light& light) {

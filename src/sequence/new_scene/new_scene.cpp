@@ -207,8 +207,8 @@ CameraWords camera_for(const fs::path& video,
         "log = \"flight.srt\"\n";
   }
   if (attitude) {
-    words.camera.attitude_yaw_pitch_roll_deg = {0, attitude->pitch_deg, attitude->roll_deg};
-    words.camera.attitude_is_stated = log.has_value();
+    words.camera.attitude_yaw_pitch_roll_deg =
+        YawPitchRoll{0, attitude->pitch_deg, attitude->roll_deg};
     words.table += fmt::format(
         "attitude_yaw_pitch_roll_deg = [0, {:.1f}, {:.1f}]   # pitch and roll are those of the "
         "horizon in the first frame\n",

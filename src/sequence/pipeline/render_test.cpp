@@ -457,7 +457,7 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
   EXPECT_NEAR(found.roll_deg, expected.roll_deg, 0.5);
   EXPECT_NEAR(found.yaw_deg, 0, 1e-9);
   // What sequence.json holds is stated: the same frames are made from it.
-  EXPECT_TRUE(finished.scene->camera.attitude_is_stated);
+  EXPECT_TRUE(finished.scene->camera.attitude_yaw_pitch_roll_deg.has_value());
   EXPECT_TRUE(replay::recompose(finished, 1, {}).faults.empty());
   const Summary stated =
       render(scene::parse_scene(text + "[camera]\nattitude_yaw_pitch_roll_deg = [0, 0, 0]\n",

@@ -66,7 +66,7 @@ TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
   found.quantities.at("light.sun_elevation_deg").values = {{40, 1}};
   found.yaw_from_first_deg = {0, 15, 30, 45};
   keep(found);
-  scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = 10;
+  scene_.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{10, 0, 0};
   scene_.background.first_frame = 2;
   const scene::Scene second = resolve();
   EXPECT_NEAR(second.light.sun_azimuth_deg, 80, 1e-9);
@@ -75,7 +75,7 @@ TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
   scene_.background.first_frame = 0;
   EXPECT_NEAR(resolve().light.sun_azimuth_deg, 110, 1e-9);
   // From 0 to 360.
-  scene_.camera.attitude_yaw_pitch_roll_deg.yaw_deg = -150;
+  scene_.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{-150, 0, 0};
   EXPECT_NEAR(resolve().light.sun_azimuth_deg, 310, 1e-9);
 }
 

@@ -59,8 +59,9 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {
   if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
   if (camera.log) return path_from_log(camera, warn);
-  return trajectory::uniform(
-      camera.position_ned_m, camera.velocity_ned_mps, camera.attitude_yaw_pitch_roll_deg);
+  return trajectory::uniform(camera.position_ned_m,
+                             camera.velocity_ned_mps,
+                             camera.attitude_yaw_pitch_roll_deg.value_or(YawPitchRoll{}));
 }
 
 double clip_start_s(const scene::Background& background) {
@@ -268,13 +269,10 @@ trajectory::AttitudeOverride held(const scene::Camera& camera,
                                   const flight_log::FlightLog& log,
                                   const trajectory::Path& path,
                                   double offset_s) {
-  YawPitchRoll attitude = camera.attitude_yaw_pitch_roll_deg;
-  if (!camera.attitude_is_stated) {
-    const auto logged = flight_log::attitude_at(log, offset_s);
-    attitude =
-        logged ? *logged : YawPitchRoll{yaw_pitch_roll(path.at(0)->world_from_body).yaw_deg, 0, 0};
-  }
-  return {attitude.yaw_deg, attitude.pitch_deg, attitude.roll_deg};
+  std::optional<YawPitchRoll> attitude = camera.attitude_yaw_pitch_roll_deg;
+  if (!attitude) attitude = flight_log::attitude_at(log, offset_s);
+  if (!attitude) attitude = YawPitchRoll{yaw_pitch_roll(path.at(0)->world_from_body).yaw_deg, 0, 0};
+  return {attitude->yaw_deg, attitude->pitch_deg, attitude->roll_deg};
 }
 
 }  // namespace
@@ -298,7 +296,8 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   const flight_log::Placement placement{offset_s, first};
   try {
     const trajectory::Path path = flight_log::local_path(log, placement);
-    if (camera.follows_log_attitude && !camera.attitude_is_stated && !log.attitudes.empty())
+    if (camera.follows_log_attitude && !camera.attitude_yaw_pitch_roll_deg &&
+        !log.attitudes.empty())
       return path;
     return flight_log::local_path(log, placement, held(camera, log, path, offset_s));
   } catch (const Error& error) {

@@ -88,7 +88,7 @@ TEST_F(OwnLog, ASceneWithALogIsWrittenAndReadTheSame) {
   EXPECT_EQ(again.camera.log, scene.camera.log);
   EXPECT_EQ(again.camera.log_offset_s, 10.25);
   EXPECT_TRUE(again.camera.position_is_stated);
-  EXPECT_FALSE(again.camera.attitude_is_stated);
+  EXPECT_FALSE(again.camera.attitude_yaw_pitch_roll_deg.has_value());
 }
 
 TEST_F(OwnLog, WhatDoesNotFitIsAnErrorAtTheScenesLine) {

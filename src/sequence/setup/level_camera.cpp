@@ -21,7 +21,7 @@ namespace {
 constexpr double kMostRollDeg = 90;
 
 bool states_attitude(const scene::Camera& camera) {
-  return camera.path_file || camera.attitude_is_stated ||
+  return camera.path_file || camera.attitude_yaw_pitch_roll_deg ||
          (camera.log && !read_log(*camera.log).attitudes.empty());
 }
 
@@ -51,17 +51,20 @@ std::string level_words(const std::string& why) {
 
 }  // namespace
 
+std::optional<YawPitchRoll> level_attitude(const scene::Camera& camera) {
+  if (states_attitude(camera)) return std::nullopt;
+  const auto first = camera_path(camera).at(0);
+  return YawPitchRoll{first ? yaw_pitch_roll(first->world_from_body).yaw_deg : 0, 0, 0};
+}
+
 std::string state_attitude(scene::Camera& camera,
                            const lens::Lens& lens,
                            const image::Mask* own_aircraft,
                            const std::function<video::Reader()>& open,
                            const std::stop_token& stop) {
-  if (states_attitude(camera)) return "";
-  const auto first = camera_path(camera).at(0);
-  YawPitchRoll& attitude = camera.attitude_yaw_pitch_roll_deg;
-  if (first) attitude.yaw_deg = yaw_pitch_roll(first->world_from_body).yaw_deg;
-  camera.attitude_is_stated = true;
-  if (!camera.by_horizon) return "";
+  const std::optional<YawPitchRoll> level = level_attitude(camera);
+  if (!level) return "";
+  YawPitchRoll& attitude = camera.attitude_yaw_pitch_roll_deg.emplace(*level);
   const auto frames = sampled_frames(open(), lens, own_aircraft, stop);
   const horizon::HorizonFinder finder(lens, own_aircraft);
   const camera_file::Horizons horizons = camera_file::accepted_horizons(finder, frames, [&] {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -17,11 +18,15 @@ namespace airtruth::setup {
 inline constexpr std::int64_t kLevelFrames = 21;
 inline constexpr std::int64_t kLevelEvery = 5;
 
+// The level attitude, with the heading of its path or log, of a camera for which neither the scene
+// nor its path or log states one; empty where one does.
+std::optional<YawPitchRoll> level_attitude(const scene::Camera& camera);
+
 // States the attitude of a camera for which neither the scene nor its path or log does: pitch and
 // roll of the first frame are the median of the horizons in the first kLevelFrames frames, each
 // carried to the first by the rotation that is measured between them
 // (calibration/camera_file/level.h). Yaw stays. Where these frames show no horizon, or
-// one that stands upside down, or `by_horizon` of the camera is false, the camera is level. Returns
+// one that stands upside down, the camera is level. Returns
 // what was done in words, for the user; "" where the attitude was stated or need not be found.
 //
 // `open` gives a reader from the scene's first frame on, and is called where frames are needed.
