@@ -83,7 +83,11 @@ double own_share(const Estimate& own, const Estimate& prior) {
   return weight / (weight + 1 / (prior.sigma * prior.sigma));
 }
 
-void join(Calibration& c, const std::string& key, const Estimate& prior, const std::string& whose) {
+void join(Calibration& c,
+          const std::string& key,
+          const Estimate& prior,
+          const CameraProfile& profile) {
+  const std::string whose = profile.words();
   Quantity& quantity = c.quantities.at(key);
   if (!quantity.is_measured()) {
     quantity.source = "of " + whose + "; the clip does not show it";
@@ -92,15 +96,17 @@ void join(Calibration& c, const std::string& key, const Estimate& prior, const s
   }
   const Estimate own = key == kReadout ? signed_readout(c) : quantity.value();
   const double share = own_share(own, prior);
-  if (share == 1) return;
+  const double off = std::abs(own.value - prior.value);
+  const bool contradicts = off > kMaxDifferenceInErrors * std::hypot(own.sigma, prior.sigma);
+  // A camera that differs that much from all others is not one of them.
+  if (share == 1 || (contradicts && profile.name.empty())) return;
   put(c, key, combined(own, prior));
   if (share < kOwnShare)
     quantity.source =
         share > 1 - kOwnShare
             ? fmt::format("of the clip, {}, and {}, {}", with_error(own), whose, with_error(prior))
             : fmt::format("of {}; the clip's {} says next to nothing", whose, with_error(own));
-  const double off = std::abs(own.value - prior.value);
-  if (off > kMaxDifferenceInErrors * std::hypot(own.sigma, prior.sigma))
+  if (contradicts)
     quantity.doubt =
         fmt::format("the clip has {}, {} {}", with_error(own), whose, with_error(prior));
 }
@@ -206,7 +212,7 @@ void check_size(const CameraProfile& profile, int width, int height, const Where
 
 Calibration with_profile(Calibration measured, const CameraProfile& profile) {
   check_size(profile, measured.width, measured.height);
-  for (const auto& [key, prior] : profile.values) join(measured, key, prior, profile.words());
+  for (const auto& [key, prior] : profile.values) join(measured, key, prior, profile);
   return measured;
 }
 

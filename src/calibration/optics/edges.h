@@ -32,9 +32,11 @@ class EdgeMeter {
 
   // The step response of the camera. Not measured where there are too few sharp edges.
   //
-  // The error of the spread includes the chance that the sharpest of few edges is soft in the
-  // world. The number of different edges is that of one frame: the edges of other frames may be the
-  // same ones again, as those of one aircraft against the sky are.
+  // The error of the spread includes the chance that the sharpest edges are soft in the world. It
+  // follows from the number of different edges that are nearly as sharp as the sharpest: many of
+  // them are limited by the camera, a single one may be of a soft thing. Different edges are those
+  // of one frame: the edges of other frames may be the same ones again, as those of one aircraft
+  // against the sky are.
   //
   // `codec_step`: step of the codec's quantiser in code values; 0 if it is not known. Quantisation
   // softens weak edges. Where enough edges are high compared with the step, only those are used.
@@ -64,6 +66,8 @@ class EdgeMeter {
   bool is_known(const Edge& edge) const;
   std::vector<const Edge*> usable(double codec_step) const;
   std::vector<const StepEdge*> sharp_ones(double codec_step) const;
+  // The share of the usable edges that are nearly as sharp as the sharpest.
+  double share_limited(double codec_step) const;
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;
   std::vector<Edge> edges_;

@@ -209,13 +209,16 @@ float smoothstep(float low, float high, float value) {
   return t * t * (3 - 2 * t);
 }
 
+// The linear light from which on a channel counts as clipped.
+constexpr float kClipped = 0.95f;
+
+bool is_clipped(const Rgb& rgb) { return *std::min_element(rgb.begin(), rgb.end()) >= kClipped; }
+
 // How much less red than blue a block is; empty for clipped and dark ones, 0 for clipped white.
 std::optional<float> cast_of(const Rgb& rgb) {
-  // The linear light up to which blue is dark, and from which on it counts as clipped.
-  constexpr float kDarkest = 0.02f;
-  constexpr float kBrightest = 0.95f;
+  constexpr float kDarkest = 0.02f;  // the linear light up to which blue is dark
   if (!(rgb[2] > kDarkest)) return std::nullopt;
-  if (rgb[2] >= kBrightest) return rgb[0] < kBrightest ? std::nullopt : std::optional(0.0f);
+  if (rgb[2] >= kClipped) return rgb[0] < kClipped ? std::nullopt : std::optional(0.0f);
   return 1 - rgb[0] / rgb[2];
 }
 
@@ -268,6 +271,7 @@ struct Seen {
   Sums blue;
   Sums cloud;
   Sums ground;
+  float clipped = 0;  // weight of the sky whose channels are all clipped
   // 1 where some of the sky is blue, and the sun therefore shines.
   float clearness = 0;
   float all = 0;  // weight of all blocks
@@ -304,6 +308,7 @@ Seen seen_in(const std::vector<Block>& blocks, const Skies& skies) {
     const float cloud = 1 - blue;
     seen.blue.add(block.linear, block.weight * blue, clear_seen(block, skies, blue));
     seen.cloud.add(block.linear, block.weight * cloud, overcast_seen(block, skies, cloud));
+    if (is_clipped(block.linear)) seen.clipped += block.weight;
     clear.push_back(blue);
   }
   if (clear.size() < kFewest) return seen;
@@ -319,6 +324,16 @@ Rgb ground_of(float albedo, double sun_elevation_deg, const Ambient& light) {
   Rgb ground{};
   for (std::size_t c = 0; c < 3; ++c) ground[c] = albedo * (height * light.sun[c] + light.sky()[c]);
   return ground;
+}
+
+// The factor by which the light is brighter than the sky shows it. A clipped sky is a lower bound;
+// the ground, of kGroundAlbedo, shows all of the light that falls on it.
+float beyond_clipped(const Seen& seen, double sun_elevation_deg, const Ambient& by_sky) {
+  const float sky_weight = seen.blue.weight + seen.cloud.weight;
+  if (!(seen.clipped > 0) || !(seen.ground.weight > 0)) return 1;
+  const float under_sky = brightness(ground_of(kGroundAlbedo, sun_elevation_deg, by_sky));
+  const float by_ground = brightness(seen.ground.mean()) / under_sky;
+  return 1 + seen.clipped / sky_weight * std::max(0.0f, by_ground - 1);
 }
 
 // Over a black picture: an overcast sky above a level ground.
@@ -352,6 +367,11 @@ Ambient measure(const std::vector<Block>& blocks, const Skies& skies, double ele
   // Smallest share of the picture that counts as ground; a smaller part may be anything.
   constexpr float kMinGround = 0.05f;
   const bool is_ground_seen = seen.ground.weight > kMinGround * seen.all;
+  if (is_ground_seen) {
+    const float brighter = beyond_clipped(seen, elevation_deg, ambient);
+    for (auto* light : {&ambient.sun, &ambient.blue, &ambient.cloud})
+      for (float& channel : *light) channel *= brighter;
+  }
   ambient.ground =
       is_ground_seen ? seen.ground.mean() : ground_of(kGroundAlbedo, elevation_deg, ambient);
   std::vector<Block> around;

@@ -23,7 +23,8 @@
 // the sun, the blue sky and clouds depend on the sun's elevation alone. Where no ground is visible,
 // a level ground under the same light takes its place. Where the whole picture is black, the light
 // is that of an overcast sky. Three quantities are measured: the exposure, the clearness of the
-// sky, and the share of cloud in it. A clipped sky makes all results too dark.
+// sky, and the share of cloud in it. A clipped sky bounds the light from below; where ground is in
+// view, its brightness says how much more there is.
 //
 // Blocks near the intruder have four times the weight. The result is smoothed over time. A jump of
 // the camera's exposure or white balance is followed at once; the jump is the median over the

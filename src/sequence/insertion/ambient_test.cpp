@@ -20,6 +20,26 @@ std::uint8_t to_code(float value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
 }
 
+// A picture of linear light by pixel, clipped at 1.
+template <typename LightAt>
+image::Picture picture_of(const LightAt& light_at) {
+  image::Colour colour;
+  colour.chroma = image::Chroma::k444;
+  image::Picture picture = image::make_picture(kSkySize, kSkySize, colour);
+  const image::ColourCode code(colour);
+  for (int y = 0; y < kSkySize; ++y)
+    for (int x = 0; x < kSkySize; ++x) {
+      image::Rgb coded = light_at(x, y);
+      for (float& value : coded)
+        value = static_cast<float>(image::ToneCurve{}.coded_from_linear(std::min(1.0F, value)));
+      const image::Ycc ycc = code.ycc_from_rgb(coded);
+      picture.planes[0].row(y)[x] = to_code(ycc.y);
+      picture.planes[1].row(y)[x] = to_code(ycc.cb);
+      picture.planes[2].row(y)[x] = to_code(ycc.cr);
+    }
+  return picture;
+}
+
 // A clear sky of a known level under a sun, as a camera of that pitch sees it.
 struct ClearSky {
   lens::Lens lens{lens::Pinhole{{100, 100}, {kSkySize / 2.0, kSkySize / 2.0}},
@@ -35,23 +55,13 @@ struct ClearSky {
     light.sun_azimuth_deg = sun_azimuth_deg;
     light.sun_elevation_deg = sun_elevation_deg;
     const Skies all = skies(shade::to_sun(sun_azimuth_deg, sun_elevation_deg));
-    image::Colour colour;
-    colour.chroma = image::Chroma::k444;
-    picture = image::make_picture(kSkySize, kSkySize, colour);
-    const image::ColourCode code(colour);
-    for (int y = 0; y < kSkySize; ++y)
-      for (int x = 0; x < kSkySize; ++x) {
-        const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
-        const auto seen = static_cast<float>(all.clear_seen(world_from_cam * ray->normalized()));
-        image::Rgb coded;
-        for (std::size_t c = 0; c < 3; ++c)
-          coded[c] = static_cast<float>(image::ToneCurve{}.coded_from_linear(
-              std::min(1.0F, kSkyLevel * seen * kSkyColour[c])));
-        const image::Ycc ycc = code.ycc_from_rgb(coded);
-        picture.planes[0].row(y)[x] = to_code(ycc.y);
-        picture.planes[1].row(y)[x] = to_code(ycc.cb);
-        picture.planes[2].row(y)[x] = to_code(ycc.cr);
-      }
+    picture = picture_of([&](int x, int y) {
+      const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
+      const auto seen = static_cast<float>(all.clear_seen(world_from_cam * ray->normalized()));
+      image::Rgb light;
+      for (std::size_t c = 0; c < 3; ++c) light[c] = kSkyLevel * seen * kSkyColour[c];
+      return light;
+    });
   }
 
   Ambient seen() const { return AmbientEstimator(light, {}, nullptr).next(picture, sight, {}); }
@@ -98,24 +108,9 @@ TEST(Ambient, AGroundThatIsNotSeenGivesBackItsShareOfSunAndSky) {
   }
 }
 
-// A sky of two even halves, linear light.
+// A sky of two even halves.
 image::Picture sky_of(const image::Rgb& left, const image::Rgb& right) {
-  image::Colour colour;
-  colour.chroma = image::Chroma::k444;
-  image::Picture picture = image::make_picture(kSkySize, kSkySize, colour);
-  const image::ColourCode code(colour);
-  for (int x = 0; x < kSkySize; ++x) {
-    image::Rgb coded = x < kSkySize / 2 ? left : right;
-    for (float& value : coded)
-      value = static_cast<float>(image::ToneCurve{}.coded_from_linear(value));
-    const image::Ycc ycc = code.ycc_from_rgb(coded);
-    for (int y = 0; y < kSkySize; ++y) {
-      picture.planes[0].row(y)[x] = to_code(ycc.y);
-      picture.planes[1].row(y)[x] = to_code(ycc.cb);
-      picture.planes[2].row(y)[x] = to_code(ycc.cr);
-    }
-  }
-  return picture;
+  return picture_of([&](int x, int) { return x < kSkySize / 2 ? left : right; });
 }
 
 Ambient light_of(const image::Rgb& left, const image::Rgb& right) {
@@ -134,6 +129,29 @@ TEST(Ambient, ABluishOvercastSkyHasNoSunAndTheSameBlueBesideCloudsHas) {
   EXPECT_LT(overcast.blue[1], 0.05F * overcast.cloud[1]);
   EXPECT_GT(light_of(bluish, grey).sun[1], 2 * bluish[1]);
   EXPECT_GT(light_of(blue, blue).sun[1], 2 * blue[1]);
+}
+
+// The light of a grey sky above and a grey ground below, as a camera that looks level sees them.
+Ambient light_over_ground(float sky, float ground) {
+  const ClearSky level(0, 180, 40);
+  const image::Picture picture = picture_of([&](int, int y) {
+    const float light = y < kSkySize / 2 ? sky : ground;
+    return image::Rgb{light, light, light};
+  });
+  return AmbientEstimator(level.light, {}, nullptr).next(picture, level.sight, {});
+}
+
+// Four times the exposure clips the sky; the ground, whose light grows as it should, shows it. A
+// ground that is darker than its albedo under that sky says nothing against the sky.
+TEST(Ambient, AGroundShowsHowMuchBrighterThanWhiteAClippedSkyIs) {
+  const Ambient shown = light_over_ground(0.4F, 0.03F);
+  const float ground = 0.1F * (shown.sun[1] * std::sin(0.698132F) + shown.cloud[1]);
+  const Ambient clipped = light_over_ground(4 * 0.4F, 4 * ground);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(clipped.cloud[c], 4 * shown.cloud[c], 0.1F * shown.cloud[c]);
+    EXPECT_NEAR(clipped.sun[c], 4 * shown.sun[c], 0.1F * shown.sun[c]);
+  }
+  EXPECT_NEAR(light_over_ground(1.6F, 0.02F).cloud[1], shown.cloud[1] / 0.4F, 0.1F);
 }
 
 // An even grey sky; code value of its luma.
