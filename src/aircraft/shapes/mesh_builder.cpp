@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aircraft/shapes/mesh_builder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "foundation/base/error.h"
@@ -15,6 +17,11 @@ struct ChordPoint {
   float height;
 };
 constexpr std::array<ChordPoint, 4> kSection = {{{0, 0}, {0.15f, 0.42f}, {0.45f, 0.5f}, {1, 0}}};
+
+// Cosine or sine of a corner's angle, drawn out towards the corners of a box.
+float drawn_out(float x, float squareness) {
+  return squareness == 2 ? x : std::copysign(std::pow(std::abs(x), 2 / squareness), x);
+}
 
 }  // namespace
 
@@ -43,8 +50,9 @@ void MeshBuilder::add_body(std::span<const Ring> rings,
     for (int k = 0; k < sides; ++k) {
       const auto angle =
           2 * static_cast<float>(kPi) * static_cast<float>(k) / static_cast<float>(sides);
-      of_ring.push_back(add_vertex(ring.centre + ring.half_width * std::cos(angle) * across +
-                                   ring.half_height * std::sin(angle) * along));
+      of_ring.push_back(add_vertex(
+          ring.centre + ring.half_width * drawn_out(std::cos(angle), ring.squareness) * across +
+          ring.half_height * drawn_out(std::sin(angle), ring.squareness) * along));
     }
   }
   // Corners turn counter-clockwise seen from outside, whichever way the rings follow each other.
@@ -106,28 +114,91 @@ void MeshBuilder::add_box(const Eigen::Vector3f& low,
   }
 }
 
-void MeshBuilder::add_wing(std::span<const Rib> ribs, std::uint32_t upper, std::uint32_t lower) {
+void MeshBuilder::add_wing(std::span<const Rib> ribs,
+                           std::uint32_t upper,
+                           std::uint32_t lower,
+                           const Eigen::Vector3f& above) {
   check(ribs.size() >= 2, "a wing has two ribs");
-  // z points down: the upper side has the smaller z.
-  for (const float side : {-1.0f, 1.0f}) {
+  const Rib& widest = *std::max_element(ribs.begin(), ribs.end(), [](const Rib& a, const Rib& b) {
+    return (a.leading - a.trailing).squaredNorm() < (b.leading - b.trailing).squaredNorm();
+  });
+  // Seen from outside the corners turn one way, whichever side the wing is on.
+  const bool is_right = (widest.leading - widest.trailing)
+                            .cross(ribs.back().leading - ribs.front().leading)
+                            .dot(above) < 0;
+  for (const float side : {1.0f, -1.0f}) {
     std::vector<std::array<std::uint32_t, kSection.size()>> points;
     for (const Rib& rib : ribs) {
       auto& of_rib = points.emplace_back();
       for (std::size_t k = 0; k < kSection.size(); ++k)
         of_rib[k] = add_vertex(rib.leading + kSection[k].along * (rib.trailing - rib.leading) +
-                               Eigen::Vector3f(0, 0, side * kSection[k].height * rib.thickness));
+                               side * kSection[k].height * rib.thickness * above);
     }
-    // Seen from outside the corners turn one way, whichever side the wing is on.
-    const bool is_right = ribs.back().leading.y() > ribs.front().leading.y();
     for (std::size_t r = 0; r + 1 < points.size(); ++r)
       for (std::size_t k = 0; k + 1 < kSection.size(); ++k) {
         const auto& [a, b] = std::pair(points[r], points[r + 1]);
-        const std::uint32_t material = side < 0 ? upper : lower;
-        if ((side < 0) != is_right)
+        const std::uint32_t material = side > 0 ? upper : lower;
+        if ((side > 0) != is_right)
           add_quad(a[k], b[k], b[k + 1], a[k + 1], material);
         else
           add_quad(a[k + 1], b[k + 1], b[k], a[k], material);
       }
+  }
+}
+
+void MeshBuilder::cut(std::size_t first, const Eigen::Hyperplane<float, 3>& plane) {
+  // A corner that is as near lies on the plane; there is no sliver to cut off. Chosen.
+  constexpr float kOnPlaneM = 1e-4f;
+  const auto distance = [&](std::uint32_t v) {
+    const float d = plane.signedDistance(mesh_.positions[v]);
+    return std::abs(d) < kOnPlaneM ? 0 : d;
+  };
+  // Neighbours share the corner on their common side, so that a closed skin stays closed.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> corners;
+  const auto corner_between = [&](std::uint32_t a, std::uint32_t b) {
+    if (a > b) std::swap(a, b);
+    const auto [known, is_new] = corners.try_emplace({a, b}, 0);
+    if (is_new) {
+      const float share = distance(a) / (distance(a) - distance(b));
+      const Eigen::Vector3f at =
+          mesh_.positions[a] + share * (mesh_.positions[b] - mesh_.positions[a]);
+      known->second = add_vertex(at);
+    }
+    return known->second;
+  };
+  std::vector<model::Triangle>& triangles = mesh_.parts.back().triangles;
+  const std::vector<model::Triangle> whole(triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                                           triangles.end());
+  triangles.resize(first);
+  for (const model::Triangle& triangle : whole) {
+    std::array<std::vector<std::uint32_t>, 2> pieces;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangle.vertex[k], b = triangle.vertex[(k + 1) % 3];
+      if (distance(a) >= 0) pieces[0].push_back(a);
+      if (distance(a) <= 0) pieces[1].push_back(a);
+      if (distance(a) * distance(b) < 0)
+        for (auto& piece : pieces) piece.push_back(corner_between(a, b));
+    }
+    if (std::max(pieces[0].size(), pieces[1].size()) == 3 &&
+        std::min(pieces[0].size(), pieces[1].size()) < 3) {
+      triangles.push_back(triangle);
+      continue;
+    }
+    if (pieces[0].size() == 3 && pieces[0] == pieces[1]) pieces[1].clear();
+    for (const auto& piece : pieces)
+      for (std::size_t k = 2; k < piece.size(); ++k)
+        triangles.push_back({{piece[0], piece[k - 1], piece[k]}, triangle.material});
+  }
+}
+
+void MeshBuilder::paint(std::size_t first,
+                        std::uint32_t material,
+                        const std::function<bool(const Eigen::Vector3f&)>& is_wanted) {
+  std::vector<model::Triangle>& triangles = mesh_.parts.back().triangles;
+  for (std::size_t i = first; i < triangles.size(); ++i) {
+    Eigen::Vector3f middle(0, 0, 0);
+    for (const std::uint32_t v : triangles[i].vertex) middle += mesh_.positions[v] / 3;
+    if (is_wanted(middle)) triangles[i].material = material;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,11 +14,13 @@
 // right, z down; metres). Normals are averaged over the triangles that share a vertex.
 namespace airtruth::shapes {
 
-// A ring of an elongated body: an ellipse across the body's axis.
+// A ring of an elongated body: an ellipse across the body's axis, or a rounded box.
 struct Ring {
   Eigen::Vector3f centre{0, 0, 0};
   float half_width = 0;   // along the first axis across
   float half_height = 0;  // along the second
+  // The exponent of a superellipse: 2 is an ellipse, 4 nearly a box.
+  float squareness = 2;
 };
 
 // A cross-section of a wing or a tail, from its leading to its trailing edge.
@@ -49,9 +52,22 @@ class MeshBuilder {
                 int sides,
                 std::uint32_t material);
   void add_box(const Eigen::Vector3f& low, const Eigen::Vector3f& high, std::uint32_t material);
-  // A wing over ribs: a thin closed skin of lens-shaped sections with one material for its upper
-  // side (smaller z) and one for its lower side.
-  void add_wing(std::span<const Rib> ribs, std::uint32_t upper, std::uint32_t lower);
+  // A wing over ribs: a thin skin of lens-shaped sections with one material for its upper side, to
+  // which `above` points, and one for its lower side. Its ends are open unless the first and the
+  // last rib have no thickness.
+  void add_wing(std::span<const Rib> ribs,
+                std::uint32_t upper,
+                std::uint32_t lower,
+                const Eigen::Vector3f& above = {0, 0, -1});
+
+  // The number of the part's triangles so far: what is added next begins there.
+  std::size_t triangles() const { return mesh_.parts.back().triangles.size(); }
+  // Cuts the part's triangles from `first` on in two where a plane crosses them.
+  void cut(std::size_t first, const Eigen::Hyperplane<float, 3>& plane);
+  // Gives the part's triangles from `first` on a material where their middles are wanted.
+  void paint(std::size_t first,
+             std::uint32_t material,
+             const std::function<bool(const Eigen::Vector3f&)>& is_wanted);
 
   // The mesh with its normals. The builder is used up.
   model::Mesh take();
