@@ -339,6 +339,9 @@ model::Mesh multirotor(const MultirotorShape& shape) {
   const auto size = static_cast<float>(shape.size_m);
   MeshBuilder builder;
   const std::uint32_t shell = builder.add_material(floats(shape.colour), model::Finish::kPaint);
+  const std::uint32_t arm = builder.add_material(floats(shape.arm_colour), model::Finish::kPaint);
+  const std::uint32_t red = builder.add_material({0.6f, 0.02f, 0.02f});
+  const std::uint32_t green = builder.add_material({0.03f, 0.5f, 0.06f});
   const std::uint32_t dark = builder.add_material({0.02f, 0.02f, 0.022f});
   const std::uint32_t blade = builder.add_material({0.03f, 0.03f, 0.032f});
   builder.begin_part({"airframe", {}});
@@ -357,7 +360,12 @@ model::Mesh multirotor(const MultirotorShape& shape) {
                      at - V(0, 0, kArmAbove * size),
                      (has_skids ? 0.020f : kStoutArm) * size,
                      8,
-                     shell);
+                     arm);
+    builder.add_tube(0.88f * at + V(0, 0, 0.01f * size),
+                     0.88f * at + V(0, 0, 0.055f * size),
+                     0.016f * size,
+                     6,
+                     direction.x() > 0 ? red : green);
     builder.add_tube(at + V(0, 0, 0.012f * size),
                      at - V(0, 0, 0.07f * size),
                      (has_skids ? 0.034f : kStoutArm) * size,

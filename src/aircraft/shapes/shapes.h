@@ -46,12 +46,13 @@ struct MultirotorShape {
   // Between the axes of opposite rotors.
   double size_m = 0.4;
   int rotors = 4;  // 4, 6 or 8
-  // Linear RGB of its shell.
+  // Linear RGB of its shell, and of its arms.
   std::array<double, 3> colour = {0.05, 0.05, 0.055};
+  std::array<double, 3> arm_colour = {0.05, 0.05, 0.055};
   bool operator==(const MultirotorShape&) const = default;
 };
-// Arms, motors, a shell with a camera below, legs or landing skids, and two-bladed rotors whose
-// tips move at kRotorTipMps.
+// Arms, motors, a shell with a camera below, legs or landing skids, lights that are red in front
+// and green behind, and two-bladed rotors whose tips move at kRotorTipMps.
 model::Mesh multirotor(const MultirotorShape& shape);
 // The speed of a rotor's tips: a choice.
 constexpr double kRotorTipMps = 60;

@@ -205,6 +205,14 @@ scene::Intruder drawn_leader(const DistractorRule& rule, Random& random) {
   return leader;
 }
 
+// The arms of a multirotor: as its shell, dark, white, or in a colour by which its pilot tells
+// front from rear, with equal chances: a choice.
+std::array<double, 3> drawn_arm_colour(Random& random, const std::array<double, 3>& shell) {
+  const std::array<std::array<double, 3>, 5> among = {
+      shell, shell, {0.02, 0.02, 0.022}, {0.6, 0.6, 0.58}, {0.45, 0.06, 0.02}};
+  return among[static_cast<std::size_t>(random.uniform() * among.size())];
+}
+
 DrawnFlock drawn_flock(const DistractorRule& rule, Random random) {
   DrawnFlock flock;
   flock.leader = drawn_leader(rule, random);
@@ -218,6 +226,8 @@ DrawnFlock drawn_flock(const DistractorRule& rule, Random random) {
   encounter.climb_deg = drawn(random, rule.climb_deg);
   encounter.speed_mps = drawn(random, rule.speed_mps);
   flock.leader.speed_mps = encounter.speed_mps;
+  if (rule.kind == scene::DistractorKind::kMultirotor)
+    flock.leader.distractor->arm_colour = drawn_arm_colour(random, flock.leader.distractor->colour);
   return flock;
 }
 

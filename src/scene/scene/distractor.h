@@ -46,6 +46,7 @@ struct Distractor {
   double glide = 0.3;
   // Multirotors.
   int rotors = 4;
+  std::array<double, 3> arm_colour = {0.05, 0.05, 0.055};
   // Multirotors and balloons; linear RGB.
   std::array<double, 3> colour = {0.05, 0.05, 0.055};
 

@@ -85,7 +85,8 @@ TEST(DistractorKeys, AFlockIsItsBirdsApartFromEachOther) {
 TEST(DistractorKeys, TheEffectiveSceneReadsBackAsItIs) {
   for (const std::string& keys :
        {"kind = \"bird\"\ncount = 3\nspread_m = 4\n" + kPath,
-        std::string("kind = \"multirotor\"\nrotors = 6\ncolour = [0.1, 0.2, 0.3]\nposition_ned_m = "
+        std::string("kind = \"multirotor\"\nrotors = 6\ncolour = [0.1, 0.2, 0.3]\narm_colour = "
+                    "[0.4, 0, 0]\nposition_ned_m = "
                     "[60, 1, -150]\nvelocity_ned_mps = [3, 0, 0]\nyaw_deg = 10\n"),
         std::string("kind = \"balloon\"\n[distractor.encounter]\ncpa_time_s = 2\ncourse_deg = "
                     "90\nspeed_mps = 4\ncpa_right_m = 20\n"),
@@ -125,6 +126,8 @@ TEST(DistractorKeys, WrongKeysAreNamedAtTheirLine) {
   EXPECT_EQ(message_of("kind = \"bird\"\nsize_m = nan\n" + kPath).find("/data/s.toml:7:10: "), 0U);
   EXPECT_EQ(message_of("kind = \"multirotor\"\nrotors = 5\n" + kPath),
             "/data/s.toml:7:10: rotors is 5; expected 4, 6 or 8");
+  EXPECT_EQ(message_of("kind = \"balloon\"\narm_colour = [0, 0, 0]\n" + kPath),
+            "/data/s.toml:7:14: arm_colour has no effect with kind = \"balloon\"");
   EXPECT_EQ(message_of("kind = \"bird\"\n"),
             "/data/s.toml:5:1: [[distractor]] has no path; expected waypoints_ned_m with speed_mps "
             "or times_s, path_file, [intruder.encounter] or [[intruder.seen]]");

@@ -49,7 +49,7 @@ constexpr Limits kOpacity{
 constexpr Limits kAlong{.expected = "a number from -10 to 10", .low = -10, .high = 10};
 
 TableReader::Keys all_keys() {
-  TableReader::Keys keys = {"kind", "id", "colour", "rotors", "along"};
+  TableReader::Keys keys = {"kind", "id", "colour", "arm_colour", "rotors", "along"};
   for (const TableReader::Keys* more : {&kBirdKeys, &kAirKeys, &kLensKeys})
     keys.insert(keys.end(), more->begin(), more->end());
   return keys;
@@ -62,8 +62,10 @@ void refuse(const TableReader& table, const TableReader::Keys& keys, DistractorK
       table.fail(key, fmt::format("{} has no effect with kind = \"{}\"", key, enum_name(kind)));
 }
 
-std::array<double, 3> colour_in(const TableReader& table, const std::array<double, 3>& otherwise) {
-  const auto colour = table.vector("colour", kColour);
+std::array<double, 3> colour_in(const TableReader& table,
+                                const char* key,
+                                const std::array<double, 3>& otherwise) {
+  const auto colour = table.vector(key, kColour);
   return colour ? std::array<double, 3>{colour->x(), colour->y(), colour->z()} : otherwise;
 }
 
@@ -84,9 +86,10 @@ Distractor distractor_in(const TableReader& table, DistractorKind kind) {
   if (kind == DistractorKind::kBird)
     refuse(table, {"colour"}, kind);
   else
-    one.colour = colour_in(table, one.colour);
+    one.colour = colour_in(table, "colour", one.colour);
+  one.arm_colour = colour_in(table, "arm_colour", one.colour);
   if (kind != DistractorKind::kMultirotor) {
-    refuse(table, {"rotors"}, kind);
+    refuse(table, {"rotors", "arm_colour"}, kind);
   } else if (const auto rotors = table.whole("rotors", 4, 8)) {
     if (*rotors % 2 != 0)
       table.fail("rotors", fmt::format("rotors is {}; expected 4, 6 or 8", *rotors));
@@ -171,7 +174,7 @@ LensMark mark_from(const TableReader& table, DistractorKind kind) {
                            shown(mark.size_px)));
   mark.softness = table.number("softness", kShare).value_or(mark.softness);
   mark.opacity = table.number("opacity", kOpacity).value_or(mark.opacity);
-  mark.colour = colour_in(table, mark.colour);
+  mark.colour = colour_in(table, "colour", mark.colour);
   mark.begin_s = table.number("begin_s", kTime).value_or(mark.begin_s);
   if (mark.end_s) *mark.end_s += mark.begin_s;
   if (const auto end_s = table.number("end_s", kTime)) mark.end_s = end_s;

@@ -196,6 +196,7 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "count",
                                 "spread_m",
                                 "rotors",
+                                "arm_colour",
                                 "colour",
                                 "offset_ned_m",
                                 "along",

@@ -216,7 +216,10 @@ void add_distractor(Text& text, const Intruder& intruder) {
   } else {
     text.add("colour", one.colour);
   }
-  if (one.kind == DistractorKind::kMultirotor) text.add("rotors", one.rotors);
+  if (one.kind == DistractorKind::kMultirotor) {
+    text.add("arm_colour", one.arm_colour);
+    text.add("rotors", one.rotors);
+  }
   text.add("offset_ned_m", intruder.offset_ned_m);
   add_path(text, intruder, "distractor");
 }

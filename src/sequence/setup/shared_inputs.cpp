@@ -52,7 +52,7 @@ std::shared_ptr<const Type> prepared(std::shared_ptr<const fleet::Aircraft> airc
 std::string SharedInputs::type_key(const scene::Intruder& intruder, const trajectory::Path& path) {
   if (intruder.distractor) {
     const scene::Distractor& one = *intruder.distractor;
-    return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}",
+    return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}",
                        enum_name(one.kind),
                        one.size_m,
                        enum_name(one.plumage),
@@ -61,7 +61,8 @@ std::string SharedInputs::type_key(const scene::Intruder& intruder, const trajec
                        one.flap_phase,
                        one.glide,
                        one.rotors,
-                       fmt::join(one.colour, ","));
+                       fmt::join(one.colour, ","),
+                       fmt::join(one.arm_colour, ","));
   }
   const model::LoadOptions options = load_options(intruder, path);
   std::string key = intruder.aircraft + '|' + configuration_of(intruder.aircraft, options);

@@ -82,7 +82,7 @@ model::Mesh mesh_of(const scene::Distractor& one) {
       return shapes::bird(
           {one.size_m, one.aspect_ratio, one.plumage, one.flap_hz, one.flap_phase, one.glide});
     case scene::DistractorKind::kMultirotor:
-      return shapes::multirotor({one.size_m, one.rotors, one.colour});
+      return shapes::multirotor({one.size_m, one.rotors, one.colour, one.arm_colour});
     case scene::DistractorKind::kBalloon:
       return shapes::balloon({one.size_m, one.colour});
     default:
