@@ -6,6 +6,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "aircraft/fleet/scale.h"
+#include "aircraft/shapes/airframes.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
@@ -19,6 +20,7 @@ namespace {
 
 // The type's published size, without reading the model.
 std::string published_words(const std::string& name) {
+  if (const auto* made = shapes::made_airframe(name)) return std::string(made->size);
   const fleet::PublishedSize* size = fleet::published_size(name);
   if (size == nullptr) return "no published size is known: its scale is not checked";
   if (!size->is_known()) return size->type;
@@ -150,8 +152,10 @@ void show(const ShowArguments& arguments, Context& context) {
       size.height_m(),
       loaded.mesh.triangle_count(),
       loaded.mesh.textures.size(),
-      loaded.file.string()));
-  if (loaded.file != arguments.name)
+      loaded.file.empty() ? "made in code" : loaded.file.string()));
+  if (const auto* made = shapes::made_airframe(arguments.name))
+    console.result(fmt::format("  {}", made->size));
+  else if (loaded.file != arguments.name)
     console.result("  " + fleet::size_words(
                               size, loaded.catalogue_scale, fleet::published_size(arguments.name)));
   if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));

@@ -244,6 +244,20 @@ TEST(Catalogue, ListsHundredsAndTheirLiveries) {
   EXPECT_THAT(liveries("738/738-Ryanair"), testing::Contains("738/738-KLM"));
 }
 
+// A name that is made in code needs no file, and stands in the list beside those of packages.
+TEST(Catalogue, HoldsWhatIsMadeInCode) {
+  const Aircraft made = load_aircraft("helicopter-twin/rescue");
+  EXPECT_TRUE(made.sources.empty());
+  EXPECT_EQ(made.catalogue_scale, 1);
+  EXPECT_EQ(made.mesh.parts.size(), 3U);
+  EXPECT_EQ(liveries("helicopter-twin/rescue").size(), 5U);
+  EXPECT_EQ(aircraft_fitting("helicopter-*").size(), 24U);
+  EXPECT_EQ(configuration_of("glider/white", {}), "");
+  EXPECT_NEAR(
+      model::extents(load_aircraft("glider/white", {.catalogue_scale = 2}).mesh).span_m(), 34, 0.1);
+  EXPECT_THAT(error_of("helicopter-twin/rescu"), testing::HasSubstr("helicopter-twin/rescue"));
+}
+
 // The ending of the name, in upper or lower case, decides before the catalogue is searched.
 TEST(AircraftFile, AModelFileIsItselfAndAnythingElseIsACatalogueName) {
   const fs::path file = fs::path(testing::TempDir()) / "plane.OBJ";

@@ -16,6 +16,7 @@
 #include "aircraft/confined/child.h"
 #include "aircraft/confined/model_cache.h"
 #include "aircraft/fleet/scale.h"
+#include "aircraft/shapes/airframes.h"
 #include "aircraft/wrapper/model_files.h"
 #include "aircraft/wrapper/part_names.h"
 #include "aircraft/wrapper/reader.h"
@@ -48,11 +49,6 @@ std::vector<fs::path> folders() {
   std::istringstream list(stated != nullptr && *stated != '\0' ? stated : kDebianAircraft);
   for (std::string folder; std::getline(list, folder, ':');)
     if (!folder.empty() && fs::is_directory(folder)) result.emplace_back(folder);
-  if (result.empty())
-    throw Error(
-        "no aircraft are installed: install the package "
-        "flightgear-data-ai, or set "
-        "AIRTRUTH_AIRCRAFT_PATH");
   return result;
 }
 
@@ -186,6 +182,7 @@ const std::map<std::string, std::string>& left_out() {
 
 std::vector<Entry> list_aircraft() {
   std::vector<Entry> entries;
+  for (const std::string& name : shapes::made_names()) entries.push_back({name, {}, {}});
   for (const fs::path& folder : folders()) list_folder(folder, entries);
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.name < b.name;
@@ -198,16 +195,21 @@ std::vector<Entry> list_aircraft() {
 }
 
 Entry find_aircraft(const std::string& name) {
-  for (const fs::path& folder : folders()) {
+  if (shapes::made_airframe(name) != nullptr) return {name, {}, {}};
+  const std::vector<fs::path> searched = folders();
+  for (const fs::path& folder : searched) {
     const fs::path file = folder / (name + ".xml");
     std::error_code ignored;
     const bool plain = !name.empty() && name.find("..") == std::string::npos && name.front() != '/';
     if (plain && fs::is_regular_file(file, ignored)) return {name, file, folder};
   }
   throw Error(fmt::format(
-      "unknown aircraft '{}'; the nearest names are {} (`airtruth aircraft list` shows all)",
+      "unknown aircraft '{}'; the nearest names are {} (`airtruth aircraft list` shows all{})",
       name,
-      fmt::join(nearest_aircraft(name, 3), ", ")));
+      fmt::join(nearest_aircraft(name, 3), ", "),
+      searched.empty() ? "; the package flightgear-data-ai, or a folder that "
+                         "AIRTRUTH_AIRCRAFT_PATH names, has more"
+                       : ""));
 }
 
 fs::path aircraft_file(const std::string& name) {
@@ -251,6 +253,12 @@ fs::path data_root_of(const fs::path& catalogue_folder) {
 std::vector<std::string> liveries(const std::string& name) {
   std::vector<std::string> result;
   if (wrapper::is_model_file(name)) return result;
+  if (shapes::made_airframe(name) != nullptr) {
+    const std::string folder = name.substr(0, name.find('/') + 1);
+    for (const std::string& other : shapes::made_names())
+      if (other != name && other.starts_with(folder)) result.push_back(other);
+    return result;
+  }
   for (const fs::path& root : folders()) {
     const fs::path own = (root / (name + ".xml")).lexically_normal();
     const auto slash = name.find('/');
@@ -368,6 +376,7 @@ Aircraft load_aircraft(const std::string& name,
   Aircraft aircraft;
   aircraft.name = name;
   Source source;
+  const bool is_made = shapes::made_airframe(name) != nullptr;
   if (wrapper::is_model_file(name)) {
     if (options.catalogue_scale)
       throw Error(
@@ -382,11 +391,15 @@ Aircraft load_aircraft(const std::string& name,
       throw Error("model_forward, model_up and model_scale are for a model file; '" + name +
                   "' has its own axes and metres");
     aircraft.file = entry.file;
-    source = source_of_entry(entry);
+    if (!is_made) source = source_of_entry(entry);
   }
-  model::RawModel model = read_source(source, options, aircraft.sources);
-  for (const std::string& warning : model.warnings) warn(warn_to, name + ": " + warning);
-  aircraft.mesh = model::mesh_of(std::move(model));
+  if (is_made) {
+    aircraft.mesh = shapes::made_mesh(name);
+  } else {
+    model::RawModel model = read_source(source, options, aircraft.sources);
+    for (const std::string& warning : model.warnings) warn(warn_to, name + ": " + warning);
+    aircraft.mesh = model::mesh_of(std::move(model));
+  }
   aircraft.catalogue_scale = scale_of(name, options, aircraft.mesh);
   if (aircraft.catalogue_scale != 1) scale_mesh(aircraft.mesh, aircraft.catalogue_scale);
   if (wrapper::is_model_file(name) && wrapper::ending_of(name) != ".xml")
@@ -413,6 +426,7 @@ std::string outcomes_of(const wrapper::Wrapper& wrapper) {
 
 std::string configuration_of(const std::string& name, const model::LoadOptions& options) {
   if (wrapper::is_model_file(name) && wrapper::ending_of(name) != ".xml") return {};
+  if (shapes::made_airframe(name) != nullptr) return {};
   const std::string state = fmt::format("{:a} {:a}", options.airspeed_kt, options.altitude_agl_ft);
   if (wrapper::is_model_file(name)) return state;
   try {

@@ -13,8 +13,8 @@
 #include "aircraft/model/mesh.h"
 #include "foundation/base/log.h"
 
-// Aircraft by name from Debian's package flightgear-data-ai ("738/738-Ryanair"), and aircraft from
-// single model files.
+// Aircraft by name from Debian's package flightgear-data-ai ("738/738-Ryanair") or made in code
+// ("helicopter-light/red", aircraft/shapes/airframes.h), and aircraft from single model files.
 //
 // Example: load_aircraft("738/738-Ryanair") reads AI/Aircraft/738/738-Ryanair.xml and everything
 // that this wrapper names. load_aircraft("models/drone.obj") reads that file. A catalogue model
@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 struct Entry {
   // The path of the wrapper XML below AI/Aircraft without its extension: "738/738-Ryanair".
   std::string name;
+  // Empty for what is made in code.
   std::filesystem::path file;
   // The searched folder that holds the wrapper.
   std::filesystem::path catalogue_folder = {};
@@ -39,9 +40,8 @@ constexpr const char* kDebianAircraft = "/usr/share/games/flightgear/AI/Aircraft
 // folder itself where its path has no such part.
 std::filesystem::path data_root_of(const std::filesystem::path& catalogue_folder);
 
-// All aircraft of the catalogue, sorted by name. The function searches the folders of
-// $AIRTRUTH_AIRCRAFT_PATH (colon-separated), or kDebianAircraft where that is not set. Throws Error
-// where there is no such folder; the message states which package to install.
+// All aircraft of the catalogue, sorted by name: those made in code, and those in the folders of
+// $AIRTRUTH_AIRCRAFT_PATH (colon-separated), or in kDebianAircraft where that is not set.
 std::vector<Entry> list_aircraft();
 
 // The names that match a word, sorted. A word with * or ? is a pattern for the whole name; any
@@ -61,9 +61,9 @@ std::vector<std::string> nearest_aircraft(const std::string& word, std::size_t c
 Entry find_aircraft(const std::string& name);
 
 // The file of an aircraft: the model file itself where is_model_file(name)
-// (aircraft/wrapper/reader.h), else the wrapper of that catalogue name. Throws Error where the
-// model file does not exist, or where no aircraft has that name; the message then holds the nearest
-// names.
+// (aircraft/wrapper/reader.h), else the wrapper of that catalogue name; empty for what is made in
+// code. Throws Error where the model file does not exist, or where no aircraft has that name; the
+// message then holds the nearest names.
 std::filesystem::path aircraft_file(const std::string& name);
 
 struct Aircraft {

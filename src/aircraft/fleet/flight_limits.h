@@ -27,7 +27,7 @@ struct FlightLimits {
   double usual_bank_deg = 0;
   double first_hour = 0;  // of the day, local solar time
   double last_hour = 0;
-  // The folders of Debian's flightgear-data-ai that hold its types, with blanks between.
+  // Its types, with blanks between: folders of Debian's flightgear-data-ai, and types made in code.
   std::string_view types;
 };
 

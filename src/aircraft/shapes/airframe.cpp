@@ -2,11 +2,14 @@
 #include "aircraft/shapes/airframe.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "aircraft/shapes/mesh_builder.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
 
 namespace airtruth::shapes {
 namespace {

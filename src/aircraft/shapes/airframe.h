@@ -94,15 +94,19 @@ struct Rotor {
   double phase_deg = 0;  // of the first blade at the time 0, from forward or up
 };
 
+struct Size {
+  double length_m = 0, span_m = 0, height_m = 0;
+};
+
 struct Airframe {
-  std::string_view name;      // "helicopter-light"
-  std::string_view size;      // what it is like, with the published sizes that it has
-  std::string_view source;    // of these sizes
-  std::string_view liveries;  // their names, with blanks between
+  std::string_view name;  // "helicopter-light"
+  std::string_view size;  // what it is like, with the published sizes that it has
+  // The names of its liveries, with blanks between.
+  std::string_view liveries = "blue olive red rescue white yellow";
   // The origin of the body: the middle of the airframe.
   Place origin = {};
-  // Published: of all but the blades of main rotors; 0 where no span is.
-  double length_m = 0, span_m = 0, height_m = 0;
+  // Published length, span and height of all but the blades of main rotors; 0 where none is.
+  Size published = {};
   std::vector<Hull> hulls = {};
   std::vector<Sheet> sheets = {};
   std::vector<Bar> bars = {};

@@ -10,8 +10,9 @@
 
 #include "foundation/base/error.h"
 
-// Lengths, diameters, spans and heights are those that makers and type certificates publish, and
-// each table says of which type; the lines between are drawn after its side and front views.
+// Lengths, diameters, spans and heights are those that makers publish (handbooks, brochures, type
+// certificates), and each table says of which type; the lines between are drawn by eye after its
+// side and front views.
 namespace airtruth::shapes {
 namespace {
 
@@ -21,12 +22,11 @@ using enum Paint;
 constexpr std::array<Livery, 7> kLiveries = {
     {{"white", {0.72f, 0.72f, 0.70f}, {0.02f, 0.05f, 0.22f}},
      {"red", {0.42f, 0.012f, 0.014f}, {0.72f, 0.72f, 0.70f}},
-     {"rescue", {0.72f, 0.72f, 0.70f}, {0.40f, 0.010f, 0.025f}},
+     {"rescue", {0.72f, 0.72f, 0.70f}, {0.30f, 0.006f, 0.028f}},
      {"yellow", {0.68f, 0.42f, 0.012f}, {0.36f, 0.012f, 0.012f}},
      {"blue", {0.010f, 0.022f, 0.085f}, {0.62f, 0.62f, 0.60f}},
      {"olive", {0.040f, 0.044f, 0.024f}, {0.014f, 0.014f, 0.013f}},
      {"orange", {0.60f, 0.13f, 0.008f}, {0.72f, 0.72f, 0.70f}}}};
-constexpr const char* kHelicopterLiveries = "blue olive red rescue white yellow";
 constexpr const char* kSportLiveries = "blue orange red white yellow";
 
 // Robinson R44: rotor 10.06 m, fuselage 9.07 m, with rotors turning 11.66 m, height 3.28 m, tail
@@ -34,11 +34,8 @@ constexpr const char* kSportLiveries = "blue orange red white yellow";
 Airframe light_single() {
   Airframe a{.name = "helicopter-light",
              .size = "as a Robinson R44: rotor 10.06 m, fuselage 9.07 m, height 3.28 m",
-             .source = "Robinson R44 Pilot's Operating Handbook, section 1",
-             .liveries = kHelicopterLiveries,
              .origin = {0, 0, 1.3},
-             .length_m = 9.07,
-             .height_m = 3.28};
+             .published = {9.07, 0, 3.28}};
   a.hulls = {{.stations = {{2.44, 0.03, 0.93, 1.03},
                            {2.36, 0.22, 0.76, 1.20},
                            {2.10, 0.42, 0.56, 1.45},
@@ -86,11 +83,8 @@ Airframe light_single() {
 Airframe turbine_single() {
   Airframe a{.name = "helicopter-turbine",
              .size = "as an AS350 (H125): rotor 10.69 m, fuselage 10.93 m, height 3.14 m",
-             .source = "Eurocopter AS350 B2 Technical Data",
-             .liveries = kHelicopterLiveries,
              .origin = {0, 0, 1.35},
-             .length_m = 10.93,
-             .height_m = 3.14};
+             .published = {10.93, 0, 3.14}};
   a.hulls = {{.stations = {{3.335, 0.05, 1.00, 1.14},
                            {3.22, 0.36, 0.78, 1.34},
                            {2.85, 0.64, 0.60, 1.68},
@@ -142,11 +136,8 @@ Airframe turbine_single() {
 Airframe medium_twin() {
   Airframe a{.name = "helicopter-twin",
              .size = "as an AW139: rotor 13.80 m, fuselage 13.77 m, height 4.98 m",
-             .source = "Leonardo AW139 brochure",
-             .liveries = kHelicopterLiveries,
              .origin = {0, 0, 1.7},
-             .length_m = 13.77,
-             .height_m = 4.98};
+             .published = {13.77, 0, 4.98}};
   a.hulls = {{.stations = {{4.65, 0.05, 1.10, 1.26},
                            {4.45, 0.40, 0.90, 1.50},
                            {3.90, 0.72, 0.70, 1.76},
@@ -211,11 +202,8 @@ Airframe medium_twin() {
 Airframe heavy_tandem() {
   Airframe a{.name = "helicopter-tandem",
              .size = "as a CH-47D: two rotors 18.29 m, fuselage 15.54 m, height 5.77 m",
-             .source = "Boeing CH-47D/F data sheet",
-             .liveries = kHelicopterLiveries,
              .origin = {0, 0, 2.3},
-             .length_m = 15.54,
-             .height_m = 5.77};
+             .published = {15.54, 0, 5.77}};
   a.hulls = {{.stations = {{7.95, 0.10, 1.10, 1.40},
                            {7.80, 0.55, 0.85, 1.85},
                            {7.35, 0.95, 0.66, 2.40},
@@ -286,12 +274,9 @@ Airframe heavy_tandem() {
 Airframe glider() {
   Airframe a{.name = "glider",
              .size = "as an ASK 21: span 17.00 m, length 8.35 m, height 1.55 m",
-             .source = "Schleicher ASK 21 flight manual",
              .liveries = "blue orange red white",
              .origin = {0, 0, 0.75},
-             .length_m = 8.35,
-             .span_m = 17.00,
-             .height_m = 1.55};
+             .published = {8.35, 17.00, 1.55}};
   a.hulls = {{.paint = kWhite,
               .stations = {{2.75, 0.02, 0.50, 0.55},
                            {2.60, 0.14, 0.38, 0.66},
@@ -321,12 +306,9 @@ Airframe glider() {
 Airframe paraglider() {
   Airframe a{.name = "paraglider",
              .size = "span 9.10 m projected, 8.3 m from the pilot to the canopy's top",
-             .source = "makers' data of wings of 26 m2 in class EN B",
              .liveries = kSportLiveries,
              .origin = {0, 0, 4.0},
-             .length_m = 3.1,
-             .span_m = 9.10,
-             .height_m = 8.3};
+             .published = {3.1, 9.10, 8.3}};
   a.hulls = {
       {.paint = kDark,
        .stations = {{1.25, 0.08, 0.35, 0.50},
@@ -355,12 +337,9 @@ Airframe paraglider() {
 Airframe trike() {
   Airframe a{.name = "trike",
              .size = "as a P&M Quik: span 8.60 m, length 3.90 m, height 3.70 m",
-             .source = "P&M Quik operator's handbook",
              .liveries = kSportLiveries,
              .origin = {0, 0, 1.8},
-             .length_m = 3.90,
-             .span_m = 8.60,
-             .height_m = 3.70};
+             .published = {3.90, 8.60, 3.70}};
   a.hulls = {{.stations = {{1.75, 0.04, 0.42, 0.54},
                            {1.50, 0.22, 0.32, 0.84},
                            {0.90, 0.36, 0.26, 1.10},
@@ -397,12 +376,9 @@ Airframe trike() {
 Airframe airship() {
   Airframe a{.name = "airship",
              .size = "as a Zeppelin NT: length 75.1 m, height 17.4 m",
-             .source = "ZLT Zeppelin NT LZ N07-100 data sheet",
              .liveries = kSportLiveries,
              .origin = {0, 0, 10.3},
-             .length_m = 75.1,
-             .span_m = 19.5,
-             .height_m = 17.4};
+             .published = {75.1, 19.5, 17.4}};
   a.hulls = {
       {.paint = kWhite,
        .stations = {{37.55, 0.05, 10.27, 10.37},

@@ -5,12 +5,13 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
+#include <string>
+#include <string_view>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
-
-#include "aircraft/shapes/shapes.h"
 
 namespace airtruth::shapes {
 namespace {
@@ -70,11 +71,12 @@ TEST(Airframes, AreAsLargeAsPublished) {
     const std::vector<V> fixed = points(mesh, mesh.parts[0]);
     const auto [tail, nose] = std::minmax_element(
         fixed.begin(), fixed.end(), [](const V& a, const V& b) { return a.x() < b.x(); });
-    EXPECT_NEAR(nose->x() - tail->x(), airframe.length_m, 0.02 * airframe.length_m);
-    if (airframe.span_m > 0) {
-      EXPECT_NEAR(size.y(), airframe.span_m, 0.02 * airframe.span_m);
+    EXPECT_NEAR(
+        nose->x() - tail->x(), airframe.published.length_m, 0.02 * airframe.published.length_m);
+    if (airframe.published.span_m > 0) {
+      EXPECT_NEAR(size.y(), airframe.published.span_m, 0.02 * airframe.published.span_m);
     }
-    EXPECT_NEAR(size.z(), airframe.height_m, 0.02 * airframe.height_m);
+    EXPECT_NEAR(size.z(), airframe.published.height_m, 0.02 * airframe.published.height_m);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
 
 namespace airtruth::shapes {
 namespace {

@@ -361,8 +361,8 @@ model::Mesh multirotor(const MultirotorShape& shape) {
                      (has_skids ? 0.020f : kStoutArm) * size,
                      8,
                      arm);
-    builder.add_tube(0.88f * at + V(0, 0, 0.01f * size),
-                     0.88f * at + V(0, 0, 0.055f * size),
+    builder.add_tube(0.88f * at - V(0, 0, 0.01f * size),
+                     0.88f * at + V(0, 0, 0.05f * size),
                      0.016f * size,
                      6,
                      direction.x() > 0 ? red : green);
