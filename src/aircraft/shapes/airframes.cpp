@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aircraft/shapes/airframes.h"
 
-#include <algorithm>
 #include <array>
-#include <sstream>
+#include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "foundation/base/error.h"
 
@@ -413,16 +415,6 @@ Airframe airship() {
   return a;
 }
 
-const Livery* livery_of(const Airframe& airframe, const std::string& name) {
-  std::istringstream known{std::string(airframe.liveries)};
-  for (std::string one; known >> one;)
-    if (one == name)
-      return std::find_if(kLiveries.begin(), kLiveries.end(), [&](const Livery& livery) {
-        return livery.name == name;
-      });
-  return nullptr;
-}
-
 }  // namespace
 
 std::span<const Airframe> airframes() {
@@ -437,29 +429,42 @@ std::span<const Airframe> airframes() {
   return all;
 }
 
+namespace {
+
+struct Made {
+  const Airframe* airframe;
+  const Livery* livery;
+};
+
+const std::map<std::string, Made>& made() {
+  static const std::map<std::string, Made> all = [] {
+    std::map<std::string, Made> named;
+    for (const Airframe& airframe : airframes())
+      for (const Livery& livery : kLiveries)
+        if (airframe.liveries.find(livery.name) != std::string_view::npos)
+          named[fmt::format("{}/{}", airframe.name, livery.name)] = {&airframe, &livery};
+    return named;
+  }();
+  return all;
+}
+
+}  // namespace
+
 std::vector<std::string> made_names() {
   std::vector<std::string> names;
-  for (const Airframe& airframe : airframes()) {
-    std::istringstream liveries{std::string(airframe.liveries)};
-    for (std::string livery; liveries >> livery;)
-      names.push_back(std::string(airframe.name) + '/' + livery);
-  }
+  for (const auto& [name, one] : made()) names.push_back(name);
   return names;
 }
 
 const Airframe* made_airframe(const std::string& name) {
-  const auto slash = name.find('/');
-  for (const Airframe& airframe : airframes())
-    if (slash != std::string::npos && name.compare(0, slash, airframe.name) == 0 &&
-        livery_of(airframe, name.substr(slash + 1)) != nullptr)
-      return &airframe;
-  return nullptr;
+  const auto found = made().find(name);
+  return found != made().end() ? found->second.airframe : nullptr;
 }
 
 model::Mesh made_mesh(const std::string& name) {
-  const Airframe* airframe = made_airframe(name);
-  check(airframe != nullptr, "a name of made_names()");
-  return airframe_mesh(*airframe, *livery_of(*airframe, name.substr(name.find('/') + 1)));
+  const auto found = made().find(name);
+  check(found != made().end(), "a name of made_names()");
+  return airframe_mesh(*found->second.airframe, *found->second.livery);
 }
 
 }  // namespace airtruth::shapes

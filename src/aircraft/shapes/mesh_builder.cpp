@@ -159,37 +159,31 @@ void MeshBuilder::cut(std::size_t first, const Eigen::Hyperplane<float, 3>& plan
   const auto corner_between = [&](std::uint32_t a, std::uint32_t b) {
     if (a > b) std::swap(a, b);
     const auto [known, is_new] = corners.try_emplace({a, b}, 0);
-    if (is_new) {
-      const float share = distance(a) / (distance(a) - distance(b));
-      const Eigen::Vector3f at =
-          mesh_.positions[a] + share * (mesh_.positions[b] - mesh_.positions[a]);
-      known->second = add_vertex(at);
-    }
+    const float share = distance(a) / (distance(a) - distance(b));
+    const Eigen::Vector3f at = (1 - share) * mesh_.positions[a] + share * mesh_.positions[b];
+    if (is_new) known->second = add_vertex(at);
     return known->second;
   };
   std::vector<model::Triangle>& triangles = mesh_.parts.back().triangles;
-  const std::vector<model::Triangle> whole(triangles.begin() + static_cast<std::ptrdiff_t>(first),
-                                           triangles.end());
-  triangles.resize(first);
-  for (const model::Triangle& triangle : whole) {
-    std::array<std::vector<std::uint32_t>, 2> pieces;
+  std::vector<model::Triangle> pieces;
+  for (std::size_t i = first; i < triangles.size(); ++i) {
+    std::array<std::vector<std::uint32_t>, 2> sides;
+    bool is_cut = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangle.vertex[k], b = triangle.vertex[(k + 1) % 3];
-      if (distance(a) >= 0) pieces[0].push_back(a);
-      if (distance(a) <= 0) pieces[1].push_back(a);
-      if (distance(a) * distance(b) < 0)
-        for (auto& piece : pieces) piece.push_back(corner_between(a, b));
+      const std::uint32_t a = triangles[i].vertex[k], b = triangles[i].vertex[(k + 1) % 3];
+      if (distance(a) >= 0) sides[0].push_back(a);
+      if (distance(a) <= 0) sides[1].push_back(a);
+      if (distance(a) * distance(b) >= 0) continue;
+      is_cut = true;
+      for (auto& side : sides) side.push_back(corner_between(a, b));
     }
-    if (std::max(pieces[0].size(), pieces[1].size()) == 3 &&
-        std::min(pieces[0].size(), pieces[1].size()) < 3) {
-      triangles.push_back(triangle);
-      continue;
-    }
-    if (pieces[0].size() == 3 && pieces[0] == pieces[1]) pieces[1].clear();
-    for (const auto& piece : pieces)
-      for (std::size_t k = 2; k < piece.size(); ++k)
-        triangles.push_back({{piece[0], piece[k - 1], piece[k]}, triangle.material});
+    if (!is_cut) pieces.push_back(triangles[i]);
+    for (const auto& side : sides)
+      for (std::size_t k = 2; is_cut && k < side.size(); ++k)
+        pieces.push_back({{side[0], side[k - 1], side[k]}, triangles[i].material});
   }
+  triangles.resize(first);
+  triangles.insert(triangles.end(), pieces.begin(), pieces.end());
 }
 
 void MeshBuilder::paint(std::size_t first,
