@@ -14,8 +14,8 @@
 // right, and up from the ground on which the aircraft stands. What lies to the right of the middle
 // stands for itself and its mirror image, but for rotors.
 //
-// Example: airframe_mesh(light_single(), livery) of tables.h has a part "airframe" from 2.44 m
-// ahead of the mast to 6.63 m behind it, and the parts "main rotor" and "tail rotor", which spin.
+// Example: the mesh of "helicopter-light" (airframes.h) has a part "airframe" from 2.44 m ahead of
+// the mast to 6.63 m behind it, and the parts "main rotor" and "tail rotor", which spin.
 namespace airtruth::shapes {
 
 struct Place {
