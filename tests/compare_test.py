@@ -115,6 +115,10 @@ class Compare(program.Case):
         for one in found["measures"]:
             self.assertIn(f"| {one['name']} |", read("alike", "comparison.md"))
 
+    def test_the_pitch_of_the_camera_is_the_one_that_is_stated_and_not_that_of_the_horizon(self):
+        made(*COMPARE, "-o", "up", "--no-match", "--camera-pitch", "35")
+        self.assertEqual(json.loads(read("up", "comparison.json"))["frames"], json.loads(read("alike", "comparison.json"))["frames"])
+
     def test_an_existing_folder_is_kept_unless_overwrite(self):
         shutil.copytree(path("alike"), path("kept"))
         before = files("kept")
