@@ -3,9 +3,10 @@
 """Can a judge tell inserted aircraft from real ones, and which stage of realism takes that from it? ./dev ablation OUT
 
 Needs clips of real aircraft with boxes (AIRTRUTH_SHARED/footage; their provenance stands there). For each clip: its camera
-is calibrated, an aircraft is put beside the real one with each stage added to those before, and a judge is trained on the
-other clips, and within each. Prints Markdown tables; leaves those of each stage and a picture of its pairs in OUT/NUMBER.md,
-.json and .png. What is there already is not made again. A clip that `compare` refuses is named and left out.
+is calibrated, an aircraft is put beside the real one with each stage added to those before, and judges that learned from the
+other clips are asked (benchmarks/judge). Prints Markdown tables; leaves those of each stage in OUT/NUMBER.md and .json, and a
+sheet for people in OUT/NUMBER.png, whose key is OUT/NUMBER.key.csv. Comparisons that are there already are not made again. A
+clip that `compare` refuses is named and left out.
 """
 
 import argparse
@@ -17,6 +18,10 @@ import time
 import tomllib
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "judge"))
+
+import tables  # noqa: E402  its tables are the judge's
+
 # The clips are split once, by name. Whoever works on light, optics or noise looks at these alone ...
 ONBOARD = ["cumulus_a4", "overcast_b4"]
 LOOKED_AT = (ONBOARD + [f"V_AIRPLANE_{n:03}" for n in (1, 2, 3, 4, 6, 8, 9, 13, 15, 18, 35, 49)]
@@ -33,7 +38,6 @@ STAGES = [("chroma-key", None), ("matte", []), ("+ shutter", ["shutter"]), ("+ a
 # The clips from the ground are of one camera (data/camera-profiles): what one of them cannot tell, as a clip of sky alone
 # cannot tell its sharpness, the camera's profile does. The onboard clips show enough edges of their own.
 GROUND_PROFILE = "ground-zoom"
-CHANCE_DRAWS = 10  # of which aircraft of a clip is called real: what `judge --by-chance` says
 SENSOR = {"noise": ("noise_gain", "noise_floor", "noise_correlation_px"), "chroma": ("chroma_spread_px",), "codec": ("codec_step",)}
 
 
@@ -115,7 +119,7 @@ def compare(arguments, shared, clip, number, stage, parts):
     with open(scene, "w") as file:
         file.write(scene_text(clip, "chroma-key" if stage == "chroma-key" else "matte", tables_of(camera, parts), pose))
     comparison = os.path.join(base, clip)
-    if os.path.exists(os.path.join(comparison, "patches.csv")):
+    if os.path.exists(os.path.join(comparison, "patches")):
         return comparison
     print(f"{stage}: {clip}", file=sys.stderr, flush=True)
     # The onboard cameras look ahead; those on the ground look up at aircraft that fly level.
@@ -137,31 +141,26 @@ def compare(arguments, shared, clip, number, stage, parts):
     return comparison
 
 
-def shown(interval):
-    return f"{interval['value']:.3f} ({interval['low']:.3f} to {interval['high']:.3f})"
+def judged(arguments, base, folders):
+    """The verdict on a stage; leaves it as JSON and Markdown, and a sheet for people with its key."""
+    judge = [sys.executable, "-B", os.path.join(HERE, "judge")]
+    text = run([*judge, "verdict", *folders, "-o", base + ".json", "--pairs", str(arguments.pairs)])
+    run([*judge, "sheet", *folders, "-o", base + ".png", "--seed", os.path.basename(base), "--overwrite"])  # one sheet does not give away another
+    with open(base + ".md", "w") as file:
+        file.write(text)
+    with open(base + ".json") as file:
+        return json.load(file)
 
 
 def print_tables(verdicts):
-    print("| stage | clips | folded area, from other clips (95 % over clips) | by chance (range of draws) | within clips | "
-          "what alone tells most |")
-    print("|---|---:|---|---|---|---|")
+    print(f"| stage | clips | {tables.JUDGES_HEAD}|---|---:|---|---|---|---|---|")
     for stage, verdict in verdicts:
-        telling = ", ".join(f"{one['name']} {one['area']:.2f}" for one in verdict["telling"][:3])
-        chance = verdict["by_chance"]
-        print(f"| {stage} | {len(verdict['clips'])} | {shown(verdict['across'])} | {chance['mean']:.3f} ({chance['least']:.3f} to "
-              f"{chance['most']:.3f}) | {shown(verdict['within'])} | {telling} |")
-    stages = " | ".join(stage for stage, _ in verdicts)
-    for key, words in (("across", "from other clips, not folded"), ("within", "within, folded")):
-        print(f"\n| clip, {words} | {stages} |\n|---|" + "---:|" * len(verdicts))
-        for clip in dict.fromkeys(one["name"] for _, verdict in verdicts for one in verdict["clips"]):
-            cells = [next((f"{one[key]:.3f}" for one in verdict["clips"] if one["name"] == clip), "-") for _, verdict in verdicts]
-            print(f"| {clip} | " + " | ".join(cells) + " |")
-    print(f"\n| inserted - real, median over clips (95 %) | real | {stages} |\n|---|---:|" + "---|" * len(verdicts))
-    for gap in verdicts[0][1]["gaps"]:
-        cells = [next((one for one in verdict["gaps"] if one["name"] == gap["name"]), None) for _, verdict in verdicts]
-        cells = [f"{d['value']:+.3g} ({d['low']:+.3g} to {d['high']:+.3g})" if d else "-"
-                 for d in (one["difference"] if one and one["clips"] else None for one in cells)]
-        print(f"| {gap['name']} | {gap['real']:.3g} | " + " | ".join(cells) + " |")
+        print(tables.judges_rows(verdict["judges"], f" {stage} | {len(verdict['clips'])} |"), end="")
+    print("\n| stage | what alone tells most | the best by chance (1 draw of 20) |\n|---|---|---|")
+    for stage, verdict in verdicts:
+        best = verdict["single"]["best_by_chance"]
+        print(f"| {stage} | {tables.single_words(verdict['single'], 3)} | {best['median']:.2f} ({best['high']:.2f}) |")
+    print("\n" + tables.gaps_table([(stage, verdict["gaps"]) for stage, verdict in verdicts]), end="")
 
 
 def main():
@@ -169,6 +168,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("out")
     parser.add_argument("--frames", type=int, default=120, help="of each clip, from the first box of its longest shot on")
+    parser.add_argument("--pairs", type=int, default=40, help="of each clip that the judges see at most, evenly over it")
     parser.add_argument("--held-back", action="store_true",
                         help="run the clips that nobody has looked at, and only those: once, when all else is done")
     parser.add_argument("--stages", nargs="+", metavar="STAGE", choices=[stage for stage, _ in STAGES],
@@ -192,12 +192,7 @@ def main():
         parts = [part for _, more in STAGES[1:number + 1] if more for part in more]
         made = [compare(arguments, shared, clip, number, stage, parts) for clip in clips]
         base = os.path.join(arguments.out, f"{number}")
-        text = run([arguments.program, "judge", *[folder for folder in made if folder], "--figure", base + ".png", "--json",
-                    base + ".json", "--by-chance", str(CHANCE_DRAWS), "--overwrite"])
-        with open(base + ".md", "w") as file:
-            file.write(f"{stage}\n\n{text}")
-        with open(base + ".json") as file:
-            verdicts.append((stage, json.load(file)))
+        verdicts.append((stage, judged(arguments, base, [folder for folder in made if folder])))
     print_tables(verdicts)
     print(f"\n{time.monotonic() - began:.0f} s")
 

@@ -27,7 +27,7 @@ REAL_FRAMES = 60
 # Clips whose camera is calibrated, relative to AIRTRUTH_SHARED/footage.
 CALIBRATED = ["fixed-wing/cumulus_a4.mp4", "gopro-karma/karma.mp4", "ground-real/V_AIRPLANE_018.mp4"]
 REALISTIC = "fixed-wing/cumulus_a4.mp4"
-COMMANDS = ["", "render", "synth", "motion", "calibrate", "mask", "lens", "aircraft", "overlay", "inspect", "compare", "judge",
+COMMANDS = ["", "render", "synth", "motion", "calibrate", "mask", "lens", "aircraft", "overlay", "inspect", "compare",
             "dataset", "track", "evaluate", "evision", "demo"]
 
 

@@ -76,7 +76,6 @@ void add_track(CLI::App& app, Context& context);
 void add_detect(CLI::App& app, Context& context);
 void add_evaluate(CLI::App& app, Context& context);
 void add_compare(CLI::App& app, Context& context);
-void add_judge(CLI::App& app, Context& context);
 void add_encounter(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_describe(CLI::App& app, Context& context);

@@ -6,11 +6,8 @@
 
 #include "cli/commands.h"
 #include "comparison/comparison/comparison.h"
-#include "comparison/judge/judge.h"
 #include "foundation/base/error.h"
-#include "foundation/base/files.h"
 #include "foundation/run_files/run_files.h"
-#include "picture/video/still.h"
 
 namespace airtruth::cli {
 namespace {
@@ -63,33 +60,6 @@ void compare(const CompareArguments& arguments, Context& context) {
   for (const comparison::Pair& p : found.pairs)
     text += fmt::format("\n  {:<44} real {:8.3g}   inserted {:8.3g}", p.name, p.real, p.made);
   console.result(text);
-}
-
-struct JudgeArguments {
-  std::vector<std::string> comparisons;
-  std::string figure;
-  std::string json;
-  std::uint64_t seed = 1;
-  int chance_draws = 0;
-  bool overwrite = false;
-};
-
-void judge_all(const JudgeArguments& arguments, Context& context) {
-  video::check_still_output(arguments.figure, arguments.overwrite);
-  RunFiles files;
-  for (const std::string& folder : arguments.comparisons) files.reads(folder);
-  files.writes(arguments.figure, arguments.overwrite).writes(arguments.json, arguments.overwrite);
-  files.begin();
-  std::vector<std::filesystem::path> folders;
-  // A clip is called by its folder's name, which a path with a slash at its end lacks.
-  for (const std::filesystem::path folder : arguments.comparisons)
-    folders.push_back(folder.has_filename() ? folder : folder.parent_path());
-  const judge::Verdict verdict =
-      judge::verdict_on(folders, arguments.seed, arguments.chance_draws, context.stop);
-  files.write(arguments.figure, [&](const fs::path& at) { comparison::write_figure(folders, at); });
-  files.write(arguments.json, [&](const fs::path& at) { write_file(at, judge::json_of(verdict)); });
-  files.commit();
-  context.console().result(judge::text_of(verdict));
 }
 
 // How many frames and pairs, and what is searched for.
@@ -146,32 +116,6 @@ void add_compare(CLI::App& app, Context& context) {
       ->capture_default_str();
   add_match_options(*command, *arguments);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the folder if it exists");
-}
-
-void add_judge(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "judge",
-                  "Measure whether a classifier separates the real aircraft of comparisons "
-                  "from the inserted ones, and by what they differ",
-                  judge_all);
-  command
-      ->add_option("COMPARISON", arguments->comparisons, "Folders that `compare` made, one a clip")
-      ->required()
-      ->expected(1, 1000);
-  command->add_option(
-      "--figure", arguments->figure, "Picture of the pairs of all comparisons (.png, .jpg)");
-  command->add_option("--json", arguments->json, "The tables as JSON");
-  command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
-  command
-      ->add_option("--by-chance",
-                   arguments->chance_draws,
-                   "Say what area chance gives where the inserted aircraft have nothing in common: "
-                   "so many draws of which aircraft of a clip is called real")
-      ->check(CLI::Range(0, 1000));
-  command->add_option("--seed", arguments->seed, "Of the interval's resampling")
-      ->capture_default_str();
 }
 
 }  // namespace airtruth::cli

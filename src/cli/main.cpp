@@ -126,7 +126,6 @@ void add_commands(CLI::App& app, cli::Context& context) {
   cli::add_detect(app, context);
   cli::add_evaluate(app, context);
   cli::add_compare(app, context);
-  cli::add_judge(app, context);
   cli::add_evision(app, context);
   cli::add_describe(app, context);
 }

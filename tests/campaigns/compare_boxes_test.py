@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Boxes and comparisons that no clip has: `compare` and `judge` work or refuse them in one line: python3 compare_boxes_test.py AIRTRUTH"""
+"""Boxes that no clip has: `compare` works or refuses them in one line: python3 compare_boxes_test.py AIRTRUTH"""
 
 import json
 import os
-import random
 import sys
 import tempfile
 
@@ -60,17 +59,12 @@ def clip_with_an_aircraft(airtruth, data):
     return HEAD + "".join(f"{frame}," + ",".join(map(str, box)) + "\n" for frame, box in boxes.items() if box)
 
 
-def judge_a_whole_one(airtruth, root, out, boxes):
-    """A comparison is replaced where that is asked for; the judge draws its pairs and writes its tables."""
+def replaced(airtruth, root, out, boxes):
+    """A comparison is replaced where that is asked for."""
     common.run([airtruth, "compare", "--real", f"{root}/data/real/out/out.mkv", "--boxes", boxes, "--scene", f"{root}/data/scene.toml",
                 "-o", out, "--no-match", "--overwrite"], codes=(0,), env=common.environment(f"{root}/cache"))
-    judged = common.run([airtruth, "judge", out, out, out, "--figure", f"{root}/all.png", "--json", f"{root}/all.json"], codes=(0,))
-    if "trained and asked within each clip" not in judged.out or not os.path.getsize(f"{root}/all.png"):
-        raise Broken(f"judge of a whole comparison: {judged.out[-300:]}")
-    with open(f"{root}/all.json") as file:
-        gaps = {gap["name"] for gap in json.load(file)["gaps"]}
-    if not any(name.startswith("edge") for name in gaps) or not any(name.startswith("mean contrast below") for name in gaps):
-        raise Broken(f"judge's gaps: {sorted(gaps)}")
+    if not os.listdir(f"{out}/patches"):
+        raise Broken(f"{out} holds no patches")
 
 
 def compare(airtruth, root):
@@ -91,41 +85,14 @@ def compare(airtruth, root):
         if what == "of its truth" and done.code != 0:
             raise Broken(f"the boxes of the aircraft's own truth: {done.err[-300:]}")
         if done.code == 0:
-            judge_a_whole_one(airtruth, root, out, boxes)
+            replaced(airtruth, root, out, boxes)
     print(f"{len(BOXES) + 1} files of boxes: {worked} compared, the others refused in one line")
-
-
-def judge(airtruth, root):
-    dice = random.Random(1)
-    good = [f"{real},{frame}," + ",".join(f"{dice.random():.3f}" for _ in range(25)) for frame in range(8) for real in (1, 0)]
-    head = "real,frame,features...\n"
-
-    def comparison(name, lines):
-        common.write(f"{root}/{name}/patches.csv", head + "\n".join(lines) + "\n")
-        return f"{root}/{name}"
-
-    others = [comparison("one", good), comparison("two", good)]
-    cases = {
-        "as it should be": (good, None),
-        "a longer row": ([*good[:4], good[4] + ",1" * 5000, *good[5:]], "patches.csv:6: has 5027 cells; expected 27"),
-        "a shorter row": ([*good[:4], "1,2,3", *good[5:]], "patches.csv:6: has 3 cells; expected 27"),
-        "a number beyond a float": ([*good[:4], good[4].replace("0.", "1e300,", 1), *good[5:]], "patches.csv:6"),
-        "real ones alone": ([row for row in good if row.startswith("1")], "holds fewer than two pairs"),
-        "no rows": ([], "has too few cells"),
-        "other features": ([row.rsplit(",", 3)[0] for row in good], "has patches of another kind"),
-    }
-    for what, (lines, words) in cases.items():
-        done = common.run([airtruth, "judge", *others, comparison("three", lines)], f"judge of {what}", (2,) if words else (0,))
-        if words and words not in done.err:
-            raise Broken(f"judge of {what}: expected '{words}', found: {done.err[-300:]}")
-    print(f"{len(cases)} comparisons of strangers: judged, or refused in one line")
 
 
 def body():
     airtruth = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory(prefix="airtruth_boxes_") as root:
         compare(airtruth, root)
-        judge(airtruth, root)
 
 
 if __name__ == "__main__":

@@ -47,18 +47,9 @@ def commands(airtruth, data, out, marker):
         ("evaluate", [a, "evaluate", f"{data}/set", f"{data}/results/am3", "-o", f"{out}/evaluation", "--figures", "png"]),
         ("compare", [a, "compare", "--real", f"{data}/clip.mkv", "--boxes", f"{data}/boxes.csv", "--scene", f"{data}/long.toml",
                      "-o", f"{out}/compared"]),
-        ("judge", [a, "judge", *(f"{data}/compared-{i}" for i in range(3))]),
         ("evision", [a, "evision", f"{data}/evision", "--airliner", "c172/news", "--frames", f"{out}/f.csv"]),
         ("inspect", [a, "inspect", f"{data}/whole/long", "--frame", "1", "-o", f"{out}/i.png"]),
     ]
-
-
-def write_comparisons(data):
-    """What `compare` leaves for `judge`: three clips of 60 pairs."""
-    dice = random.Random(3)
-    for i in range(3):
-        rows = [f"{real},{frame}," + ",".join(f"{dice.gauss(real, 3):.4f}" for _ in range(25)) for frame in range(60) for real in (1, 0)]
-        common.write(f"{data}/compared-{i}/patches.csv", "real,frame,features...\n" + "\n".join(rows) + "\n")
 
 
 def write_evision(data):
@@ -85,7 +76,6 @@ def inputs(airtruth, data):
     common.write(f"{data}/auto.toml", long.replace('"long"', '"auto"') + "[realism]\nauto = true\nfallback = true\n")
     common.write(f"{data}/set.toml", common.CATALOGUE.replace("frame_count = 3", "frame_count = 30"))
     common.write(f"{data}/boxes.csv", "frame,x,y,width,height\n" + "".join(f"{i},{100 + i},100,12,8\n" for i in range(40)))
-    write_comparisons(data)
     write_evision(data)
     airtruth_run("render", f"{data}/long.toml", "--out", f"{data}/whole")
     airtruth_run("dataset", "build", f"{data}/set.toml", "--out", f"{data}/set")

@@ -3,7 +3,7 @@
 
 #include <opencv2/core.hpp>
 
-// Functions of OpenCV's modules calib3d, video, tracking and ml. They stand in a library that is
+// Functions of OpenCV's modules calib3d, video and tracking. They stand in a library that is
 // loaded at the first call (foundation/lazy_library/lazy_library.h), because these modules need
 // more libraries, and more time to load, than all others of a render with known motion. The
 // parameters are OpenCV's, without default values.
@@ -14,9 +14,6 @@ inline namespace tracking {
 class Tracker;
 }
 }  // namespace legacy
-namespace ml {
-class Boost;
-}
 }  // namespace cv
 
 namespace airtruth::opencv_plugin {
@@ -68,8 +65,6 @@ struct Functions {
   cv::Ptr<cv::legacy::Tracker> (*mosse)();
   bool (*init)(cv::legacy::Tracker& tracker, cv::InputArray picture, const cv::Rect2d& box);
   bool (*update)(cv::legacy::Tracker& tracker, cv::InputArray picture, cv::Rect2d& box);
-  // ml
-  cv::Ptr<cv::ml::Boost> (*boost)();
 };
 
 // Throws Error where the library is not installed.

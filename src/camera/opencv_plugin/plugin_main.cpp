@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library itself, airtruth-late-opencv.so.
 #include <opencv2/calib3d.hpp>
-#include <opencv2/ml.hpp>
 #include <opencv2/tracking.hpp>
 #include <opencv2/tracking/tracking_legacy.hpp>
 #include <opencv2/video/tracking.hpp>
@@ -38,6 +37,5 @@ const airtruth::opencv_plugin::Functions airtruth_late_opencv = {
     .update = [](cv::legacy::Tracker& tracker,
                  cv::InputArray picture,
                  cv::Rect2d& box) { return tracker.update(picture, box); },
-    .boost = &cv::ml::Boost::create,
 };
 }

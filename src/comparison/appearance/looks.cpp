@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -215,6 +217,23 @@ void add_contrast(const cv::Mat& difference, const cv::Mat& silhouette, Looks& l
   }
 }
 
+// The mean of the largest tenth, of one value at least.
+double brightest_decile_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end(), std::greater<>());
+  values.resize((values.size() + 9) / 10);
+  return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+}
+
+double strongest_red_of(const Patch& patch, const cv::Mat& around) {
+  cv::Mat rgb, cr;
+  patch.rgb.convertTo(rgb, CV_32F);
+  cv::transform(rgb, cr, cv::Matx13f(0.5F, -0.418688F, -0.081312F));  // BT.601, full range
+  const std::vector<double> inside = values_where(cr, patch.silhouette);
+  if (inside.empty()) return 0;
+  return *std::max_element(inside.begin(), inside.end()) - median_or_0(values_where(cr, around));
+}
+
 // Saturation and histogram of the silhouette.
 void add_colour(const Patch& patch, Looks& looks) {
   double count = 0;
@@ -258,6 +277,10 @@ Looks looks_of(const Patch& patch) {
   if (moments.m00 > 0)
     looks.centre_px = {patch.x + moments.m10 / moments.m00 + 0.5,
                        patch.y + moments.m01 / moments.m00 + 0.5};
+  const cv::Rect bounds = cv::boundingRect(patch.silhouette);
+  looks.longest_px = std::max(bounds.width, bounds.height);
+  looks.brightest_decile = brightest_decile_of(values_where(patch.grey, patch.silhouette));
+  looks.strongest_red = strongest_red_of(patch, around);
   add_colour(patch, looks);
   return looks;
 }
@@ -266,70 +289,6 @@ double distance(const std::array<double, 24>& a, const std::array<double, 24>& b
   double overlap = 0;
   for (std::size_t i = 0; i < a.size(); ++i) overlap += std::sqrt(a[i] * b[i]);
   return std::sqrt(std::max(0.0, 1 - overlap));
-}
-
-namespace {
-
-// Histograms of gradient orientations, weighted by the gradient, in the inner and in the outer half
-// of the patch. The patch is scaled to one size, so that the size of the aircraft has no effect.
-std::vector<float> orientations_of(const Patch& patch) {
-  // The side to which a patch is scaled, px, and the number of bins of half a turn.
-  constexpr int kSide = 48;
-  constexpr int kOrientations = 8;
-  cv::Mat grey, gx, gy, size, angle;
-  cv::resize(patch.grey, grey, {kSide, kSide}, 0, 0, cv::INTER_AREA);
-  cv::Sobel(grey, gx, CV_32F, 1, 0);
-  cv::Sobel(grey, gy, CV_32F, 0, 1);
-  cv::cartToPolar(gx, gy, size, angle);
-  std::vector<float> features;
-  for (int ring = 0; ring < 2; ++ring) {
-    std::array<float, kOrientations> histogram{};
-    float total = 1e-3F;
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) {
-        const double away = std::hypot(x - kSide / 2.0, y - kSide / 2.0) / (kSide / 2.0);
-        if ((away < 0.5) != (ring == 0) || away > 1) continue;
-        const auto bin = static_cast<std::size_t>(double(angle.at<float>(y, x)) / (2 * kPi) * 2 *
-                                                  kOrientations) %
-                         kOrientations;
-        histogram[bin] += size.at<float>(y, x);
-        total += size.at<float>(y, x);
-      }
-    for (const float h : histogram) features.push_back(h / total);
-  }
-  return features;
-}
-
-// The spread of grey within the silhouette, and the sharpest dark and bright corner of the patch,
-// all relative to `contrast`.
-std::vector<float> shading_of(const Patch& patch, double contrast) {
-  cv::Scalar mean, deviation;
-  if (cv::countNonZero(patch.silhouette) > 0)
-    cv::meanStdDev(patch.grey, mean, deviation, patch.silhouette);
-  cv::Mat laplacian;
-  cv::Laplacian(patch.grey, laplacian, CV_32F);
-  double low, high;
-  cv::minMaxLoc(laplacian, &low, &high);
-  return {static_cast<float>(deviation[0] / contrast),
-          static_cast<float>(high / contrast),
-          static_cast<float>(-low / contrast)};
-}
-
-}  // namespace
-
-std::vector<float> features_of(const Patch& patch) {
-  std::vector<float> features = orientations_of(patch);
-  const Looks looks = looks_of(patch);
-  const double contrast = std::abs(looks.contrast) + 4;
-  for (const double v : {looks.edge_width_px,
-                         std::log(looks.noise + 0.05),
-                         std::log((looks.noise + 0.05) / (looks.background_noise + 0.05)),
-                         looks.noise / contrast,
-                         std::log(looks.fine_share + 1e-6),
-                         looks.saturation})
-    features.push_back(static_cast<float>(v));
-  for (const float v : shading_of(patch, contrast)) features.push_back(v);
-  return features;
 }
 
 }  // namespace airtruth::appearance

@@ -42,6 +42,9 @@ struct Looks {
   double middle_share = 0;      // of it from 1/8 to 1/4 cycle a pixel
   double blockiness = 0;        // steps on the 8 px grid over steps off it
   double saturation = 0;        // mean of (max - min) / max over the silhouette
+  double strongest_red = 0;     // largest Cr of it less the median Cr around, code values
+  double brightest_decile = 0;  // mean of the brightest tenth of it, code values
+  double longest_px = 0;        // larger side of its bounds
   Pixel centre_px{0, 0};        // of the silhouette, in the picture
   std::array<double, 24> histogram{};  // 8 bins of red, green, blue, of the silhouette
 };
@@ -49,10 +52,6 @@ Looks looks_of(const Patch& patch);
 
 // Hellinger (1909) distance of two histograms, 0..1.
 double distance(const std::array<double, 24>& a, const std::array<double, 24>& b);
-
-// Returns the features that a judge reads: gradient orientations by ring, noise and edge
-// statistics. They hold neither position nor size.
-std::vector<float> features_of(const Patch& patch);
 
 // How the camera reproduces the outline of a silhouette, from profiles across the outline.
 struct Outline {

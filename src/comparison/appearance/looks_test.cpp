@@ -91,6 +91,24 @@ TEST(Looks, ContrastAboveAndBelowAreTheStepsThatWerePutIn) {
   EXPECT_NEAR(looks.centre_px.y(), 53, 0.01);
 }
 
+TEST(Looks, BrightestDecileStrongestRedAndLongestSideAreThosePutIn) {
+  // 20 x 5 px of 60 before 120, with 10 px of 80: a tenth. Cr is 28 over four of them, 0 elsewhere.
+  const Box box{60, 50, 20, 5};
+  image::Picture picture = image::make_picture(
+      160, 120, {image::Chroma::k444, image::Matrix::kBt601, image::Range::kFull});
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 160; ++x) {
+      const bool red = x >= 70 && x < 72 && y >= 51 && y < 53;
+      picture.planes[0].row(y)[x] = inside(box, x + 0.5, y + 0.5) ? (x < 62 ? 80 : 60) : 120;
+      picture.planes[1].row(y)[x] = 128;
+      picture.planes[2].row(y)[x] = red ? 156 : 128;
+    }
+  const Looks looks = looks_of(*patch_of(picture, box));
+  EXPECT_EQ(looks.longest_px, 20);
+  EXPECT_NEAR(looks.brightest_decile, 80, 0.5);
+  EXPECT_NEAR(looks.strongest_red, 28, 1);
+}
+
 TEST(Looks, AnAircraftOfFivePixelsIsMeasured) {
   const Box box{60, 50, 5, 2};
   const image::Picture picture =

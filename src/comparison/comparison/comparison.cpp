@@ -121,7 +121,6 @@ class Comparing {
     result.colour_distance_within = median_or_0(within);
     const fs::path& part = staged_.path();
     video::write_still(part / "figure.png", figure_of(figure_));
-    video::write_still(part / "pairs.png", strip_of(figure_));
     write_file(part / "comparison.md", table_of(result));
     write_file(part / "patches.csv", patches_csv(all_));
     write_file(part / "comparison.json", json_of(result, real_));
@@ -341,6 +340,8 @@ class Comparing {
     const std::int64_t first = boxes_.begin()->first;
     const std::int64_t total = boxes_.rbegin()->first - first + 1;
     const std::int64_t every = std::max<std::int64_t>(1, total / std::max(1, options_.pairs));
+    const fs::path patches = staged_.path() / "patches";
+    fs::create_directory(patches);
     appearance::BackgroundShift background;
     std::int64_t before = -2;
     each_pair(staged_.path() / kName, boxes_, [&](const PairSeen& pair) {
@@ -357,12 +358,12 @@ class Comparing {
       all_.push_back({pair.frame,
                       appearance::looks_of(*real_patch),
                       appearance::looks_of(*made_patch),
-                      appearance::features_of(*real_patch),
-                      appearance::features_of(*made_patch),
                       shift});
+      FigureRow row = figure_row(*pair.picture, pair.frame, pair.real, pair.made);
+      video::write_still(patches / fmt::format("{:06}.png", pair.frame), patches_of(row));
       if (figure_.size() < static_cast<std::size_t>(options_.pairs) &&
           (figure_.empty() || pair.frame >= figure_.back().frame + every))
-        figure_.push_back(figure_row(*pair.picture, pair.frame, pair.real, pair.made));
+        figure_.push_back(std::move(row));
     });
   }
 
@@ -387,17 +388,6 @@ Comparison compare(const fs::path& real,
                    const fs::path& out,
                    const Options& options) {
   return Comparing(real, boxes, scene, out, options).finish(out);
-}
-
-void write_figure(const std::vector<fs::path>& comparisons, const fs::path& file) {
-  std::vector<NamedStrip> strips;
-  for (const fs::path& folder : comparisons) {
-    if (!fs::is_regular_file(folder / "pairs.png"))
-      throw Error("is no comparison: it has no pairs.png", {folder.string()});
-    strips.push_back({fs::absolute(folder).lexically_normal().filename().string(),
-                      video::read_still(folder / "pairs.png")});
-  }
-  video::write_still(file, figure_of_all(strips));
 }
 
 }  // namespace airtruth::comparison

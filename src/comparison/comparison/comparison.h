@@ -19,8 +19,7 @@
 #include "scene/scene/scene.h"
 
 // Compares an inserted aircraft with a real one, in the same frames of the same clip and at the
-// same apparent size: their appearance, and whether a judge can distinguish them (the paper,
-// section II.D, Figures 8 to 10).
+// same apparent size (the paper, section II.D, Figures 8 to 10).
 namespace airtruth::comparison {
 
 namespace fs = std::filesystem;
@@ -71,19 +70,16 @@ struct Comparison {
 };
 
 // Renders the scene's first intruder beside the real one, in each frame that has a box, and leaves
-// in `out`: sequence/ (as `render` does), figure.png, pairs.png (the pairs alone), comparison.json,
-// comparison.md, patches.csv (what the judge reads). The scene's own path, camera path and motion
-// are not used: the intruder goes where the real one goes, beside it where that is free, as large
-// as it by what stands out from the sky in both. The boxes may be loose: the aircraft is found
-// within them. Nothing runs across a cut of the clip: of its shots the one with most boxes is
-// taken. Error where no aircraft stands out within the boxes.
+// in `out`: sequence/ (as `render` does), figure.png, comparison.json, comparison.md, and of each
+// frame patches/FRAME.png (patches_of(), figure.h) and its lines of patches.csv. The scene's own
+// path, camera path and motion are not used: the intruder goes where the real one goes, beside it
+// where that is free, as large as it by what stands out from the sky in both. The boxes may be
+// loose: the aircraft is found within them. Nothing runs across a cut of the clip: of its shots the
+// one with most boxes is taken. Error where no aircraft stands out within the boxes.
 Comparison compare(const fs::path& real,
                    const match::RealBoxes& boxes,
                    const scene::Scene& scene,
                    const fs::path& out,
                    const Options& options);
-
-// A picture (.png, .jpg) of the pairs of all comparisons.
-void write_figure(const std::vector<fs::path>& comparisons, const fs::path& file);
 
 }  // namespace airtruth::comparison

@@ -86,38 +86,11 @@ image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
   return drawing::from_mat(canvas);
 }
 
-image::Rgb8 strip_of(const std::vector<FigureRow>& rows) {
-  cv::Mat canvas(
-      2 * kTilePx, kTilePx * static_cast<int>(rows.size()), CV_8UC3, drawing::kDarkPaper);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const int x = kTilePx * static_cast<int>(i);
-    paste(canvas, tile_of(rows[i].real.picture, kTilePx), x, 0);
-    paste(canvas, tile_of(rows[i].made.picture, kTilePx), x, kTilePx);
-  }
-  return drawing::from_mat(canvas);
-}
-
-image::Rgb8 figure_of_all(const std::vector<NamedStrip>& strips) {
-  int width = 0, height = kGapPx;
-  for (const NamedStrip& strip : strips) {
-    width = std::max(
-        {width, strip.picture.width, drawing::text_size(strip.name, kTextPx).width + kGapPx});
-    height += kHeadingPx + strip.picture.height;
-  }
-  cv::Mat canvas(height, width + 2 * kGapPx, CV_8UC3, drawing::kDarkPaper);
-  int y = 0;
-  for (const NamedStrip& strip : strips) {
-    y += kHeadingPx;
-    drawing::text(canvas,
-                  strip.name + ": real above, inserted below",
-                  kGapPx,
-                  y - 8,
-                  kTextPx,
-                  drawing::kWhite);
-    const image::Rgb8& p = strip.picture;
-    paste(canvas, drawing::resized(p, p.width, p.height, cv::INTER_NEAREST), kGapPx, y);
-    y += strip.picture.height;
-  }
+image::Rgb8 patches_of(const FigureRow& row) {
+  const int side = row.real.picture.width;
+  cv::Mat canvas(side, 2 * side, CV_8UC3);
+  paste(canvas, tile_of(row.real.picture, side), 0, 0);
+  paste(canvas, tile_of(row.made.picture, side), side, 0);
   return drawing::from_mat(canvas);
 }
 

@@ -34,15 +34,7 @@ FigureRow figure_row(const image::Picture& picture,
 // per frame, in two columns.
 image::Rgb8 figure_of(const std::vector<FigureRow>& rows);
 
-// The same for other pictures to be made of: real ones above inserted ones, kTilePx each.
-constexpr int kTilePx = 176;
-image::Rgb8 strip_of(const std::vector<FigureRow>& rows);
-
-// Strips of several comparisons under each other, each beside its name.
-struct NamedStrip {
-  std::string name;
-  image::Rgb8 picture;
-};
-image::Rgb8 figure_of_all(const std::vector<NamedStrip>& strips);
+// Both crops of a pair as they are: the real aircraft at the left, the inserted one at the right.
+image::Rgb8 patches_of(const FigureRow& row);
 
 }  // namespace airtruth::comparison

@@ -28,22 +28,38 @@ Pair pair_from(const std::string& name,
   return {name, median(real), spread(real), median(made), spread(made)};
 }
 
-template <typename Get>
-Pair pair_of(const std::string& name, const std::vector<Compared>& all, const Get& get) {
-  std::vector<double> real, made;
-  for (const Compared& c : all) real.push_back(get(c.real)), made.push_back(get(c.made));
-  return pair_from(name, real, made);
-}
+// What has a value in one frame.
+struct Measure {
+  const char* name;
+  double appearance::Looks::*value;
+  bool of_edge = false;  // an edge that is nowhere clear has none
+};
+constexpr Measure kMeasures[] = {
+    {"longest side, px", &appearance::Looks::longest_px},
+    {"peak contrast above, code values", &appearance::Looks::peak_above},
+    {"peak contrast below, code values", &appearance::Looks::peak_below},
+    {"mean contrast above, code values", &appearance::Looks::mean_above},
+    {"mean contrast below, code values", &appearance::Looks::mean_below},
+    {"contrast to the surroundings, code values", &appearance::Looks::contrast},
+    {"brightest decile, code values", &appearance::Looks::brightest_decile},
+    {"edge, 10 to 90 %, px", &appearance::Looks::edge_width_px, true},
+    {"halo, share of the step", &appearance::Looks::halo, true},
+    {"noise inside, code values", &appearance::Looks::noise},
+    {"noise around, code values", &appearance::Looks::background_noise},
+    {"saturation", &appearance::Looks::saturation},
+    {"strongest red (Cr), code values", &appearance::Looks::strongest_red},
+    {"spectrum, share from 1/8 to 1/4 cycle/px", &appearance::Looks::middle_share},
+    {"spectrum, share above 1/4 cycle/px", &appearance::Looks::fine_share},
+    {"steps on the 8 px grid over others", &appearance::Looks::blockiness}};
 
-// An edge that is nowhere clear has no width and no halo.
-template <typename Get>
-Pair pair_of_edges(const std::string& name, const std::vector<Compared>& all, const Get& get) {
-  std::vector<double> real, made;
-  for (const Compared& c : all) {
-    if (c.real.edge_width_px > 0) real.push_back(get(c.real));
-    if (c.made.edge_width_px > 0) made.push_back(get(c.made));
-  }
-  return pair_from(name, real, made);
+Pair pair_of(const Measure& measure, const std::vector<Compared>& all) {
+  const auto values_of = [&](const appearance::Looks Compared::*one) {
+    std::vector<double> values;
+    for (const Compared& c : all)
+      if (!measure.of_edge || (c.*one).edge_width_px > 0) values.push_back((c.*one).*measure.value);
+    return values;
+  };
+  return pair_from(measure.name, values_of(&Compared::real), values_of(&Compared::made));
 }
 
 bool in_a_row(const std::vector<Compared>& all, std::size_t i) {
@@ -98,39 +114,27 @@ nlohmann::json number(double value) {
 }  // namespace
 
 std::vector<Pair> pairs_of(const std::vector<Compared>& all) {
-  const auto of = [&](const char* name, double appearance::Looks::*value) {
-    return pair_of(name, all, [value](const appearance::Looks& l) { return l.*value; });
-  };
-  const auto edge_of = [&](const char* name, double appearance::Looks::*value) {
-    return pair_of_edges(name, all, [value](const appearance::Looks& l) { return l.*value; });
-  };
-  return {of("peak contrast above, code values", &appearance::Looks::peak_above),
-          of("peak contrast below, code values", &appearance::Looks::peak_below),
-          of("mean contrast above, code values", &appearance::Looks::mean_above),
-          of("mean contrast below, code values", &appearance::Looks::mean_below),
-          of("contrast to the surroundings, code values", &appearance::Looks::contrast),
-          edge_of("edge, 10 to 90 %, px", &appearance::Looks::edge_width_px),
-          edge_of("halo, share of the step", &appearance::Looks::halo),
-          of("noise inside, code values", &appearance::Looks::noise),
-          of("noise around, code values", &appearance::Looks::background_noise),
-          of("saturation", &appearance::Looks::saturation),
-          of("spectrum, share from 1/8 to 1/4 cycle/px", &appearance::Looks::middle_share),
-          of("spectrum, share above 1/4 cycle/px", &appearance::Looks::fine_share),
-          of("steps on the 8 px grid over others", &appearance::Looks::blockiness),
-          motion_of(all),
-          unsteadiness_of(all),
-          flicker_of(all)};
+  std::vector<Pair> pairs;
+  for (const Measure& m : kMeasures) pairs.push_back(pair_of(m, all));
+  pairs.push_back(motion_of(all));
+  pairs.push_back(unsteadiness_of(all));
+  pairs.push_back(flicker_of(all));
+  return pairs;
 }
 
 std::string patches_csv(const std::vector<Compared>& all) {
-  std::string text = "real,frame,features...\n";
+  std::string text = "frame,real,centre x px,centre y px";
+  for (const Measure& m : kMeasures) text += fmt::format(",\"{}\"", m.name);
   for (const Compared& c : all)
-    for (const auto* features : {&c.real_features, &c.made_features}) {
-      text += fmt::format("{},{}", features == &c.real_features ? 1 : 0, c.frame);
-      for (const float f : *features) text += fmt::format(",{}", f);
-      text += '\n';
+    for (const appearance::Looks* looks : {&c.real, &c.made}) {
+      text += fmt::format("\n{},{},{:.3f},{:.3f}",
+                          c.frame,
+                          looks == &c.real ? 1 : 0,
+                          looks->centre_px.x(),
+                          looks->centre_px.y());
+      for (const Measure& m : kMeasures) text += fmt::format(",{:.6g}", looks->*m.value);
     }
-  return text;
+  return text + "\n";
 }
 
 std::string table_of(const Comparison& c) {

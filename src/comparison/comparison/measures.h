@@ -16,14 +16,15 @@ namespace airtruth::comparison {
 struct Compared {
   std::int64_t frame = 0;
   appearance::Looks real, made;
-  std::vector<float> real_features, made_features;
   // Shift of the background in the picture since the previous frame; empty where it is unknown.
   std::optional<Pixel> background_shift_px;
 };
 
 std::vector<Pair> pairs_of(const std::vector<Compared>& all);
 
-// Returns patches.csv: one line of the judge's features for each real and each inserted patch.
+// patches.csv: one line for each real (1) and each inserted (0) aircraft of a frame, with its
+// centre and every quantity that has a value in one frame. An edge that is nowhere clear has width
+// 0.
 std::string patches_csv(const std::vector<Compared>& all);
 
 // comparison.md and comparison.json.
