@@ -15,13 +15,12 @@
 namespace airtruth::camera_file {
 namespace {
 
+constexpr const char* kPointSpread = "optics.point_spread_px";
 // The keys of the optics, which a clip shows together by its edges or not at all.
-constexpr std::array<const char*, 4> kOptics = {"optics.point_spread_px",
-                                                "optics.sharpening",
-                                                "optics.sharpening_px",
-                                                "sensor.chroma_spread_px"};
+constexpr std::array<const char*, 4> kOptics = {
+    kPointSpread, "optics.sharpening", "optics.sharpening_px", "sensor.chroma_spread_px"};
 // The keys that a profile may have: all values that belong to the camera and not to one flight.
-constexpr std::array<const char*, 8> kProfileKeys = {"optics.point_spread_px",
+constexpr std::array<const char*, 8> kProfileKeys = {kPointSpread,
                                                      "optics.sharpening",
                                                      "optics.sharpening_px",
                                                      "sensor.noise_gain",
@@ -100,6 +99,13 @@ void join(Calibration& c,
   const bool contradicts = off > kMaxDifferenceInErrors * std::hypot(own.sigma, prior.sigma);
   // A camera that differs that much from all others is not one of them.
   if (share == 1 || (contradicts && profile.name.empty())) return;
+  // Edges of the world bound the spread of the camera from above (optics/edges.h).
+  if (key == kPointSpread && own.value > prior.value && !contradicts) {
+    put(c, key, prior);
+    quantity.source =
+        fmt::format("of {}; the edges of the clip, {}, are an upper bound", whose, with_error(own));
+    return;
+  }
   put(c, key, combined(own, prior));
   if (share < kOwnShare)
     quantity.source =

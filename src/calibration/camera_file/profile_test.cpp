@@ -99,11 +99,11 @@ TEST(CameraProfile, SaysWhoseAValueIs) {
   Calibration c = clip_of(64, 48);
   c.quantities.at("shutter.readout_s").missing = "too still";
   c.quantities.at("air.airlight").missing = "no sky";
-  c.quantities.at("optics.point_spread_px").values = {{0.8, 1.0}};
+  c.quantities.at("optics.point_spread_px").values = {{0.1, 1.0}};
   c = with_profile(std::move(c), small_camera());
-  EXPECT_NEAR(c.quantities.at("optics.point_spread_px").value().value, 0.404, 0.001);
+  EXPECT_NEAR(c.quantities.at("optics.point_spread_px").value().value, 0.397, 0.001);
   EXPECT_EQ(c.quantities.at("optics.point_spread_px").source,
-            "of the profile small; the clip's 0.8 +- 1 says next to nothing");
+            "of the profile small; the clip's 0.1 +- 1 says next to nothing");
   EXPECT_EQ(c.quantities.at("shutter.readout_s").value().value, 0.02);
   EXPECT_EQ(model_of(c).readout, Readout::kUp);
   EXPECT_EQ(c.quantities.at("shutter.readout_s").source,
@@ -113,7 +113,26 @@ TEST(CameraProfile, SaysWhoseAValueIs) {
   for (const QuantityKey& key : kQuantityKeys)
     EXPECT_EQ((c.quantities.*key.member).doubt, "") << key.name;
   const std::string file = toml_from(c);
-  EXPECT_NE(file.find("of the profile small; the clip's 0.8"), std::string::npos) << file;
+  EXPECT_NE(file.find("of the profile small; the clip's 0.1"), std::string::npos) << file;
+}
+
+// The world is softer than a step, and a camera may be sharper than all edges that it shows.
+TEST(CameraProfile, EdgesSofterThanTheProfileAreAnUpperBound) {
+  Calibration c = clip_of(64, 48);
+  c.quantities.at("optics.point_spread_px").values = {{0.6, 0.05}};
+  c = with_profile(std::move(c), small_camera());
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").value().value, 0.4);
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").source,
+            "of the profile small; the edges of the clip, 0.6 +- 0.05, are an upper bound");
+}
+
+// Footage that was enlarged or is out of focus.
+TEST(CameraProfile, AClipFarFromAllCamerasKeepsItsOwnSpread) {
+  Calibration c = clip_of(64, 48);
+  c.quantities.at("optics.point_spread_px").values = {{1.4, 0.15}};
+  c = with_profile(std::move(c), usual_camera());
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").value().value, 1.4);
+  EXPECT_EQ(c.quantities.at("optics.point_spread_px").source, "");
 }
 
 TEST(CameraProfile, ASureClipKeepsItsOwnAndWhatContradictsItIsNamed) {
