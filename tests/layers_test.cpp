@@ -183,6 +183,7 @@ std::string expected_namespace(const std::string& module) {
                                              "foundation/geometry",
                                              "foundation/json",
                                              "foundation/run_files",
+                                             "library/flights",
                                              "library/pictures",
                                              "library/records"};
   return in_airtruth.contains(module) ? "" : module.substr(module.find('/') + 1);

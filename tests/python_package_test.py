@@ -42,7 +42,7 @@ from airtruth import _core, evaluate
 if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
     np.set_printoptions(legacy="1.25")  # the examples show numbers without their types
 
-MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "evaluate")
+MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "evaluate")
 SCENE = """name = "across"
 [background]
 video = "clip.mkv"
@@ -99,19 +99,23 @@ distortion_coefficients: !!opencv-matrix
 """
 
 
-def run(*arguments):
+def output(*arguments):
     done = subprocess.run([AIRTRUTH, *arguments], capture_output=True, text=True)
     if done.returncode != 0:
         raise AssertionError(f"{arguments}: {done.stderr}")
+    return done.stdout
+
+
+
 
 
 def make_inputs():
-    run("synth", "-o", "clip.mkv", "--width", "160", "--height", "120", "--frames", "6", "--no-own-aircraft")
+    output("synth", "-o", "clip.mkv", "--width", "160", "--height", "120", "--frames", "6", "--no-own-aircraft")
     pathlib.Path("scene.toml").write_text(SCENE)
     pathlib.Path("training.toml").write_text(TRAINING)
     pathlib.Path("calibration.yml").write_text(CALIBRATION)
-    run("render", "scene.toml", "--out", "set")
-    run("dataset", "export", "set", "-f", "coco", "-o", "coco")
+    output("render", "scene.toml", "--out", "set")
+    output("dataset", "export", "set", "-f", "coco", "-o", "coco")
 
 
 def equal(a, b):
@@ -288,7 +292,7 @@ class Sets(unittest.TestCase):
         self.assertEqual(pandas.DataFrame(table)["range_m"].tolist(), table["range_m"].tolist())
 
     def test_an_imported_set_has_what_its_labels_tell(self):
-        run("dataset", "import", "coco", "-f", "coco", "-o", "imported")
+        output("dataset", "import", "coco", "-f", "coco", "-o", "imported")
         data = airtruth.DataSet("imported")
         sequence = data[data.names[0]]
         self.assertTrue(sequence.is_imported and sequence.lens is None)
@@ -408,6 +412,9 @@ def hostile_targets():
         "Stream": (lambda *a: airtruth.Stream(a[0], seed=a[1], threads=a[2], cache=a[3], folder=a[4])[0], ["training.toml", 1, 1, True, None]),
         "Stream[]": (stream.__getitem__, [0]),
         "Stream.scene": (stream.scene, [0]),
+        "aircraft": (airtruth.aircraft, ["c172"]),
+        "left_out_aircraft": (airtruth.left_out_aircraft, ["*"]),
+        "show_aircraft": (lambda *a: airtruth.show_aircraft(a[0], forward=a[1], up=a[2], scale=a[3]), ["c172/news", "", "", 0]),
         "score": (lambda *a: evaluate.score(a[0], a[1], seconds=a[2], size=a[3]), [boxes, boxes, [1, 1], (9, 9)]),
         "mean_of": (evaluate.mean_of, [[score]]),
         "mean_of one": (lambda one: evaluate.mean_of([one]), [score]),
@@ -427,6 +434,31 @@ def hostile_targets():
         "anchors_of": (evaluate.anchors_of, [boxes, 1]),
         "eao_range": (evaluate.eao_range, [[1, 2, 3]]),
     }
+
+
+class Flights(unittest.TestCase):
+    def test_the_catalogue_is_that_of_the_program(self):
+        listed = output("aircraft", "list", "--sizes").splitlines()
+        found = airtruth.aircraft()
+        self.assertEqual([line.split()[0] for line in listed], [one.name for one in found])
+        for line, one in zip(listed, found):
+            words = "no published size is known: its scale is not checked" if not one.type else one.type
+            if one.span_m:
+                words += f": span {one.span_m:.2f} m, length {one.length_m:.2f} m"
+            self.assertEqual(line.split(None, 1), [one.name, words])
+        self.assertEqual(output("aircraft", "list", "--left-out").splitlines(),
+                         [f"{name:<40} {why}" for name, why in airtruth.left_out_aircraft().items()])
+
+    def test_an_aircraft_is_what_the_program_shows(self):
+        one = airtruth.show_aircraft("c172/news")
+        told = output("aircraft", "show", "c172/news")
+        self.assertIn(f"length {one.length_m:.2f} m, span {one.span_m:.2f} m, height {one.height_m:.2f} m", told)
+        self.assertIn(f"{one.triangles} triangles, {one.textures} textures, {one.file}", told)
+        self.assertEqual(told.split("other liveries:\n")[1].split(), one.liveries)
+        with open("box.obj", "w") as file:
+            file.write("v 0 0 0\nv 4 0 0\nv 0 0 2\nv 0 1 0\nf 1 2 3\nf 1 3 4\n")
+        box = airtruth.show_aircraft(pathlib.Path("box.obj"), forward="x", up="y", scale=2)
+        self.assertEqual([box.length_m, box.span_m, box.height_m, box.triangles, box.liveries], [8, 4, 2, 2, []])
 
 
 class Hostile(unittest.TestCase):
@@ -477,6 +509,7 @@ class Hostile(unittest.TestCase):
             (lambda: airtruth.DataSet("set")["across"].frame(6), IndexError, ""),
             (lambda: airtruth.VideoReader("clip.mkv", 6), airtruth.Error, "6 frames"),
             (lambda: airtruth.read_labels("coco", "cocoo"), airtruth.Error, "coco"),
+            (lambda: airtruth.aircraft("c127"), airtruth.Error, "no name among .* contains 'c127'; the nearest are .*c172"),
         ):
             with self.assertRaisesRegex(kind, words):
                 wrong()
@@ -553,7 +586,7 @@ class Processes(unittest.TestCase):
         self.assertEqual([next(one).index for one in objects], [1, 1])
 
     def test_ctrl_c_ends_a_call_within_two_seconds(self):
-        run("synth", "-o", "long.mkv", "--width", "320", "--height", "240", "--frames", "150", "--no-own-aircraft")
+        output("synth", "-o", "long.mkv", "--width", "320", "--height", "240", "--frames", "150", "--no-own-aircraft")
         measured = SCENE.replace("clip.mkv", "long.mkv").replace('model = "none"', 'model = "rotation"\n[realism]\nauto = true')
         programs = {"while it measures": "for _ in range(9**9): airtruth.render(source, cache=False)",
                     "while it draws": "for _ in range(9**9): list(airtruth.render(source, cache=False))",

@@ -14,6 +14,7 @@ from types import ModuleType as _ModuleType
 
 from . import evaluate
 from ._core import version as __version__
+from ._aircraft import Aircraft, AircraftModel, aircraft, left_out_aircraft, show_aircraft
 from ._dataset import DataSet, Sequence
 from ._error import Error
 from ._frames import Encounter, Frame, FrameTruth, Intruder, Volume
@@ -28,6 +29,7 @@ __all__ = [
     "render", "Rendering", "Frame", "FrameTruth", "Intruder", "Encounter", "Volume", "toml_of",
     "Stream", "Sample",
     "DataSet", "Sequence", "VideoReader", "VideoInfo", "Lens",
+    "aircraft", "Aircraft", "left_out_aircraft", "show_aircraft", "AircraftModel",
     "read_labels", "convert_labels", "Clip", "LabelledFrame", "Label",
     "evaluate", "Error",
 ]

@@ -9,7 +9,6 @@
 #include "aircraft/shapes/airframes.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
-#include "foundation/base/names.h"
 #include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/aircraft_sheet.h"
@@ -28,39 +27,17 @@ std::string published_words(const std::string& name) {
       "{}: span {:.2f} m, length {:.2f} m", size->type, size->span_m, size->length_m);
 }
 
-std::string nothing_like(const std::string& filter) {
-  return fmt::format(
-      "no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft list` shows all",
-      fleet::list_aircraft().size(),
-      is_pattern(filter) ? "fits" : "contains",
-      filter,
-      fmt::join(fleet::nearest_aircraft(filter, 3), ", "));
-}
-
 void list_left_out(const std::string& filter, Context& context) {
-  int count = 0;
-  for (const auto& [name, reason] : fleet::left_out()) {
-    if (!is_named_like(name, filter)) continue;
+  for (const auto& [name, reason] : fleet::expect_left_out_named_like(filter))
     context.console().print(fmt::format("{:<40} {}\n", name, reason));
-    ++count;
-  }
-  if (count == 0)
-    throw Error(
-        fmt::format("no name that is left out {} '{}'; `airtruth aircraft list --left-out` "
-                    "shows all {}",
-                    is_pattern(filter) ? "fits" : "contains",
-                    filter,
-                    fleet::left_out().size()));
 }
 
 void list_names(const std::string& filter, bool sizes, Context& context) {
-  const std::vector<std::string> names = fleet::aircraft_named_like(filter);
-  for (const std::string& name : names)
+  for (const std::string& name : fleet::expect_aircraft_named_like(filter))
     if (sizes)
       context.console().print(fmt::format("{:<40} {}\n", name, published_words(name)));
     else
       context.console().print(name + "\n");
-  if (names.empty()) throw Error(nothing_like(filter));
 }
 
 // Returns the folder of a name, which is the aircraft's type.
@@ -85,8 +62,8 @@ void draw_sheet(const std::string& filter,
   model::LoadOptions load;
   load.stop = context.stop;
   std::vector<drawing::NamedPicture> tiles;
-  const std::vector<std::string> names = one_of_each_type(fleet::aircraft_named_like(filter));
-  if (names.empty()) throw Error(nothing_like(filter));
+  const std::vector<std::string> names =
+      one_of_each_type(fleet::expect_aircraft_named_like(filter));
   for (const std::string& name : names) {
     if (context.stop.stop_requested()) throw Interrupted();
     tiles.push_back({type_of(name), demo::aircraft_tile(fleet::load_aircraft(name, load, {}))});
@@ -125,12 +102,7 @@ struct ShowArguments {
 model::LoadOptions load_options(const ShowArguments& arguments, const Context& context) {
   model::LoadOptions options;
   options.stop = context.stop;
-  if (arguments.forward.empty() && arguments.up.empty() && arguments.scale == 0) return options;
-  model::ModelAxes axes;
-  if (!arguments.forward.empty()) axes.forward = arguments.forward;
-  if (!arguments.up.empty()) axes.up = arguments.up;
-  if (arguments.scale != 0) axes.scale = arguments.scale;
-  options.axes = axes;
+  options.axes = model::stated_axes(arguments.forward, arguments.up, arguments.scale);
   return options;
 }
 

@@ -222,6 +222,32 @@ std::vector<std::string> aircraft_named_like(const std::string& word) {
   return names_that([&](const std::string& name) { return is_named_like(name, word); });
 }
 
+std::vector<std::string> expect_aircraft_named_like(const std::string& word) {
+  std::vector<std::string> names = aircraft_named_like(word);
+  if (names.empty())
+    throw Error(fmt::format(
+        "no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft list` shows all",
+        list_aircraft().size(),
+        is_pattern(word) ? "fits" : "contains",
+        word,
+        fmt::join(nearest_aircraft(word, 3), ", ")));
+  return names;
+}
+
+std::map<std::string, std::string> expect_left_out_named_like(const std::string& word) {
+  std::map<std::string, std::string> found;
+  for (const auto& [name, reason] : left_out())
+    if (is_named_like(name, word)) found.emplace(name, reason);
+  if (found.empty())
+    throw Error(
+        fmt::format("no name that is left out {} '{}'; `airtruth aircraft list --left-out` "
+                    "shows all {}",
+                    is_pattern(word) ? "fits" : "contains",
+                    word,
+                    left_out().size()));
+  return found;
+}
+
 std::vector<std::string> aircraft_fitting(const std::string& pattern) {
   std::vector<std::string> exact;
   std::vector<std::string> in_any_case;

@@ -48,6 +48,8 @@ std::vector<Entry> list_aircraft();
 // other word matches the names that contain it. Letter case does not matter. The result is empty
 // where no name matches.
 std::vector<std::string> aircraft_named_like(const std::string& word);
+// The same; throws Error with the nearest names where no name matches.
+std::vector<std::string> expect_aircraft_named_like(const std::string& word);
 
 // The names that a pattern with * and ? matches as a whole, sorted. Letter case matters first; a
 // pattern that matches no name as it is written is matched again without regard to letter case.
@@ -101,6 +103,8 @@ std::string configuration_of(const std::string& name, const model::LoadOptions& 
 // Names of Debian's catalogue that cannot be drawn, or are no aircraft, with the reason
 // (data/aircraft-left-out/README.md). They are not offered.
 const std::map<std::string, std::string>& left_out();
+// Those whose names match a word, as in aircraft_named_like(). Throws Error where none does.
+std::map<std::string, std::string> expect_left_out_named_like(const std::string& word);
 // data/aircraft-left-out/left-out.csv, which the build embeds in the program: the name and the
 // reason, a line each, below one heading.
 std::string_view left_out_table();

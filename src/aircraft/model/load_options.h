@@ -16,6 +16,17 @@ struct ModelAxes {
   std::string up = "y";  // the same
   double scale = 1;      // metres per unit
 };
+// The axes with what is stated of them: "" and 0 state nothing. Empty where nothing is stated.
+inline std::optional<ModelAxes> stated_axes(const std::string& forward,
+                                            const std::string& up,
+                                            double scale) {
+  if (forward.empty() && up.empty() && scale == 0) return std::nullopt;
+  ModelAxes axes;
+  if (!forward.empty()) axes.forward = forward;
+  if (!up.empty()) axes.up = up;
+  if (scale != 0) axes.scale = scale;
+  return axes;
+}
 
 struct LoadOptions {
   double airspeed_kt = 250;  // decides `select` conditions: gear is up above its speed
