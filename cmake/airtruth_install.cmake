@@ -45,8 +45,8 @@ set(evaluation_headers average_precision box dataset error export labels lens me
 airtruth_library(evaluation airtruth-evaluation MODULES ${evaluation_modules} HEADERS ${evaluation_headers})
 # All of it.
 airtruth_library(airtruth airtruth
-  MODULES ${evaluation_modules} flights pictures
-  HEADERS ${evaluation_headers} aircraft picture renderer stream video)
+  MODULES ${evaluation_modules} clips flights pictures
+  HEADERS ${evaluation_headers} aircraft motion picture renderer stream video)
 
 include(CMakePackageConfigHelpers)
 install(TARGETS airtruth RUNTIME)

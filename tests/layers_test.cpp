@@ -183,6 +183,7 @@ std::string expected_namespace(const std::string& module) {
                                              "foundation/geometry",
                                              "foundation/json",
                                              "foundation/run_files",
+                                             "library/clips",
                                              "library/flights",
                                              "library/pictures",
                                              "library/records"};

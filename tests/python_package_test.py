@@ -42,7 +42,7 @@ from airtruth import _core, evaluate
 if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
     np.set_printoptions(legacy="1.25")  # the examples show numbers without their types
 
-MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "evaluate")
+MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "evaluate")
 SCENE = """name = "across"
 [background]
 video = "clip.mkv"
@@ -412,6 +412,8 @@ def hostile_targets():
         "Stream": (lambda *a: airtruth.Stream(a[0], seed=a[1], threads=a[2], cache=a[3], folder=a[4])[0], ["training.toml", 1, 1, True, None]),
         "Stream[]": (stream.__getitem__, [0]),
         "Stream.scene": (stream.scene, [0]),
+        "motion": (lambda *a: airtruth.motion(a[0], model=a[1], lens=a[2], mask=a[3], reference=a[4], smoothing_s=a[5], cache=a[6]),
+                   ["clip.mkv", "auto", None, None, "first_frame", 1, True]),
         "aircraft": (airtruth.aircraft, ["c172"]),
         "left_out_aircraft": (airtruth.left_out_aircraft, ["*"]),
         "show_aircraft": (lambda *a: airtruth.show_aircraft(a[0], forward=a[1], up=a[2], scale=a[3]), ["c172/news", "", "", 0]),
@@ -434,6 +436,37 @@ def hostile_targets():
         "anchors_of": (evaluate.anchors_of, [boxes, 1]),
         "eao_range": (evaluate.eao_range, [[1, 2, 3]]),
     }
+
+
+class Clips(unittest.TestCase):
+    def table(self, *arguments):
+        """The rows of motion.csv, its columns by name."""
+        output("motion", "clip.mkv", "--overwrite", "-o", "motion.csv", *arguments)
+        with open("motion.csv") as file:
+            rows = [line.rstrip().split(",") for line in file]
+        return dict(zip(rows[0], zip(*rows[1:])))
+
+    def test_motion_is_the_programs_table(self):
+        with open("small.yml", "w") as file:
+            file.write(CALIBRATION.replace("640", "160").replace("480", "120").replace("500.", "125.").replace("320.", "80.").replace("240.", "60."))
+        for cache in (False, "cache of motion", "cache of motion"):
+            for arguments, options in (([], {}), (["--reference", "smoothed", "--smoothing", "0.1"], {"reference": "smoothed", "smoothing_s": 0.1}),
+                                       (["--lens", "small.yml"], {"lens": "small.yml"})):
+                table, moved = self.table(*arguments), airtruth.motion("clip.mkv", cache=cache, **options)
+                for name in ("frame", "time_s", "inliers", "rms_px"):
+                    self.assertEqual([float(cell) for cell in table[name]], getattr(moved, name).tolist(), name)
+                self.assertEqual(list(table["state"]), moved.state)
+                if moved.lens:
+                    found, names = moved.cam_from_reference_cam, ("qw", "qx", "qy", "qz")
+                    self.assertEqual([moved.lens.model, moved.lens.width], ["brown_conrady", 160])
+                else:
+                    found, names = moved.frame_from_reference.reshape(6, 9), [f"h{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)]
+                self.assertEqual([[float(cell) for cell in table[name]] for name in names], found.T.tolist())
+        self.assertTrue(os.listdir("cache of motion/motion"))
+        for options, words in (({"model": "none"}, "expected auto"), ({"model": "rotation"}, "needs a lens"), ({"reference": "x"}, "first_frame"),
+                               ({"model": "homography", "lens": "small.yml"}, "knows none"), ({"smoothing_s": 0}, "smoothing")):
+            with self.assertRaisesRegex(airtruth.Error, words):
+                airtruth.motion("clip.mkv", **options)
 
 
 class Flights(unittest.TestCase):
@@ -591,9 +624,10 @@ class Processes(unittest.TestCase):
         programs = {"while it measures": "for _ in range(9**9): airtruth.render(source, cache=False)",
                     "while it draws": "for _ in range(9**9): list(airtruth.render(source, cache=False))",
                     "while it streams": "list(stream)",
+                    "while it measures motion": "for _ in range(9**9): airtruth.motion(source, cache=False)",
                     "while it scores": "airtruth.evaluate.average_precision([source] * 20000, [source] * 20000, [range(30)] * 20000)"}
         boxes = [[k, k, 20, 10] for k in range(30)]
-        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, boxes)):
+        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, "long.mkv", boxes)):
             code = (f"import sys; sys.path.insert(0, {PACKAGES!r}); import airtruth\nsource = {source!r}\n"
                     f"stream = airtruth.Stream({TRAINING!r})\nprint('begun', flush=True)\n"
                     f"try:\n  {line}\nexcept KeyboardInterrupt:\n  print('stopped', stream[7].index)\n")

@@ -20,6 +20,7 @@ from ._error import Error
 from ._frames import Encounter, Frame, FrameTruth, Intruder, Volume
 from ._labels import Clip, Label, LabelledFrame, convert_labels, read_labels
 from ._lens import Lens
+from ._motion import GyroAgreement, Motion, motion
 from ._render import Rendering, render
 from ._source import toml_of
 from ._stream import Sample, Stream
@@ -29,6 +30,7 @@ __all__ = [
     "render", "Rendering", "Frame", "FrameTruth", "Intruder", "Encounter", "Volume", "toml_of",
     "Stream", "Sample",
     "DataSet", "Sequence", "VideoReader", "VideoInfo", "Lens",
+    "motion", "Motion", "GyroAgreement",
     "aircraft", "Aircraft", "left_out_aircraft", "show_aircraft", "AircraftModel",
     "read_labels", "convert_labels", "Clip", "LabelledFrame", "Label",
     "evaluate", "Error",

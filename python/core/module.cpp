@@ -49,6 +49,7 @@ PYBIND11_MODULE(_core, core) {
   bind_labels(core);
   bind_dataset(core);
   bind_evaluate(core);
+  bind_clips(core);
   bind_flights(core);
 }
 

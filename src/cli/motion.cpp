@@ -6,14 +6,15 @@
 
 #include <fmt/format.h>
 
-#include "camera/lens/calibration_file.h"
-#include "camera/motion/estimator.h"
-#include "camera/motion/shake.h"
+#include "camera/gyro/gyro.h"
+#include "camera/lens/lens.h"
 #include "camera/motion/stabilise.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "foundation/run_files/run_files.h"
+#include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
 #include "scene/scene/choices.h"
@@ -36,20 +37,6 @@ struct MotionArguments {
   double smoothing_s = 1;
   bool overwrite = false;
 };
-
-// The lens for a rotation; empty for a homography. The default is that of scenes, a rotation,
-// where a lens is stated: without one no rotation can be measured.
-std::optional<lens::Lens> lens_of(const MotionArguments& arguments,
-                                  const lens::ImageSize& size,
-                                  const Warn& warn) {
-  const auto model = enum_named<scene::MotionModel>(arguments.model);
-  if (model == scene::MotionModel::kHomography && !arguments.lens.empty())
-    throw Error("--lens is for --model rotation; a homography knows no lens");
-  if (model == scene::MotionModel::kRotation && arguments.lens.empty())
-    throw Error("--model rotation needs --lens, a calibration file");
-  if (arguments.lens.empty()) return std::nullopt;
-  return lens::read_calibration(arguments.lens, size, warn);
-}
 
 void stabilise(const MotionArguments& arguments,
                const fs::path& out,
@@ -84,7 +71,7 @@ void check_files(const MotionArguments& arguments, RunFiles& files) {
   files.begin();
 }
 
-void report_gyro(const std::optional<gyro::GyroFit>& fit, bool has_gyro, Console& console) {
+void report_gyro(const std::optional<gyro::GyroFit>& fit, Console& console) {
   if (fit)
     console.result(
         fmt::format("gyro: agrees to {:.3f} (offset {:.3f} s, {:.3f} degrees/s rms); frames not "
@@ -92,25 +79,13 @@ void report_gyro(const std::optional<gyro::GyroFit>& fit, bool has_gyro, Console
                     fit->correlation,
                     fit->offset_s,
                     degrees(fit->rms_radps)));
-  else if (has_gyro)
-    console.warning("the video's gyro does not agree with its motion; it is not used");
 }
 
 void report_frames(const std::vector<motion::FrameMotion>& all,
                    const MotionArguments& arguments,
                    Console& console) {
   std::size_t measured = 0;
-  std::size_t away = 0;
-  for (const auto& frame : all) {
-    measured += motion::is_known(frame.state) ? 1 : 0;
-    away += frame.state == motion::State::kTurnedAway ? 1 : 0;
-  }
-  if (away > 0)
-    console.warning(
-        fmt::format("in {} frames the camera has turned so far from the first that no homography "
-                    "holds both (turned_away); --reference smoothed and --model rotation have no "
-                    "such limit",
-                    away));
+  for (const auto& frame : all) measured += motion::is_known(frame.state) ? 1 : 0;
   const bool is_chosen = arguments.model == "auto" && arguments.lens.empty();
   console.result(
       fmt::format("{}: {} frames, measured in {}{}",
@@ -124,37 +99,27 @@ void measure(const MotionArguments& arguments, Context& context) {
   RunFiles files;
   check_files(arguments, files);
   Console& console = context.console();
-  video::Reader reader(arguments.video, {.with_cuts = true}, console.warn());
-  const video::StreamInfo info = reader.info();
-  std::optional<image::Mask> mask;
-  if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
-  motion::Options options;
+  setup::ClipMotionOptions options;
+  options.model = *enum_named<scene::MotionModel>(arguments.model);
+  options.lens = arguments.lens;
+  options.mask = arguments.mask;
+  options.reference = *enum_named<scene::MotionReference>(arguments.reference);
   options.smoothing_s = arguments.smoothing_s;
-  const image::Mask* own_aircraft = mask ? &*mask : nullptr;
-  const auto lens = lens_of(arguments, {info.width, info.height}, console.warn());
-  motion::Estimator estimator =
-      lens ? motion::Estimator(*lens, options, own_aircraft)
-           : motion::Estimator(info.width, info.height, options, own_aircraft);
-  auto all =
-      setup::measure_motion(reader, std::move(estimator), context.stop, [&](std::int64_t done) {
-        console.progress("measuring", done, info.frame_count_estimate);
-      });
-  const auto gyro = lens ? setup::gyro_of(arguments.video) : std::vector<gyro::GyroSample>();
-  report_gyro(setup::bridge_by_gyro(gyro, all), !gyro.empty(), console);
-  all = enum_named<scene::MotionReference>(arguments.reference) == scene::MotionReference::kSmoothed
-            ? motion::smoothed(std::move(all), options)
-            : motion::within_reach(std::move(all), info.width, info.height);
+  follow(options, context, "measuring");
+  const setup::ClipMotion found = setup::clip_motion(arguments.video, options);
+  const std::vector<motion::FrameMotion>& all = found.frames;
+  report_gyro(found.gyro, console);
   files.write(arguments.out,
               [&](const fs::path& at) { write_file(at, motion::csv_from_motion(all)); });
   files.write(arguments.plot, [&](const fs::path& at) {
     video::write_still(
         at,
-        plot::picture_of({.plots = motion_plot::plots_of(all, info.width, info.height),
+        plot::picture_of({.plots = motion_plot::plots_of(all, found.info.width, found.info.height),
                           .height = 12,
                           .legend = plot::Legend::kAbove}));
   });
   files.write(arguments.stabilised,
-              [&](const fs::path& at) { stabilise(arguments, at, all, lens, context); });
+              [&](const fs::path& at) { stabilise(arguments, at, all, found.lens, context); });
   files.commit();
   report_frames(all, arguments, console);
 }

@@ -2,9 +2,12 @@
 #include "sequence/setup/motion_source.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "camera/lens/calibration_file.h"
 #include "camera/motion/estimator.h"
 #include "camera/motion/shake.h"
 #include "foundation/base/error.h"
@@ -12,6 +15,7 @@
 #include "labels/annotation/lens_facts.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_images.h"
+#include "picture/video/still.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::setup {
@@ -25,6 +29,45 @@ motion::FrameMotion reference_at(const video::Frame& frame, bool is_rotation = f
   reference.time_s = frame.time_s;
   if (is_rotation) reference.rotation = Quaternion::Identity();
   return reference;
+}
+
+// Replaces rotations that could not be measured by the gyroscope's, where the gyroscope agrees with
+// the measured ones. Returns how well it fits. Returns empty and changes nothing where it does not
+// agree.
+std::optional<gyro::GyroFit> bridge_by_gyro(const std::vector<gyro::GyroSample>& gyro,
+                                            std::vector<motion::FrameMotion>& motion) {
+  if (gyro.empty() || motion.empty() || !motion.front().rotation) return std::nullopt;
+  const auto fit = gyro::fit_gyro(gyro, motion);
+  if (fit) motion = gyro::bridged_by_gyro(motion, gyro, *fit);
+  return fit;
+}
+
+// The lens for a rotation; empty for a homography. As in scenes a rotation is the default, but
+// where no lens is stated none can be measured.
+std::optional<lens::Lens> lens_of(const ClipMotionOptions& options, const lens::ImageSize& size) {
+  if (options.model == scene::MotionModel::kNone)
+    throw Error("the model is none; expected auto, rotation or homography");
+  if (options.model == scene::MotionModel::kHomography && !options.lens.empty())
+    throw Error("a lens is for the model rotation; a homography knows none");
+  if (options.model == scene::MotionModel::kRotation && options.lens.empty())
+    throw Error("the model rotation needs a lens, a calibration file");
+  if (options.lens.empty()) return std::nullopt;
+  return lens::read_calibration(options.lens, size, options.warn);
+}
+
+void warn_of(const ClipMotion& found, bool has_gyro, const Warn& warn) {
+  if (!warn) return;
+  if (has_gyro && !found.gyro)
+    warn("the video's gyro does not agree with its motion; it is not used");
+  const auto away = std::count_if(found.frames.begin(), found.frames.end(), [](const auto& frame) {
+    return frame.state == motion::State::kTurnedAway;
+  });
+  if (away > 0)
+    warn(
+        fmt::format("in {} frames the camera has turned so far from the first that no homography "
+                    "holds both (turned_away); the reference smoothed and the model rotation have "
+                    "no such limit",
+                    away));
 }
 
 }  // namespace
@@ -132,7 +175,7 @@ motion::Estimator MotionSource::estimator(int width, int height) const {
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
   if (is_to_be_stored())
     for (const motion::FrameMotion& motion : against_first) motion::pack(motion, against_first_);
-  bridge_by_gyro(gyro_, against_first);
+  gyro_fit_ = bridge_by_gyro(gyro_, against_first);
   all_ = smoothed_ ? motion::smoothed(std::move(against_first), options_)
                    : motion::within_reach(std::move(against_first), size_.width, size_.height);
   ready_ = true;
@@ -199,14 +242,6 @@ std::vector<gyro::GyroSample> gyro_of(const fs::path& video) {
   return gyro;
 }
 
-std::optional<gyro::GyroFit> bridge_by_gyro(const std::vector<gyro::GyroSample>& gyro,
-                                            std::vector<motion::FrameMotion>& motion) {
-  if (gyro.empty() || motion.empty() || !motion.front().rotation) return std::nullopt;
-  const auto fit = gyro::fit_gyro(gyro, motion);
-  if (fit) motion = gyro::bridged_by_gyro(motion, gyro, *fit);
-  return fit;
-}
-
 std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
                                                 motion::Estimator estimator,
                                                 const std::stop_token& stop,
@@ -219,6 +254,49 @@ std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
     result.back().frame = frame->index;
     if (seen) seen(static_cast<std::int64_t>(result.size()));
   }
+  return result;
+}
+
+ClipMotion clip_motion(const fs::path& video, const ClipMotionOptions& options) {
+  if (!(options.smoothing_s > 0) || !std::isfinite(options.smoothing_s))
+    throw Error(
+        fmt::format("the smoothing is {} s; expected a number above 0", options.smoothing_s));
+  video::Reader reader(video, {.with_cuts = true}, options.warn);
+  ClipMotion result;
+  result.info = reader.info();
+  const lens::ImageSize size{result.info.width, result.info.height};
+  result.lens = lens_of(options, size);
+  std::optional<image::Mask> mask;
+  scene::Scene scene;
+  scene.background.video = video;
+  if (!options.mask.empty()) {
+    scene.background.mask = options.mask;
+    mask = video::read_mask(options.mask, size.width, size.height);
+  }
+  scene.motion.model =
+      result.lens ? scene::MotionModel::kRotation : scene::MotionModel::kHomography;
+  scene.motion.reference = options.reference;
+  scene.motion.smoothing_s = options.smoothing_s;
+  // A homography knows no lens, but for the size of its pictures.
+  const lens::Lens lens = result.lens.value_or(lens::pinhole_from_vertical_fov(60, size));
+  SharedInputs inputs;
+  const MotionSource source(
+      {.scene = scene,
+       .lens = lens,
+       .video_sha256 = options.cache.keeps() ? sha256_of_video(video, inputs) : "",
+       .mask = mask ? &*mask : nullptr,
+       .cache = options.cache},
+      {.for_all = true,
+       .open = [&] { return std::move(reader); },
+       .stop = options.stop,
+       .seen =
+           [&](std::int64_t done) {
+             if (options.progress) options.progress(done, result.info.frame_count_estimate);
+           }});
+  source.store();
+  result.frames = source.all();
+  result.gyro = source.gyro_fit();
+  warn_of(result, source.has_gyro(), options.warn);
   return result;
 }
 

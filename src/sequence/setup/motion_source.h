@@ -13,9 +13,11 @@
 #include "camera/lens/lens.h"
 #include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
+#include "foundation/base/log.h"
 #include "foundation/disk_cache/disk_cache.h"
 #include "foundation/image/layer.h"
 #include "picture/video/reader.h"
+#include "scene/scene/choices.h"
 #include "scene/scene/scene.h"
 
 // Provides the homography of each frame from one of three sources: the cache, a preceding pass over
@@ -81,6 +83,11 @@ class MotionSource {
   // Stores the measured motion for the next run, after the last frame.
   void store() const;
   bool is_from_cache() const { return from_cache_; }
+  // The motion of every frame; empty where it is not known ahead.
+  const std::vector<motion::FrameMotion>& all() const { return all_; }
+  bool has_gyro() const { return !gyro_.empty(); }
+  // How the gyroscope agrees with the motion of every frame; empty where it does not.
+  const std::optional<gyro::GyroFit>& gyro_fit() const { return gyro_fit_; }
 
  private:
   explicit MotionSource(const MotionInputs& inputs);
@@ -97,7 +104,8 @@ class MotionSource {
   bool none_ = false;
   bool needs_change_ = false;
   std::vector<gyro::GyroSample> gyro_;  // bridges what cannot be measured; empty: none
-  std::optional<lens::Lens> lens_;      // of the model rotation
+  std::optional<gyro::GyroFit> gyro_fit_;
+  std::optional<lens::Lens> lens_;  // of the model rotation
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
   bool from_cache_ = false;
@@ -112,18 +120,35 @@ class MotionSource {
   std::vector<motion::FrameMotion> all_;
 };
 
+// The motion of a whole clip by itself, as `airtruth motion` measures it.
+struct ClipMotionOptions {
+  // A rotation needs a lens, a homography knows none; kAuto: whichever fits. kNone is an Error.
+  scene::MotionModel model = scene::MotionModel::kAuto;
+  fs::path lens;  // calibration; empty: none
+  fs::path mask;  // of the own aircraft; empty: none
+  scene::MotionReference reference = scene::MotionReference::kFirstFrame;
+  double smoothing_s = 1;
+  disk_cache::Cache cache;
+  Warn warn;
+  std::stop_token stop;
+  // `total` is the container's number of frames; 0: unknown.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+};
+struct ClipMotion {
+  video::StreamInfo info;
+  std::optional<lens::Lens> lens;  // of a rotation
+  std::vector<motion::FrameMotion> frames;
+  std::optional<gyro::GyroFit> gyro;
+};
+// Throws Error for faults of the options and files, Interrupted on stop.
+ClipMotion clip_motion(const fs::path& video, const ClipMotionOptions& options);
+
 // The scene's motion model with kAuto resolved: kRotation, since a scene states its lens, but
 // kHomography for kChromaKey, which is the paper's method.
 scene::MotionModel motion_model(const scene::Scene& scene);
 
 // Samples of a video's own gyroscope (a GoPro's telemetry); empty where the video has none.
 std::vector<gyro::GyroSample> gyro_of(const fs::path& video);
-
-// Replaces rotations that could not be measured by the gyroscope's, where the gyroscope agrees with
-// the measured ones. Returns how well it fits. Returns empty and changes nothing where it does not
-// agree.
-std::optional<gyro::GyroFit> bridge_by_gyro(const std::vector<gyro::GyroSample>& gyro,
-                                            std::vector<motion::FrameMotion>& motion);
 
 // Measures the motion of a whole clip against its first frame, as a rotation where a lens is given.
 // Calls `seen` after each frame. Throws Interrupted on stop.
