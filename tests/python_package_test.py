@@ -42,7 +42,7 @@ from airtruth import _core, evaluate
 if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
     np.set_printoptions(legacy="1.25")  # the examples show numbers without their types
 
-MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "evaluate")
+MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "_calibrate", "evaluate")
 SCENE = """name = "across"
 [background]
 video = "clip.mkv"
@@ -414,6 +414,9 @@ def hostile_targets():
         "Stream.scene": (stream.scene, [0]),
         "motion": (lambda *a: airtruth.motion(a[0], model=a[1], lens=a[2], mask=a[3], reference=a[4], smoothing_s=a[5], cache=a[6]),
                    ["clip.mkv", "auto", None, None, "first_frame", 1, True]),
+        "calibrate": (lambda *a: airtruth.calibrate(a[0], lens=a[1], mask=a[2], altitude_m=a[3], heading_deg=a[4], gamma=a[5], profile=a[6]),
+                      ["clip.mkv", None, None, None, 0, 0, ""]),
+        "calibrate clips": (lambda *a: airtruth.calibrate(a), ["clip.mkv", "clip.mkv"]),
         "aircraft": (airtruth.aircraft, ["c172"]),
         "left_out_aircraft": (airtruth.left_out_aircraft, ["*"]),
         "show_aircraft": (lambda *a: airtruth.show_aircraft(a[0], forward=a[1], up=a[2], scale=a[3]), ["c172/news", "", "", 0]),
@@ -439,6 +442,12 @@ def hostile_targets():
 
 
 class Clips(unittest.TestCase):
+    def small_lens(self):
+        """The calibration for pictures of 160 x 120."""
+        numbers = {"640": "160", "480": "120", "500.": "125.", "320.": "80.", "240.": "60."}
+        with open("small.yml", "w") as file:
+            file.write(re.sub("|".join(map(re.escape, numbers)), lambda found: numbers[found.group(0)], CALIBRATION))
+
     def table(self, *arguments):
         """The rows of motion.csv, its columns by name."""
         output("motion", "clip.mkv", "--overwrite", "-o", "motion.csv", *arguments)
@@ -447,8 +456,7 @@ class Clips(unittest.TestCase):
         return dict(zip(rows[0], zip(*rows[1:])))
 
     def test_motion_is_the_programs_table(self):
-        with open("small.yml", "w") as file:
-            file.write(CALIBRATION.replace("640", "160").replace("480", "120").replace("500.", "125.").replace("320.", "80.").replace("240.", "60."))
+        self.small_lens()
         for cache in (False, "cache of motion", "cache of motion"):
             for arguments, options in (([], {}), (["--reference", "smoothed", "--smoothing", "0.1"], {"reference": "smoothed", "smoothing_s": 0.1}),
                                        (["--lens", "small.yml"], {"lens": "small.yml"})):
@@ -467,6 +475,41 @@ class Clips(unittest.TestCase):
                                ({"model": "homography", "lens": "small.yml"}, "knows none"), ({"smoothing_s": 0}, "smoothing")):
             with self.assertRaisesRegex(airtruth.Error, words):
                 airtruth.motion("clip.mkv", **options)
+
+
+    def test_a_calibration_is_the_programs_camera_file(self):
+        self.small_lens()
+        options = {"lens": "small.yml", "altitude_m": 150, "heading_deg": 30, "gamma": 2.2}
+        output("synth", "-o", "sixty.mkv", "--width", "160", "--height", "120", "--frames", "60", "--no-own-aircraft")
+        told = output("calibrate", "sixty.mkv", "-o", "camera.toml", "--lens", "small.yml", "--altitude", "150", "--heading", "30", "--gamma", "2.2")
+        found = airtruth.calibrate("sixty.mkv", **options)
+        with open("camera.toml") as file:
+            written = file.read()
+        self.assertEqual(found.toml, written)
+        self.assertIn(f"{sum(one.value is not None for table in found.quantities.values() for one in table.values())} values from 60 frames", told)
+        table = ""
+        stated = {}
+        for line in written.splitlines():
+            table = line[1:-1] if line.startswith("[") else table
+            if re.match(r"\w+ = [-\d\[]", line):
+                key, value = line.split("#")[0].split(" = ")
+                stated[table, key] = json.loads(value)
+        for name, keys in found.quantities.items():
+            for key, one in keys.items():
+                self.assertEqual(one.value is None, (name, key) not in stated, (name, key))
+                self.assertEqual(one.value is None, bool(one.missing), (name, key))
+                if one.value is not None:
+                    self.assertTrue(np.allclose(one.value, stated[name, key], rtol=1e-2), (name, key, one, stated[name, key]))
+                    self.assertEqual(np.shape(one.value), np.shape(one.sigma))
+        self.assertTrue(len(found.horizon_frame) == len(found.horizon_pitch_deg) == len(found.horizon_roll_deg))
+        both = airtruth.calibrate([pathlib.Path("sixty.mkv"), "sixty.mkv"], profile="none")
+        self.assertEqual([both.clips, both.frames, {one.source for one in both.quantities["light"].values()}], [2, 120, {""}])
+        for arguments, words in (({"altitude_m": 0}, "altitude"), ({"heading_deg": 361}, "heading"), ({"gamma": 1}, "gamma"),
+                                 ({"profile": "gopro"}, "no camera profile"), ({"profile": "gopro-karma"}, "px")):
+            with self.assertRaisesRegex(airtruth.Error, words):
+                airtruth.calibrate("clip.mkv", **arguments)
+        with self.assertRaisesRegex(airtruth.Error, "no clip"):
+            airtruth.calibrate([])
 
 
 class Flights(unittest.TestCase):
@@ -625,9 +668,10 @@ class Processes(unittest.TestCase):
                     "while it draws": "for _ in range(9**9): list(airtruth.render(source, cache=False))",
                     "while it streams": "list(stream)",
                     "while it measures motion": "for _ in range(9**9): airtruth.motion(source, cache=False)",
+                    "while it calibrates": "for _ in range(9**9): airtruth.calibrate(source)",
                     "while it scores": "airtruth.evaluate.average_precision([source] * 20000, [source] * 20000, [range(30)] * 20000)"}
         boxes = [[k, k, 20, 10] for k in range(30)]
-        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, "long.mkv", boxes)):
+        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, "long.mkv", "long.mkv", boxes)):
             code = (f"import sys; sys.path.insert(0, {PACKAGES!r}); import airtruth\nsource = {source!r}\n"
                     f"stream = airtruth.Stream({TRAINING!r})\nprint('begun', flush=True)\n"
                     f"try:\n  {line}\nexcept KeyboardInterrupt:\n  print('stopped', stream[7].index)\n")
@@ -648,7 +692,7 @@ class Pages(unittest.TestCase):
         tried = 0
         for name in MODULES:
             module = __import__("airtruth." + name, fromlist=["*"])
-            for test in doctest.DocTestFinder().find(module, "airtruth." + name, module=False, globs={"airtruth": airtruth, "np": np}):
+            for test in doctest.DocTestFinder().find(module, "airtruth." + name, module=False, globs={"airtruth": airtruth, "np": np, "pathlib": pathlib}):
                 result = doctest.DocTestRunner(optionflags=options).run(test)
                 self.assertEqual(result.failed, 0, test.name)
                 tried += len(test.examples) > 0

@@ -15,6 +15,7 @@ from types import ModuleType as _ModuleType
 from . import evaluate
 from ._core import version as __version__
 from ._aircraft import Aircraft, AircraftModel, aircraft, left_out_aircraft, show_aircraft
+from ._calibrate import Calibration, CameraProfile, Measured, calibrate, camera_profiles
 from ._dataset import DataSet, Sequence
 from ._error import Error
 from ._frames import Encounter, Frame, FrameTruth, Intruder, Volume
@@ -31,6 +32,7 @@ __all__ = [
     "Stream", "Sample",
     "DataSet", "Sequence", "VideoReader", "VideoInfo", "Lens",
     "motion", "Motion", "GyroAgreement",
+    "calibrate", "Calibration", "Measured", "camera_profiles", "CameraProfile",
     "aircraft", "Aircraft", "left_out_aircraft", "show_aircraft", "AircraftModel",
     "read_labels", "convert_labels", "Clip", "LabelledFrame", "Label",
     "evaluate", "Error",

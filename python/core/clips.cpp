@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <airtruth/calibration.h>
 #include <airtruth/motion.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -22,11 +23,11 @@ py::object gyro_dict(const std::optional<GyroAgreement>& gyro) {
   return dict;
 }
 
-// A value of each frame as a column.
-template <typename Value>
-py::array column(const std::vector<FrameMotion>& frames, Value value) {
-  std::vector<decltype(value(frames[0]))> values;
-  for (const FrameMotion& frame : frames) values.push_back(value(frame));
+// A value of each row as a column.
+template <typename Row, typename Value>
+py::array column(const std::vector<Row>& rows, Value value) {
+  std::vector<decltype(value(rows[0]))> values;
+  for (const Row& row : rows) values.push_back(value(row));
   const py::ssize_t count = std::ssize(values);
   return array_of(std::move(values), {count});
 }
@@ -84,8 +85,83 @@ py::dict motion(const fs::path& video,
   return dict;
 }
 
+// One number of each estimate: a number, an array of three, or None.
+py::object numbers_of(const std::vector<Estimate>& estimates, double Estimate::*number) {
+  if (estimates.empty()) return py::none();
+  if (estimates.size() == 1) return py::float_(estimates[0].*number);
+  return column(estimates, [=](const Estimate& estimate) { return estimate.*number; });
+}
+
+py::dict quantity_dict(const CalibratedQuantity& quantity) {
+  py::dict dict;
+  const IntoDict into{dict};
+  dict["value"] = numbers_of(quantity.values, &Estimate::value);
+  dict["sigma"] = numbers_of(quantity.values, &Estimate::sigma);
+  into("missing", quantity.missing);
+  into("note", quantity.note);
+  into("source", quantity.source);
+  into("doubt", quantity.doubt);
+  return dict;
+}
+
+py::dict calibration(const std::vector<fs::path>& videos,
+                     const fs::path& lens,
+                     const fs::path& mask,
+                     std::optional<double> altitude_m,
+                     double heading_deg,
+                     double gamma,
+                     const std::string& profile) {
+  CalibrateOptions options;
+  options.lens = lens;
+  options.mask = mask;
+  options.altitude_m = altitude_m;
+  options.heading_deg = heading_deg;
+  options.gamma = gamma;
+  options.profile = profile;
+  const Calibration found =
+      stoppable(options, [&](const CalibrateOptions& o) { return calibrate(videos, o); });
+  py::dict quantities;
+  for (const CalibratedQuantity& quantity : found.quantities)
+    quantities[text(quantity.name)] = quantity_dict(quantity);
+  py::dict dict;
+  const IntoDict into{dict};
+  into("width", found.width);
+  into("height", found.height);
+  into("frame_rate_hz", found.frame_rate_hz);
+  into("frames", found.frames);
+  into("clips", found.clips);
+  dict["quantities"] = quantities;
+  into("readout_direction", found.readout_direction);
+  dict["horizon_frame"] = column(found.horizons, [](const auto& h) { return h.frame; });
+  dict["horizon_pitch_deg"] = column(found.horizons, [](const auto& h) { return h.pitch_deg; });
+  dict["horizon_roll_deg"] = column(found.horizons, [](const auto& h) { return h.roll_deg; });
+  into("no_horizon", found.no_horizon);
+  into("horizon_note", found.horizon_note);
+  into("toml", found.toml);
+  return dict;
+}
+
+py::list profiles() {
+  py::list all;
+  for (const CameraProfile& profile : camera_profiles()) {
+    py::dict dict;
+    const IntoDict into{dict};
+    into("name", profile.name);
+    into("camera", profile.camera);
+    into("width", profile.width);
+    into("height", profile.height);
+    into("clips", profile.clips);
+    all.append(dict);
+  }
+  return all;
+}
+
 }  // namespace
 
-void bind_clips(py::module_& core) { core.def("motion", &motion); }
+void bind_clips(py::module_& core) {
+  core.def("motion", &motion);
+  core.def("calibrate", &calibration);
+  core.def("camera_profiles", &profiles);
+}
 
 }  // namespace airtruth::python

@@ -10,17 +10,15 @@
 
 #include <fmt/format.h>
 
-#include "calibration/camera_file/join.h"
 #include "calibration/camera_file/plot.h"
 #include "calibration/camera_file/profile.h"
 #include "calibration/own_aircraft/own_aircraft.h"
-#include "camera/lens/calibration_file.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/run_files/run_files.h"
-#include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "scene/scene/limits.h"
 #include "sequence/insertion/masks.h"
 #include "show/plot/gnuplot.h"
 
@@ -103,20 +101,6 @@ void report_count(const camera_file::Calibration& found, const std::string& out,
                              found.clips > 1 ? "the clips' own" : "the clip's own"));
 }
 
-// The options but the mask, which the caller keeps.
-camera_file::Options options_of(const CalibrateArguments& arguments,
-                                const lens::ImageSize& size,
-                                Context& context) {
-  camera_file::Options options;
-  if (!arguments.lens.empty())
-    options.lens = lens::read_calibration(arguments.lens, size, context.console().warn());
-  options.altitude_m = arguments.altitude_m;
-  options.heading_deg = arguments.heading_deg;
-  options.tone.gamma = arguments.gamma;
-  follow(options, context, "measuring");
-  return options;
-}
-
 void write_results(const CalibrateArguments& arguments,
                    const camera_file::Calibration& found,
                    RunFiles& files) {
@@ -139,26 +123,20 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   files.writes(arguments.out, arguments.overwrite).writes(arguments.plot, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
   if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
-  const camera_file::CameraProfile profile = arguments.profile.empty()
-                                                 ? camera_file::usual_camera()
-                                                 : camera_file::camera_profile(arguments.profile);
   const std::vector<fs::path> clips(arguments.videos.begin(), arguments.videos.end());
   if (clips.size() > 1 && !arguments.plot.empty())
     throw Error("--plot draws one clip; expected one video beside it");
   files.begin();
-  camera_file::check_joinable(clips, {});
-  const video::StreamInfo info = video::Reader(clips[0], {.threads = 1}).info();
-  camera_file::check_size(profile, info.width, info.height);
-  std::optional<image::Mask> mask;
-  if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
-  camera_file::Options options = options_of(arguments, {info.width, info.height}, context);
-  options.own_aircraft = mask ? &*mask : nullptr;
-  std::vector<camera_file::Calibration> measured;
-  for (const fs::path& clip : clips) measured.push_back(camera_file::calibrate(clip, options));
+  camera_file::CameraOptions options{.lens = arguments.lens,
+                                     .mask = arguments.mask,
+                                     .altitude_m = arguments.altitude_m,
+                                     .heading_deg = arguments.heading_deg,
+                                     .gamma = arguments.gamma,
+                                     .profile = arguments.profile};
+  follow(options, context, "measuring");
+  const camera_file::Calibration found = camera_file::calibrate_camera(clips, options);
   Console& console = context.console();
   console.end_progress();
-  const camera_file::Calibration found =
-      camera_file::with_profile(camera_file::joined(std::move(measured)), profile);
   write_results(arguments, found, files);
   report_missing(found, console);
   report_sources(found, console);
@@ -212,7 +190,7 @@ void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
           "--gamma",
           arguments.gamma,
           "Exponent of the camera's tone curve, which one clip does not show [sRGB's curve]")
-      ->check(CLI::Range(1.2, 3.0));
+      ->check(CLI::Range(scene::kGamma.low, scene::kGamma.high));
 }
 
 }  // namespace

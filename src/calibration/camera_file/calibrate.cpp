@@ -8,16 +8,21 @@
 #include <fmt/ranges.h>
 
 #include "calibration/air/air.h"
+#include "calibration/camera_file/join.h"
 #include "calibration/camera_file/level.h"
+#include "calibration/camera_file/profile.h"
 #include "calibration/optics/edges.h"
 #include "calibration/sensor/blur.h"
 #include "calibration/sensor/noise.h"
 #include "calibration/sensor/readout.h"
 #include "camera/horizon/horizon.h"
+#include "camera/lens/calibration_file.h"
 #include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
 #include "foundation/base/error.h"
 #include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "scene/scene/limits.h"
 
 namespace airtruth::camera_file {
 namespace {
@@ -372,10 +377,48 @@ class Session {
   std::int64_t every_ = 2;
 };
 
+void check_ranges(const CameraOptions& options) {
+  if (options.altitude_m && !(*options.altitude_m > 0 && std::isfinite(*options.altitude_m)))
+    throw Error(
+        fmt::format("the altitude is {} m; expected a number above 0", *options.altitude_m));
+  if (!scene::kTurn.holds(options.heading_deg))
+    throw Error(
+        fmt::format("the heading is {}; expected {}", options.heading_deg, scene::kTurn.expected));
+  if (options.gamma != 0 && !scene::kGamma.holds(options.gamma))
+    throw Error(fmt::format("the gamma is {}; expected {}, or 0 for sRGB's curve",
+                            options.gamma,
+                            scene::kGamma.expected));
+}
+
 }  // namespace
 
 Calibration calibrate(const fs::path& video, const Options& options) {
   return Session(video, options).run();
+}
+
+Calibration calibrate_camera(const std::vector<fs::path>& clips, const CameraOptions& options) {
+  check_ranges(options);
+  if (clips.empty()) throw Error("there is no clip; expected one video or more");
+  const CameraProfile profile =
+      options.profile.empty() ? usual_camera() : camera_profile(options.profile);
+  check_joinable(clips, {});
+  const video::StreamInfo info = video::Reader(clips[0], {.threads = 1}).info();
+  check_size(profile, info.width, info.height);
+  std::optional<image::Mask> mask;
+  if (!options.mask.empty()) mask = video::read_mask(options.mask, info.width, info.height);
+  Options how;
+  if (!options.lens.empty())
+    how.lens = lens::read_calibration(options.lens, {info.width, info.height}, options.warn);
+  how.own_aircraft = mask ? &*mask : nullptr;
+  how.altitude_m = options.altitude_m;
+  how.heading_deg = options.heading_deg;
+  how.tone.gamma = options.gamma;
+  how.warn = options.warn;
+  how.stop = options.stop;
+  how.progress = options.progress;
+  std::vector<Calibration> measured;
+  for (const fs::path& clip : clips) measured.push_back(calibrate(clip, how));
+  return with_profile(joined(std::move(measured)), profile);
 }
 
 }  // namespace airtruth::camera_file

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <string>
+#include <vector>
 
 #include "calibration/camera_file/calibration.h"
 #include "camera/lens/lens.h"
@@ -39,5 +42,23 @@ struct Options {
 // Measures the clip in one pass over its frames. Throws Error if the file is not a video. What a
 // clip is too short or too still to show is not measured (quantities.h).
 Calibration calibrate(const fs::path& video, const Options& options);
+
+// What is known of a camera beside its clips.
+struct CameraOptions {
+  fs::path lens;  // calibration; empty: none
+  fs::path mask;  // of the own aircraft; empty: none
+  std::optional<double> altitude_m;
+  double heading_deg = 0;
+  double gamma = 0;     // 0: sRGB's curve
+  std::string profile;  // camera_profile(); empty: usual_camera()
+  Warn warn;
+  std::stop_token stop;
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
+};
+
+// Measures the clips of one camera, joins them (join.h) and combines them with a profile
+// (profile.h). Throws Error for options out of their range, clips that cannot be joined and a
+// profile of another size.
+Calibration calibrate_camera(const std::vector<fs::path>& clips, const CameraOptions& options);
 
 }  // namespace airtruth::camera_file

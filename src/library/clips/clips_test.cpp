@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 
+#include <airtruth/calibration.h>
 #include <airtruth/motion.h>
 #include <gtest/gtest.h>
 #include <support/temporary_folder.h>
@@ -92,6 +93,26 @@ TEST_F(Clips, RefuseWhatDoesNotFit) {
   source.request_stop();
   options.stop = source.get_token();
   EXPECT_THROW(measure_motion(video(), options), Interrupted);
+}
+
+TEST_F(Clips, AreCalibrated) {
+  CalibrateOptions options;
+  options.gamma = 2;
+  const Calibration found = calibrate({video()}, options);
+  EXPECT_EQ(found.frames, kFrames);
+  EXPECT_EQ(found.quantities.size(), 14u);
+  for (const CalibratedQuantity& quantity : found.quantities) {
+    EXPECT_EQ(quantity.values.empty(), !quantity.missing.empty()) << quantity.name;
+    if (quantity.name != "optics.point_spread_px") continue;
+    ASSERT_EQ(quantity.values.size(), 1u);
+    EXPECT_GT(quantity.values[0].sigma, 0);
+    EXPECT_NE(found.toml.find("point_spread_px = "), std::string::npos);
+  }
+  EXPECT_EQ(calibrate({video(), video()}).clips, 2);
+  EXPECT_FALSE(camera_profiles().empty());
+  options.gamma = 1;
+  EXPECT_THROW(calibrate({video()}, options), Error);
+  EXPECT_THROW(calibrate({}), Error);
 }
 
 }  // namespace
