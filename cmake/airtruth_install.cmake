@@ -46,7 +46,7 @@ airtruth_library(evaluation airtruth-evaluation MODULES ${evaluation_modules} HE
 # All of it.
 airtruth_library(airtruth airtruth
   MODULES ${evaluation_modules} clips flights pictures
-  HEADERS ${evaluation_headers} aircraft calibration motion picture renderer stream video)
+  HEADERS ${evaluation_headers} aircraft calibration encounters motion picture renderer stream video)
 
 include(CMakePackageConfigHelpers)
 install(TARGETS airtruth RUNTIME)

@@ -42,7 +42,7 @@ from airtruth import _core, evaluate
 if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
     np.set_printoptions(legacy="1.25")  # the examples show numbers without their types
 
-MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "_calibrate", "evaluate")
+MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "_calibrate", "_encounters", "evaluate")
 SCENE = """name = "across"
 [background]
 video = "clip.mkv"
@@ -113,6 +113,8 @@ def make_inputs():
     output("synth", "-o", "clip.mkv", "--width", "160", "--height", "120", "--frames", "6", "--no-own-aircraft")
     pathlib.Path("scene.toml").write_text(SCENE)
     pathlib.Path("training.toml").write_text(TRAINING)
+    for name in ("own.csv", "light_aircraft.txt"):
+        shutil.copy(os.path.join(SOURCE, "examples", "encounters", name), name)
     pathlib.Path("calibration.yml").write_text(CALIBRATION)
     output("render", "scene.toml", "--out", "set")
     output("dataset", "export", "set", "-f", "coco", "-o", "coco")
@@ -367,6 +369,9 @@ HOSTILE = [
     np.zeros((4, 8))[::2, ::2], np.zeros((3, 4), np.float16), (2, -3), (0, 0), (2**40, 2**40), pathlib.Path("."), pathlib.Path("scene.toml"),
     lambda *a: None, int, sys, iter([1]), np.float64(3), np.ma.zeros((2, 2)),
 ]
+MODEL_OPTIONS = ("count", "seed", "duration_s", "domain", "airspace", "altitude_ft", "cpa_time_s", "hmd_m", "hmd_shares", "vmd_m", "vmd_shares",
+                 "jobs")
+GEOMETRY = ("course_deg", "speed_mps", "climb_mps", "turn_rate_dps")
 EXPECTED = (airtruth.Error, TypeError, ValueError, OverflowError, IndexError, KeyError, AttributeError, OSError)
 
 
@@ -420,6 +425,10 @@ def hostile_targets():
         "aircraft": (airtruth.aircraft, ["c172"]),
         "left_out_aircraft": (airtruth.left_out_aircraft, ["*"]),
         "show_aircraft": (lambda *a: airtruth.show_aircraft(a[0], forward=a[1], up=a[2], scale=a[3]), ["c172/news", "", "", 0]),
+        "sample_encounters": (lambda model, own, *a: airtruth.sample_encounters(model, own=own, **dict(zip(MODEL_OPTIONS, a))),
+                              ["light_aircraft.txt", "own.csv", 3, 1, 20, None, None, [0, 9000], 10, [-90, 90], [1], [-9, 9], [1], 1]),
+        "sample_encounters geometric": (lambda *a: airtruth.sample_encounters("geometric", own="own.csv", count=3, **dict(zip(GEOMETRY, a))),
+                                        [[-90, 90], 60, 0, 1]),
         "score": (lambda *a: evaluate.score(a[0], a[1], seconds=a[2], size=a[3]), [boxes, boxes, [1, 1], (9, 9)]),
         "mean_of": (evaluate.mean_of, [[score]]),
         "mean_of one": (lambda one: evaluate.mean_of([one]), [score]),
@@ -535,6 +544,40 @@ class Flights(unittest.TestCase):
             file.write("v 0 0 0\nv 4 0 0\nv 0 0 2\nv 0 1 0\nf 1 2 3\nf 1 3 4\n")
         box = airtruth.show_aircraft(pathlib.Path("box.obj"), forward="x", up="y", scale=2)
         self.assertEqual([box.length_m, box.span_m, box.height_m, box.triangles, box.liveries], [8, 4, 2, 2, []])
+
+
+    def test_encounters_are_the_rows_of_the_programs_file(self):
+        model = ("--hmd-m", "-90", "0", "90", "--hmd-shares", "1", "2", "--cpa-time", "18", "--duration", "30"), {
+            "hmd_m": [-90, 0, 90], "hmd_shares": [1, 2], "cpa_time_s": 18, "duration_s": 30}
+        geometry = ("--course-deg", "150", "210", "--climb-mps", "-2", "2"), {"course_deg": (150, 210), "climb_mps": [-2, 2.0]}
+        for name, own, (flags, options) in (("light_aircraft.txt", "own.csv", model), ("geometric", "own.csv", geometry),
+                                            ("light_aircraft.txt", None, (("--altitude-ft", "1000", "1500"), {"altitude_ft": [1000, 1500]}))):
+            told = output("encounter", "sample", name, "--count", "40", "--seed", "9", "-o", "met.csv", "--overwrite", *flags,
+                          *(("--own", own) if own else ()))
+            met = airtruth.sample_encounters(name, own=own, count=40, seed=9, jobs=2, **options)
+            with open("met.csv") as file:
+                head, *lines = [line.rstrip().split(",") for line in file]
+            cells = dict(zip(head, zip(*lines)))
+            found = {"encounter": met.encounter, "time_s": met.time_s}
+            for k, axis in enumerate(("north", "east", "down")):
+                found[axis + "_m"], found[axis + "_mps"] = met.position_ned_m[:, k], met.velocity_ned_mps[:, k]
+            if "weight" in cells:
+                found["weight"] = met.weights[met.encounter - 1]
+            for key, column in found.items():
+                self.assertEqual([float(cell) for cell in cells[key]], column.tolist(), key)
+            self.assertEqual(list(cells["aircraft"]), [met.aircraft_names[k] for k in met.aircraft])
+            if met.share < 1:
+                self.assertIn(f"the cut holds {100 * met.share:.3g} %", told)
+            if name != "geometric":
+                self.assertIn(f"{met.draws / 40:.3f} draws a track", told)
+            self.assertAlmostEqual(met.effective_count, met.weights.sum() ** 2 / (met.weights ** 2).sum())
+        for options, words in (({"hmd_m": 9}, "hmd_m belongs to encounters; expected own"), ({"course_deg": 9}, "course_deg belongs to geometric"),
+                               ({"own": "own.csv", "hmd_m": [9, 3]}, "hmd_m is 9 3"), ({"domain": 1}, "no geographic domain"),
+                               ({"altitude_ft": [1]}, "altitude_ft is not two"), ({"count": 0}, "0 encounters"), ({"count": -5}, "0 encounters")):
+            with self.assertRaisesRegex(airtruth.Error, words):
+                airtruth.sample_encounters("light_aircraft.txt", **options)
+        with self.assertRaisesRegex(airtruth.Error, "own is missing"):
+            airtruth.sample_encounters("geometric")
 
 
 class Hostile(unittest.TestCase):
@@ -669,9 +712,10 @@ class Processes(unittest.TestCase):
                     "while it streams": "list(stream)",
                     "while it measures motion": "for _ in range(9**9): airtruth.motion(source, cache=False)",
                     "while it calibrates": "for _ in range(9**9): airtruth.calibrate(source)",
+                    "while it draws encounters": "airtruth.sample_encounters('light_aircraft.txt', count=1000000)",
                     "while it scores": "airtruth.evaluate.average_precision([source] * 20000, [source] * 20000, [range(30)] * 20000)"}
         boxes = [[k, k, 20, 10] for k in range(30)]
-        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, "long.mkv", "long.mkv", boxes)):
+        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, "long.mkv", "long.mkv", "", boxes)):
             code = (f"import sys; sys.path.insert(0, {PACKAGES!r}); import airtruth\nsource = {source!r}\n"
                     f"stream = airtruth.Stream({TRAINING!r})\nprint('begun', flush=True)\n"
                     f"try:\n  {line}\nexcept KeyboardInterrupt:\n  print('stopped', stream[7].index)\n")

@@ -17,6 +17,7 @@ from ._core import version as __version__
 from ._aircraft import Aircraft, AircraftModel, aircraft, left_out_aircraft, show_aircraft
 from ._calibrate import Calibration, CameraProfile, Measured, calibrate, camera_profiles
 from ._dataset import DataSet, Sequence
+from ._encounters import Encounters, sample_encounters
 from ._error import Error
 from ._frames import Encounter, Frame, FrameTruth, Intruder, Volume
 from ._labels import Clip, Label, LabelledFrame, convert_labels, read_labels
@@ -34,6 +35,7 @@ __all__ = [
     "motion", "Motion", "GyroAgreement",
     "calibrate", "Calibration", "Measured", "camera_profiles", "CameraProfile",
     "aircraft", "Aircraft", "left_out_aircraft", "show_aircraft", "AircraftModel",
+    "sample_encounters", "Encounters",
     "read_labels", "convert_labels", "Clip", "LabelledFrame", "Label",
     "evaluate", "Error",
 ]

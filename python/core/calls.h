@@ -134,12 +134,13 @@ class Worker {
 };
 
 // The result of one long call, work(options), which an exception of a signal's handler stops.
-// `Options` has stop and warn.
+// `Options` has stop, and may have warn.
 template <typename Options, typename Work>
 auto stoppable(Options options, const Work& work) {
   const auto warnings = std::make_shared<Warnings>();
   Worker worker;
-  options.warn = [warnings](const std::string& message) { warnings->add(message); };
+  if constexpr (requires { options.warn; })
+    options.warn = [warnings](const std::string& message) { warnings->add(message); };
   options.stop = worker.stop();
   std::optional<decltype(work(options))> result;
   worker.run([&] { result.emplace(work(options)); });

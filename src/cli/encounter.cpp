@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
-#include <initializer_list>
-#include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,7 +8,10 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "encounter/encounter_model/sampler.h"
+#include "encounter/sets/sample.h"
 #include "encounter/sets/write_set.h"
+#include "encounter/track/track.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "foundation/run_files/run_files.h"
@@ -19,103 +19,22 @@
 namespace airtruth::cli {
 namespace {
 
-constexpr const char* kGeometric = "geometric";
 // Largest number of encounters: a choice.
-constexpr std::int64_t kMaxCount = 100'000'000;
-// The length of a track where nothing states it.
-constexpr int kDuration_s = 60;
+constexpr std::uint64_t kMaxCount = 100'000'000;
 
-struct Sample {
-  std::string model;
+// The option of a member of SampleRequest: "cpa_time_s" is --cpa-time, "hmd_m" --hmd-m.
+std::string option_of(std::string member) {
+  if (member.ends_with("_s")) member.resize(member.size() - 2);
+  std::replace(member.begin(), member.end(), '_', '-');
+  return "--" + member;
+}
+
+struct Sample : sets::SampleRequest {
+  Sample() { name_of = option_of; }
   std::string out;
-  std::string own;
-  std::int64_t count = 100;
-  std::uint64_t seed = 1;
-  int duration_s = 0;  // 0: not stated
   int jobs = 0;
   bool overwrite = false;
-  std::vector<std::size_t> domains, airspaces;
-  std::vector<double> altitude_ft;
-  std::optional<double> cpa_time_s;
-  std::vector<double> hmd_m{-500, 500}, hmd_shares, vmd_m{-150, 150}, vmd_shares;
-  std::vector<double> course_deg{-180, 180}, speed_mps{30, 80}, climb_mps{0}, turn_rate_dps{0};
-
-  bool is_geometric() const { return model == kGeometric; }
 };
-
-track::Track own_track(const std::string& file) {
-  track::Track own = tracks_file::read_encounters(file).front().aircraft.front();
-  if (own.size() < 2)
-    throw Error("the own aircraft has one sample; expected a track of two or more", {file});
-  return own;
-}
-
-// Whole seconds that the intruder flies: stated, or those of the own track.
-int duration_of(const Sample& arguments, const std::optional<track::Track>& own) {
-  if (arguments.duration_s > 0) return arguments.duration_s;
-  if (!own) return kDuration_s;
-  const double length_s = std::ceil(own->times_s.back() - own->times_s.front());
-  if (length_s > encounter_model::kMaxDuration_s)
-    throw Error(fmt::format("the own track is {} s long; expected up to {} s, or --duration",
-                            length_s,
-                            encounter_model::kMaxDuration_s),
-                {arguments.own});
-  return static_cast<int>(length_s);
-}
-
-double cpa_time_of(const Sample& arguments, const track::Track& own) {
-  return arguments.cpa_time_s.value_or((own.times_s.front() + own.times_s.back()) / 2);
-}
-
-sets::DrawEncounter geometric(const Sample& arguments, const track::Track& own) {
-  const pairing::GeometricOptions options{
-      .course_deg = pairing::Distribution(arguments.course_deg, {}, "--course-deg"),
-      .speed_mps = pairing::Distribution(arguments.speed_mps, {}, "--speed-mps"),
-      .hmd_m = pairing::Distribution(arguments.hmd_m, arguments.hmd_shares, "--hmd-m"),
-      .vmd_m = pairing::Distribution(arguments.vmd_m, arguments.vmd_shares, "--vmd-m"),
-      .climb_mps = pairing::Distribution(arguments.climb_mps, {}, "--climb-mps"),
-      .turn_rate_dps = pairing::Distribution(arguments.turn_rate_dps, {}, "--turn-rate-dps"),
-      .cpa_time_s = pairing::Distribution({cpa_time_of(arguments, own)}, {}, "--cpa-time")};
-  return sets::geometric_pairs(
-      pairing::GeometricSampler(
-          options, arguments.seed, static_cast<std::uint64_t>(arguments.count)),
-      own);
-}
-
-std::shared_ptr<const encounter_model::Sampler> sampler_of(const Sample& arguments,
-                                                           const std::optional<track::Track>& own) {
-  encounter_model::SampleOptions options{
-      arguments.seed, duration_of(arguments, own), {arguments.domains, arguments.airspaces, {}}};
-  if (!arguments.altitude_ft.empty())
-    options.cut.altitude_ft = {arguments.altitude_ft[0], arguments.altitude_ft[1]};
-  return std::make_shared<const encounter_model::Sampler>(
-      encounter_model::read_model(arguments.model), options);
-}
-
-pairing::PairingOptions pairing_of(const Sample& arguments, const track::Track& own) {
-  pairing::PairingOptions options;
-  options.cpa_time_s = cpa_time_of(arguments, own);
-  options.hmd_m = pairing::Distribution(arguments.hmd_m, arguments.hmd_shares, "--hmd-m");
-  options.vmd_m = pairing::Distribution(arguments.vmd_m, arguments.vmd_shares, "--vmd-m");
-  return options;
-}
-
-// An option that has no effect is refused, so that nobody relies on it.
-void refuse_unused(const CLI::App& command, const Sample& arguments) {
-  const auto refuse = [&](std::initializer_list<const char*> options, const char* why) {
-    for (const char* option : options)
-      if (command.count(option) > 0) throw Error(fmt::format("{} {}", option, why));
-  };
-  if (arguments.is_geometric())
-    refuse({"--duration", "--domain", "--airspace", "--altitude-ft"},
-           "belongs to an encounter model; MODEL is geometric");
-  else
-    refuse({"--course-deg", "--speed-mps", "--climb-mps", "--turn-rate-dps"},
-           "belongs to geometric encounters; MODEL is a file");
-  if (arguments.own.empty())
-    refuse({"--cpa-time", "--hmd-m", "--hmd-shares", "--vmd-m", "--vmd-shares"},
-           "belongs to encounters; expected --own, the track to pair with");
-}
 
 std::string words_of(const Sample& arguments, const sets::SetSummary& summary, double share) {
   std::string words = fmt::format("{}: {} {}, seed {}",
@@ -141,39 +60,27 @@ void sample(const Sample& arguments, Context& context) {
   files.reads(arguments.own).writes(arguments.out, arguments.overwrite);
   files.begin();
   const tracks_file::TracksFormat format = tracks_file::tracks_format_of(arguments.out);
-  if (arguments.is_geometric() && arguments.own.empty())
-    throw Error("--own is missing; geometric encounters are placed about an own track");
   Console& console = context.console();
-  std::optional<track::Track> own;
-  if (!arguments.own.empty()) own = own_track(arguments.own);
-  sets::DrawEncounter draw;
-  double share = 1;
-  if (arguments.is_geometric()) {
-    draw = geometric(arguments, *own);
-  } else {
-    const auto sampler = sampler_of(arguments, own);
-    share = sampler->share();
-    draw = own ? sets::model_pairs(sampler, *own, pairing_of(arguments, *own), arguments.seed)
-               : sets::model_tracks(sampler);
-  }
+  const sets::SampledSet set = sets::sampled_set(arguments);
   sets::SetOptions options;
-  options.count = static_cast<std::uint64_t>(arguments.count);
+  options.count = arguments.count;
   options.jobs = arguments.jobs;
   follow(options, context, "drawing", "encounters");
   sets::SetSummary summary;
   files.write(arguments.out, [&](const std::filesystem::path& at) {
-    summary = sets::write_set(at, draw, options);
+    summary = sets::write_set(at, set.draw, options);
   });
   files.commit();
-  if (own && !arguments.is_geometric() && format != tracks_file::TracksFormat::kCsv)
+  if (!arguments.own.empty() && !arguments.is_geometric() &&
+      format != tracks_file::TracksFormat::kCsv)
     console.warning(arguments.out + ": a file of this format holds no weights; .csv does");
-  console.result(words_of(arguments, summary, share));
+  console.result(words_of(arguments, summary, set.share));
 }
 
 void add_cut_options(CLI::App& command, Sample& arguments) {
-  command.add_option("--domain", arguments.domains, "Geographic domains of the model, from 1")
+  command.add_option("--domain", arguments.domain, "Geographic domains of the model, from 1")
       ->expected(1, 100);
-  command.add_option("--airspace", arguments.airspaces, "Airspace classes of the model, from 1")
+  command.add_option("--airspace", arguments.airspace, "Airspace classes of the model, from 1")
       ->expected(1, 100);
   command
       .add_option(
@@ -218,10 +125,12 @@ void add_pairing_options(CLI::App& command, Sample& arguments) {
 }
 
 void add_sample(CLI::App& group, Context& context) {
-  auto arguments = std::make_shared<Sample>();
-  auto* command = group.add_subcommand(
+  auto [command, arguments] = add_command(
+      group,
+      context,
       "sample",
-      "Draw tracks from an encounter model, alone or paired with an own track to encounters");
+      "Draw tracks from an encounter model, alone or paired with an own track to encounters",
+      sample);
   command
       ->add_option("MODEL",
                    arguments->model,
@@ -231,7 +140,7 @@ void add_sample(CLI::App& group, Context& context) {
   command->add_option("-o,--out", arguments->out, "File to write: .csv, .daa, .txt or .dat")
       ->required();
   command->add_option("--count,-n", arguments->count, "Tracks or encounters (default: 100)")
-      ->check(CLI::Range(std::int64_t{1}, kMaxCount));
+      ->check(CLI::Range(std::uint64_t{1}, kMaxCount));
   command->add_option("--seed", arguments->seed, "The same seed gives the same file (default: 1)");
   command
       ->add_option("--duration",
@@ -242,10 +151,6 @@ void add_sample(CLI::App& group, Context& context) {
   add_pairing_options(*command, *arguments);
   add_jobs(*command, arguments->jobs, "Threads (default: one per core)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
-  command->callback([arguments, command, &context] {
-    refuse_unused(*command, *arguments);
-    sample(*arguments, context);
-  });
 }
 
 struct Convert {

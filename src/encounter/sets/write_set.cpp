@@ -2,6 +2,8 @@
 #include "encounter/sets/write_set.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,18 +41,19 @@ bool is_stream(tracks_file::TracksFormat format) {
          format == tracks_file::TracksFormat::kWaypoints;
 }
 
+// The bytes are those of `format`, where it is given.
 Block drawn_block(const DrawEncounter& draw,
                   std::uint64_t begin,
                   std::uint64_t end,
-                  tracks_file::TracksFormat format) {
+                  std::optional<tracks_file::TracksFormat> format) {
   Block block;
   for (std::uint64_t i = begin; i < end; ++i) {
     DrawnEncounter drawn = draw(i);
     const double weight = drawn.encounter.weight;
     add(block.summary, {1, static_cast<std::uint64_t>(drawn.draws), weight, weight * weight});
     const auto aircraft = static_cast<std::uint32_t>(drawn.encounter.aircraft.size());
-    if (is_stream(format))
-      block.bytes += tracks_file::bytes_of(drawn.encounter, format, i + 1, aircraft);
+    if (format)
+      block.bytes += tracks_file::bytes_of(drawn.encounter, *format, i + 1, aircraft);
     else
       block.encounters.push_back(std::move(drawn.encounter));
   }
@@ -61,7 +64,7 @@ Block drawn_block(const DrawEncounter& draw,
 template <typename Take>
 void for_each_block(const DrawEncounter& draw,
                     const SetOptions& options,
-                    tracks_file::TracksFormat format,
+                    std::optional<tracks_file::TracksFormat> format,
                     const Take& take) {
   const std::uint64_t blocks = (options.count + kBlock - 1) / kBlock;
   for (std::uint64_t first = 0; first < blocks; first += kBlocksOfWindow) {
@@ -79,25 +82,35 @@ void for_each_block(const DrawEncounter& draw,
   }
 }
 
+void expect_count(std::uint64_t count, std::uint64_t most) {
+  if (count < 1 || count > most)
+    throw Error(fmt::format("{} encounters are asked for; expected 1 to {}", count, most));
+}
+
 }  // namespace
+
+DrawnSet draw_set(const DrawEncounter& draw, const SetOptions& options) {
+  expect_count(options.count, kMaxInMemory);
+  DrawnSet set;
+  for_each_block(draw, options, {}, [&](Block& block) {
+    add(set.summary, block.summary);
+    std::move(block.encounters.begin(), block.encounters.end(), std::back_inserter(set.encounters));
+  });
+  return set;
+}
 
 SetSummary write_set(const std::filesystem::path& file,
                      const DrawEncounter& draw,
                      const SetOptions& options) {
-  if (options.count < 1 || options.count > kMaxCount)
-    throw Error(
-        fmt::format("{} encounters are asked for; expected 1 to {}", options.count, kMaxCount));
+  expect_count(options.count, kMaxCount);
   const tracks_file::TracksFormat format = tracks_file::tracks_format_of(file);
-  SetSummary summary;
   if (!is_stream(format)) {
-    std::vector<track::Encounter> all;
-    for_each_block(draw, options, format, [&](Block& block) {
-      add(summary, block.summary);
-      std::move(block.encounters.begin(), block.encounters.end(), std::back_inserter(all));
-    });
-    tracks_file::write_encounters(file, tracks_file::fitted(std::move(all), format, file));
-    return summary;
+    DrawnSet set = draw_set(draw, options);
+    tracks_file::write_encounters(file,
+                                  tracks_file::fitted(std::move(set.encounters), format, file));
+    return set.summary;
   }
+  SetSummary summary;
   const auto aircraft = static_cast<std::uint32_t>(draw(0).encounter.aircraft.size());
   tracks_file::TracksWriter writer(file, static_cast<std::uint32_t>(options.count), aircraft);
   for_each_block(draw, options, format, [&](const Block& block) {

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <functional>
 #include <stop_token>
+#include <vector>
 
 #include "encounter/sets/draw_encounter.h"
+#include "encounter/track/track.h"
 
 // A set of encounters, drawn on all cores and written to one file.
 namespace airtruth::sets {
@@ -38,5 +40,13 @@ struct SetSummary {
 SetSummary write_set(const std::filesystem::path& file,
                      const DrawEncounter& draw,
                      const SetOptions& options);
+
+// The same encounters in memory, at most kMaxInMemory.
+constexpr std::uint64_t kMaxInMemory = 1'000'000;
+struct DrawnSet {
+  std::vector<track::Encounter> encounters;
+  SetSummary summary;
+};
+DrawnSet draw_set(const DrawEncounter& draw, const SetOptions& options);
 
 }  // namespace airtruth::sets

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <airtruth/encounters.h>
+
+#include "encounter/sets/sample.h"
+#include "encounter/sets/write_set.h"
+#include "encounter/track/track.h"
+#include "foundation/geometry/transform.h"
+
+namespace airtruth {
+namespace {
+
+sets::SampleRequest request_of(const std::string& model, const EncounterOptions& options) {
+  sets::SampleRequest request;
+  request.model = model;
+  request.own = options.own;
+  request.count = options.count < 0 ? 0 : static_cast<std::uint64_t>(options.count);
+  request.seed = options.seed;
+  request.duration_s = options.duration_s;
+  request.domain = options.domain;
+  request.airspace = options.airspace;
+  request.altitude_ft = options.altitude_ft;
+  request.cpa_time_s = options.cpa_time_s;
+  request.hmd_m = options.hmd_m;
+  request.hmd_shares = options.hmd_shares;
+  request.vmd_m = options.vmd_m;
+  request.vmd_shares = options.vmd_shares;
+  request.course_deg = options.course_deg;
+  request.speed_mps = options.speed_mps;
+  request.climb_mps = options.climb_mps;
+  request.turn_rate_dps = options.turn_rate_dps;
+  return request;
+}
+
+std::array<double, 3> numbers_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+void add_rows(SampledEncounters& result, const track::Track& track, std::int64_t aircraft) {
+  const std::vector<Vector3> velocities = track::velocities_of(track);
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    result.encounter.push_back(std::ssize(result.weights));
+    result.aircraft.push_back(aircraft);
+    result.time_s.push_back(track.times_s[i]);
+    result.position_ned_m.push_back(numbers_of(track.positions_ned_m[i]));
+    result.velocity_ned_mps.push_back(numbers_of(velocities[i]));
+  }
+}
+
+}  // namespace
+
+SampledEncounters sample_encounters(const std::string& model, const EncounterOptions& options) {
+  const sets::SampleRequest request = request_of(model, options);
+  const sets::SampledSet set = sets::sampled_set(request);
+  const sets::DrawnSet drawn =
+      sets::draw_set(set.draw, {request.count, options.jobs, {}, options.stop});
+  SampledEncounters result;
+  for (const track::Track& track : drawn.encounters.front().aircraft)
+    result.aircraft_names.push_back(track.name);
+  for (const track::Encounter& encounter : drawn.encounters) {
+    result.weights.push_back(encounter.weight);
+    for (std::size_t k = 0; k < encounter.aircraft.size(); ++k)
+      add_rows(result, encounter.aircraft[k], static_cast<std::int64_t>(k));
+  }
+  result.share = set.share;
+  result.draws = static_cast<std::int64_t>(drawn.summary.draws);
+  result.effective_count = drawn.summary.effective_count();
+  return result;
+}
+
+}  // namespace airtruth
