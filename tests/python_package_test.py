@@ -361,6 +361,91 @@ class Numbers(unittest.TestCase):
         self.assertEqual([flagged.curve_50.truths, round(flagged.ap_50, 9)], [3, 1])
 
 
+class Detectors(unittest.TestCase):
+    """FROC, HOTA and AOT of random flights, beside the numbers of `airtruth evaluate`."""
+
+    @classmethod
+    def setUpClass(cls):
+        random = np.random.default_rng(5)
+        cls.columns = {name: [] for name in ("truth", "truth_tracks", "ranges_m", "above_horizon", "detections", "scores", "tracks", "sequences")}
+        results = []
+        for flight in range(3):
+            name = f"flight-{flight}"
+            labels = [{"format": "airtruth labels 1", "name": name, "width": 640, "height": 480, "frame_rate_hz": 10}]
+            for frame in range(60 + flight):
+                ids = [1, 2] if frame % 20 else [1]
+                boxes = [[100.0 * k + 2 * frame, 90.0 * k, 8 + 0.2 * frame, 5 + 0.1 * frame] for k in ids]
+                ranges, above = [abs(500 * k - 9.5 * frame) + 50 for k in ids], [1 if k == 1 else -1 for k in ids]
+                seen = [k for k in ids if random.random() < 0.8]
+                found = [[x + random.normal(0, 1), y + random.normal(0, 1), w * random.uniform(0.8, 1.2), h] for x, y, w, h in
+                         (boxes[ids.index(k)] for k in seen)]
+                tracks = [10 * k + (frame > 40) for k in seen]
+                if random.random() < 0.4:
+                    found.append([random.uniform(0, 600), random.uniform(300, 440), 9.0, 7.0])
+                    tracks.append(100 + frame // 9)
+                scores = random.uniform(0, 1, len(found)).tolist()
+                labels.append({"frame": frame, "labels": [
+                    {"track": k, "category": "738", "box_px": box, "range_m": r, "above_horizon": a > 0}
+                    for k, box, r, a in zip(ids, boxes, ranges, above)]})
+                for column, values in zip(cls.columns.values(), (boxes, ids, ranges, above, found, scores, tracks, flight)):
+                    column.append(values)
+                results += [{"image_id": len(cls.columns["truth"]), "category_id": 1, "bbox": box, "score": score, "track_id": track}
+                            for box, score, track in zip(found, scores, tracks)]
+            folder = pathlib.Path("detected/sequences", name)
+            folder.mkdir(parents=True)
+            (folder / "labels.jsonl").write_text("".join(json.dumps(line) + "\n" for line in labels))
+            (folder / "sequence.json").write_text(json.dumps(
+                {"format": "airtruth labelled clip 1", "version": "1", "name": name, "imported_from": "csv", "frames": len(labels) - 1,
+                 "labels": sum(len(line["labels"]) for line in labels[1:]), "categories": ["738"]}))
+        pathlib.Path("mine.json").write_text(json.dumps(results))
+        output("evaluate", "detected", "mine.json", "-o", "evaluated", "--no-page")
+        with open("evaluated/detection.json") as file:
+            cls.told = json.load(file)["detectors"][0]
+
+    def taken(self, *names):
+        return {name: self.columns[name] for name in names}
+
+    def test_froc_is_the_programs_to_the_last_bit(self):
+        told = self.told["froc"]
+        found = evaluate.froc(**self.taken("truth", "detections", "scores", "sequences"), rate_hz=10)
+        self.assertEqual([found.images, found.flights, found.hours, found.aircraft],
+                         [told[name] for name in ("images", "flights", "hours", "aircraft_in_images")])
+        self.assertGreater(len(told["points"]), 50)
+        for name in ("score", "false_alarms_per_image", "false_alarms_per_hour", "false_alarms_per_flight"):
+            self.assertEqual(getattr(found, name).tolist(), [point[name] for point in told["points"]], name)
+        shares = [point["detection"] for point in told["points"]]
+        self.assertEqual(found.detection.tolist(), [share["share"] for share in shares])
+        self.assertEqual(np.stack([found.detection_low, found.detection_high], 1).tolist(), [share["interval_95"] for share in shares])
+        flagged = evaluate.froc([[[0, 0, 9, 9]]], [[[0, 0, 9, 9]]], [[1]], ignored=[[1]])
+        self.assertEqual([flagged.score.size, flagged.hours, flagged.false_alarms_per_hour, flagged.aircraft], [0, None, None, 0])
+
+    def test_hota_is_the_programs_to_the_last_bit(self):
+        told = self.told["tracks"]["hota"]
+        found = evaluate.hota(**self.taken("truth", "truth_tracks", "detections", "tracks", "sequences"))
+        for name, values in told.items():
+            self.assertEqual([getattr(found, name), found.at_overlaps[name].tolist()], [values["mean"], values["at_overlaps"]], name)
+        self.assertEqual(set(told), set(found.at_overlaps))
+        with self.assertRaisesRegex(ValueError, "track 1 twice"):
+            evaluate.hota([[[0, 0, 9, 9]] * 2], [[1, 1]], [[]], [[]])
+
+    def test_aot_is_the_programs_to_the_last_bit(self):
+        columns = self.taken("truth", "truth_tracks", "ranges_m", "above_horizon", "detections", "scores", "tracks", "sequences")
+        found = evaluate.aot(**columns, rate_hz=10)
+        ranks = evaluate.aot_ranks(**columns, rate_hz=10)
+        self.assertGreater(found.edr[1], 2)
+        for score, key in ((found, "aot"), (ranks[0], "aot_at_hfar_0.5"), (ranks[1], "aot_at_fppi_0.0005")):
+            told = self.told[key]
+            if told is None:
+                self.assertIsNone(score, key)
+                continue
+            for name, value in told.items():
+                one = getattr(score, name)
+                wanted = [value["detected"], value["total"], value["rate"] or 0] if isinstance(value, dict) else value
+                self.assertEqual(list(one) if isinstance(one, tuple) else one, wanted, name)
+        strict = evaluate.aot(**columns, min_score=0.9)
+        self.assertTrue(strict.hfar is None and strict.score == 0.9 and strict.edr[0] <= found.edr[0])
+
+
 HOSTILE = [
     None, True, -1, 0, 3, 2**31, 2**63, 2**70, -2**70, 1.5, math.nan, math.inf, 1e300, "", "x", "\0", "a\nb", "\ud800", b"\xff", "x" * 5000,
     [], {}, (), [[]], [None], ["a"], {"a": object()}, object(), [1, 2, 3, 4], [[1, 2]], [[1, 2, 3]], [[1, 2, 3, 4]], [[1, 2, 3, -4]],
@@ -437,6 +522,17 @@ def hostile_targets():
         "average_precision": (lambda *a: evaluate.average_precision(*a[:3], sequences=a[3], ignored=a[4], centre_px=a[5]),
                               [[boxes], [boxes], [[1, 1]], [0], [[0, 0]], 10]),
         "average_precision image": (lambda *a: evaluate.average_precision([a[0]], [a[1]], [a[2]]), [boxes, boxes, [1, 1]]),
+        "froc": (lambda *a: evaluate.froc(*a[:3], sequences=a[3], ignored=a[4], rate_hz=a[5], centre_px=a[6]),
+                 [[boxes], [boxes], [[1, 1]], [0], [[0, 0]], 10, 10]),
+        "froc image": (lambda *a: evaluate.froc([a[0]], [a[1]], [a[2]]), [boxes, boxes, [1, 1]]),
+        "hota": (lambda *a: evaluate.hota(*a[:4], sequences=a[4]), [[boxes], [[1, 2]], [boxes], [[1, 2]], [0]]),
+        "hota image": (lambda *a: evaluate.hota(*([one] for one in a)), [boxes, [1, 2], boxes, [1, 2]]),
+        "aot": (lambda *a: evaluate.aot(*a[:4], tracks=a[4], ranges_m=a[5], above_horizon=a[6], sequences=a[7], rate_hz=a[8], min_score=a[9],
+                                        min_track_frames=a[10]),
+                [[boxes], [[1, 2]], [boxes], [[1, 1]], [[1, 2]], [[300, 300]], [[0, 1]], [0], 10, 0.5, 0]),
+        "aot image": (lambda *a: evaluate.aot([a[0]], [a[1]], [a[2]], [a[3]], tracks=[a[4]], ranges_m=[a[5]], above_horizon=[a[6]]),
+                      [boxes, [1, 2], boxes, [1, 1], [1, 2], [300, 300], [0, 1]]),
+        "aot_ranks": (lambda *a: evaluate.aot_ranks(*a[:4], rate_hz=a[4]), [[boxes], [[1, 2]], [boxes], [[1, 1]], 10]),
         "bootstrap_mean": (evaluate.bootstrap_mean, [[1, 2], [1, 1]]),
         "paired": (evaluate.paired, [[1, 2], [1, 1]]),
         "kendall_tau": (evaluate.kendall_tau, [[1, 2], [1, 1]]),

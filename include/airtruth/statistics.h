@@ -16,6 +16,20 @@ struct Interval {
   double high = 0;
 };
 
+// A share in [0, 1] of trials that come in clusters (sequences, whose frames resemble each other),
+// with its 95 % interval: Wilson's (1927) with an effective number of trials.
+struct Proportion {
+  double value = 0;
+  double low = 0;
+  double high = 1;
+  // Weighted where the clusters are; else whole numbers.
+  double successes = 0;
+  double trials = 0;
+  std::int64_t clusters = 0;  // those with a trial
+  // (sum w)^2 / sum w^2 of them: their number where all weights are equal.
+  double effective_clusters = 0;
+};
+
 // The 95 % interval of the weighted mean of values by the percentile bootstrap (Efron 1979,
 // "Bootstrap methods: another look at the jackknife"): 10,000 draws with replacement from a fixed
 // seed. Empty `weights`: all are equal. The result is empty for fewer than two values.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The measures of `airtruth evaluate`, computed from arrays: a tracker's boxes (OTB, GOT-10k, VOT), a detector's boxes (COCO's average
-precision), and the uncertainty of means over sequences.
+precision, FROC, HOTA, AOT), and the uncertainty of means over sequences.
 
 Boxes are n x 4: x, y, width, height in pixels, with fractions; a row with a NaN is no box. Whatever is not defined is None. A wrong
 dtype is a TypeError; a wrong shape, an infinite number and a negative size are a ValueError.
@@ -9,7 +9,7 @@ dtype is a TypeError; a wrong shape, an infinite number and a negative size are 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Iterable, List, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,6 +79,57 @@ class AveragePrecision:
     ap_centre_interval: Optional[Interval]
     curve_50: Optional[Curve]
     curve_centre: Optional[Curve]
+
+
+@dataclass
+class Froc:
+    """The free-response operating characteristic: columns with a row for each of n thresholds, by falling score."""
+
+    score: Numbers  # (n,): detections with this score or more
+    detection: Numbers  # (n,): share of aircraft in images that are found
+    detection_low: Numbers  # (n,): its 95 % interval, over sequences
+    detection_high: Numbers
+    false_alarms_per_image: Numbers  # (n,)
+    false_alarms_per_hour: Optional[Numbers]  # None without a rate
+    false_alarms_per_flight: Numbers  # (n,): a flight is a sequence
+    images: int
+    flights: int
+    hours: Optional[float]
+    aircraft: int  # aircraft in images
+
+
+@dataclass
+class Hota:
+    """Higher order tracking accuracy and its parts, each the mean over 19 thresholds of overlap."""
+
+    hota: float
+    det_a: float  # detection accuracy, and its recall and precision
+    ass_a: float  # association accuracy, and its recall and precision
+    det_re: float
+    det_pr: float
+    ass_re: float
+    ass_pr: float
+    loc_a: float  # overlap of what matches
+    at_overlaps: Dict[str, Numbers]  # each of them at the overlaps 0.05, 0.10 .. 0.95: (19,)
+
+
+Rate = Tuple[int, int, float]
+
+
+@dataclass
+class AotScore:
+    """The measures of the Airborne Object Tracking challenge. A rate is (detected, of, share)."""
+
+    score: float  # detections with this score or more
+    edr: Rate  # encounters that a track detects
+    edr_below_horizon: Rate
+    edr_mixed: Rate
+    edr_above_horizon: Rate
+    edr_by_frames: Rate  # encounters that detections of any tracks detect
+    afdr: Rate  # objects in range that are detected, frame by frame
+    max_range_m: Optional[float]  # up to which they are in range; None without a valid encounter
+    hfar: Optional[float]  # false tracks an hour; None without a rate
+    fppi: float  # false detections an image
 
 
 @dataclass
@@ -154,6 +205,24 @@ def first_loss(truth: ArrayLike, answers: ArrayLike) -> Optional[int]:
     return _core.first_loss(truth, answers)
 
 
+def _by_sequence(sequences: Optional[Sequence[int]], **columns: Sequence[ArrayLike]) -> List[List[Tuple[ArrayLike, ...]]]:
+    """The images of each sequence, each with what the columns have for it."""
+    count = len(columns["truth"])
+    numbers = [0] * count if sequences is None else [int(number) for number in sequences]
+    for name, length in [*((name, len(column)) for name, column in columns.items()), ("sequences", len(numbers))]:
+        if length != count:
+            raise ValueError(f"truth is of {count} images, and {name} of {length}")
+    grouped: Dict[int, List[Tuple[ArrayLike, ...]]] = {}
+    for number, image in zip(numbers, zip(*columns.values())):
+        grouped.setdefault(number, []).append(image)
+    return list(grouped.values())
+
+
+def _flags(truth: Sequence[ArrayLike], flags: Optional[Sequence[ArrayLike]], otherwise: float = 0) -> Sequence[ArrayLike]:
+    """For each image a number for each box: as they are given, or all the same."""
+    return [np.full(len(np.asarray(one)), otherwise) for one in truth] if flags is None else flags
+
+
 def average_precision(
     truth: Sequence[ArrayLike],
     detections: Sequence[ArrayLike],
@@ -175,18 +244,129 @@ def average_precision(
     >>> round(ap.ap_50, 4), ap.ap_large, ap.curve_50.truths
     (0.835, None, 2)
     """
-    count = len(truth)
-    numbers = [0] * count if sequences is None else [int(number) for number in sequences]
-    flags: Sequence[ArrayLike] = [[False] * len(np.asarray(one)) for one in truth] if ignored is None else ignored
-    if not len(detections) == len(scores) == len(numbers) == len(flags) == count:
-        raise ValueError(f"truth is of {count} images, and another argument of more or fewer")
-    grouped: dict[int, List[Tuple[ArrayLike, ...]]] = {}
-    for number, image in zip(numbers, zip(truth, flags, detections, scores)):
-        grouped.setdefault(number, []).append(image)
-    fields = _core.average_precision(list(grouped.values()), centre_px)
+    grouped = _by_sequence(sequences, truth=truth, ignored=_flags(truth, ignored), detections=detections, scores=scores)
+    fields = _core.average_precision(grouped, centre_px)
     for name in ("curve_50", "curve_centre"):
         fields[name] = fields[name] and Curve(**fields[name])
     return AveragePrecision(**fields)
+
+
+def froc(
+    truth: Sequence[ArrayLike],
+    detections: Sequence[ArrayLike],
+    scores: Sequence[ArrayLike],
+    *,
+    sequences: Optional[Sequence[int]] = None,
+    ignored: Optional[Sequence[ArrayLike]] = None,
+    rate_hz: Optional[float] = None,
+    centre_px: float = 10,
+) -> Froc:
+    """The free-response operating characteristic: probability of detection against false alarms, as the threshold on the score falls.
+    The arguments are those of average_precision(); a detection finds the nearest aircraft within `centre_px` or half of the aircraft's
+    longer side. `rate_hz`: images a second; without it nothing is told of an hour.
+
+    >>> boxes = [[10, 10, 20, 10], [100, 50, 20, 10], [300, 300, 20, 10]]
+    >>> curve = airtruth.evaluate.froc([boxes[:2]], [[boxes[0], boxes[2], boxes[1]]], [[0.9, 0.8, 0.7]], rate_hz=10)
+    >>> curve.score, curve.detection, curve.false_alarms_per_hour.round()
+    (array([0.9, 0.8, 0.7]), array([0.5, 0.5, 1. ]), array([    0., 36000., 36000.]))
+    """
+    grouped = _by_sequence(sequences, truth=truth, ignored=_flags(truth, ignored), detections=detections, scores=scores)
+    return Froc(**_core.froc(grouped, rate_hz, centre_px))
+
+
+def hota(
+    truth: Sequence[ArrayLike],
+    truth_tracks: Sequence[ArrayLike],
+    detections: Sequence[ArrayLike],
+    tracks: Sequence[ArrayLike],
+    *,
+    sequences: Optional[Sequence[int]] = None,
+) -> Hota:
+    """Higher order tracking accuracy. Each argument has an item for each image, in the order of time: boxes of its aircraft (n x 4), the
+    numbers of their tracks (n), boxes of its detections (m x 4), the numbers of their tracks (m; NaN: none, left out). A track is in an
+    image once at most. `sequences` as in average_precision().
+
+    >>> box = [[10, 10, 20, 10]]
+    >>> result = airtruth.evaluate.hota([box] * 4, [[1]] * 4, [box] * 4, [[7], [7], [7], [8]])
+    >>> result.det_a, result.ass_a, round(result.hota, 4), result.at_overlaps["hota"].shape
+    (1.0, 0.625, 0.7906, (19,))
+    """
+    grouped = _by_sequence(sequences, truth=truth, truth_tracks=truth_tracks, detections=detections, tracks=tracks)
+    return Hota(**_core.hota(grouped))
+
+
+def aot(
+    truth: Sequence[ArrayLike],
+    truth_tracks: Sequence[ArrayLike],
+    detections: Sequence[ArrayLike],
+    scores: Sequence[ArrayLike],
+    *,
+    tracks: Optional[Sequence[ArrayLike]] = None,
+    ranges_m: Optional[Sequence[ArrayLike]] = None,
+    above_horizon: Optional[Sequence[ArrayLike]] = None,
+    sequences: Optional[Sequence[int]] = None,
+    rate_hz: Optional[float] = None,
+    min_score: Optional[float] = None,
+    min_track_frames: int = 0,
+) -> AotScore:
+    """The measures of Amazon's Airborne Object Tracking challenge. Each argument has an item for each image, in the order of time: boxes
+    of its objects (n x 4), the numbers of their tracks (n), boxes of its detections (m x 4), their scores (m), the numbers of their
+    tracks (m; NaN: a track of its own), the objects' ranges (n; NaN: unknown), and where they are (n; -1 below the horizon, 0 on it, 1
+    above). `sequences` as in average_precision(): a sequence is a flight. `rate_hz`: images a second, for the false alarms an hour.
+    `min_score`: detections with this score or more (all). `min_track_frames`: detections of tracks with fewer frames so far do not count.
+
+    >>> box, frames = [[10, 10, 20, 10]], 40
+    >>> seen = airtruth.evaluate.aot([box] * frames, [[1]] * frames, [box] * frames, [[0.5]] * frames, tracks=[[7]] * frames,
+    ...                              ranges_m=[[310.0]] * frames, rate_hz=10)
+    >>> seen.edr, seen.afdr, seen.hfar
+    ((1, 1, 1.0), (40, 40, 1.0), 0.0)
+    """
+    return AotScore(
+        **_core.aot(
+            _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences), rate_hz, min_score, min_track_frames
+        )
+    )
+
+
+def aot_ranks(
+    truth: Sequence[ArrayLike],
+    truth_tracks: Sequence[ArrayLike],
+    detections: Sequence[ArrayLike],
+    scores: Sequence[ArrayLike],
+    *,
+    tracks: Optional[Sequence[ArrayLike]] = None,
+    ranges_m: Optional[Sequence[ArrayLike]] = None,
+    above_horizon: Optional[Sequence[ArrayLike]] = None,
+    sequences: Optional[Sequence[int]] = None,
+    rate_hz: Optional[float] = None,
+) -> Tuple[Optional[AotScore], Optional[AotScore]]:
+    """The challenge's two ranks: aot() at the least score with at most 0.5 false tracks an hour, and with at most 0.0005 false detections
+    an image. None where no score does it.
+
+    >>> box = [[10, 10, 20, 10]]
+    >>> by_hfar, by_fppi = airtruth.evaluate.aot_ranks([box] * 2, [[1]] * 2, [box] * 2, [[0.5], [0.7]])
+    >>> by_hfar, by_fppi.score
+    (None, 0.5)
+    """
+    found = _core.aot_ranks(_flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences), rate_hz)
+    by_hfar, by_fppi = (None if fields is None else AotScore(**fields) for fields in found)
+    return by_hfar, by_fppi
+
+
+def _flights(
+    truth: Sequence[ArrayLike],
+    truth_tracks: Sequence[ArrayLike],
+    detections: Sequence[ArrayLike],
+    scores: Sequence[ArrayLike],
+    tracks: Optional[Sequence[ArrayLike]],
+    ranges_m: Optional[Sequence[ArrayLike]],
+    above_horizon: Optional[Sequence[ArrayLike]],
+    sequences: Optional[Sequence[int]],
+) -> List[List[Tuple[ArrayLike, ...]]]:
+    return _by_sequence(
+        sequences, truth=truth, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
+        above_horizon=_flags(truth, above_horizon), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
+    )
 
 
 def bootstrap_mean(values: ArrayLike, weights: Optional[ArrayLike] = None) -> Optional[Interval]:

@@ -19,6 +19,7 @@ void bind_dataset(py::module_& core);
 void bind_labels(py::module_& core);
 void bind_evaluate(py::module_& core);
 void bind_clips(py::module_& core);
+void bind_detectors(py::module_& core);
 void bind_flights(py::module_& core);
 
 // The arguments of airtruth.FrameTruth.

@@ -10,6 +10,7 @@
 
 #include "bindings.h"
 #include "calls.h"
+#include "evaluated.h"
 #include "values.h"
 
 namespace airtruth::python {
@@ -23,12 +24,6 @@ using Size = std::optional<std::pair<std::int64_t, std::int64_t>>;
 std::pair<int, int> picture_size(const Size& size) {
   if (!size) return {0, 0};
   return {size_of(size->first, "width"), size_of(size->second, "height")};
-}
-
-void expect_equal(std::size_t a, std::size_t b, const char* what) {
-  if (a != b)
-    throw py::value_error(std::string(what) + ": " + std::to_string(a) + " and " +
-                          std::to_string(b) + " rows; expected as many");
 }
 
 std::vector<FramePair> pairs_of(const py::object& truth, const py::object& answers) {
@@ -156,25 +151,6 @@ std::optional<double> tau(const py::object& a, const py::object& b) {
   return left_alone([=] { return kendall_tau(first, second); });
 }
 
-// (truth n x 4, ignored n, detections m x 4, scores m).
-ScoredImage image_of(const py::handle& item) {
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  const auto [truth, ignored, detections, scores] =
-      item.cast<std::tuple<py::object, py::object, py::object, py::object>>();
-  const auto truths = boxes_of(truth, "truth");
-  const std::vector<double> flags = list_of(ignored, "ignored");
-  const auto boxes = boxes_of(detections, "detections");
-  const std::vector<double> numbers = finite_list_of(scores, "scores");
-  expect_equal(truths.size(), flags.size(), "truth and ignored");
-  expect_equal(boxes.size(), numbers.size(), "detections and scores");
-  ScoredImage image;
-  for (std::size_t i = 0; i < truths.size(); ++i)
-    if (truths[i]) image.truths.push_back({.box_px = *truths[i], .is_ignored = flags[i] != 0});
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (boxes[i]) image.detections.push_back({*boxes[i], numbers[i]});
-  return image;
-}
-
 py::object curve_dict(const std::optional<PrecisionCurve>& curve) {
   if (!curve) return py::none();
   py::dict dict;
@@ -189,13 +165,12 @@ py::object curve_dict(const std::optional<PrecisionCurve>& curve) {
 
 // `sequences`: the images of each.
 py::dict precision_dict(const py::list& sequences, double centre_px) {
-  if (!(centre_px >= 0) || std::isinf(centre_px))
-    throw py::value_error("centre_px is no finite number of 0 or more");
+  checked_centre(centre_px);
   std::vector<std::vector<ScoredImage>> images;
   for (const py::handle& sequence : sequences) {
     images.emplace_back();
     for (const py::handle& image : sequence.cast<py::list>())
-      images.back().push_back(image_of(image));
+      images.back().push_back(scored_image_of(image));
   }
   const AveragePrecision ap = left_alone(
       [images = std::move(images), centre_px] { return average_precision(images, centre_px); });
@@ -334,6 +309,35 @@ std::pair<int, int> lengths_range(const std::vector<std::int64_t>& lengths) {
 }
 
 }  // namespace
+
+void expect_equal(std::size_t a, std::size_t b, const char* what) {
+  if (a != b)
+    throw py::value_error(std::string(what) + ": " + std::to_string(a) + " and " +
+                          std::to_string(b) + " rows; expected as many");
+}
+
+void checked_centre(double centre_px) {
+  if (!(centre_px >= 0) || std::isinf(centre_px))
+    throw py::value_error("centre_px is no finite number of 0 or more");
+}
+
+evaluation::ScoredImage scored_image_of(const py::handle& item) {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  const auto [truth, ignored, detections, scores] =
+      item.cast<std::tuple<py::object, py::object, py::object, py::object>>();
+  const auto truths = boxes_of(truth, "truth");
+  const std::vector<double> flags = list_of(ignored, "ignored");
+  const auto boxes = boxes_of(detections, "detections");
+  const std::vector<double> numbers = finite_list_of(scores, "scores");
+  expect_equal(truths.size(), flags.size(), "truth and ignored");
+  expect_equal(boxes.size(), numbers.size(), "detections and scores");
+  ScoredImage image;
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    if (truths[i]) image.truths.push_back({.box_px = *truths[i], .is_ignored = flags[i] != 0});
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (boxes[i]) image.detections.push_back({*boxes[i], numbers[i]});
+  return image;
+}
 
 void bind_evaluate(py::module_& core) {
   core.def("score", &score_of);

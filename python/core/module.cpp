@@ -50,6 +50,7 @@ PYBIND11_MODULE(_core, core) {
   bind_dataset(core);
   bind_evaluate(core);
   bind_clips(core);
+  bind_detectors(core);
   bind_flights(core);
 }
 

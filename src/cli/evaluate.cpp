@@ -63,7 +63,7 @@ std::string row(const std::array<std::string, 11>& cells) {
 std::string row_of(const scores::DetectorScore& detector) {
   const evaluation::AveragePrecision& ap = detector.average_precision;
   const bool has_point = detector.point.has_value();
-  const measures::FrocPoint point = detector.point.value_or(measures::FrocPoint{});
+  const evaluation::FrocPoint point = detector.point.value_or(evaluation::FrocPoint{});
   const bool has_trials = has_point && point.detection.trials > 0;
   return row({detector.name,
               std::to_string(detector.sequences.size()),
@@ -127,7 +127,7 @@ void print_tracks(const scores::DetectorScore& detector,
   const scores::TrackScores& tracks = *detector.tracks;
   console.result(fmt::format("{}: HOTA {:.3f}, MOTA {:.3f}, IDF1 {:.3f}, {} false tracks{}",
                              detector.name,
-                             measures::Hota::mean(tracks.hota.hota),
+                             evaluation::Hota::mean(tracks.hota.hota),
                              tracks.clear.mota(),
                              tracks.identity.idf1(),
                              tracks.false_tracks,

@@ -55,16 +55,16 @@ double half_an_event(double looked_at) { return looked_at > 0 ? 0.5 / looked_at 
 
 Plot froc_plot(const scores::Assessment& assessment,
                const std::string& label,
-               double measures::FrocPoint::*rate,
+               double evaluation::FrocPoint::*rate,
                const auto& looked_at) {
   Plot plot{.x = {.label = label + " (none: at the left)", .is_logarithmic = true},
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
-    const measures::Froc& froc = assessment.detectors[k].froc;
+    const evaluation::Froc& froc = assessment.detectors[k].froc;
     const double least = half_an_event(looked_at(froc));
     if (!(least > 0)) continue;
     Series series = series_of(assessment, k, plot::Mark::kLine);
-    for (const measures::FrocPoint& point : froc.points)
+    for (const evaluation::FrocPoint& point : froc.points)
       if (point.detection.trials > 0)
         add_point(series, std::max(point.*rate, least), point.detection);
     report::keep(plot, std::move(series));
@@ -220,13 +220,13 @@ std::vector<report::NamedPlot> detection_plots(const scores::Assessment& assessm
       {"froc",
        froc_plot(assessment,
                  "false alarms an image",
-                 &measures::FrocPoint::false_alarms_per_image,
-                 [](const measures::Froc& froc) { return static_cast<double>(froc.images); })},
+                 &evaluation::FrocPoint::false_alarms_per_image,
+                 [](const evaluation::Froc& froc) { return static_cast<double>(froc.images); })},
       {"froc_hour",
        froc_plot(assessment,
                  "false alarms an hour",
-                 &measures::FrocPoint::false_alarms_per_hour,
-                 [](const measures::Froc& froc) { return froc.hours; })},
+                 &evaluation::FrocPoint::false_alarms_per_hour,
+                 [](const evaluation::Froc& froc) { return froc.hours; })},
       {"operating", declaration_range_plot(assessment)},
       {"declared", declared_plot(assessment)}};
   for (const scores::Quantity& quantity : scores::quantities())

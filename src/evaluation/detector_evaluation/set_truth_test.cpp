@@ -159,7 +159,7 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
   EXPECT_NEAR(*score.average_precision.ap_centre, 1, 1e-9);
   EXPECT_EQ(score.point->detection.value, 1);
   EXPECT_EQ(score.point->false_alarms_per_image, 0);
-  EXPECT_NEAR(measures::Hota::mean(score.tracks->hota.hota), 1, 1e-9);
+  EXPECT_NEAR(evaluation::Hota::mean(score.tracks->hota.hota), 1, 1e-9);
   EXPECT_EQ(score.tracks->clear.mota(), 1);
   EXPECT_EQ(score.tracks->declarations.declared.value, 1);
   EXPECT_EQ(score.tracks->declarations.in_time->value, 1);

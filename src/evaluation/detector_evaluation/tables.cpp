@@ -46,7 +46,7 @@ Json json_of(const measures::Spread& spread) {
   return json;
 }
 
-Json json_of(const measures::AotRate& rate) {
+Json json_of(const evaluation::AotRate& rate) {
   return {{"rate", rate.total > 0 ? Json(rate.rate()) : Json()},
           {"detected", rate.detected},
           {"total", rate.total}};
@@ -89,7 +89,7 @@ Json json_of(const evaluation::AveragePrecision& ap) {
 }
 
 // `has_hours`: false where the duration of the sequences is unknown.
-Json json_of(const measures::FrocPoint& point, bool has_hours) {
+Json json_of(const evaluation::FrocPoint& point, bool has_hours) {
   return {{"score", point.score},
           {"detection", json_of(point.detection)},
           {"false_alarms_per_image", point.false_alarms_per_image},
@@ -97,13 +97,13 @@ Json json_of(const measures::FrocPoint& point, bool has_hours) {
           {"false_alarms_per_flight", point.false_alarms_per_flight}};
 }
 
-Json json_of(const measures::Froc& froc) {
+Json json_of(const evaluation::Froc& froc) {
   Json json = {{"images", froc.images},
                {"flights", froc.flights},
                {"hours", froc.hours > 0 ? Json(froc.hours) : Json()},
                {"aircraft_in_images", froc.aircraft},
                {"points", Json::array()}};
-  for (const measures::FrocPoint& point : froc.points)
+  for (const evaluation::FrocPoint& point : froc.points)
     json["points"].push_back(json_of(point, froc.hours > 0));
   return json;
 }
@@ -134,7 +134,7 @@ Json json_of(const std::optional<measures::BearingError>& error) {
           {"sc228_rate_deviation_mradps", measures::kSc228Rate_mradps}};
 }
 
-Json json_of(const measures::AotScore& aot, bool has_hours) {
+Json json_of(const evaluation::AotScore& aot, bool has_hours) {
   return {{"score", aot.score},
           {"edr", json_of(aot.edr_all)},
           {"edr_below_horizon", json_of(aot.edr_below)},
@@ -147,9 +147,9 @@ Json json_of(const measures::AotScore& aot, bool has_hours) {
           {"fppi", aot.fppi}};
 }
 
-Json json_of(const measures::Hota& hota) {
-  const auto curve = [](const measures::Hota::Curve& values) {
-    return Json{{"mean", measures::Hota::mean(values)}, {"at_overlaps", values}};
+Json json_of(const evaluation::Hota& hota) {
+  const auto curve = [](const evaluation::Hota::Curve& values) {
+    return Json{{"mean", evaluation::Hota::mean(values)}, {"at_overlaps", values}};
   };
   return {{"hota", curve(hota.hota)},
           {"det_a", curve(hota.det_a)},
@@ -161,7 +161,7 @@ Json json_of(const measures::Hota& hota) {
           {"loc_a", curve(hota.loc_a)}};
 }
 
-Json json_of(const measures::ClearMot& clear) {
+Json json_of(const evaluation::ClearMot& clear) {
   return {{"mota", clear.mota()},
           {"motp", clear.motp()},
           {"recall", clear.recall()},
@@ -176,7 +176,7 @@ Json json_of(const measures::ClearMot& clear) {
           {"mostly_lost", clear.mostly_lost}};
 }
 
-Json json_of(const measures::Identity& identity) {
+Json json_of(const evaluation::Identity& identity) {
   return {{"idf1", identity.idf1()},
           {"recall", identity.recall()},
           {"precision", identity.precision()},
@@ -291,7 +291,7 @@ Json json_of(const scores::Miss& miss,
 
 Json json_of_detector(const scores::DetectorScore& detector, const scores::Assessment& assessment) {
   const bool has_hours = detector.froc.hours > 0;
-  const auto aot = [&](const std::optional<measures::AotScore>& score) {
+  const auto aot = [&](const std::optional<evaluation::AotScore>& score) {
     return score ? json_of(*score, has_hours) : Json();
   };
   Json json = {{"name", detector.name},

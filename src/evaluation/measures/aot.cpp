@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluation/measures/aot.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -8,9 +6,11 @@
 #include <set>
 #include <tuple>
 
+#include <airtruth/aot.h>
+
 #include "evaluation/matching/boxes.h"
 
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 namespace {
 
 // All are of the challenge's code; the header says what they decide.
@@ -274,4 +274,4 @@ AotRanks aot_ranks(std::span<const AotFlight> flights, double hours) {
   return ranks;
 }
 
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values worked by hand; tests/detection_measures_test.py compares random sets with Amazon's public
 // code where it is at hand.
-#include "evaluation/measures/aot.h"
-
+#include <airtruth/aot.h>
 #include <gtest/gtest.h>
 
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 namespace {
 
 // `frames` frames that show one object, whose range falls from `from_m` by 5 m a frame.
@@ -119,4 +118,4 @@ TEST(Aot, WithoutADetectionOrAnObject) {
 }
 
 }  // namespace
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

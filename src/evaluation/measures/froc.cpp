@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluation/measures/froc.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
-namespace airtruth::measures {
+#include <airtruth/froc.h>
+
+#include "evaluation/statistics/proportion.h"
+
+namespace airtruth::evaluation {
 namespace {
 
 // All scores that occur, falling.
@@ -158,4 +160,4 @@ std::optional<double> score_at_false_alarms(std::span<const FrocSequence> sequen
   return *std::prev(beyond);
 }
 
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

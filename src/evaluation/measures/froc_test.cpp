@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluation/measures/froc.h"
-
+#include <airtruth/froc.h>
 #include <gtest/gtest.h>
 
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 namespace {
 
 // The example of froc.h.
@@ -61,4 +60,4 @@ TEST(Froc, LongCurvesAreThinnedAndKeepTheirEnds) {
 }
 
 }  // namespace
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluation/measures/track_measures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,10 +6,12 @@
 #include <numeric>
 #include <vector>
 
+#include <airtruth/track_measures.h>
+
 #include "evaluation/matching/assignment.h"
 #include "evaluation/matching/boxes.h"
 
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 namespace {
 
 // Tracks numbered from 0, with their overlaps.
@@ -386,4 +386,4 @@ Identity combined(std::span<const Identity> sequences) {
   return all;
 }
 
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // HOTA, CLEAR and Identity on tracks whose values are known: those of TrackEval's own tests
 // (tests/test_metrics.py) and cases worked by hand.
-#include "evaluation/measures/track_measures.h"
-
 #include <cmath>
 
+#include <airtruth/track_measures.h>
 #include <gtest/gtest.h>
 
-#include "evaluation/measures/track_measures.h"
-
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 namespace {
 
 // Boxes at different places do not overlap, and those at one place are equal.
@@ -132,4 +129,4 @@ TEST(Tracks, SequencesAreAdded) {
 }
 
 }  // namespace
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "evaluation/measures/froc.h"
+#include <airtruth/froc.h>
 
 namespace airtruth::scores {
 namespace {
@@ -236,7 +236,7 @@ std::vector<OperatingPoint> operating_curve(std::span<const ScoredDetections> se
   std::vector<double> scores;
   double hours = 0;
   for (const ScoredDetections& sequence : sequences) {
-    hours += truths[sequence.truth].duration_s / measures::kSecondsPerHour;
+    hours += truths[sequence.truth].duration_s / evaluation::kSecondsPerHour;
     for (const std::vector<results::Detection>& frame : sequence.detections.frames)
       for (const results::Detection& detection : frame)
         if (detection.track) scores.push_back(detection.score);

@@ -88,28 +88,6 @@ std::vector<evaluation::ScoredImage> images_of(const TruthSequence& truth,
   return images;
 }
 
-measures::FrocSequence froc_sequence_of(const TruthSequence& truth,
-                                        const ScoredDetections& scored) {
-  measures::FrocSequence sequence;
-  sequence.images = std::ssize(scored.matches);
-  sequence.duration_s = truth.duration_s;
-  for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    const auto best = best_of(scored, i);
-    for (const TruthObject& object : truth.frames[i].objects) {
-      if (!object.is_aircraft() || !object.counts) continue;
-      const auto found = best.find(object.id);
-      sequence.best_scores.push_back(found == best.end() ? std::nullopt
-                                                         : std::optional(found->second->score));
-    }
-  }
-  for_each_detection(scored,
-                     [&](std::size_t, const results::Detection& detection, const Match& match) {
-                       if (match.kind == MatchKind::kFalseAlarm)
-                         sequence.false_alarm_scores.push_back(detection.score);
-                     });
-  return sequence;
-}
-
 // `sequence` is the number that the sightings and samples get.
 std::vector<AircraftInFrame> sightings_of(std::size_t sequence,
                                           const TruthSequence& truth,
@@ -153,10 +131,10 @@ std::vector<measures::BearingSample> bearing_samples_of(std::size_t sequence,
 
 // Aircraft, birds, multirotors and balloons are objects, the latter three without a range, as in
 // the challenge's truth. Ignored detections are left out.
-measures::AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetections& scored) {
-  measures::AotFlight flight;
+evaluation::AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetections& scored) {
+  evaluation::AotFlight flight;
   for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    measures::AotFrame& frame = flight.frames.emplace_back();
+    evaluation::AotFrame& frame = flight.frames.emplace_back();
     frame.frame = static_cast<std::int64_t>(i);
     for (const TruthObject& object : truth.frames[i].objects) {
       if (!object.counts || !is_in_the_air(object)) continue;
@@ -175,10 +153,10 @@ measures::AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDetect
 }
 
 // Aircraft that count, and detections with a track that are not ignored, of this score or more.
-measures::TrackFrames track_frames_of(const TruthSequence& truth,
-                                      const ScoredDetections& scored,
-                                      std::optional<double> score) {
-  measures::TrackFrames frames(scored.matches.size());
+evaluation::TrackFrames track_frames_of(const TruthSequence& truth,
+                                        const ScoredDetections& scored,
+                                        std::optional<double> score) {
+  evaluation::TrackFrames frames(scored.matches.size());
   for (std::size_t i = 0; i < frames.size(); ++i)
     for (const TruthObject& object : truth.frames[i].objects)
       if (object.is_aircraft() && object.counts)
@@ -199,7 +177,7 @@ class Scoring {
       : result_(result), truths_(truths), options_(options) {
     for (ScoredDetections& scored : result_.sequences) {
       scored.matches = matches_of(scored.detections, truth(scored), options.centre_px);
-      hours_ += truth(scored).duration_s / measures::kSecondsPerHour;
+      hours_ += truth(scored).duration_s / evaluation::kSecondsPerHour;
       for (const auto& frame : scored.detections.frames)
         for (const results::Detection& detection : frame) {
           ++result_.detections;
@@ -228,49 +206,49 @@ class Scoring {
   }
 
   void score_froc() {
-    std::vector<measures::FrocSequence> sequences;
+    std::vector<evaluation::FrocSequence> sequences;
     for (const ScoredDetections& scored : result_.sequences)
       sequences.push_back(froc_sequence_of(truth(scored), scored));
-    result_.froc = measures::froc_of(sequences);
+    result_.froc = evaluation::froc_of(sequences);
     if (result_.froc.points.empty()) return;
     // Where the best detection is a false alarm and one is too many, the point is that of its
     // score.
     const double score =
         options_.point.score
             ? *options_.point.score
-            : measures::score_at_false_alarms(sequences, options_.point.false_alarms_per_image)
+            : evaluation::score_at_false_alarms(sequences, options_.point.false_alarms_per_image)
                   .value_or(result_.froc.points.front().score);
-    result_.point = measures::froc_at(sequences, score);
+    result_.point = evaluation::froc_at(sequences, score);
   }
 
   void score_aot() {
-    std::vector<measures::AotFlight> flights;
+    std::vector<evaluation::AotFlight> flights;
     for (const ScoredDetections& scored : result_.sequences)
       flights.push_back(aot_flight_of(truth(scored), scored));
-    result_.aot = measures::aot_score(flights, {{}, hours_, 0});
-    result_.aot_ranks = measures::aot_ranks(flights, hours_);
+    result_.aot = evaluation::aot_score(flights, {{}, hours_, 0});
+    result_.aot_ranks = evaluation::aot_ranks(flights, hours_);
   }
 
   void score_tracks() {
     TrackScores& tracks = result_.tracks.emplace();
-    std::vector<measures::Hota> hotas;
-    std::vector<measures::ClearMot> clears;
-    std::vector<measures::Identity> identities;
+    std::vector<evaluation::Hota> hotas;
+    std::vector<evaluation::ClearMot> clears;
+    std::vector<evaluation::Identity> identities;
     for (std::size_t i = 0; i < result_.sequences.size(); ++i) {
       const ScoredDetections& scored = result_.sequences[i];
-      const measures::TrackFrames frames =
+      const evaluation::TrackFrames frames =
           track_frames_of(truth(scored), scored, options_.point.score);
-      hotas.push_back(measures::hota_of(frames));
-      clears.push_back(measures::clear_mot_of(frames));
-      identities.push_back(measures::identity_of(frames));
+      hotas.push_back(evaluation::hota_of(frames));
+      clears.push_back(evaluation::clear_mot_of(frames));
+      identities.push_back(evaluation::identity_of(frames));
       tracks.false_tracks += false_tracks(scored, options_.point.score);
       for (const EncounterScore& one :
            encounters_of(i, truth(scored), scored, options_.point.score, options_.manoeuvre_s))
         tracks.encounters.push_back(one);
     }
-    tracks.hota = measures::combined(hotas);
-    tracks.clear = measures::combined(clears);
-    tracks.identity = measures::combined(identities);
+    tracks.hota = evaluation::combined(hotas);
+    tracks.clear = evaluation::combined(clears);
+    tracks.identity = evaluation::combined(identities);
     tracks.false_tracks_per_hour =
         hours_ > 0 ? static_cast<double>(tracks.false_tracks) / hours_ : 0;
     tracks.declarations = summarised(tracks.encounters, {});
@@ -380,6 +358,28 @@ class Scoring {
 };
 
 }  // namespace
+
+evaluation::FrocSequence froc_sequence_of(const TruthSequence& truth,
+                                          const ScoredDetections& scored) {
+  evaluation::FrocSequence sequence;
+  sequence.images = std::ssize(scored.matches);
+  sequence.duration_s = truth.duration_s;
+  for (std::size_t i = 0; i < scored.matches.size(); ++i) {
+    const auto best = best_of(scored, i);
+    for (const TruthObject& object : truth.frames[i].objects) {
+      if (!object.is_aircraft() || !object.counts) continue;
+      const auto found = best.find(object.id);
+      sequence.best_scores.push_back(found == best.end() ? std::nullopt
+                                                         : std::optional(found->second->score));
+    }
+  }
+  for_each_detection(scored,
+                     [&](std::size_t, const results::Detection& detection, const Match& match) {
+                       if (match.kind == MatchKind::kFalseAlarm)
+                         sequence.false_alarm_scores.push_back(detection.score);
+                     });
+  return sequence;
+}
 
 DetectorScore score_detector(std::string name,
                              std::vector<ScoredDetections> sequences,

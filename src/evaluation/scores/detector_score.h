@@ -7,17 +7,18 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/aot.h>
 #include <airtruth/average_precision.h>
+#include <airtruth/froc.h>
+#include <airtruth/track_measures.h>
 
-#include "evaluation/measures/aot.h"
 #include "evaluation/measures/bearing_error.h"
-#include "evaluation/measures/froc.h"
-#include "evaluation/measures/track_measures.h"
 #include "evaluation/scores/breakdown.h"
 #include "evaluation/scores/declaration.h"
 #include "evaluation/scores/detection_match.h"
 #include "evaluation/scores/galleries.h"
 #include "evaluation/scores/truth.h"
+#include "evaluation/statistics/proportion.h"
 #include "runners/results/detections.h"
 
 // The whole assessment of detectors on a data set: what tables and pages show. It is a value; no
@@ -26,9 +27,9 @@ namespace airtruth::scores {
 
 // The measures of whole tracks; only detectors whose results have tracks have them.
 struct TrackScores {
-  measures::Hota hota;
-  measures::ClearMot clear;
-  measures::Identity identity;
+  evaluation::Hota hota;
+  evaluation::ClearMot clear;
+  evaluation::Identity identity;
   // False tracks of all results, and per hour.
   std::int64_t false_tracks = 0;
   double false_tracks_per_hour = 0;
@@ -48,10 +49,10 @@ struct DetectorScore {
   std::int64_t detections = 0;
 
   evaluation::AveragePrecision average_precision;
-  measures::Froc froc;
+  evaluation::Froc froc;
   // The threshold of `by`, bearings, false alarms and misses, and what holds there. Empty where
   // there is no detection.
-  std::optional<measures::FrocPoint> point;
+  std::optional<evaluation::FrocPoint> point;
   // The probability of detection at the point with the set's encounter weights; empty where no
   // sequence has a weight.
   std::optional<statistics::Proportion> weighted_detection;
@@ -62,8 +63,8 @@ struct DetectorScore {
   // Shares of other objects' frames that raised one: by class.
   std::map<std::string, statistics::Proportion> mistaken_by;
   std::optional<measures::BearingError> bearing;
-  measures::AotScore aot;
-  measures::AotRanks aot_ranks;
+  evaluation::AotScore aot;
+  evaluation::AotRanks aot_ranks;
   std::optional<TrackScores> tracks;
   // At the point; the strongest first, at most kGallerySize.
   std::vector<FalseAlarm> false_alarms;
@@ -106,6 +107,10 @@ struct ScoreOptions {
   // TruthSequence::weight.
   bool is_weighted = false;
 };
+
+// What a sequence contributes to the FROC; it has its matches.
+evaluation::FrocSequence froc_sequence_of(const TruthSequence& truth,
+                                          const ScoredDetections& scored);
 
 // All measures of one detector. `sequences` state their truth and detections; their matches are
 // made here. Each has as many frames as its truth.

@@ -36,18 +36,7 @@
 // (1.960 / 4.303)^2 = 0.71, so 1; Wilson's interval of 0.667 with 1 trial is 0.09 to 0.97.
 namespace airtruth::statistics {
 
-// A share in [0, 1] and its interval.
-struct Proportion {
-  double value = 0;
-  double low = 0;
-  double high = 1;
-  // Weighted where the clusters are; else whole numbers.
-  double successes = 0;
-  double trials = 0;
-  std::int64_t clusters = 0;  // those with a trial
-  // (sum w)^2 / sum w^2 of them: their number where all weights are equal.
-  double effective_clusters = 0;
-};
+using evaluation::Proportion;
 
 struct Cluster {
   double successes = 0;

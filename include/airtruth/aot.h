@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <airtruth/box.h>
+#include <airtruth/export.h>
 
 // The metrics of Amazon's Airborne Object Tracking challenge, as its public code computes them
 // (airborne-detection-starter-kit, core/metrics: match_groundtruth_results.py,
@@ -24,7 +25,7 @@
 // 300 m or more, or is within the first 30 frames. Two properties of the code are kept: an object
 // whose frames begin within 3 frames of the end of the object before it continues that object's
 // encounter; and a track that matches twice in one frame counts twice.
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 
 struct AotObject {
   std::int64_t id = 0;
@@ -78,7 +79,7 @@ struct AotOptions {
   // Detections of tracks with fewer frames so far do not count.
   int min_track_frames = 0;
 };
-AotScore aot_score(std::span<const AotFlight> flights, const AotOptions& options);
+AIRTRUTH_API AotScore aot_score(std::span<const AotFlight> flights, const AotOptions& options);
 
 // The ranks of the challenge: EDR at the least score with HFAR of at most 0.5 an hour, and AFDR at
 // the least score with FPPI of at most 0.0005. Empty where no score does it.
@@ -88,6 +89,6 @@ struct AotRanks {
   std::optional<AotScore> by_hfar;
   std::optional<AotScore> by_fppi;
 };
-AotRanks aot_ranks(std::span<const AotFlight> flights, double hours);
+AIRTRUTH_API AotRanks aot_ranks(std::span<const AotFlight> flights, double hours);
 
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

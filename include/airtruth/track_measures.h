@@ -7,10 +7,11 @@
 #include <vector>
 
 #include <airtruth/box.h>
+#include <airtruth/export.h>
 
 // Measures of whole tracks: HOTA, CLEAR MOT and Identity, each as the public toolkit TrackEval
 // computes it.
-namespace airtruth::measures {
+namespace airtruth::evaluation {
 
 // True and reported tracks of a sequence, as HOTA, CLEAR and Identity take them.
 
@@ -40,12 +41,12 @@ struct Hota {
   Curve hota{}, det_a{}, ass_a{}, det_re{}, det_pr{}, ass_re{}, ass_pr{}, loc_a{};
   Curve true_positives{}, false_negatives{}, false_positives{};
   // Mean over the thresholds.
-  static double mean(const Curve& curve);
+  AIRTRUTH_API static double mean(const Curve& curve);
 };
 
-Hota hota_of(const TrackFrames& frames);
+AIRTRUTH_API Hota hota_of(const TrackFrames& frames);
 // Over sequences: counts are added, associations weighted by true positives.
-Hota combined(std::span<const Hota> sequences);
+AIRTRUTH_API Hota combined(std::span<const Hota> sequences);
 
 // The CLEAR MOT measures (Bernardin and Stiefelhagen 2008, EURASIP J. Image and Video Processing
 // 246309), as TrackEval computes them (trackeval/metrics/clear.py): an answer may match at an
@@ -61,14 +62,14 @@ struct ClearMot {
   std::int64_t frames = 0;
   double overlap_sum = 0;  // of the true positives
 
-  double mota() const;
-  double motp() const;
-  double recall() const;
-  double precision() const;
+  AIRTRUTH_API double mota() const;
+  AIRTRUTH_API double motp() const;
+  AIRTRUTH_API double recall() const;
+  AIRTRUTH_API double precision() const;
 };
 
-ClearMot clear_mot_of(const TrackFrames& frames);
-ClearMot combined(std::span<const ClearMot> sequences);
+AIRTRUTH_API ClearMot clear_mot_of(const TrackFrames& frames);
+AIRTRUTH_API ClearMot combined(std::span<const ClearMot> sequences);
 
 // The identity measures (Ristani et al. 2016, ECCV workshops, "Performance measures and a data set
 // for multi-target, multi-camera tracking"), as TrackEval computes them
@@ -78,12 +79,12 @@ ClearMot combined(std::span<const ClearMot> sequences);
 struct Identity {
   std::int64_t true_positives = 0, false_negatives = 0, false_positives = 0;
 
-  double idf1() const;
-  double recall() const;
-  double precision() const;
+  AIRTRUTH_API double idf1() const;
+  AIRTRUTH_API double recall() const;
+  AIRTRUTH_API double precision() const;
 };
 
-Identity identity_of(const TrackFrames& frames);
-Identity combined(std::span<const Identity> sequences);
+AIRTRUTH_API Identity identity_of(const TrackFrames& frames);
+AIRTRUTH_API Identity combined(std::span<const Identity> sequences);
 
-}  // namespace airtruth::measures
+}  // namespace airtruth::evaluation

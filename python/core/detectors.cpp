@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <set>
+
+#include <airtruth/aot.h>
+#include <airtruth/froc.h>
+#include <airtruth/track_measures.h>
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+#include "calls.h"
+#include "evaluated.h"
+#include "values.h"
+
+namespace airtruth::python {
+namespace {
+
+using namespace evaluation;
+
+// A number for each of `count` boxes.
+std::vector<double> beside(const py::handle& value, const char* what, std::size_t count) {
+  std::vector<double> numbers = list_of(value, what);
+  expect_equal(count, numbers.size(), what);
+  return numbers;
+}
+
+// The number of a track; empty for NaN.
+std::optional<std::int64_t> track_of(double number, const char* what) {
+  constexpr double kMost = 9e15;
+  if (std::isnan(number)) return std::nullopt;
+  if (!(std::abs(number) <= kMost) || number != std::floor(number))
+    throw py::value_error(std::string(what) + " holds no whole number");
+  return static_cast<std::int64_t>(number);
+}
+
+// Calls add(box, i) for each row that is a box.
+template <typename Add>
+void each_box(const std::vector<std::optional<Box>>& boxes, const Add& add) {
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    if (boxes[i]) add(*boxes[i], i);
+}
+
+// What one image holds, as `Image` reads it from a tuple; signals are seen.
+template <typename Image>
+auto sequences_of(const py::list& sequences, const Image& image_of) {
+  std::vector<std::vector<decltype(image_of(py::handle()))>> result;
+  for (const py::handle& sequence : sequences) {
+    result.emplace_back();
+    for (const py::handle& image : sequence.cast<py::list>()) {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      result.back().push_back(image_of(image));
+    }
+  }
+  return result;
+}
+
+// Seconds of a sequence; 0: unknown.
+double duration_s(std::size_t images, std::optional<double> rate_hz) {
+  return rate_hz ? static_cast<double>(images) / *rate_hz : 0;
+}
+
+std::optional<double> checked_rate(std::optional<double> rate_hz) {
+  if (rate_hz && !(*rate_hz > 0 && std::isfinite(*rate_hz)))
+    throw py::value_error("rate_hz is no finite number above 0");
+  return rate_hz;
+}
+
+template <typename Value>
+py::array column(const std::vector<FrocPoint>& points, Value value) {
+  std::vector<double> values;
+  for (const FrocPoint& point : points) values.push_back(value(point));
+  return array_of(std::move(values), {std::ssize(points)});
+}
+
+py::dict froc_dict(const py::list& sequences, std::optional<double> rate_hz, double centre_px) {
+  const auto images = sequences_of(sequences, &scored_image_of);
+  checked_centre(centre_px);
+  checked_rate(rate_hz);
+  const Froc froc = left_alone([=] {
+    std::vector<FrocSequence> matched;
+    for (const auto& sequence : images)
+      matched.push_back(froc_sequence(sequence, duration_s(sequence.size(), rate_hz), centre_px));
+    return froc_of(matched);
+  });
+  const auto& points = froc.points;
+  py::dict dict;
+  const IntoDict into{dict};
+  dict["score"] = column(points, [](const auto& p) { return p.score; });
+  dict["detection"] = column(points, [](const auto& p) { return p.detection.value; });
+  dict["detection_low"] = column(points, [](const auto& p) { return p.detection.low; });
+  dict["detection_high"] = column(points, [](const auto& p) { return p.detection.high; });
+  dict["false_alarms_per_image"] =
+      column(points, [](const auto& p) { return p.false_alarms_per_image; });
+  dict["false_alarms_per_hour"] =
+      rate_hz ? py::object(column(points, [](const auto& p) { return p.false_alarms_per_hour; }))
+              : py::none();
+  dict["false_alarms_per_flight"] =
+      column(points, [](const auto& p) { return p.false_alarms_per_flight; });
+  into("images", froc.images);
+  into("flights", froc.flights);
+  into("hours", rate_hz ? std::optional(froc.hours) : std::nullopt);
+  into("aircraft", froc.aircraft);
+  return dict;
+}
+
+// Boxes with the numbers of their tracks; those without one are left out.
+std::vector<TrackBox> track_boxes(const py::handle& boxes,
+                                  const char* what,
+                                  const py::handle& tracks,
+                                  const char* what_tracks) {
+  const auto rows = boxes_of(boxes, what);
+  const std::vector<double> numbers = beside(tracks, what_tracks, rows.size());
+  std::vector<TrackBox> result;
+  std::set<std::int64_t> seen;
+  each_box(rows, [&](const Box& box, std::size_t i) {
+    const auto track = track_of(numbers[i], what_tracks);
+    if (!track) return;
+    if (!seen.insert(*track).second)
+      throw py::value_error(std::string(what_tracks) + " holds the track " +
+                            std::to_string(*track) + " twice in one image");
+    result.push_back({*track, box});
+  });
+  return result;
+}
+
+// (truth n x 4, truth_tracks n, detections m x 4, tracks m).
+TrackFrame track_frame_of(const py::handle& item) {
+  const auto [truth, truth_tracks, detections, tracks] =
+      item.cast<std::tuple<py::object, py::object, py::object, py::object>>();
+  return {track_boxes(truth, "truth", truth_tracks, "truth_tracks"),
+          track_boxes(detections, "detections", tracks, "tracks")};
+}
+
+py::dict hota_dict(const py::list& sequences) {
+  const Hota hota = left_alone([frames = sequences_of(sequences, &track_frame_of)] {
+    std::vector<Hota> each;
+    for (const TrackFrames& sequence : frames) each.push_back(hota_of(sequence));
+    return combined(each);
+  });
+  py::dict means;
+  py::dict curves;
+  const auto add = [&](const char* name, const Hota::Curve& curve) {
+    means[name] = Hota::mean(curve);
+    curves[name] = python_of(curve);
+  };
+  add("hota", hota.hota);
+  add("det_a", hota.det_a);
+  add("ass_a", hota.ass_a);
+  add("det_re", hota.det_re);
+  add("det_pr", hota.det_pr);
+  add("ass_re", hota.ass_re);
+  add("ass_pr", hota.ass_pr);
+  add("loc_a", hota.loc_a);
+  means["at_overlaps"] = curves;
+  return means;
+}
+
+// (truth n x 4, truth_tracks n, ranges_m n, above_horizon n, detections m x 4, scores m, tracks m).
+AotFrame aot_frame_of(const py::handle& item) {
+  using Object = py::object;
+  const auto [truth, truth_tracks, ranges_m, above_horizon, detections, scores, tracks] =
+      item.cast<std::tuple<Object, Object, Object, Object, Object, Object, Object>>();
+  AotFrame frame;
+  const auto truths = boxes_of(truth, "truth");
+  const std::vector<double> ids = beside(truth_tracks, "truth_tracks", truths.size());
+  const std::vector<double> ranges = beside(ranges_m, "ranges_m", truths.size());
+  const std::vector<double> above = beside(above_horizon, "above_horizon", truths.size());
+  each_box(truths, [&](const Box& box, std::size_t i) {
+    const auto id = track_of(ids[i], "truth_tracks");
+    if (!id) throw py::value_error("truth_tracks holds a NaN");
+    if (above[i] != -1 && above[i] != 0 && above[i] != 1)
+      throw py::value_error("above_horizon holds no -1, 0 or 1");
+    const std::optional<double> range_m =
+        std::isnan(ranges[i]) ? std::nullopt : std::optional(ranges[i]);
+    frame.objects.push_back({*id, box, range_m, static_cast<int>(above[i])});
+  });
+  const auto boxes = boxes_of(detections, "detections");
+  const std::vector<double> numbers = beside(scores, "scores", boxes.size());
+  const std::vector<double> of_tracks = beside(tracks, "tracks", boxes.size());
+  each_box(boxes, [&](const Box& box, std::size_t i) {
+    if (!std::isfinite(numbers[i])) throw py::value_error("scores holds no finite number");
+    frame.detections.push_back({box, numbers[i], track_of(of_tracks[i], "tracks")});
+  });
+  return frame;
+}
+
+py::dict aot_dict(const AotScore& score, bool has_hours) {
+  py::dict dict;
+  const IntoDict into{dict};
+  into("score", score.score);
+  const auto rate = [&](const char* name, const AotRate& of) {
+    dict[name] = py::make_tuple(of.detected, of.total, of.rate());
+  };
+  rate("edr", score.edr_all);
+  rate("edr_below_horizon", score.edr_below);
+  rate("edr_mixed", score.edr_mixed);
+  rate("edr_above_horizon", score.edr_above);
+  rate("edr_by_frames", score.edr_frames_all);
+  rate("afdr", score.afdr);
+  into("max_range_m", score.max_range_m);
+  into("hfar", has_hours ? std::optional(score.hfar) : std::nullopt);
+  into("fppi", score.fppi);
+  return dict;
+}
+
+struct AotInputs {
+  std::vector<AotFlight> flights;
+  double hours = 0;
+};
+
+AotInputs aot_inputs(const py::list& sequences, std::optional<double> rate_hz) {
+  checked_rate(rate_hz);
+  AotInputs inputs;
+  for (std::vector<AotFrame>& frames : sequences_of(sequences, &aot_frame_of)) {
+    for (std::size_t i = 0; i < frames.size(); ++i) frames[i].frame = static_cast<std::int64_t>(i);
+    inputs.hours += duration_s(frames.size(), rate_hz) / kSecondsPerHour;
+    inputs.flights.push_back({std::move(frames)});
+  }
+  return inputs;
+}
+
+py::dict aot(const py::list& sequences,
+             std::optional<double> rate_hz,
+             std::optional<double> min_score,
+             int min_track_frames) {
+  const AotScore score =
+      left_alone([in = aot_inputs(sequences, rate_hz), min_score, min_track_frames] {
+        return aot_score(in.flights, {min_score, in.hours, min_track_frames});
+      });
+  return aot_dict(score, rate_hz.has_value());
+}
+
+// (by hfar, by fppi).
+py::tuple ranks(const py::list& sequences, std::optional<double> rate_hz) {
+  const AotRanks found =
+      left_alone([in = aot_inputs(sequences, rate_hz)] { return aot_ranks(in.flights, in.hours); });
+  const auto one = [&](const std::optional<AotScore>& score) -> py::object {
+    if (!score) return py::none();
+    return aot_dict(*score, rate_hz.has_value());
+  };
+  return py::make_tuple(rate_hz ? one(found.by_hfar) : py::none(), one(found.by_fppi));
+}
+
+}  // namespace
+
+void bind_detectors(py::module_& core) {
+  core.def("froc", &froc_dict);
+  core.def("hota", &hota_dict);
+  core.def("aot", &aot);
+  core.def("aot_ranks", &ranks);
+}
+
+}  // namespace airtruth::python
