@@ -266,6 +266,45 @@ class Streams(unittest.TestCase):
                 self.assertTrue(all(map(same_sample, pool.map(stream.__getitem__, range(6), chunksize=3), wanted)), method)
 
 
+    def test_a_mask_holds_what_its_covered_box_bounds(self):
+        stream = airtruth.Stream(TRAINING.replace("[stream]", "[stream]\nmasks = true"), seed=3)
+        self.assertIsNone(airtruth.Stream(TRAINING, seed=3)[0].frames[0].masks)
+        bounded = 0
+        for index in range(8):
+            frame = stream[index].frames[0]
+            self.assertEqual([frame.masks.shape, frame.masks.dtype], [(len(frame.intruders), 64, 64), np.dtype(np.uint8)])
+            for mask, box in zip(frame.masks, frame.boxes()):
+                covered = mask >= 20  # docs/formats/truth.md
+                if not covered.any():
+                    self.assertTrue(np.isnan(box).all())
+                    continue
+                rows, columns = np.flatnonzero(covered.any(axis=1)), np.flatnonzero(covered.any(axis=0))
+                self.assertEqual(box.tolist(), [columns[0], rows[0], np.ptp(columns) + 1, np.ptp(rows) + 1])
+                bounded += 1
+        self.assertGreater(bounded, 2)
+
+    def test_a_worker_that_is_killed_takes_nothing_along(self):
+        wanted = [airtruth.Stream("training.toml", seed=5)[index] for index in (40, 41)]
+        stream = airtruth.Stream("training.toml", seed=5)
+        context = multiprocessing.get_context("fork")
+        for _ in range(3):
+            begun = context.Event()
+            worker = context.Process(target=samples_without_end, args=(stream, begun))
+            worker.start()
+            self.assertTrue(begun.wait(60))
+            worker.kill()
+            worker.join(60)
+            self.assertEqual(worker.exitcode, -signal.SIGKILL)
+            again = airtruth.Stream("training.toml", seed=5)
+            for opened in (stream, again):
+                self.assertTrue(all(map(same_sample, [opened[40], opened[41]], wanted)))
+
+
+def samples_without_end(stream, begun):
+    for sample in stream:
+        begun.set()
+
+
 class Sets(unittest.TestCase):
     def test_columns_are_the_truth_of_each_frame(self):
         sequence = airtruth.DataSet("set")["across"]

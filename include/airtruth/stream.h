@@ -49,6 +49,9 @@ struct StreamSample {
   // As many as the catalogue's [stream] frames. The pictures show `crop`; the truth is that of the
   // whole frame, in the frame's pixels (in_crop() gives boxes in those of the crop).
   std::vector<RenderedFrame> frames;
+  // With the catalogue's [stream] masks: for each frame, for each intruder of its truth, a plane of
+  // the crop's size that holds 255 alpha of its pixels, as the masks of `airtruth render` do.
+  std::vector<std::vector<SamplePlane>> masks;
 
   bool operator==(const StreamSample&) const = default;
 };

@@ -153,6 +153,7 @@ class Frame:
     damaged: bool = False
     truth: Optional[FrameTruth] = None  # in pixels of the whole frame of the video
     crop: Optional[NDArray[np.int64]] = None  # (4,): the part of that frame that the picture shows; None: all of it
+    masks: Optional[Samples] = None  # (n, H, W): 255 alpha of each intruder's pixels, of a stream with masks = true
 
     @property
     def rgb(self) -> Samples:

@@ -87,9 +87,9 @@ class Stream:
         number = _checked(index)
         background, first_frame, weight, crop, made = self._ready().sample(number)
         frames = []
-        for picture, fields in made:
+        for picture, fields, masks in made:
             truth = truth_of(fields)
-            frames.append(Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth, crop=crop))
+            frames.append(Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth, crop=crop, masks=masks))
         return Sample(number, background, first_frame, crop, frames, weight)
 
     def __iter__(self) -> Iterator[Sample]:

@@ -21,6 +21,16 @@ bool is_main_thread() {
   return main.equal(py::object(threading.attr("get_ident")()));
 }
 
+// n x height x width, or None where the catalogue asks for none.
+py::object masks_of(const StreamSample& sample, std::size_t frame) {
+  if (sample.masks.empty()) return py::none();
+  std::vector<std::uint8_t> samples;
+  for (const SamplePlane& mask : sample.masks[frame])
+    samples.insert(samples.end(), mask.samples.begin(), mask.samples.end());
+  return array_of(std::move(samples),
+                  {std::ssize(sample.masks[frame]), sample.crop.height, sample.crop.width});
+}
+
 // A stream whose samples are made by a thread of its own for Python's main thread, which sees
 // signals meanwhile, and by the callers themselves for all other threads.
 class PyStream {
@@ -51,14 +61,16 @@ class PyStream {
   PyStream(const PyStream&) = delete;
   PyStream& operator=(const PyStream&) = delete;
 
-  // (background, first_frame, weight, crop, [(picture, truth)])
+  // (background, first_frame, weight, crop, [(picture, truth, masks)])
   py::tuple sample(std::int64_t index) {
     StreamSample sample;
     run([&] { sample = stream_->sample(index); });
     py::list frames;
-    for (RenderedFrame& frame : sample.frames)
-      frames.append(
-          py::make_tuple(picture_tuple(std::move(frame.picture)), truth_dict(frame.truth)));
+    for (std::size_t k = 0; k < sample.frames.size(); ++k) {
+      RenderedFrame& frame = sample.frames[k];
+      frames.append(py::make_tuple(
+          picture_tuple(std::move(frame.picture)), truth_dict(frame.truth), masks_of(sample, k)));
+    }
     return py::make_tuple(
         text(sample.background), sample.first_frame, sample.weight, python_of(sample.crop), frames);
   }

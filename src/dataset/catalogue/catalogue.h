@@ -87,6 +87,8 @@ struct StreamTable {
   std::int64_t frames = 1;
   // How many aircraft a sample has that is not without any; empty: as many as its rule says.
   std::optional<WholeRange> intruders;
+  // True: samples have the pixels of each intruder.
+  bool masks = false;
   // Number of samples that are made of a decoded frame.
   std::int64_t reuse = 8;
   // For decoded frames, in MB of 10^6 bytes.

@@ -18,7 +18,10 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
+#include "foundation/image/layer.h"
 #include "labels/annotation/object_class.h"
+#include "picture/composite/cover.h"
+#include "sequence/insertion/masks.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/setup/shared_inputs.h"
 
@@ -148,6 +151,7 @@ struct Stream::State {
                   plan.scene.weight,
                   {},
                   {}};
+    std::vector<std::vector<composite::AlphaMask>> masks(shot->frames.size());
     for (std::size_t k = 0; k < shot->frames.size(); ++k) {
       pipeline::Work work;
       work.frame = copy_of(shot->frames[k]);
@@ -155,13 +159,19 @@ struct Stream::State {
       maker.locate(work, work.moved.shake);
       maker.draw(work);
       maker.compose(work);
+      const image::Layer layer = catalogue.stream.masks ? work.painted.layer : image::Layer();
       maker.describe(work);
       if (options.stop.stop_requested()) throw Interrupted();
-      sample.frames.push_back({std::move(work.frame.picture), std::move(work.truth)});
+      if (catalogue.stream.masks) masks[k] = insertion::alpha_masks(work.truth, layer);
+      sample.frames.push_back({std::move(work.frame.picture), std::move(work.truth), {}});
     }
     sample.crop = crop_of(index, sample);
-    for (Sample::Frame& frame : sample.frames)
+    for (std::size_t k = 0; k < masks.size(); ++k) {
+      Sample::Frame& frame = sample.frames[k];
       frame.picture = image::crop(frame.picture, sample.crop);
+      for (const composite::AlphaMask& mask : masks[k])
+        frame.masks.push_back(insertion::samples_in(mask, sample.crop));
+    }
     return sample;
   }
 
@@ -244,5 +254,7 @@ Sample Stream::sample(std::int64_t index) const {
 }
 
 scene::Scene Stream::scene(std::int64_t index) const { return state_->planned(index).scene; }
+
+bool Stream::has_masks() const { return state_->catalogue.stream.masks; }
 
 }  // namespace airtruth::stream

@@ -31,6 +31,9 @@ struct Sample {
   struct Frame {
     image::Picture picture;   // of the crop alone
     annotation::Frame truth;  // of the whole frame, in its pixels
+    // With the catalogue's [stream] masks: of each intruder of the truth, 255 alpha of each pixel
+    // of the picture, row by row.
+    std::vector<std::vector<std::uint8_t>> masks;
   };
   std::vector<Frame> frames;
 };
@@ -47,6 +50,7 @@ class Stream {
   // Throw Error for faults in what the sample needs, and Interrupted after options.stop.
   Sample sample(std::int64_t index) const;
   scene::Scene scene(std::int64_t index) const;
+  bool has_masks() const;
 
  private:
   struct State;

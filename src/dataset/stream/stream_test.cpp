@@ -11,8 +11,10 @@
 #include "dataset/stream/places.h"
 #include "foundation/base/error.h"
 #include "labels/annotation/truth.h"
+#include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "sequence/demo/virtual_flight.h"
+#include "sequence/insertion/masks.h"
 #include "sequence/pipeline/render.h"
 #include "support/temporary_folder.h"
 
@@ -95,16 +97,30 @@ void expect_same(const Sample& a, const Sample& b) {
   ASSERT_EQ(a.frames.size(), b.frames.size());
   for (std::size_t k = 0; k < a.frames.size(); ++k) {
     EXPECT_TRUE(image::identical(a.frames[k].picture, b.frames[k].picture));
+    EXPECT_EQ(a.frames[k].masks, b.frames[k].masks);
     EXPECT_EQ(annotation::jsonl_line(a.frames[k].truth, {}),
               annotation::jsonl_line(b.frames[k].truth, {}));
+  }
+}
+
+// The masks are those in a folder that render() made.
+void expect_masks(const Sample::Frame& frame,
+                  const PixelBox& crop,
+                  const annotation::Truth& truth,
+                  const fs::path& made) {
+  for (std::size_t i = 0; i < frame.masks.size(); ++i) {
+    const auto whole = insertion::read_alpha_mask(
+        made, truth.lens, frame.truth.intruders[i].id, frame.truth.frame);
+    EXPECT_EQ(frame.masks[i], insertion::samples_in(whole.value_or(composite::AlphaMask{}), crop));
   }
 }
 
 // render() of the sample's scene, read back from its text, gives the same pictures and truth.
 void expect_as_rendered(const Stream& stream, std::int64_t index, const fs::path& out) {
   const Sample sample = stream.sample(index);
-  const scene::Scene scene =
+  scene::Scene scene =
       scene::parse_scene(scene::toml_from_scene(stream.scene(index)), out / "scene.toml");
+  scene.output.masks = stream.has_masks();
   pipeline::Options how;
   how.use_cache = false;
   const fs::path made = pipeline::render(scene, out, how).folder;
@@ -119,12 +135,16 @@ void expect_as_rendered(const Stream& stream, std::int64_t index, const fs::path
         << "sample " << index << ", frame " << k;
     EXPECT_EQ(annotation::jsonl_line(sample.frames[k].truth, truth.lens),
               annotation::jsonl_line(truth.frames[k], truth.lens));
+    expect_masks(sample.frames[k], sample.crop, truth, made);
   }
 }
 
 TEST_F(StreamOfFlights, SamplesAreWhatRenderMakesOfTheirScenes) {
-  const Stream stream = stream_of(background("flight3") + background("flight4") + kRule +
-                                  "[stream]\nsize_px = [128, 96]\nintruders = [1, 3]\n");
+  const Stream stream =
+      stream_of(background("flight3") + background("flight4") + kRule +
+                "[stream]\nsize_px = [128, 96]\nintruders = [1, 3]\nmasks = true\n");
+  const Sample one = stream.sample(1);
+  EXPECT_EQ(one.frames[0].masks.size(), one.frames[0].truth.intruders.size());
   for (const std::int64_t index : {0, 1, 65, 4099})
     expect_as_rendered(stream, index, folder_->path() / "plain");
 }

@@ -36,10 +36,15 @@ Stream::Stream(Stream&&) noexcept = default;
 Stream& Stream::operator=(Stream&&) noexcept = default;
 
 StreamSample Stream::sample(std::int64_t index) const {
-  const stream::Sample made = state_->stream.sample(index);
-  StreamSample sample{index, made.background, made.first_frame, made.weight, made.crop, {}};
-  for (const stream::Sample::Frame& frame : made.frames)
+  stream::Sample made = state_->stream.sample(index);
+  StreamSample sample{index, made.background, made.first_frame, made.weight, made.crop, {}, {}};
+  for (stream::Sample::Frame& frame : made.frames) {
     sample.frames.push_back({public_picture(frame.picture), public_truth(frame.truth)});
+    if (!state_->stream.has_masks()) continue;
+    std::vector<SamplePlane>& masks = sample.masks.emplace_back();
+    for (std::vector<std::uint8_t>& mask : frame.masks)
+      masks.push_back({made.crop.width, made.crop.height, std::move(mask)});
+  }
   return sample;
 }
 

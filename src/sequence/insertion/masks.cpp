@@ -9,41 +9,50 @@
 #include "picture/video/still.h"
 
 namespace airtruth::insertion {
-namespace {
-
-video::Grey whole_frame(const composite::AlphaMask& mask, const lens::ImageSize& size) {
-  const auto width = static_cast<std::size_t>(size.width);
-  video::Grey grey{size.width, size.height, {}};
-  grey.samples.assign(width * static_cast<std::size_t>(size.height), 0);
-  const auto step = static_cast<std::size_t>(mask.patch.width);
-  for (int y = 0; y < mask.patch.height; ++y)
-    std::copy_n(
-        mask.alpha.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * step),
-        mask.patch.width,
-        grey.samples.begin() +
-            static_cast<std::ptrdiff_t>(static_cast<std::size_t>(mask.patch.y + y) * width +
-                                        static_cast<std::size_t>(mask.patch.x)));
-  return grey;
-}
-
-}  // namespace
-
 std::string mask_name(const std::string& intruder_id, std::int64_t frame) {
   return fmt::format("masks/{}/{:06}.png", intruder_id, frame);
+}
+
+std::vector<composite::AlphaMask> alpha_masks(const annotation::Frame& truth,
+                                              const image::Layer& layer) {
+  std::vector<composite::AlphaMask> masks(truth.intruders.size());
+  for (std::size_t i = 0; i < masks.size(); ++i)
+    if (truth.intruders[i].state == annotation::State::kVisible)
+      masks[i] = composite::alpha_mask(layer, i);
+  return masks;
+}
+
+std::vector<std::uint8_t> samples_in(const composite::AlphaMask& mask, const PixelBox& part) {
+  const auto width = static_cast<std::size_t>(part.width);
+  std::vector<std::uint8_t> samples(width * static_cast<std::size_t>(part.height), 0);
+  if (mask.empty()) return samples;
+  const int left = std::max(mask.patch.x, part.x);
+  const int right = std::min(mask.patch.right(), part.right());
+  if (left >= right) return samples;
+  const auto offset = [](int y, std::size_t row, int x) {
+    return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row +
+                                       static_cast<std::size_t>(x));
+  };
+  const auto step = static_cast<std::size_t>(mask.patch.width);
+  for (int y = std::max(mask.patch.y, part.y); y < std::min(mask.patch.bottom(), part.bottom());
+       ++y)
+    std::copy_n(mask.alpha.begin() + offset(y - mask.patch.y, step, left - mask.patch.x),
+                right - left,
+                samples.begin() + offset(y - part.y, width, left - part.x));
+  return samples;
 }
 
 std::vector<MaskFile> mask_files(const annotation::Frame& truth,
                                  const image::Layer& layer,
                                  const lens::ImageSize& size) {
+  const std::vector<composite::AlphaMask> masks = alpha_masks(truth, layer);
   std::vector<MaskFile> files;
-  for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
-    const annotation::Intruder& intruder = truth.intruders[i];
-    if (intruder.state != annotation::State::kVisible) continue;
-    const composite::AlphaMask mask = composite::alpha_mask(layer, i);
-    if (!mask.empty())
+  for (std::size_t i = 0; i < masks.size(); ++i)
+    if (!masks[i].empty())
       files.push_back(
-          {mask_name(intruder.id, truth.frame), video::png_of(whole_frame(mask, size))});
-  }
+          {mask_name(truth.intruders[i].id, truth.frame),
+           video::png_of(
+               {size.width, size.height, samples_in(masks[i], {0, 0, size.width, size.height})})});
   return files;
 }
 

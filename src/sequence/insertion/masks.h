@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera/lens/lens.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "labels/annotation/truth.h"
@@ -25,6 +26,14 @@ struct MaskFile {
 };
 
 std::string mask_name(const std::string& intruder_id, std::int64_t frame);
+
+// The alpha of each intruder of a frame; empty where it is not visible. The layer's intruders are
+// in the truth's order.
+std::vector<composite::AlphaMask> alpha_masks(const annotation::Frame& truth,
+                                              const image::Layer& layer);
+
+// The samples of a part of the frame, row by row; 0 outside of the mask.
+std::vector<std::uint8_t> samples_in(const composite::AlphaMask& mask, const PixelBox& part);
 
 // Returns the masks of all intruders of one frame. The layer's intruders are in the truth's order.
 std::vector<MaskFile> mask_files(const annotation::Frame& truth,
