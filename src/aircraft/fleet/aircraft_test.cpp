@@ -258,6 +258,14 @@ TEST(Catalogue, HoldsWhatIsMadeInCode) {
   EXPECT_THAT(error_of("helicopter-twin/rescu"), testing::HasSubstr("helicopter-twin/rescue"));
 }
 
+TEST(Catalogue, APatternIsNoNameAndSaysWhatItFits) {
+  EXPECT_THAT(error_of("helicopter-t*"),
+              testing::AllOf(testing::HasSubstr("'helicopter-t*' is a pattern"),
+                             testing::HasSubstr("such as helicopter-tandem/blue"),
+                             testing::HasSubstr("shows 18")));
+  EXPECT_THAT(error_of("helicopter-q*"), testing::HasSubstr("unknown aircraft 'helicopter-q*'"));
+}
+
 // The ending of the name, in upper or lower case, decides before the catalogue is searched.
 TEST(AircraftFile, AModelFileIsItselfAndAnythingElseIsACatalogueName) {
   const fs::path file = fs::path(testing::TempDir()) / "plane.OBJ";

@@ -203,6 +203,15 @@ Entry find_aircraft(const std::string& name) {
     const bool plain = !name.empty() && name.find("..") == std::string::npos && name.front() != '/';
     if (plain && fs::is_regular_file(file, ignored)) return {name, file, folder};
   }
+  if (is_pattern(name))
+    if (const std::vector<std::string> fitting = aircraft_fitting(name); !fitting.empty())
+      throw Error(
+          fmt::format("'{}' is a pattern, which the rules of a catalogue take; expected one "
+                      "name, such as {} (`airtruth aircraft list '{}'` shows {})",
+                      name,
+                      fitting.front(),
+                      name,
+                      fitting.size()));
   throw Error(fmt::format(
       "unknown aircraft '{}'; the nearest names are {} (`airtruth aircraft list` shows all{})",
       name,
