@@ -236,8 +236,8 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   const auto& pairs = impl_->pairs;
   const lens::ImageSize& size = impl_->size;
   if (pairs.size() < kMinPairs) {
-    why = "the camera turns far enough to tell only " + std::to_string(pairs.size()) +
-          " times; it takes " + std::to_string(kMinPairs);
+    why = "the camera turns far enough to tell in " + std::to_string(pairs.size()) + " of the " +
+          std::to_string(kMinPairs) + " places that it takes";
     return std::nullopt;
   }
   const std::vector<Profile> as_pinhole = profiles_of(pairs, false, size);

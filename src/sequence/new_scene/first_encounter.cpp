@@ -95,7 +95,7 @@ std::string first_encounter(const lens::Lens& lens,
       "cpa_above_m = {:<25.0f}# and above the own aircraft\n"
       "course_deg = {:<26.0f}# from the own course: 180 head-on, 90 from the left, 270 from the "
       "right\n"
-      "speed_mps = {:<27.0f}\n",
+      "speed_mps = {:<27.0f}# along its path\n",
       encounter.cpa_time_s,
       duration_s,
       *encounter.cpa_right_m,

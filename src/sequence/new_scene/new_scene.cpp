@@ -211,7 +211,7 @@ CameraWords camera_for(const fs::path& video,
         YawPitchRoll{0, attitude->pitch_deg, attitude->roll_deg};
     words.table += fmt::format(
         "attitude_yaw_pitch_roll_deg = [0, {:.1f}, {:.1f}]   # pitch and roll are those of the "
-        "horizon in the first frame\n",
+        "horizon in the first frame used: leave this line out with another first_frame\n",
         attitude->pitch_deg,
         attitude->roll_deg);
   } else if (!log) {

@@ -205,8 +205,10 @@ void take_measured(scene::Scene& scene,
                               "= true to take what cameras have in the median"
                             : "; state it, or set fallback = true in [realism] to leave it out"),
               stated.realism.where.line > 0 ? stated.realism.where : Where{scene.file.string()});
+        // The profile's words for a camera file say again that the clip does not show it.
+        const std::string& source = found.quantities.at(key).source;
         warn(to_warn,
-             what + (value ? "; it is " + found.quantities.at(key).source : "; it is left out"));
+             what + (value ? "; it is " + source.substr(0, source.find(';')) : "; it is left out"));
       },
       scene.camera_model,
       from_clip);
