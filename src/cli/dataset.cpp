@@ -435,6 +435,9 @@ void status(const DatasetArguments& arguments, Context& context) {
     violated += fmt::format("{}{} in {}", violated.empty() ? "" : ", ", name, sequences);
   if (!violated.empty()) console.result("  volumes violated, in sequences: " + violated);
   for (const std::string& name : status.missing) console.result("  missing: " + name);
+  const auto named = static_cast<std::int64_t>(status.missing.size());
+  if (status.not_there > named)
+    console.result(fmt::format("  ... and {} more", status.not_there - named));
 }
 
 void submit(DatasetArguments arguments, Context& context) {
@@ -468,10 +471,11 @@ void verify(const DatasetArguments& arguments, Context& context) {
   const build::VerifyResult result = build::verify(arguments.folder, options);
   for (const std::string& fault : result.faults) console.error(fault);
   console.result(fmt::format(
-      "{}: {} sequences, {} frames, an intruder in view by geometry {} times ({} without "
-      "a box){}, {} faults",
+      "{}: {} sequences{}, {} frames, intruders and distractors in view by geometry {} times "
+      "({} without a box){}, {} faults",
       arguments.folder,
       result.sequences,
+      result.not_there > 0 ? fmt::format(", {} of them not there", result.not_there) : "",
       result.frames,
       result.in_view,
       result.in_view_without_box,

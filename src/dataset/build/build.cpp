@@ -5,10 +5,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "dataset/build/backgrounds.h"
 #include "dataset/build/check.h"
@@ -31,6 +34,9 @@ namespace {
 // hundred types, in bounded memory.
 constexpr std::int64_t kMaxOrdered = 4096;
 
+// Warnings that are remembered, in bounded memory.
+constexpr std::size_t kMaxSaid = 4096;
+
 // One build: it makes its share of the catalogue on several threads.
 class Work {
  public:
@@ -49,6 +55,10 @@ class Work {
     for (std::int64_t first = 0; missing_ > 0 && first < share_size(); first += kMaxOrdered)
       make_all(missing_by_aircraft(first, std::min(share_size(), first + kMaxOrdered)));
     if (options_.stop.stop_requested()) throw Interrupted();
+    if (repeated_ > 0)
+      warn(options_.warn,
+           fmt::format("{} more warnings say the same of other sequences over the same backgrounds",
+                       repeated_));
     std::sort(summary_.failures.begin(),
               summary_.failures.end(),
               [](const Failure& a, const Failure& b) { return a.name < b.name; });
@@ -165,7 +175,10 @@ class Work {
     how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
     how.warn = [&](const std::string& message) {
       const std::lock_guard lock(mutex_);
-      warn(options_.warn, item.name + ": " + message);
+      if (is_said(item.background, message))
+        ++repeated_;
+      else
+        warn(options_.warn, item.name + ": " + message);
     };
     try {
       catalogue::place(item, catalogue_, files_[item.background], shared_.get());
@@ -188,6 +201,14 @@ class Work {
       options_.progress({summary_.made + summary_.kept + failed, total_, "building"});
   }
 
+  // What a background's camera does not tell is the same for each sequence over it, and said once.
+  bool is_said(std::size_t background, const std::string& message) {
+    const auto said = std::pair(background, message);
+    if (said_.contains(said)) return true;
+    if (said_.size() < kMaxSaid) said_.insert(said);
+    return false;
+  }
+
   void report(const BuildProgress& progress) {
     const std::lock_guard lock(mutex_);
     if (options_.progress) options_.progress(progress);
@@ -208,6 +229,8 @@ class Work {
   std::shared_ptr<setup::SharedInputs> shared_ =
       std::make_shared<setup::SharedInputs>(pipeline::cache_folder({}, "ambient_occlusion"));
   std::mutex mutex_;
+  std::set<std::pair<std::size_t, std::string>> said_;  // warnings, by background
+  std::int64_t repeated_ = 0;                           // warnings that were said before
   BuildSummary summary_;
 };
 

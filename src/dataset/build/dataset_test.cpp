@@ -160,6 +160,42 @@ TEST_F(Build, GoesOnWhereItWasAndGivesTheSameBytesForAnyNumberOfJobs) {
   EXPECT_TRUE(verify(root_ / "two", {}).faults.empty());
 }
 
+TEST_F(Build, OfManyMissingSequencesTenAreNamedAndTheOthersCounted) {
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
+      std::string(test_support::kCatalogue) +
+          "[[random]]\ncount = 12\nframe_count = 8\naircraft = [\"c172/*\"]\n",
+      "c.toml");
+  BuildOptions options;
+  options.only = "sky-across-b737";
+  EXPECT_EQ(build_set(catalogue, root_, options).made, 1);
+  EXPECT_EQ(build::status(root_).not_there, 15);
+  const VerifyResult found = verify(root_, {});
+  EXPECT_EQ(found.sequences, 16);
+  EXPECT_EQ(found.not_there, 15);
+  ASSERT_EQ(found.faults.size(), 12u);
+  EXPECT_THAT(found.faults[9], HasSubstr(": is not there"));
+  EXPECT_THAT(found.faults[10], HasSubstr("5 more sequences of the catalogue are not there"));
+}
+
+// What the clip of a background does not tell is said for the first sequence over it alone.
+TEST_F(Build, AWarningIsSaidOnceForABackground) {
+  std::string text = test_support::kCatalogue;
+  const std::string camera = "camera = {";
+  for (auto at = text.find(camera); at != text.npos; at = text.find(camera, at + 60))
+    text.insert(at, "realism = { auto = true, fallback = true }\n");
+  std::vector<std::string> warnings;
+  BuildOptions options;
+  options.jobs = 1;
+  options.warn = [&](const std::string& message) { warnings.push_back(message); };
+  EXPECT_EQ(build_set(catalogue::parse_catalogue(text, "c.toml"), root_, options).made, 4);
+  const auto about_sharpness = std::count_if(warnings.begin(), warnings.end(), [](const auto& w) {
+    return w.find("optics.point_spread_px cannot be measured") != w.npos;
+  });
+  EXPECT_EQ(about_sharpness, 2) << warnings.size();
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_THAT(warnings.back(), HasSubstr("more warnings say the same"));
+}
+
 TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
   const auto error = [&](const std::string& text) -> std::string {
     try {

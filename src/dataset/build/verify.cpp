@@ -27,7 +27,9 @@
 namespace airtruth::build {
 namespace {
 
-constexpr std::size_t kMaxNamed = 100;  // of the missing sequences: what a terminal shows
+// Of the missing sequences: what a terminal shows, and what stands beside other faults.
+constexpr std::int64_t kMaxNamed = 100;
+constexpr std::int64_t kMaxMissingFaults = 10;
 // Results that wait for their place in the order, so that memory does not grow with the set.
 constexpr std::int64_t kMaxHeldResults = 4096;
 
@@ -70,7 +72,7 @@ class Check {
     if (fs::exists(folder_ / "sequence.json"))
       whole();
     else
-      fault("is not there");
+      missing();
     return std::move(result_);
   }
 
@@ -84,6 +86,11 @@ class Check {
     } catch (const Error& error) {
       fault(error.what());
     }
+  }
+
+  void missing() {
+    ++result_.not_there;
+    fault("is not there");
   }
 
   void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }
@@ -226,9 +233,11 @@ class Check {
 void add(const VerifyResult& one, VerifyResult& all) {
   all.sequences += one.sequences;
   all.frames += one.frames;
+  all.not_there += one.not_there;
   all.recomposed += one.recomposed;
   all.in_view += one.in_view;
   all.in_view_without_box += one.in_view_without_box;
+  if (one.not_there > 0 && all.not_there > kMaxMissingFaults) return;
   all.faults.insert(all.faults.end(), one.faults.begin(), one.faults.end());
 }
 
@@ -282,7 +291,7 @@ Status status(const fs::path& root) {
     if (folder.holds(item)) {
       ++status.whole;
       if (has_volumes) count_violations(place, status);
-    } else if (status.missing.size() < kMaxNamed)
+    } else if (++status.not_there <= kMaxNamed)
       status.missing.push_back(item.name);
     if (fs::exists(place.parent_path() / ("." + item.name + ".part"))) ++status.half;
   }
@@ -326,6 +335,11 @@ VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
     for (const VerifyResult& one : results_of(folder, expansion, first, count, options))
       add(one, result);
   }
+  if (result.not_there > kMaxMissingFaults)
+    result.faults.push_back(fmt::format(
+        "{} more sequences of the catalogue are not there; `airtruth dataset build` makes "
+        "what is missing",
+        result.not_there - kMaxMissingFaults));
   check_manifest(folder, result);
   return result;
 }

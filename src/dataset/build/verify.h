@@ -18,6 +18,7 @@ struct Status {
   std::int64_t sequences = 0;  // sequences of the catalogue
   std::int64_t whole = 0;
   std::vector<std::string> missing;  // the first hundred names
+  std::int64_t not_there = 0;        // how many there are
   // Unfinished sequences of runs that were killed; the next build removes them.
   std::int64_t half = 0;
   // True while a build is running.
@@ -41,10 +42,12 @@ struct VerifyOptions {
 // The result of checking every file against its checksum, reading every line of truth (boxes lie
 // within the frame), comparing the number of video frames with the number of truth lines, and
 // comparing the manifest with the sequences. Each fault is one line; faults are in the order of the
-// catalogue, for any number of jobs.
+// catalogue, for any number of jobs. Of missing sequences the first ten are faults of their own,
+// and one fault counts the others.
 struct VerifyResult {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
+  std::int64_t not_there = 0;   // sequences that are missing
   std::int64_t recomposed = 0;  // frames that were rendered again
   // Counts from geometry alone: an intruder's position is projected through the stated lens and
   // motion, and no pixel is read. in_view counts how often an intruder's reference point lies in
