@@ -35,7 +35,8 @@ scene::CameraFile file_of(const scene::Scene& scene, const lens::ImageSize& size
                 {path.string()});
   const std::string lens = camera_file::lens_words(setup::lens_of(scene.lens, size));
   if (!file.lens.empty() && file.lens != lens)
-    throw Error("was measured through the lens '" + file.lens + "'; the scene's is '" + lens + "'",
+    throw Error("was measured through the lens '" + file.lens + "'; the scene's is '" + lens +
+                    "'; expected the calibration of `airtruth calibrate --lens` as [lens] file",
                 {path.string()});
   if (scene.camera_model.gamma && scene.camera_model.gamma != file.gamma)
     throw Error(fmt::format("was measured with {}; the scene's is {}",
