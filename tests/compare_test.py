@@ -7,9 +7,11 @@ aircraft that compare inserts with the same type, attitude and light must measur
 
 import csv
 import json
+import math
 import os
 import shutil
 import struct
+import unittest
 
 import program
 from program import made, path, read, run, write
@@ -166,6 +168,41 @@ class Compare(program.Case):
         stopped = program.interrupted([*COMPARE, "-o", "stopped"], program.has_written(".stopped.part"))
         self.assert_stopped(stopped)
         self.assertEqual([name for name in os.listdir(path()) if "stopped" in name], [])
+
+    def test_realism_is_nowhere_farther_from_a_real_aircraft_than_the_plain_matte(self):
+        real = os.path.join(os.environ.get("AIRTRUTH_SHARED", ""), "footage", "ground-real", "V_AIRPLANE_001.mp4")
+        if not os.environ.get("AIRTRUTH_SHARED") or not os.path.exists(real):
+            raise unittest.SkipTest("AIRTRUTH_SHARED/footage/ground-real/V_AIRPLANE_001.mp4 is not there")
+        # Type, attitude and sun are those that compare finds in this clip.
+        scene = """name = "ground"
+[background]
+video = "unused.mp4"
+[lens]
+vertical_fov_deg = 12
+[light]
+sun_azimuth_deg = 98
+sun_elevation_deg = 16
+[[intruder]]
+aircraft = "beech-200/beech-200-d-ikob"
+waypoints_ned_m = [[100, 0, 0], [200, 0, 0]]
+speed_mps = 50
+yaw_deg = 65
+pitch_deg = 15
+roll_deg = -28
+"""
+        off = {}
+        for folder, realism in (("plain", ""), ("realistic", "[realism]\nauto = true\nfallback = true\n")):
+            write(f"{folder}.toml", scene + realism)
+            made("compare", "--real", real, "--boxes", real.replace(".mp4", ".csv"), "--origin", "1", "--scene", f"{folder}.toml",
+                 "-o", folder, "--frames", "10", "--no-match")
+            found = {one["name"]: one["inserted"] / one["real"] for one in json.loads(read(folder, "comparison.json"))["measures"]
+                     if one["name"] in ("edge, 10 to 90 %, px", "spectrum, share above 1/4 cycle/px", "noise inside, code values",
+                                        "peak contrast below, code values")}
+            self.assertEqual(len(found), 4)
+            off[folder] = {name: abs(math.log(share)) for name, share in found.items()}
+        for name, plain in off["plain"].items():
+            self.assertLess(off["realistic"][name], plain, name)
+        self.assertLess(off["realistic"]["edge, 10 to 90 %, px"], math.log(1.25))
 
 
 if __name__ == "__main__":
