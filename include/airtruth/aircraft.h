@@ -25,8 +25,8 @@ namespace airtruth {
 struct AircraftEntry {
   // As scenes name it: "738/738-Ryanair". What stands before the slash is the model's folder.
   std::string name;
-  // "Boeing 737-800", or in words what it is where it is no type of aircraft; empty where nothing
-  // is published.
+  // "Boeing 737-800"; in words, with its sizes, what is made in code or is no type of aircraft;
+  // empty where nothing is published.
   std::string type;
   // Published sizes of the type; empty: unknown.
   std::optional<double> span_m;
@@ -38,7 +38,7 @@ struct AircraftEntry {
 
 // The aircraft whose names match a word, sorted: one with * or ? is a pattern for the whole name,
 // any other matches the names that contain it, whatever the case of letters. Throws Error with the
-// nearest names where none does, and where no aircraft are installed.
+// nearest names where none does.
 AIRTRUTH_API std::vector<AircraftEntry> list_aircraft(const std::string& filter = {});
 
 // Names of the installed package that are not offered, with the reason. `filter` as above.
