@@ -72,6 +72,7 @@ Quantity hazy_prior(const air::Air& air, bool height_known) {
   const Estimate hazy{per_km, per_km};
   Quantity quantity;
   quantity.values = {hazy, hazy, hazy};
+  quantity.source = "a prior";
   quantity.note = fmt::format(
       "not measured; a prior by the horizon's look, which is that of {} km of visibility or "
       "less{}: {}",
@@ -85,6 +86,7 @@ Quantity clear_air(const air::Air& air) {
   const Estimate clear{0, kKoschmieder / kClearKm};
   Quantity quantity;
   quantity.values = {clear, clear, clear};
+  quantity.source = "assumed";
   quantity.note = fmt::format("not measured, and drawn as clear air{}: {}",
                               air.visibility_km ? ", as the horizon looks" : "",
                               air.extinction_per_km.why());
