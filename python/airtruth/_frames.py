@@ -15,6 +15,11 @@ Numbers = NDArray[np.float64]
 Samples = NDArray[np.uint8]
 
 
+def rows_of(values: Numbers) -> List[Numbers]:
+    """The rows of an n x m array; NumPy 2 types the elements that a loop over the array itself gives as numbers."""
+    return [values[k] for k in range(len(values))]
+
+
 class Volume(NamedTuple):
     """Whether an intruder violates a volume of airspace that the scene asks for."""
 

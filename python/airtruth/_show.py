@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ._error import Error
-from ._frames import Frame, Numbers, Samples
+from ._frames import Frame, Numbers, Samples, rows_of
 
 if TYPE_CHECKING:
     from ._dataset import DataSet
@@ -51,7 +51,7 @@ def _draw_box(rgb: Samples, box: Numbers) -> None:
 def html_of_frame(frame: Frame) -> str:
     rgb = frame.rgb
     words = [f"frame {frame.index}, {frame.time_s:.3f} s"]
-    for intruder, covered, exact in zip(frame.intruders, frame.boxes(), frame.boxes("exact")):
+    for intruder, covered, exact in zip(frame.intruders, rows_of(frame.boxes()), rows_of(frame.boxes("exact"))):
         box = exact if np.isnan(covered).any() else covered
         if np.isfinite(box).all():
             _draw_box(rgb, box)
@@ -66,7 +66,7 @@ def html_of_set(data: DataSet) -> str:
     for name in data.names[:_MOST_ROWS]:
         try:
             sequence = data[name]
-            aircraft = ", ".join(sorted(set(sequence.truth["aircraft"].tolist())))
+            aircraft = ", ".join(sorted(set(map(str, sequence.truth["aircraft"]))))
             cells = [name, str(len(sequence)), aircraft]
         except Error as error:
             cells = [name, "", str(error)]

@@ -15,7 +15,7 @@ import numpy as np
 import torch  # type: ignore
 import torch.utils.data  # type: ignore
 
-from ._frames import Intruder
+from ._frames import Intruder, rows_of
 from ._stream import Sample, Stream
 
 CLASSES = ("aircraft", "bird", "multirotor", "balloon", "glint", "dirt", "insect")
@@ -91,7 +91,7 @@ class Dataset(torch.utils.data.Dataset):  # type: ignore
     def _target(self, sample: Sample) -> Dict[str, torch.Tensor]:
         frame = sample.frames[-1]
         taken, ignored, labels, ranges = [], [], [], []
-        for intruder, covered, visible in zip(frame.intruders, frame.boxes(), frame.boxes("visible")):
+        for intruder, covered, visible in zip(frame.intruders, rows_of(frame.boxes()), rows_of(frame.boxes("visible"))):
             is_object = self._distractors or intruder.object_class == "aircraft"
             if not is_object or intruder.state != "visible":
                 continue
