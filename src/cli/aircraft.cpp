@@ -6,7 +6,6 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "aircraft/fleet/scale.h"
-#include "aircraft/shapes/airframes.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/run_files/run_files.h"
@@ -19,7 +18,6 @@ namespace {
 
 // The type's published size, without reading the model.
 std::string published_words(const std::string& name) {
-  if (const auto* made = shapes::made_airframe(name)) return std::string(made->size);
   const fleet::PublishedSize* size = fleet::published_size(name);
   if (size == nullptr) return "no published size is known: its scale is not checked";
   if (!size->is_known()) return size->type;
@@ -125,9 +123,7 @@ void show(const ShowArguments& arguments, Context& context) {
       loaded.mesh.triangle_count(),
       loaded.mesh.textures.size(),
       loaded.file.empty() ? "made in code" : loaded.file.string()));
-  if (const auto* made = shapes::made_airframe(arguments.name))
-    console.result(fmt::format("  {}", made->size));
-  else if (loaded.file != arguments.name)
+  if (loaded.file != arguments.name)
     console.result("  " + fleet::size_words(
                               size, loaded.catalogue_scale, fleet::published_size(arguments.name)));
   if (!liveries.empty()) console.result(fmt::format("  {} other liveries:", liveries.size()));

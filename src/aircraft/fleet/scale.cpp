@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "aircraft/shapes/airframes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 
@@ -65,7 +66,12 @@ std::vector<PublishedSize> read_table(std::string_view text) {
 }  // namespace
 
 std::span<const PublishedSize> published_sizes() {
-  static const std::vector<PublishedSize> sizes = read_table(size_table());
+  static const std::vector<PublishedSize> sizes = [] {
+    std::vector<PublishedSize> all = read_table(size_table());
+    for (const shapes::Airframe& made : shapes::airframes())
+      all.push_back({{std::string(made.name) + "/*"}, std::string(made.size)});
+    return all;
+  }();
   return sizes;
 }
 

@@ -15,16 +15,16 @@ namespace airtruth::fleet {
 
 struct PublishedSize {
   std::vector<std::string> names;  // patterns over catalogue names
-  std::string type;                // "Cessna 172P"; a description where it is not an aircraft
+  std::string type;                // "Cessna 172P"; a description where no size is published
   double span_m = 0;               // 0: no size is published
   double length_m = 0;
   double height_m = 0;
-  std::string source;
+  std::string source = {};
 
   bool is_known() const { return span_m > 0; }
 };
 
-// The table, in the order of its file.
+// The table, in the order of its file, and a row in words for each type that is made in code.
 std::span<const PublishedSize> published_sizes();
 
 // The row of a catalogue name; null where there is none.

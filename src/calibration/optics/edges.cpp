@@ -54,10 +54,6 @@ constexpr double kMeanExcessInWorld = 0.7;
 // are that narrow, of other real clips 0.04 to 0.13 but for one.
 constexpr double kLimitedWidthRatio = 1.2;
 
-// Of edges from the sharpest on, how many are left out: they are accidentally narrower than the
-// camera's.
-std::ptrdiff_t dropped_of(std::size_t edges) { return static_cast<std::ptrdiff_t>(edges / 100); }
-
 double moved_across(const EdgeLine& line, const Homography& frame_from_before) {
   const Pixel here(line.x + 0.5, line.y + 0.5);
   const Pixel before = apply(frame_from_before.inverse(), here);
@@ -140,17 +136,25 @@ std::vector<const EdgeMeter::Edge*> EdgeMeter::usable(double codec_step) const {
   return long_ones.size() >= kMinLong ? long_ones : chosen;
 }
 
-double EdgeMeter::share_limited(double codec_step) const {
-  std::vector<double> widths_px;
-  for (const Edge* edge : usable(codec_step)) widths_px.push_back(edge->width_px);
-  std::sort(widths_px.begin(), widths_px.end());
-  const auto sharpest = widths_px.begin() + dropped_of(widths_px.size());
-  const auto soft = std::upper_bound(sharpest, widths_px.end(), kLimitedWidthRatio * *sharpest);
-  return double(soft - sharpest) / double(widths_px.end() - sharpest);
+std::vector<const EdgeMeter::Edge*> EdgeMeter::by_width(double codec_step) const {
+  std::vector<const Edge*> edges = usable(codec_step);
+  std::sort(edges.begin(), edges.end(), [](const Edge* a, const Edge* b) {
+    return a->width_px < b->width_px;
+  });
+  // The sharpest hundredth is dropped: these edges are accidentally narrower than the camera's.
+  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 100));
+  return edges;
 }
 
-std::vector<const StepEdge*> EdgeMeter::sharp_ones(double codec_step) const {
-  std::vector<const Edge*> edges = usable(codec_step);
+double EdgeMeter::share_limited(const std::vector<const Edge*>& by_width) {
+  const double widest_px = kLimitedWidthRatio * by_width[0]->width_px;
+  const auto count = std::count_if(by_width.begin(), by_width.end(), [&](const Edge* edge) {
+    return edge->width_px <= widest_px;
+  });
+  return double(count) / double(by_width.size());
+}
+
+std::vector<const StepEdge*> EdgeMeter::sharp_ones(std::vector<const Edge*> edges) {
   const auto keep = [&](std::size_t count, std::size_t fewest) {
     edges.resize(std::min(edges.size(), std::max(count, fewest)));
   };
@@ -158,12 +162,9 @@ std::vector<const StepEdge*> EdgeMeter::sharp_ones(double codec_step) const {
     return static_cast<std::size_t>(std::count_if(
         edges.begin(), edges.end(), [&](const Edge* edge) { return edge->width_px < width_px; }));
   };
-  const auto by_width = [](const Edge* a, const Edge* b) { return a->width_px < b->width_px; };
   const auto by_asymmetry = [](const Edge* a, const Edge* b) {
     return a->asymmetry < b->asymmetry;
   };
-  std::sort(edges.begin(), edges.end(), by_width);
-  edges.erase(edges.begin(), edges.begin() + dropped_of(edges.size()));
   keep(narrower_than(kMaxWidthRatio * edges[0]->width_px), kMinSymmetric);
   std::sort(edges.begin(), edges.end(), by_asymmetry);
   keep(static_cast<std::size_t>(kSymmetricShare * double(edges.size())), kMinSymmetric);
@@ -177,10 +178,11 @@ Measured<StepResponse> EdgeMeter::result(double codec_step) {
   if (edges_.size() < kMinEdges)
     return NotMeasured{"the clip shows " + std::to_string(edges_.size()) +
                        " clean straight edges; it takes " + std::to_string(kMinEdges)};
-  const auto edges = sharp_ones(codec_step);
+  const std::vector<const Edge*> sharpest_first = by_width(codec_step);
+  const auto edges = sharp_ones(sharpest_first);
   StepResponse response = fit_step_response(edges, tone_);
   Estimate& spread = response.point_spread_px;
-  const double limited = share_limited(codec_step) * most_at_once_;
+  const double limited = share_limited(sharpest_first) * most_at_once_;
   spread.sigma = std::hypot(spread.sigma, spread.value * kMeanExcessInWorld / limited);
   profile_ = edge_profile(edges, response, tone_);
   return response;

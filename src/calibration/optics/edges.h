@@ -65,9 +65,11 @@ class EdgeMeter {
   // of the own aircraft, is the same edge in all frames.
   bool is_known(const Edge& edge) const;
   std::vector<const Edge*> usable(double codec_step) const;
-  std::vector<const StepEdge*> sharp_ones(double codec_step) const;
-  // The share of the usable edges that are nearly as sharp as the sharpest.
-  double share_limited(double codec_step) const;
+  // The usable edges, the sharpest first.
+  std::vector<const Edge*> by_width(double codec_step) const;
+  static std::vector<const StepEdge*> sharp_ones(std::vector<const Edge*> by_width);
+  // The share of edges that are nearly as sharp as the sharpest.
+  static double share_limited(const std::vector<const Edge*>& by_width);
   const image::Mask* own_aircraft_;
   image::ToneCurve tone_;
   std::vector<Edge> edges_;

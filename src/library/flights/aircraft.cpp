@@ -5,7 +5,6 @@
 #include "aircraft/fleet/scale.h"
 #include "aircraft/model/load_options.h"
 #include "aircraft/model/mesh.h"
-#include "aircraft/shapes/airframes.h"
 
 namespace airtruth {
 namespace {
@@ -13,10 +12,6 @@ namespace {
 AircraftEntry entry_of(const std::string& name) {
   AircraftEntry entry;
   entry.name = name;
-  if (const auto* made = shapes::made_airframe(name)) {
-    entry.type = made->size;
-    return entry;
-  }
   const fleet::PublishedSize* size = fleet::published_size(name);
   if (size == nullptr) return entry;
   entry.type = size->type;
