@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/document/document.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "scene/scene/tables.h"
+#include "studio/document/splice.h"
+#include "studio/document/tree.h"
+
+namespace airtruth::document {
+namespace {
+
+namespace fs = std::filesystem;
+
+History history_of(const fs::path& file, std::optional<std::string> begun) {
+  if (!fs::exists(file) && begun) return {std::move(*begun), ""};
+  std::string text = read_file(file, scene::kLargestToml);
+  std::string sha256 = sha256_of(text);
+  if (utf8_fault(text) != std::string::npos)
+    throw Error("is not UTF-8; expected a text file in UTF-8", {file.string()});
+  return {std::move(text), std::move(sha256)};
+}
+
+fs::file_time_type time_of(const fs::path& file) {
+  std::error_code error;
+  const auto time = fs::last_write_time(file, error);
+  return error ? fs::file_time_type{} : time;
+}
+
+}  // namespace
+
+Document::Document(fs::path file, std::optional<std::string> begun, Warn warn)
+    : file_(std::move(file)),
+      warn_(std::move(warn)),
+      journal_(file_),
+      history_(history_of(file_, std::move(begun))),
+      saved_(!history_.file_sha256.empty()),
+      looked_at_(time_of(file_)) {
+  recover();
+  take();
+}
+
+void Document::recover() {
+  std::optional<History> left = journal_.read();
+  if (!left) return;
+  if (left->text() == history_.text()) return journal_.remove();
+  changed_on_disk_ = left->file_sha256 != history_.file_sha256;
+  history_ = std::move(*left);
+  saved_ = false;
+  warn(warn_,
+       fmt::format("{}: {} steps that were not saved are taken up{}",
+                   file_.string(),
+                   history_.undo_count(),
+                   changed_on_disk_ ? "; another program has changed the file since" : ""));
+}
+
+// Reads the present text.
+void Document::take() {
+  ++revision_;
+  try {
+    values_ = tree_of(text(), file_.string()).values;
+  } catch (const Error&) {
+    values_ = nullptr;  // the page keeps what it had
+  }
+  try {
+    scene_ = scene::parse_scene(text(), file_);
+    problem_.clear();
+  } catch (const Error& error) {
+    scene_.reset();
+    problem_ = error.what();
+  }
+}
+
+template <typename Write>
+void Document::record(const Write& write) {
+  try {
+    write();
+  } catch (const Error& error) {
+    if (!std::exchange(journal_fails_, true))
+      warn(warn_,
+           std::string("what is not saved is lost when the studio ends, since its journal cannot "
+                       "be written: ") +
+               error.what());
+  }
+}
+
+void Document::add(Edit edit) {
+  if (edit.removed == edit.put) return;
+  history_.add(edit);
+  saved_ = false;
+  record([&] { journal_.add(edit, history_); });
+  take();
+}
+
+void Document::edit(const std::vector<Change>& changes, const std::string& merge) {
+  std::string next = text();
+  for (const Change& change : changes) next = changed(next, change, file_.string());
+  if (next.size() > scene::kLargestToml)
+    throw Error("would be larger than 16 MiB", {file_.string()});
+  add(edit_between(text(), next, merge));
+}
+
+void Document::undo() {
+  history_.undo();
+  saved_ = false;
+  record([&] { journal_.undo(history_); });
+  take();
+}
+
+void Document::redo() {
+  history_.redo();
+  saved_ = false;
+  record([&] { journal_.redo(history_); });
+  take();
+}
+
+void Document::save(bool replace) {
+  look_at_disk();
+  if (changed_on_disk_ && !replace)
+    throw Error("was changed by another program; expected to reload it, or to save over it",
+                {file_.string()});
+  write_file(file_, text());
+  history_.file_sha256 = sha256_of(text());
+  looked_at_ = time_of(file_);
+  saved_ = true;
+  changed_on_disk_ = false;
+  journal_.remove();
+}
+
+void Document::reload() {
+  const std::optional<std::string> text_there = on_disk();
+  if (!text_there) throw Error("cannot be read; expected a text file in UTF-8", {file_.string()});
+  history_.file_sha256 = sha256_of(*text_there);
+  add(edit_between(text(), *text_there, ""));
+  saved_ = true;
+  changed_on_disk_ = false;
+  journal_.remove();
+}
+
+bool Document::look_at_disk() {
+  const fs::file_time_type time = time_of(file_);
+  if (time == looked_at_) return false;
+  looked_at_ = time;
+  const std::optional<std::string> there = on_disk();
+  if (!there || sha256_of(*there) == history_.file_sha256) return false;
+  if (saved_) {
+    reload();
+  } else {
+    changed_on_disk_ = true;
+  }
+  return true;
+}
+
+std::optional<std::string> Document::on_disk() const {
+  try {
+    std::string text = read_file(file_, scene::kLargestToml);
+    if (utf8_fault(text) != std::string::npos) return std::nullopt;
+    return text;
+  } catch (const Error&) {
+    return std::nullopt;  // an editor is replacing it
+  }
+}
+
+nlohmann::ordered_json Document::state() const {
+  return {
+      {"revision", revision_},
+      {"text", text()},
+      {"scene", values_},
+      {"problem", problem_.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(problem_)},
+      {"saved", saved_},
+      {"undo", history_.undo_count()},
+      {"redo", history_.redo_count()},
+      {"changed_on_disk", changed_on_disk_}};
+}
+
+}  // namespace airtruth::document

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "foundation/base/log.h"
+#include "scene/scene/scene.h"
+#include "studio/document/change.h"
+#include "studio/document/journal.h"
+
+// A scene file that is being edited: its text, the steps back to its beginning, and the file.
+namespace airtruth::document {
+
+class Document {
+ public:
+  // Reads the file and takes up what an earlier process left in the journal, with a word to `warn`.
+  // `begun` is the text where there is no file yet; it is written at the first save. Throws Error
+  // where the file is larger than 16 MiB, is not UTF-8, or there is neither.
+  Document(std::filesystem::path file, std::optional<std::string> begun, Warn warn);
+
+  const std::filesystem::path& file() const { return file_; }
+  const std::string& text() const { return history_.text(); }
+  // Counts the texts.
+  std::int64_t revision() const { return revision_; }
+  // Empty where the text is no scene; problem() then says why.
+  const std::optional<scene::Scene>& scene() const { return scene_; }
+  const std::string& problem() const { return problem_; }
+
+  // All changes or none. With the `merge` of the edit before, both are one step of undo. Throws
+  // Error where a change cannot be made.
+  void edit(const std::vector<Change>& changes, const std::string& merge);
+  // Throw Error where there is nothing to take back or to repeat.
+  void undo();
+  void redo();
+  // Throws Error where the file was changed by others, unless `replace`.
+  void save(bool replace);
+  // Takes the file's text, as a step that can be taken back.
+  void reload();
+  // Looks at the file; true where the state is another than before: others changed the file, which
+  // is taken where all was saved.
+  bool look_at_disk();
+  // Waits until the journal is on the disk.
+  void flush() { journal_.flush(); }
+
+  // {"revision", "text", "scene", "problem", "saved", "undo", "redo", "changed_on_disk"}
+  nlohmann::ordered_json state() const;
+
+ private:
+  void recover();
+  void take();
+  void add(Edit edit);
+  // Writes a step to the journal; where that fails it says so once.
+  template <typename Write>
+  void record(const Write& write);
+  // The file's text; empty where it cannot be read.
+  std::optional<std::string> on_disk() const;
+
+  std::filesystem::path file_;
+  Warn warn_;
+  Journal journal_;
+  bool journal_fails_ = false;
+  History history_;
+  std::int64_t revision_ = 0;
+  bool saved_ = true;
+  bool changed_on_disk_ = false;
+  std::filesystem::file_time_type looked_at_{};
+  std::optional<scene::Scene> scene_;
+  std::string problem_;
+  nlohmann::ordered_json values_;
+};
+
+}  // namespace airtruth::document

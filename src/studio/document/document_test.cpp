@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/document/document.h"
+
+#include <chrono>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "support/temporary_folder.h"
+
+namespace airtruth::document {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+const std::string kText =
+    "[background]\nvideo = \"clip.mp4\"  # mine\n[lens]\nvertical_fov_deg = 60\n";
+
+class OfAFile : public testing::Test {
+ protected:
+  OfAFile() { write(kText); }
+  fs::path file() const { return folder_.path() / "scene.toml"; }
+  fs::path journal() const { return folder_.path() / ".scene.toml.studio-journal"; }
+  void write(const std::string& text) {
+    write_file(file(), text);
+    // A clock of whole seconds must not hide the change.
+    fs::last_write_time(file(), fs::last_write_time(file()) + std::chrono::seconds(++writes_));
+  }
+  Document open() {
+    return {file(), std::nullopt, [this](const std::string& line) { warnings_.push_back(line); }};
+  }
+  static std::vector<Change> fov(double value) {
+    return {{Change::Kind::kSet, {"lens", "vertical_fov_deg"}, {}, value}};
+  }
+  static std::string with_fov(const std::string& value) {
+    return kText.substr(0, kText.find("60")) + value + "\n";
+  }
+
+  test_support::TemporaryFolder folder_;
+  std::vector<std::string> warnings_;
+  int writes_ = 0;
+};
+
+TEST_F(OfAFile, StepsAreTakenBackToTheBeginningAndRepeated) {
+  Document document = open();
+  document.edit(fov(61), "");
+  for (int i = 0; i < 20; ++i) document.edit(fov(62 + i), "drag-1");
+  document.edit(fov(90), "drag-2");
+  EXPECT_EQ(document.state()["undo"], 3);
+  EXPECT_EQ(document.text(), with_fov("90"));
+  document.undo();
+  EXPECT_EQ(document.text(), with_fov("81"));
+  document.undo();
+  EXPECT_EQ(document.text(), with_fov("61"));
+  document.undo();
+  EXPECT_EQ(document.text(), kText);
+  EXPECT_THROW(document.undo(), Error);
+  document.redo();
+  document.redo();
+  EXPECT_EQ(document.text(), with_fov("81"));
+  document.edit(fov(50), "");
+  EXPECT_THROW(document.redo(), Error);
+}
+
+TEST_F(OfAFile, AllChangesOfAnEditAreMadeOrNone) {
+  Document document = open();
+  auto changes = fov(70);
+  changes.push_back({Change::Kind::kRemove, {"nowhere"}, {}, {}});
+  EXPECT_THROW(document.edit(changes, ""), Error);
+  EXPECT_EQ(document.text(), kText);
+  EXPECT_EQ(document.state()["undo"], 0);
+}
+
+TEST_F(OfAFile, ATextThatIsNoSceneIsKeptWithItsProblem) {
+  Document document = open();
+  document.edit({{Change::Kind::kSet, {"lens", "vertical_fov"}, {}, 60}}, "");
+  EXPECT_THAT(document.problem(), HasSubstr("vertical_fov_deg"));
+  EXPECT_FALSE(document.scene());
+  EXPECT_EQ(document.state()["scene"]["lens"]["vertical_fov"], 60);
+  document.undo();
+  EXPECT_EQ(document.problem(), "");
+  EXPECT_TRUE(document.scene());
+}
+
+TEST_F(OfAFile, ACrashLosesNothing) {
+  {
+    Document document = open();
+    document.edit(fov(61), "");
+    for (int i = 0; i < 20; ++i) document.edit(fov(62 + i), "drag");
+    document.edit(fov(99), "");
+    document.undo();
+  }
+  EXPECT_EQ(read_file(file()), kText);
+  std::ofstream(journal(), std::ios::app) << "{\"at\":1,\"remov";  // a line that was not finished
+  Document document = open();
+  EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("2 steps that were not saved")));
+  EXPECT_EQ(document.text(), with_fov("81"));
+  EXPECT_FALSE(document.state()["saved"]);
+  document.redo();
+  EXPECT_EQ(document.text(), with_fov("99"));
+  document.undo();
+  document.undo();
+  document.undo();
+  EXPECT_EQ(document.text(), kText);
+}
+
+TEST_F(OfAFile, SavedTextNeedsNoJournal) {
+  Document document = open();
+  document.edit(fov(61), "");
+  EXPECT_TRUE(fs::exists(journal()));
+  document.save(false);
+  EXPECT_FALSE(fs::exists(journal()));
+  EXPECT_EQ(read_file(file()), with_fov("61"));
+  document.undo();
+  EXPECT_FALSE(document.state()["saved"]);
+  EXPECT_TRUE(fs::exists(journal()));
+  Document later = open();
+  EXPECT_EQ(later.text(), kText);
+  EXPECT_FALSE(later.state()["changed_on_disk"]);
+  later.redo();
+  EXPECT_EQ(later.text(), with_fov("61"));
+}
+
+TEST_F(OfAFile, AnotherEditorsChangeIsTakenWhereAllIsSavedElseSaid) {
+  Document document = open();
+  EXPECT_FALSE(document.look_at_disk());
+  write(with_fov("30"));
+  EXPECT_TRUE(document.look_at_disk());
+  EXPECT_EQ(document.text(), with_fov("30"));
+  document.undo();
+  EXPECT_EQ(document.text(), kText);
+  write(with_fov("31"));
+  EXPECT_TRUE(document.look_at_disk());
+  EXPECT_TRUE(document.state()["changed_on_disk"]);
+  EXPECT_EQ(document.text(), kText);
+  EXPECT_THROW(document.save(false), Error);
+  EXPECT_EQ(read_file(file()), with_fov("31"));
+  document.reload();
+  EXPECT_EQ(document.text(), with_fov("31"));
+  EXPECT_TRUE(document.state()["saved"]);
+}
+
+TEST_F(OfAFile, AJournalOutlivesAChangeOfTheFile) {
+  open().edit(fov(61), "");
+  write(with_fov("30"));
+  Document document = open();
+  EXPECT_EQ(document.text(), with_fov("61"));
+  EXPECT_TRUE(document.state()["changed_on_disk"]);
+  document.save(true);
+  EXPECT_EQ(read_file(file()), with_fov("61"));
+}
+
+TEST_F(OfAFile, ABegunSceneIsWrittenAtTheFirstSave) {
+  const fs::path later = folder_.path() / "new.toml";
+  Document document(later, kText, {});
+  EXPECT_FALSE(document.state()["saved"]);
+  EXPECT_FALSE(fs::exists(later));
+  document.save(false);
+  EXPECT_EQ(read_file(later), kText);
+  EXPECT_THROW(Document(folder_.path() / "none.toml", std::nullopt, {}), Error);
+}
+
+TEST_F(OfAFile, AFileThatIsNoJournalIsLeftAlone) {
+  write_file(journal(), "{\"something\": 1}\n");
+  EXPECT_THROW(open(), Error);
+  EXPECT_TRUE(fs::exists(journal()));
+}
+
+}  // namespace
+}  // namespace airtruth::document

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/document/journal.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
+namespace airtruth::document {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of_edit(const Edit& edit) {
+  return {{"at", edit.at}, {"removed", edit.removed}, {"put", edit.put}, {"merge", edit.merge}};
+}
+
+void replace(std::string& text, std::size_t at, const std::string& from, const std::string& to) {
+  if (at > text.size() || text.compare(at, from.size(), from) != 0)
+    throw Error("a step does not fit the text before it");
+  text.replace(at, from.size(), to);
+}
+
+void take_line(History& history, const Json& line) {
+  if (line.contains("undo")) return history.undo();
+  if (line.contains("redo")) return history.redo();
+  history.add({line.at("at").get<std::size_t>(),
+               line.at("removed").get<std::string>(),
+               line.at("put").get<std::string>(),
+               line.at("merge").get<std::string>()});
+}
+
+}  // namespace
+
+Edit edit_between(std::string_view before, std::string_view after, std::string merge) {
+  const std::size_t shorter = std::min(before.size(), after.size());
+  std::size_t same = 0;
+  while (same < shorter && before[same] == after[same]) ++same;
+  std::size_t tail = 0;
+  while (tail < shorter - same &&
+         before[before.size() - 1 - tail] == after[after.size() - 1 - tail])
+    ++tail;
+  // Journal lines are UTF-8: a character is replaced whole.
+  const auto is_inside = [](std::string_view text, std::size_t at) {
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
+  };
+  while (same > 0 && (is_inside(before, same) || is_inside(after, same))) --same;
+  while (tail > 0 &&
+         (is_inside(before, before.size() - tail) || is_inside(after, after.size() - tail)))
+    --tail;
+  return {same,
+          std::string(before.substr(same, before.size() - tail - same)),
+          std::string(after.substr(same, after.size() - tail - same)),
+          std::move(merge)};
+}
+
+void History::add(const Edit& edit) {
+  std::string after = text_;
+  replace(after, edit.at, edit.removed, edit.put);
+  edits_.resize(in_force_);
+  Edit whole = edit;
+  if (!edits_.empty() && !edit.merge.empty() && edits_.back().merge == edit.merge) {
+    const Edit last = edits_.back();
+    std::string before = text_;
+    replace(before, last.at, last.put, last.removed);
+    whole = edit_between(before, after, edit.merge);
+    edits_.pop_back();
+  }
+  edits_.push_back(std::move(whole));
+  in_force_ = edits_.size();
+  text_ = std::move(after);
+}
+
+void History::undo() {
+  if (in_force_ == 0) throw Error("there is nothing to undo");
+  const Edit& edit = edits_[in_force_ - 1];
+  replace(text_, edit.at, edit.put, edit.removed);
+  --in_force_;
+}
+
+void History::redo() {
+  if (in_force_ == edits_.size()) throw Error("there is nothing to redo");
+  const Edit& edit = edits_[in_force_];
+  replace(text_, edit.at, edit.removed, edit.put);
+  ++in_force_;
+}
+
+Journal::Journal(const std::filesystem::path& file)
+    : path_(std::filesystem::absolute(file).parent_path() /
+            ("." + file.filename().string() + ".studio-journal")) {}
+
+Journal::~Journal() {
+  if (file_ >= 0) ::close(file_);
+}
+
+std::optional<History> Journal::read() const {
+  if (!std::filesystem::exists(path_)) return std::nullopt;
+  const std::string bytes = read_file(path_, 2 * kMostBytes);
+  std::optional<History> history;
+  int line = 0;
+  try {
+    for (std::size_t begin = 0, end = 0; (end = bytes.find('\n', begin)) != std::string::npos;
+         begin = end + 1) {
+      ++line;
+      const Json json = Json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(begin),
+                                    bytes.begin() + static_cast<std::ptrdiff_t>(end));
+      if (history)
+        take_line(*history, json);
+      else
+        history.emplace(json.at("first").get<std::string>(), json.at("file").get<std::string>());
+    }
+  } catch (const Error& error) {
+    throw Error("is no journal of a studio: " + error.message(), {path_.string(), line});
+  } catch (const Json::exception&) {
+    throw Error("is no journal of a studio; move it away to begin anew", {path_.string(), line});
+  }
+  return history;
+}
+
+void Journal::add(const Edit& edit, const History& history) {
+  append(json_of_edit(edit).dump() + "\n", history);
+}
+void Journal::undo(const History& history) { append("{\"undo\":1}\n", history); }
+void Journal::redo(const History& history) { append("{\"redo\":1}\n", history); }
+
+void Journal::append(const std::string& line, const History& history) {
+  if (file_ < 0 || bytes_ + line.size() > kMostBytes) return begin(history);
+  write(line);
+}
+
+// The file as the history has it; of a long one the present text alone.
+void Journal::begin(const History& history) {
+  const bool is_long = file_ >= 0;
+  std::string text =
+      Json{{"first", is_long ? history.text() : history.first}, {"file", history.file_sha256}}
+          .dump() +
+      "\n";
+  if (!is_long) {
+    for (const Edit& edit : history.edits()) text += json_of_edit(edit).dump() + "\n";
+    for (std::size_t i = 0; i < history.redo_count(); ++i) text += "{\"undo\":1}\n";
+  }
+  write_file(path_, text);
+  if (file_ >= 0) ::close(file_);
+  file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file_ < 0) throw Error(std::generic_category().message(errno), {path_.string()});
+  bytes_ = text.size();
+}
+
+void Journal::write(const std::string& line) {
+  std::size_t done = 0;
+  while (done < line.size()) {
+    const ssize_t wrote = ::write(file_, line.data() + done, line.size() - done);
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote <= 0) throw Error(std::generic_category().message(errno), {path_.string()});
+    done += static_cast<std::size_t>(wrote);
+  }
+  bytes_ += line.size();
+}
+
+void Journal::flush() {
+  if (file_ >= 0) ::fdatasync(file_);
+}
+
+void Journal::remove() {
+  if (file_ >= 0) ::close(file_);
+  file_ = -1;
+  bytes_ = 0;
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+}
+
+}  // namespace airtruth::document

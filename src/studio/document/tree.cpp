@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/document/tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+#include "scene/scene/tables.h"
+
+namespace airtruth::document {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+// Finds the byte of a line and column. toml++ counts columns in code points.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : text_(text) {
+    starts_.push_back(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+    for (std::size_t i = 0; i < text.size(); ++i)
+      if (text[i] == '\n') starts_.push_back(i + 1);
+  }
+
+  std::size_t offset(const toml::source_position& place) const {
+    if (place.line == 0 || place.line > starts_.size()) return text_.size();
+    std::size_t at = starts_[place.line - 1];
+    for (toml::source_index left = place.column - 1; left > 0 && at < text_.size(); --left) {
+      ++at;
+      while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0U) == 0x80U) ++at;
+    }
+    return at;
+  }
+
+ private:
+  std::string_view text_;
+  std::vector<std::size_t> starts_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : text_(text), lines_(text) {}
+
+  Node table(const toml::table& table, Node::Kind kind) const {
+    Node node = placed(table, kind);
+    for (const auto& [key, value] : table) {
+      Node member = this->member(key, value);
+      member.key_begin = lines_.offset(key.source().begin);
+      node.members.emplace_back(std::string(key.str()), std::move(member));
+    }
+    std::sort(node.members.begin(), node.members.end(), [](const auto& a, const auto& b) {
+      return a.second.key_begin < b.second.key_begin;
+    });
+    return node;
+  }
+
+ private:
+  Node placed(const toml::node& value, Node::Kind kind) const {
+    Node node;
+    node.kind = kind;
+    node.begin = lines_.offset(value.source().begin);
+    node.end = lines_.offset(value.source().end);
+    return node;
+  }
+
+  // A table of a header begins with the bracket of a header whose last name is its own.
+  bool is_header(const toml::key& key, const toml::table& value) const {
+    const std::size_t begin = lines_.offset(value.source().begin);
+    if (begin >= text_.size() || text_[begin] != '[') return false;
+    const std::size_t next = text_.find_first_not_of(" \t", lines_.offset(key.source().end));
+    return next != std::string_view::npos && text_[next] == ']';
+  }
+
+  Node member(const toml::key& key, const toml::node& value) const {
+    if (const auto* inside = value.as_table()) {
+      if (inside->is_inline()) return table(*inside, Node::Kind::kInlineTable);
+      return table(*inside,
+                   is_header(key, *inside) ? Node::Kind::kHeaderTable : Node::Kind::kImpliedTable);
+    }
+    return element(value);
+  }
+
+  Node element(const toml::node& value) const {
+    if (const auto* inside = value.as_table()) {
+      return table(*inside,
+                   inside->is_inline() ? Node::Kind::kInlineTable : Node::Kind::kHeaderTable);
+    }
+    const auto* array = value.as_array();
+    if (array == nullptr) return placed(value, Node::Kind::kValue);
+    const auto is_of_headers = [](const toml::array& all) {
+      const auto* first = all.empty() ? nullptr : all.front().as_table();
+      return first != nullptr && !first->is_inline();
+    };
+    Node node =
+        placed(value, is_of_headers(*array) ? Node::Kind::kTableArray : Node::Kind::kInlineArray);
+    for (const toml::node& part : *array) node.elements.push_back(element(part));
+    return node;
+  }
+
+  std::string_view text_;
+  Lines lines_;
+};
+
+nlohmann::json json_of(const toml::node& value) {
+  if (const auto* table = value.as_table()) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const auto& [key, part] : *table) json[std::string(key.str())] = json_of(part);
+    return json;
+  }
+  if (const auto* array = value.as_array()) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const toml::node& part : *array) json.push_back(json_of(part));
+    return json;
+  }
+  if (const auto* text = value.as_string()) return text->get();
+  if (const auto* whole = value.as_integer()) return whole->get();
+  if (const auto* truth = value.as_boolean()) return truth->get();
+  if (const auto* number = value.as_floating_point(); number && std::isfinite(number->get()))
+    return number->get();
+  std::ostringstream words;
+  value.visit([&](const auto& any) { words << any; });
+  return words.str();
+}
+
+}  // namespace
+
+const Node* Node::member(std::string_view key) const {
+  const auto found = std::find_if(
+      members.begin(), members.end(), [&](const auto& one) { return one.first == key; });
+  return found == members.end() ? nullptr : &found->second;
+}
+
+Tree tree_of(std::string_view text, const std::string& file) {
+  const toml::table parsed = scene::parsed_toml(text, file);
+  Tree tree{Reader(text).table(parsed, Node::Kind::kHeaderTable), json_of(parsed)};
+  tree.root.begin = tree.root.end = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  return tree;
+}
+
+}  // namespace airtruth::document

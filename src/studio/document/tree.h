@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+// A TOML text as values and as the places where they stand.
+namespace airtruth::document {
+
+// Offsets are bytes of the text.
+struct Node {
+  enum class Kind {
+    kValue,
+    kInlineTable,   // { ... }
+    kInlineArray,   // [ ... ]
+    kHeaderTable,   // [name], or an element of [[name]]; the file itself, with an empty header
+    kImpliedTable,  // of dotted keys, or between the names of a header
+    kTableArray,    // of [[name]]
+  };
+  Kind kind = Kind::kValue;
+  // Of the value, or of the header with its brackets.
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  // Of its key, whose last name alone counts: in `a.b = 1` that of `b`.
+  std::size_t key_begin = 0;
+  std::vector<std::pair<std::string, Node>> members;  // of a table, in the order of their keys
+  std::vector<Node> elements;                         // of an array
+
+  bool is_table() const {
+    return kind == Kind::kInlineTable || kind == Kind::kHeaderTable || kind == Kind::kImpliedTable;
+  }
+  bool has_header() const { return kind == Kind::kHeaderTable || kind == Kind::kTableArray; }
+  const Node* member(std::string_view key) const;
+};
+
+struct Tree {
+  Node root;
+  nlohmann::json values;  // dates and times, infinities and NaN as strings
+};
+
+// Throws Error where the text is not TOML (scene::parsed_toml).
+Tree tree_of(std::string_view text, const std::string& file);
+
+}  // namespace airtruth::document
