@@ -58,25 +58,25 @@ float brightness(const Rgb& linear) {
   return 0.2126f * linear[0] + 0.7152f * linear[1] + 0.0722f * linear[2];
 }
 
-int grid_step(const image::Picture& picture) {
-  const auto [shorter, longer] = std::minmax(picture.width, picture.height);
+int grid_step(const lens::ImageSize& size) {
+  const auto [shorter, longer] = std::minmax(size.width, size.height);
   return std::clamp(longer / kGrid, 1, shorter);
 }
 
 // Calls visit(x, y) with the middle of each block.
 template <typename Visit>
-void each_block(const image::Picture& picture, const Visit& visit) {
-  const int step = grid_step(picture);
-  for (int y = step / 2; y < picture.height; y += step)
-    for (int x = step / 2; x < picture.width; x += step) visit(x, y);
+void each_block(const lens::ImageSize& size, const Visit& visit) {
+  const int step = grid_step(size);
+  for (int y = step / 2; y < size.height; y += step)
+    for (int x = step / 2; x < size.width; x += step) visit(x, y);
 }
 
 // The rays of the blocks in the nominal camera.
-std::vector<std::optional<Vector3>> rays_of(const image::Picture& picture,
+std::vector<std::optional<Vector3>> rays_of(const lens::ImageSize& size,
                                             const lens::Lens& lens,
                                             const Homography& nominal_from_frame) {
   std::vector<std::optional<Vector3>> rays;
-  each_block(picture, [&](int x, int y) {
+  each_block(size, [&](int x, int y) {
     const Vector3 nominal = nominal_from_frame * Vector3(x + 0.5, y + 0.5, 1);
     rays.push_back(nominal.z() > 0
                        ? lens.ray_from_pixel({nominal.x() / nominal.z(), nominal.y() / nominal.z()})
@@ -94,22 +94,21 @@ std::optional<PixelBox> surroundings_of(const std::optional<PixelBox>& near, int
 }
 
 // `rays`: as rays_of().
-std::vector<Block> blocks_of(const image::Picture& picture,
-                             const image::ToneCurve& tone,
+std::vector<Block> blocks_of(const Glance& glance,
                              const image::Mask* own_aircraft,
                              const std::vector<std::optional<Vector3>>& rays,
                              const Quaternion& world_from_cam,
                              const std::optional<PixelBox>& near) {
-  const image::ColourCode code(picture.colour);
-  const std::optional<PixelBox> around = surroundings_of(near, grid_step(picture));
+  const std::optional<PixelBox> around = surroundings_of(near, grid_step(glance.size));
   std::vector<Block> blocks;
   blocks.reserve(rays.size());
   std::size_t i = 0;
-  each_block(picture, [&](int x, int y) {
-    const std::optional<Vector3>& ray = rays[i++];
+  each_block(glance.size, [&](int x, int y) {
+    const std::optional<Vector3>& ray = rays[i];
+    const Rgb& linear = glance.linear[i++];
     if (own_aircraft != nullptr && !own_aircraft->is_free(x, y)) return;
     Block block;
-    block.linear = image::linear_at(picture, code, x, y, tone);
+    block.linear = linear;
     block.brightness = brightness(block.linear);
     block.weight = !ray ? 0.0f : around && around->contains(x, y) ? 4.0f : 1.0f;
     if (ray) block.direction = (world_from_cam * *ray).normalized();
@@ -399,16 +398,35 @@ AmbientEstimator::AmbientEstimator(const scene::Light& light,
       own_aircraft_(own_aircraft),
       skies_(skies(setup::to_sun_in_world(light))) {}
 
+Glance glance_at(const image::Picture& picture, const image::ToneCurve& tone) {
+  const image::ColourCode code(picture.colour);
+  Glance glance{{picture.width, picture.height}, {}};
+  each_block(glance.size, [&](int x, int y) {
+    glance.linear.push_back(image::linear_at(picture, code, x, y, tone));
+  });
+  return glance;
+}
+
+bool AmbientEstimator::reads_pictures() const {
+  return !(light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo));
+}
+
 Ambient AmbientEstimator::next(const image::Picture& picture,
                                const projection::Sight& sight,
                                const std::optional<PixelBox>& near,
                                bool begins_shot) {
-  const bool all_stated =
-      light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo);
-  if (all_stated) return with_scene({});
-  follow_rays(picture, sight);
-  const std::vector<Block> blocks = blocks_of(
-      picture, tone_, own_aircraft_, rays_, sight.cam_from_world.rotation.conjugate(), near);
+  if (!reads_pictures()) return with_scene({});
+  return next(glance_at(picture, tone_), sight, near, begins_shot);
+}
+
+Ambient AmbientEstimator::next(const Glance& glance,
+                               const projection::Sight& sight,
+                               const std::optional<PixelBox>& near,
+                               bool begins_shot) {
+  if (!reads_pictures()) return with_scene({});
+  follow_rays(glance.size, sight);
+  const std::vector<Block> blocks =
+      blocks_of(glance, own_aircraft_, rays_, sight.cam_from_world.rotation.conjugate(), near);
   std::vector<Rgb> colours;
   colours.reserve(blocks.size());
   for (const Block& block : blocks) colours.push_back(block.linear);
@@ -424,12 +442,11 @@ Ambient AmbientEstimator::next(const image::Picture& picture,
   return with_scene(*smooth_);
 }
 
-void AmbientEstimator::follow_rays(const image::Picture& picture, const projection::Sight& sight) {
+void AmbientEstimator::follow_rays(const lens::ImageSize& size, const projection::Sight& sight) {
   const Homography nominal_from_frame = sight.frame_from_nominal.inverse();
-  const lens::ImageSize size{picture.width, picture.height};
   check(rays_.empty() || size == rays_size_, "frames keep their size");
   if (!rays_.empty() && nominal_from_frame == rays_nominal_from_frame_) return;
-  rays_ = rays_of(picture, *sight.lens, nominal_from_frame);
+  rays_ = rays_of(size, *sight.lens, nominal_from_frame);
   rays_nominal_from_frame_ = nominal_from_frame;
   rays_size_ = size;
 }

@@ -51,6 +51,13 @@ struct Ambient {
   }
 };
 
+// All that the estimator reads of a picture: the linear light in the middle of each of its blocks.
+struct Glance {
+  lens::ImageSize size;
+  std::vector<std::array<float, 3>> linear;
+};
+Glance glance_at(const image::Picture& picture, const image::ToneCurve& tone);
+
 class AmbientEstimator {
  public:
   AmbientEstimator(const scene::Light& light,
@@ -64,10 +71,17 @@ class AmbientEstimator {
                const projection::Sight& sight,
                const std::optional<PixelBox>& near,
                bool begins_shot = false);
+  // The same for one who keeps what was read of the pictures.
+  Ambient next(const Glance& glance,
+               const projection::Sight& sight,
+               const std::optional<PixelBox>& near,
+               bool begins_shot = false);
+  // False where the scene states all of the light, so that no picture is read.
+  bool reads_pictures() const;
 
  private:
   Ambient with_scene(Ambient measured) const;
-  void follow_rays(const image::Picture& picture, const projection::Sight& sight);
+  void follow_rays(const lens::ImageSize& size, const projection::Sight& sight);
   void follow_exposure(const std::vector<std::array<float, 3>>& blocks);
 
   scene::Light light_;

@@ -522,14 +522,17 @@ bool needs_calibration(const scene::Scene& scene) {
   return fill_from_file(filled, file);
 }
 
-void calibrate_ahead(const scene::Scene& scene, const Options& options) {
-  if (!needs_calibration(scene)) return;
+camera_file::Calibration calibration_of(const scene::Scene& scene, const Options& options) {
   scene::Scene filled = scene;
   const video::StreamInfo info = video::Reader(scene.background.video, {}, options.warn).info();
   const lens::ImageSize size{info.width, info.height};
   if (scene.realism.file) fill_from_file(filled, file_of(scene, size));
   const auto mask = insertion::read_mask(scene, size);
-  measured_on(filled, size, mask ? &*mask : nullptr, *inputs_of(options), options);
+  return measured_on(filled, size, mask ? &*mask : nullptr, *inputs_of(options), options);
+}
+
+void calibrate_ahead(const scene::Scene& scene, const Options& options) {
+  if (needs_calibration(scene)) calibration_of(scene, options);
 }
 
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/camera_file/calibration.h"
 #include "camera/lens/lens.h"
 #include "foundation/base/log.h"
 #include "foundation/image/layer.h"
@@ -118,6 +119,10 @@ void measure_ahead(const scene::Scene& scene, const Options& options);
 // True where the scene asks for camera values that neither the scene nor its camera file states.
 // They are measured on the whole clip, whatever part of it the scene uses.
 bool needs_calibration(const scene::Scene& scene);
+
+// The calibration of the scene's background, whatever the scene states: from the cache, else
+// measured on the whole clip, which takes long.
+camera_file::Calibration calibration_of(const scene::Scene& scene, const Options& options);
 
 // Calibrates the scene's background and stores the result in the cache, unless the cache holds it
 // already. Does nothing where the scene needs no calibration.

@@ -7,6 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "scene/scene/tables.h"
 #include "studio/document/splice.h"
 #include "studio/document/tree.h"
@@ -29,6 +30,17 @@ fs::file_time_type time_of(const fs::path& file) {
   std::error_code error;
   const auto time = fs::last_write_time(file, error);
   return error ? fs::file_time_type{} : time;
+}
+
+std::vector<TablePlace> tables_in(const Node& root, const std::string& text) {
+  std::vector<TablePlace> tables;
+  for (const char* array : {"intruder", "distractor"}) {
+    const Node* node = root.member(array);
+    for (std::size_t i = 0; node != nullptr && i < node->elements.size(); ++i)
+      tables.push_back(
+          {array, i, line_of(text, static_cast<std::ptrdiff_t>(node->elements[i].begin))});
+  }
+  return tables;
 }
 
 }  // namespace
@@ -62,7 +74,9 @@ void Document::recover() {
 void Document::take() {
   ++revision_;
   try {
-    values_ = tree_of(text(), file_.string()).values;
+    Tree tree = tree_of(text(), file_.string());
+    tables_ = tables_in(tree.root, text());
+    values_ = std::move(tree.values);
   } catch (const Error&) {
     values_ = nullptr;  // the page keeps what it had
   }

@@ -17,6 +17,13 @@
 // A scene file that is being edited: its text, the steps back to its beginning, and the file.
 namespace airtruth::document {
 
+// Where a table of an array begins in the text, by which all that reads the scene names it.
+struct TablePlace {
+  std::string array;
+  std::size_t index = 0;
+  int line = 0;
+};
+
 class Document {
  public:
   // Reads the file and takes up what an earlier process left in the journal, with a word to `warn`.
@@ -31,6 +38,9 @@ class Document {
   // Empty where the text is no scene; problem() then says why.
   const std::optional<scene::Scene>& scene() const { return scene_; }
   const std::string& problem() const { return problem_; }
+
+  // The tables of [[intruder]] and [[distractor]].
+  const std::vector<TablePlace>& tables() const { return tables_; }
 
   // All changes or none. With the `merge` of the edit before, both are one step of undo. Throws
   // Error where a change cannot be made.
@@ -73,6 +83,7 @@ class Document {
   std::optional<scene::Scene> scene_;
   std::string problem_;
   nlohmann::ordered_json values_;
+  std::vector<TablePlace> tables_;
 };
 
 }  // namespace airtruth::document

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/clip.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
+#include "foundation/image/cuts.h"
+#include "sequence/pipeline/resolved_scene.h"
+#include "show/drawing/draw.h"
+#include "studio/session/jpeg.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace airtruth::session {
+namespace {
+
+// Decoded frames that are kept: some 200 of 1280 x 960.
+constexpr std::size_t kMostBytes = std::size_t{400} << 20;
+// Farther ahead a new reader from the key frame before is faster: the usual distance of key frames.
+constexpr std::int64_t kReadOn = 100;
+// A step back is often one of several.
+constexpr std::int64_t kReadBefore = 12;
+// Glances, each of some 20 kB, and thumbnails that are kept.
+constexpr std::size_t kMostGlances = 4000;
+constexpr std::size_t kMostThumbnails = 1000;
+
+std::size_t bytes_of(const image::Picture& picture) {
+  std::size_t bytes = 0;
+  for (int i = 0; i < picture.plane_count; ++i) {
+    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
+    bytes += static_cast<std::size_t>(plane.stride) * static_cast<std::size_t>(plane.height);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Clip::Clip(const scene::Background& background, pipeline::Options options)
+    : options_(std::move(options)) {
+  scene_.background = background;
+  reader_.emplace(open(0));
+  info_ = reader_->info();
+}
+
+std::int64_t Clip::frame_count() const {
+  const std::int64_t left =
+      std::max<std::int64_t>(1, info_.frame_count_estimate - scene_.background.first_frame);
+  const std::int64_t stated = std::min(left, scene_.background.frame_count.value_or(left));
+  return end_ ? std::min(stated, *end_) : stated;
+}
+
+video::Reader Clip::open(std::int64_t first) const {
+  scene::Scene from = scene_;
+  from.background.first_frame += first;
+  if (from.background.frame_count)
+    from.background.frame_count = std::max<std::int64_t>(1, *from.background.frame_count - first);
+  return pipeline::open_background(from, options_);
+}
+
+std::shared_ptr<const video::Frame> Clip::frame(std::int64_t k) {
+  if (const auto found = places_.find(k); found != places_.end()) {
+    kept_.splice(kept_.begin(), kept_, found->second);
+    return found->second->second;
+  }
+  if (k < 0 || (end_ && k >= *end_) ||
+      (scene_.background.frame_count && k >= *scene_.background.frame_count))
+    throw Error(fmt::format("has no frame {}; expected 0 to {}", k, frame_count() - 1),
+                {scene_.background.video.string()});
+  if (!first_pts_) read_on();
+  if (!reader_ || k < next_ || k > next_ + kReadOn) seek(k);
+  while (next_ <= k)
+    if (!read_on()) {
+      end_ = next_;
+      reader_.reset();
+      throw Error(fmt::format("has no frame {}; it ends after {}", k, next_),
+                  {scene_.background.video.string()});
+    }
+  return places_.at(k)->second;
+}
+
+// A reader that begins in the middle does not know the cuts of its first frames.
+void Clip::seek(std::int64_t k) {
+  const std::int64_t wanted = k < next_ ? k - kReadBefore : k;
+  const std::int64_t first = std::max<std::int64_t>(0, wanted - image::kCutNeighbours - 1);
+  reader_.emplace(open(first));
+  next_ = first;
+  first_sure_ = first == 0 ? 0 : std::max<std::int64_t>(0, wanted);
+}
+
+bool Clip::read_on() {
+  auto read = reader_->next();
+  if (!read) return false;
+  const std::int64_t k = next_++;
+  if (!first_pts_) first_pts_ = read->pts;
+  // Numbered pictures count from the reader's first one.
+  const bool is_counted = k == read->index || read->pts > *first_pts_;
+  read->time_s = is_counted ? static_cast<double>(read->pts - *first_pts_) * info_.time_base.value()
+                            : static_cast<double>(k) / rate_hz();
+  read->index = k;
+  if (k >= first_sure_) keep(k, std::make_shared<const video::Frame>(std::move(*read)));
+  return true;
+}
+
+void Clip::keep(std::int64_t k, std::shared_ptr<const video::Frame> frame) {
+  if (places_.count(k) > 0) return;
+  seen_[k] = {frame->time_s, frame->begins_shot};
+  bytes_ += bytes_of(frame->picture);
+  if (glances_.count(k) == 0) {
+    if (glances_.size() >= kMostGlances) glances_.clear();
+    glances_[k] = insertion::glance_at(frame->picture, tone_);
+  }
+  kept_.emplace_front(k, std::move(frame));
+  places_[k] = kept_.begin();
+  while (bytes_ > kMostBytes && kept_.size() > 1) {
+    bytes_ -= bytes_of(kept_.back().second->picture);
+    places_.erase(kept_.back().first);
+    kept_.pop_back();
+  }
+}
+
+const insertion::Glance& Clip::glance(std::int64_t k, const image::ToneCurve& tone) {
+  if (tone.gamma != tone_.gamma) {
+    glances_.clear();
+    tone_ = tone;
+  }
+  if (const auto found = glances_.find(k); found != glances_.end()) return found->second;
+  const auto picture = frame(k);
+  const auto [place, is_new] = glances_.try_emplace(k);
+  if (is_new) place->second = insertion::glance_at(picture->picture, tone_);
+  return place->second;
+}
+
+std::string Clip::thumbnail(std::int64_t k, int width) {
+  if (const auto found = thumbnails_.find({k, width}); found != thumbnails_.end())
+    return found->second;
+  std::optional<video::Frame> read;
+  const auto known = places_.find(k);
+  if (known == places_.end()) {
+    if (!small_) small_.emplace(open(0));
+    read = small_->at(static_cast<double>(k) / rate_hz());
+    if (!read)
+      throw Error(fmt::format("has no frame {}", k), {scene_.background.video.string()});
+  }
+  const image::Picture& picture =
+      read ? read->picture : known->second->second->picture;
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+  const int height = std::max(
+      1, static_cast<int>(std::lround(static_cast<double>(rgb.height) * width / rgb.width)));
+  if (thumbnails_.size() >= kMostThumbnails) thumbnails_.clear();
+  return thumbnails_[{k, width}] =
+             jpeg_of(drawing::resized(rgb, width, height, cv::INTER_AREA));
+}
+
+}  // namespace airtruth::session

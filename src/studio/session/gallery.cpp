@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/gallery.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "aircraft/fleet/fleet.h"
+#include "aircraft/fleet/scale.h"
+#include "foundation/base/error.h"
+#include "scene/scene/distractor.h"
+#include "sequence/demo/aircraft_sheet.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
+#include "studio/session/jpeg.h"
+
+namespace airtruth::session {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostPictures = 2000;  // of some 5 kB
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : static_cast<char>(c);
+  });
+  return text;
+}
+
+bool contains(const std::string& text, const std::string& lower_word) {
+  return lower(text).find(lower_word) != std::string::npos;
+}
+
+// In the air; what is on the lens has no shape of its own.
+constexpr std::array kKinds = {scene::DistractorKind::kBird,
+                               scene::DistractorKind::kMultirotor,
+                               scene::DistractorKind::kBalloon};
+
+Json group_of(const std::string& type, const std::vector<std::string>& liveries) {
+  const fleet::PublishedSize* size = fleet::published_size(liveries.front());
+  const bool is_known = size != nullptr && size->is_known();
+  return {{"name", type},
+          {"kind", "aircraft"},
+          {"type", size != nullptr ? size->type : ""},
+          {"length_m", is_known ? Json(size->length_m) : Json()},
+          {"span_m", is_known ? Json(size->span_m) : Json()},
+          {"picture", liveries.front()},
+          {"liveries", liveries}};
+}
+
+scene::Intruder distractor_of(scene::DistractorKind kind) {
+  scene::Intruder intruder;
+  intruder.aircraft = enum_name(kind);
+  intruder.distractor = scene::usual_distractor(kind, scene::usual_size_m(kind));
+  return intruder;
+}
+
+}  // namespace
+
+Json Gallery::groups(const std::string& word) {
+  const std::string wanted = lower(word);
+  std::vector<std::pair<std::string, std::vector<std::string>>> types;
+  for (const fleet::Entry& entry : fleet::list_aircraft()) {
+    const std::string type = entry.name.substr(0, entry.name.find('/'));
+    if (types.empty() || types.back().first != type) types.push_back({type, {}});
+    types.back().second.push_back(entry.name);
+  }
+  Json groups = Json::array();
+  for (const scene::DistractorKind kind : kKinds)
+    if (contains(enum_name(kind), wanted))
+      groups.push_back({{"name", enum_name(kind)},
+                        {"kind", enum_name(kind)},
+                        {"type", enum_name(kind)},
+                        {"length_m", nullptr},
+                        {"span_m", nullptr},
+                        {"picture", enum_name(kind)},
+                        {"liveries", Json::array()}});
+  for (const auto& [type, all] : types) {
+    const fleet::PublishedSize* size = fleet::published_size(all.front());
+    const bool is_whole =
+        contains(type, wanted) || (size != nullptr && contains(size->type, wanted));
+    std::vector<std::string> liveries;
+    for (const std::string& name : all)
+      if (is_whole || contains(name, wanted)) liveries.push_back(name);
+    if (!liveries.empty()) groups.push_back(group_of(type, liveries));
+  }
+  return {{"groups", groups}};
+}
+
+std::optional<std::string> Gallery::picture(const std::string& name, const std::stop_token& stop) {
+  if (const auto found = pictures_.find(name); found != pictures_.end()) return found->second;
+  fleet::Aircraft aircraft;
+  const auto kind = std::find_if(
+      kKinds.begin(), kKinds.end(), [&](scene::DistractorKind one) { return enum_name(one) == name; });
+  if (kind != kKinds.end()) {
+    aircraft =
+        *setup::aircraft_of(distractor_of(*kind), setup::camera_path(scene::Camera{}), {}, stop);
+  } else {
+    const std::vector<fleet::Entry> all = fleet::list_aircraft();
+    if (std::none_of(
+            all.begin(), all.end(), [&](const fleet::Entry& one) { return one.name == name; }))
+      return std::nullopt;
+    model::LoadOptions options;
+    options.stop = stop;
+    aircraft = fleet::load_aircraft(name, options, {});
+  }
+  if (pictures_.size() >= kMostPictures) pictures_.clear();
+  return pictures_[name] = jpeg_of(demo::aircraft_tile(aircraft));
+}
+
+}  // namespace airtruth::session

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace airtruth::session {
+
+// What can be put into a scene, with pictures. Of one thread.
+class Gallery {
+ public:
+  // {"groups": [{"name", "kind", "type", "length_m", "span_m", "picture", "liveries": [...]}]}:
+  // the types whose name, or whose published type, contains the word; letter case does not matter.
+  // Birds, multirotors and balloons are groups of their own, without liveries.
+  nlohmann::ordered_json groups(const std::string& word);
+
+  // A picture of 150 x 150 px as JPEG. `name`: a livery, or a kind of distractor. Empty where the
+  // gallery has none of that name.
+  std::optional<std::string> picture(const std::string& name, const std::stop_token& stop);
+
+ private:
+  std::map<std::string, std::string> pictures_;
+};
+
+}  // namespace airtruth::session

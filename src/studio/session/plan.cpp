@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "encounter/passage/passage.h"
+#include "foundation/base/error.h"
+#include "labels/projection/exact_box.h"
+#include "sequence/preview/rows.h"
+#include "sequence/setup/flyable.h"
+#include "sequence/setup/moment.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::session {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Points of a drawn path, at most: one for every few pixels of the page.
+constexpr std::int64_t kMostPoints = 300;
+
+// Of numbers that are drawn: shorter, and as exact as a screen can show.
+double rounded(double value, double step) { return std::round(value / step) * step; }
+double hundredths(double value) { return rounded(value, 0.01); }
+
+Json ned(const Vector3& p) { return {hundredths(p.x()), hundredths(p.y()), hundredths(p.z())}; }
+Json box_json(const Box& box) {
+  return {hundredths(box.x), hundredths(box.y), hundredths(box.width), hundredths(box.height)};
+}
+
+// The moments of the frames at which paths have their points.
+struct Sampled {
+  std::vector<std::int64_t> frames;
+  std::vector<setup::Moment> moments;
+};
+
+Sampled sampled(const Stage& stage, std::int64_t count) {
+  Sampled result;
+  const std::int64_t step = std::max<std::int64_t>(1, (count + kMostPoints - 1) / kMostPoints);
+  for (std::int64_t k = 0; k < count; k += step) result.frames.push_back(k);
+  if (result.frames.back() != count - 1) result.frames.push_back(count - 1);
+  for (const std::int64_t k : result.frames)
+    result.moments.push_back(
+        setup::moment_at(stage.world(), k, stage.time_s(k), stage.shake_at(k)));
+  return result;
+}
+
+// The two ends of the horizon where it crosses the picture's surroundings; empty where the camera
+// does not see it.
+std::optional<std::array<double, 4>> horizon_in(const setup::Moment& moment) {
+  // Directions around the compass.
+  constexpr int kDirections = 72;
+  constexpr double kFar_m = 1e7;
+  const Vector3 own = moment.camera.position_in_world;
+  const lens::ImageSize size = moment.sight.lens->size();
+  std::optional<std::pair<double, Pixel>> left, right;  // by the angle from the camera's axis
+  const Vector3 axis = moment.sight.cam_from_world.rotation.conjugate() * Vector3(0, 0, 1);
+  const double heading = std::atan2(axis.y(), axis.x());
+  for (int i = -kDirections / 2; i <= kDirections / 2; ++i) {
+    const double angle = i * kPi / kDirections;
+    const double azimuth = heading + angle;
+    const auto pixel = projection::pixel_from_world(
+        moment.sight, own + kFar_m * Vector3(std::cos(azimuth), std::sin(azimuth), 0));
+    if (!pixel || std::abs(pixel->x() - size.width / 2.0) > 2 * size.width ||
+        std::abs(pixel->y() - size.height / 2.0) > 2 * size.height)
+      continue;
+    if (!left) left = {angle, *pixel};
+    right = {angle, *pixel};
+  }
+  if (!left || right->first <= left->first) return std::nullopt;
+  return std::array{left->second.x(), left->second.y(), right->second.x(), right->second.y()};
+}
+
+// The sentences of the command line that are about each table, by the table's line.
+std::map<int, std::vector<std::string>> checks_of(const Stage& stage) {
+  std::map<int, std::vector<std::string>> checks;
+  const scene::Scene& scene = stage.scene();
+  for (std::size_t i = 0; i < scene.intruders.size(); ++i) {
+    std::vector<std::string>& lines = checks[scene.intruders[i].where.line];
+    const std::string words = setup::words_beyond_limits(
+        scene.intruders[i].aircraft, stage.world().actors[i].path, 0, stage.duration_s());
+    if (!words.empty() && lines.empty()) lines.push_back(words);
+  }
+  for (const scene::Intruder& intruder : scene.intruders) {
+    std::vector<std::string>& lines = checks[intruder.where.line];
+    setup::warn_below_ground(
+        scene, stage.world(), stage.duration_s(), [&](const std::string& line) {
+          // "scene.toml:12:1: intruder 'a' is ..."
+          const std::string place = to_string(intruder.where) + ": ";
+          if (!line.starts_with(place)) return;
+          const std::string words = line.substr(place.size());
+          if (std::find(lines.begin(), lines.end(), words) == lines.end()) lines.push_back(words);
+        });
+  }
+  return checks;
+}
+
+Json cpa_of(const std::optional<passage::Approach>& closest) {
+  if (!closest) return nullptr;
+  return {{"time_s", rounded(closest->time_s, 1e-3)},
+          {"right_m", hundredths(closest->offset.right_m)},
+          {"above_m", hundredths(closest->offset.above_m)},
+          {"ahead_m", hundredths(closest->offset.ahead_m)},
+          {"distance_m", hundredths(closest->distance_m)}};
+}
+
+class Planner {
+ public:
+  Planner(Stage& stage, const std::vector<document::TablePlace>& tables, std::int64_t frame_count)
+      : stage_(stage),
+        tables_(tables),
+        sampled_(sampled(stage, frame_count)),
+        checks_(checks_of(stage)) {}
+
+  Json plan() const {
+    Json own = Json::array();
+    Json horizon = Json::array();
+    for (std::size_t i = 0; i < sampled_.frames.size(); ++i) {
+      own.push_back(ned(sampled_.moments[i].camera.position_in_world));
+      if (const auto line = horizon_in(sampled_.moments[i]))
+        horizon.push_back({sampled_.frames[i],
+                           {hundredths((*line)[0]),
+                            hundredths((*line)[1]),
+                            hundredths((*line)[2]),
+                            hundredths((*line)[3])}});
+    }
+    const setup::Moment& first = sampled_.moments.front();
+    Json tracks = Json::array();
+    const auto parties = preview::parties_of(stage_.scene());
+    const std::vector<std::string> approaches = approach_words(parties);
+    for (std::size_t i = 0; i < parties.size(); ++i)
+      tracks.push_back(track(parties[i], approaches[i]));
+    return {{"revision", stage_.revision()},
+            {"complete", stage_.is_complete()},
+            {"frames", sampled_.frames},
+            {"own",
+             {{"ned", own},
+              {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
+              {"attitude", stage_.attitude_words()}}},
+            {"horizontal_fov_deg", hundredths(view_deg())},
+            {"sun", {{"azimuth_deg", stage_.scene().light.sun_azimuth_deg},
+                     {"elevation_deg", stage_.scene().light.sun_elevation_deg}}},
+            {"tracks", tracks},
+            {"horizon", horizon},
+            {"volumes", volumes()},
+            {"warnings", stage_.warnings()}};
+  }
+
+ private:
+  std::vector<std::string> approach_words(const std::vector<preview::Party>& parties) const {
+    std::vector<preview::PreviewRow> rows;
+    for (std::size_t p = 0; p < parties.size(); ++p)
+      for (const setup::Moment& moment : sampled_.moments)
+        for (const std::size_t actor : parties[p].actors)
+          if (moment.search[actor]) {
+            preview::PreviewRow row;
+            row.party = p;
+            row.box_px = moment.boxes[actor].box;
+            rows.push_back(row);
+            break;
+          }
+    return preview::approach_lines(stage_.world(), parties, rows, stage_.duration_s());
+  }
+
+  Json track(const preview::Party& party, const std::string& approach) const {
+    const setup::Actor& actor = stage_.world().actors[party.middle];
+    const scene::Intruder& stated = stage_.scene().intruders[party.middle];
+    const Json table = table_at(tables_, stated.where.line);
+    Json points = Json::array();
+    Json positions = Json::array();
+    for (const setup::Moment& moment : sampled_.moments) {
+      const auto& state = moment.states[party.middle];
+      positions.push_back(state ? ned(state->position_in_world) : Json());
+      if (state) points.push_back(point(moment, party.middle));
+    }
+    const auto closest = passage::closest_approach(
+        stage_.world().camera, actor.path, 0, stage_.duration_s());
+    Json checks = Json::array();
+    if (const auto found = checks_.find(stated.where.line); found != checks_.end())
+      for (const std::string& line : found->second) checks.push_back(line);
+    const std::size_t never = approach.find("never in view");
+    if (never != std::string::npos || approach.find("not in the world") != std::string::npos)
+      checks.push_back(approach);
+    return {{"table", table},
+            {"id", party.name},
+            {"aircraft", actor.aircraft},
+            {"class", actor.object_class},
+            {"count", party.actors.size()},
+            {"points", points},
+            {"ned", positions},
+            {"handles", handles(table, party.middle)},
+            {"cpa", cpa_of(closest)},
+            {"approach", approach},
+            {"violations", violations(actor)},
+            {"checks", checks}};
+  }
+
+  // [frame, x, y, range_m, width_px, visible]
+  static Json point(const setup::Moment& moment, std::size_t actor) {
+    const Vector3& place = moment.states[actor]->position_in_world;
+    const auto pixel = projection::pixel_from_world(moment.sight, place);
+    const auto& box = moment.boxes[actor].box;
+    return {moment.frame,
+            pixel ? Json(hundredths(pixel->x())) : Json(),
+            pixel ? Json(hundredths(pixel->y())) : Json(),
+            hundredths((place - moment.camera.position_in_world).norm()),
+            box ? Json(hundredths(box->width)) : Json(),
+            moment.search[actor].has_value()};
+  }
+
+  // The moments of [[intruder.seen]] as the path has them.
+  Json handles(const Json& table, std::size_t actor) const {
+    Json result = Json::array();
+    if (!table.is_array()) return result;
+    const auto& seen = stage_.stated_seen(actor);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const auto frame = static_cast<std::int64_t>(
+          std::llround(seen[i].time_s * stage_.clip_rate_hz()));
+      const setup::Moment moment = setup::moment_at(
+          stage_.world(), frame, stage_.time_s(frame), stage_.shake_at(frame));
+      Json path = table;
+      path.push_back("seen");
+      path.push_back(i);
+      const auto& state = moment.states[actor];
+      const auto& box = moment.boxes[actor].box;
+      result.push_back(
+          {{"path", path},
+           {"frame", frame},
+           {"time_s", seen[i].time_s},
+           {"pixel", {seen[i].pixel.x(), seen[i].pixel.y()}},
+           {"range_m",
+            state ? Json(hundredths(
+                        (state->position_in_world - moment.camera.position_in_world).norm()))
+                  : Json()},
+           {"width_px", box ? Json(hundredths(box->width)) : Json()}});
+    }
+    return result;
+  }
+
+  Json violations(const setup::Actor& actor) const {
+    Json result = Json::array();
+    for (const auto& [name, volume] : stage_.world().volumes)
+      for (const separation::Interval& time :
+           passage::violations(volume, stage_.world().camera, actor.path, 0, stage_.duration_s()))
+        result.push_back({{"volume", name},
+                          {"begin_s", rounded(time.begin_s, 1e-3)},
+                          {"end_s", rounded(time.end_s, 1e-3)}});
+    return result;
+  }
+
+  Json volumes() const {
+    Json result = Json::array();
+    for (const auto& [name, volume] : stage_.world().volumes)
+      result.push_back({{"name", name},
+                        {"horizontal_m", volume.horizontal_m},
+                        {"vertical_m", volume.vertical_m},
+                        {"tau_s", volume.tau_s}});
+    return result;
+  }
+
+  // Between the middles of the left and the right edge.
+  double view_deg() const {
+    const lens::Lens& lens = stage_.world().lens;
+    const auto ray = [&](double x) { return lens.ray_from_pixel({x, lens.size().height / 2.0}); };
+    const auto left = ray(0.5), right = ray(lens.size().width - 0.5);
+    if (!left || !right) return 180;
+    return degrees(std::acos(std::clamp(left->normalized().dot(right->normalized()), -1.0, 1.0)));
+  }
+
+  Stage& stage_;
+  const std::vector<document::TablePlace>& tables_;
+  Sampled sampled_;
+  std::map<int, std::vector<std::string>> checks_;
+};
+
+}  // namespace
+
+Json table_at(const std::vector<document::TablePlace>& tables, int line) {
+  const auto found = std::find_if(
+      tables.begin(), tables.end(), [&](const document::TablePlace& table) { return table.line == line; });
+  return found == tables.end() ? Json() : Json{found->array, found->index};
+}
+
+Json plan_of(Stage& stage, const std::vector<document::TablePlace>& tables) {
+  return Planner(stage, tables, stage.frame_count()).plan();
+}
+
+Json boxes_of(const Stage& stage,
+              const setup::Moment& moment,
+              const std::vector<document::TablePlace>& tables) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < moment.search.size(); ++i) {
+    if (!moment.search[i] || !moment.boxes[i].box) continue;
+    result.push_back({{"table", table_at(tables, stage.scene().intruders[i].where.line)},
+                      {"id", stage.world().actors[i].id},
+                      {"box", box_json(*moment.boxes[i].box)},
+                      {"range_m",
+                       hundredths((moment.states[i]->position_in_world -
+                                   moment.camera.position_in_world)
+                                      .norm())}});
+  }
+  return result;
+}
+
+}  // namespace airtruth::session

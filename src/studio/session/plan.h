@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "studio/document/document.h"
+#include "studio/session/stage.h"
+
+namespace airtruth::session {
+
+// ["intruder", 0] of what stands at that line; null where no table begins there.
+nlohmann::ordered_json table_at(const std::vector<document::TablePlace>& tables, int line);
+
+// The paths of all that flies, as the page draws them: docs/how-to/studio.md has the members. Of a
+// flock the path of its middle stands for all.
+nlohmann::ordered_json plan_of(Stage& stage, const std::vector<document::TablePlace>& tables);
+
+// The exact boxes in one frame, of each that is in view: {"table", "id", "box", "range_m"}.
+nlohmann::ordered_json boxes_of(const Stage& stage,
+                                const setup::Moment& moment,
+                                const std::vector<document::TablePlace>& tables);
+
+}  // namespace airtruth::session

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/request.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "foundation/base/error.h"
+#include "foundation/json/json_object.h"
+
+namespace airtruth::session {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kMostChanges = 200;
+constexpr std::int64_t kMostFrames = 100'000'000;
+constexpr int kMostPx = 65536;
+// A change of a scene is nested far less; deeper texts would exhaust a thread's stack.
+constexpr int kMostDepth = 32;
+constexpr std::size_t kMostWord = 200;
+
+bool is_too_deep(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kMostDepth) return true;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+  return false;
+}
+
+Json parsed(std::string_view text) {
+  if (text.size() > kMostRequestBytes)
+    throw Error(fmt::format("the message has {} bytes; expected at most 64 KiB", text.size()));
+  if (is_too_deep(text)) throw Error("the message is nested too deep");
+  Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object())
+    throw Error("the message is no JSON object; expected {\"id\": 7, \"do\": \"open\"}");
+  return json;
+}
+
+std::string word(const JsonObject& message, const std::string& key) {
+  std::string text = message.maybe_text(key).value_or("");
+  if (text.size() > kMostWord)
+    throw Error(fmt::format("{} has {} bytes; expected at most {}", key, text.size(), kMostWord));
+  return text;
+}
+
+std::vector<document::Change> changes_in(const Json& json) {
+  if (!json.contains("changes") || !json["changes"].is_array())
+    throw Error("edit has no \"changes\"; expected an array");
+  const Json& list = json["changes"];
+  if (list.size() > kMostChanges)
+    throw Error(fmt::format("edit has {} changes; expected at most {}", list.size(), kMostChanges));
+  std::vector<document::Change> changes;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    changes.push_back(document::change_from(list[i], fmt::format("changes[{}]", i)));
+  return changes;
+}
+
+void take_frame(Request& request, const JsonObject& message) {
+  request.frame = message.whole("frame", 0, kMostFrames);
+  request.aircraft = message.maybe_truth("aircraft").value_or(true);
+  request.scale = message.maybe_number("scale").value_or(1);
+  if (!(request.scale >= 0.05 && request.scale <= 1)) message.fail("scale", "0.05 to 1");
+  if (!message.has("crop")) return;
+  if (message.value("crop").is_string()) {
+    if (message.text("crop") != "change") message.fail("crop", "[x, y, w, h], \"change\" or null");
+    request.crops_to_change = true;
+    return;
+  }
+  const std::vector<double> box = message.numbers("crop", 4);
+  if (!std::all_of(box.begin(), box.end(), [](double v) { return v >= 0 && v <= kMostPx; }))
+    message.fail("crop", fmt::format("numbers from 0 to {}", kMostPx));
+  request.crop = pixels_of({box[0], box[1], box[2], box[3]});
+}
+
+std::vector<std::string> keys_of(Act act) {
+  switch (act) {
+    case Act::kEdit:
+      return {"id", "do", "changes", "merge"};
+    case Act::kSave:
+      return {"id", "do", "replace"};
+    case Act::kFrame:
+      return {"id", "do", "frame", "aircraft", "crop", "scale"};
+    case Act::kAircraft:
+      return {"id", "do", "search"};
+    default:
+      return {"id", "do"};
+  }
+}
+
+}  // namespace
+
+std::optional<std::int64_t> id_of(std::string_view text) {
+  if (text.size() > kMostRequestBytes || is_too_deep(text)) return std::nullopt;
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("id") || !json["id"].is_number_integer())
+    return std::nullopt;
+  return json["id"].get<std::int64_t>();
+}
+
+Request request_from(std::string_view text) {
+  const Json json = parsed(text);
+  const JsonObject message(json, {});
+  Request request;
+  request.id = message.whole("id");
+  const std::string what = message.text("do");
+  const auto act = enum_named<Act>(what);
+  if (!act) message.fail("do", fmt::format("one of {}", fmt::join(all_enum_names<Act>(), ", ")));
+  request.act = *act;
+  message.expect_keys_among(keys_of(*act));
+  if (*act == Act::kEdit) {
+    request.changes = changes_in(json);
+    request.merge = word(message, "merge");
+  }
+  if (*act == Act::kSave) request.replace = message.maybe_truth("replace").value_or(false);
+  if (*act == Act::kFrame) take_frame(request, message);
+  if (*act == Act::kAircraft) request.search = word(message, "search");
+  return request;
+}
+
+}  // namespace airtruth::session

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "foundation/base/names.h"
+#include "foundation/geometry/box.h"
+#include "studio/document/change.h"
+
+namespace airtruth::session {
+
+enum class Act {
+  kOpen,
+  kEdit,
+  kUndo,
+  kRedo,
+  kSave,
+  kReload,
+  kFrame,
+  kPlan,
+  kAircraft,
+  kCalibrate,
+  kRender,
+  kCancel
+};
+constexpr auto enum_names(Act) {
+  return std::to_array<EnumName<Act>>({{Act::kOpen, "open"},
+                                       {Act::kEdit, "edit"},
+                                       {Act::kUndo, "undo"},
+                                       {Act::kRedo, "redo"},
+                                       {Act::kSave, "save"},
+                                       {Act::kReload, "reload"},
+                                       {Act::kFrame, "frame"},
+                                       {Act::kPlan, "plan"},
+                                       {Act::kAircraft, "aircraft"},
+                                       {Act::kCalibrate, "calibrate"},
+                                       {Act::kRender, "render"},
+                                       {Act::kCancel, "cancel"}});
+}
+
+// What a page asks for in one message: {"id": 7, "do": "...", ...}.
+struct Request {
+  std::int64_t id = 0;
+  Act act = Act::kOpen;
+  // edit
+  std::vector<document::Change> changes;
+  std::string merge;
+  // save
+  bool replace = false;
+  // frame
+  std::int64_t frame = 0;
+  bool aircraft = true;
+  std::optional<PixelBox> crop;
+  // The part of the picture that changed since the page's last picture of that frame.
+  bool crops_to_change = false;
+  double scale = 1;
+  // aircraft
+  std::string search;
+};
+
+inline constexpr std::size_t kMostRequestBytes = std::size_t{64} << 10;
+
+// The id of a message that has one, also where the rest of it is wrong; else empty.
+std::optional<std::int64_t> id_of(std::string_view text);
+
+// Throws Error where the text is no message of the page.
+Request request_from(std::string_view text);
+
+}  // namespace airtruth::session

@@ -1,0 +1,628 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/session.h"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "calibration/camera_file/calibration.h"
+#include "calibration/camera_file/quantities.h"
+#include "foundation/base/error.h"
+#include "foundation/base/unfinished.h"
+#include "labels/annotation/truth.h"
+#include "sequence/pipeline/render.h"
+#include "sequence/pipeline/resolved_scene.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/shared_inputs.h"
+#include "studio/session/gallery.h"
+#include "studio/session/job.h"
+#include "studio/session/jpeg.h"
+#include "studio/session/plan.h"
+#include "studio/session/request.h"
+#include "studio/session/stage.h"
+#include "studio/session/worker.h"
+
+namespace airtruth::session {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Urgency = Worker::Urgency;
+
+// Around what is drawn: the reach of lens and sharpening, and the blocks of a JPEG.
+constexpr int kMarginPx = 24;
+
+std::string ok(std::int64_t id, const Json& result) {
+  return Json{{"id", id}, {"ok", result}}.dump();
+}
+std::string error(std::int64_t id, const std::string& line) {
+  return Json{{"id", id}, {"error", line}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// Runs `act`, and hands the line of its fault to `fail`.
+template <typename Act, typename Fail>
+void try_to(const Act& act, const Fail& fail) {
+  try {
+    act();
+  } catch (const Interrupted&) {
+    fail("cancelled");
+  } catch (const Error& fault) {
+    fail(fault.what());
+  } catch (const std::exception& fault) {
+    fail(std::string(fault.what()) + " (this is a fault of airtruth; please report it)");
+  }
+}
+
+// A scene as it was at one time, for the other threads.
+struct Snapshot {
+  std::int64_t revision = 0;
+  std::optional<scene::Scene> scene;  // empty: the text is no scene
+  std::string problem;
+  scene::Background background;  // of the last text that was one
+  std::vector<document::TablePlace> tables;
+};
+
+// 4 bytes with the length of the header, the header, the JPEG.
+std::string framed(const Json& header, const std::string& jpeg) {
+  const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const auto size = static_cast<std::uint32_t>(text.size());
+  std::string bytes;
+  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((size >> shift) & 0xFFU);
+  return bytes + text + jpeg;
+}
+
+PixelBox even(PixelBox box, int width, int height) {
+  const int x = std::max(0, box.x) & ~1;
+  const int y = std::max(0, box.y) & ~1;
+  return {x,
+          y,
+          std::max(2, std::min(width, box.right()) - x),
+          std::max(2, std::min(height, box.bottom()) - y)};
+}
+
+PixelBox within(const PixelBox& box, const PixelBox& whole) {
+  return intersection(box, whole).value_or(
+      PixelBox{0, 0, std::min(2, whole.width), std::min(2, whole.height)});
+}
+
+Json values_of(const camera_file::Calibration& found) {
+  Json values = Json::array();
+  for (const camera_file::QuantityKey& key : camera_file::kQuantityKeys) {
+    const camera_file::Quantity& quantity = found.quantities.*key.member;
+    Json value, spread;
+    if (quantity.values.size() == 1) {
+      value = quantity.values[0].value;
+      spread = quantity.values[0].error;
+    } else if (!quantity.values.empty()) {
+      for (const auto& one : quantity.values) {
+        value.push_back(one.value);
+        spread.push_back(one.error);
+      }
+    }
+    values.push_back({{"key", key.name},
+                      {"value", value},
+                      {"error", spread},
+                      {"missing", quantity.missing},
+                      {"note", quantity.note}});
+  }
+  return values;
+}
+
+// [[frame, [{"id", "box"}]]]
+Json boxes_of_film(const fs::path& truth_file) {
+  Json frames = Json::array();
+  for (const annotation::Frame& frame : annotation::read_truth(truth_file).frames) {
+    Json boxes = Json::array();
+    for (const annotation::Intruder& intruder : frame.intruders)
+      if (intruder.state == annotation::State::kVisible && intruder.exact_box_px) {
+        const Box& box = *intruder.exact_box_px;
+        boxes.push_back({{"id", intruder.id}, {"box", {box.x, box.y, box.width, box.height}}});
+      }
+    if (!boxes.empty()) frames.push_back({frame.frame, boxes});
+  }
+  return frames;
+}
+
+}  // namespace
+
+class Session::Impl {
+ public:
+  Impl(std::unique_ptr<document::Document> document, Options options, Ways ways)
+      : document_(std::move(document)),
+        options_(std::move(options)),
+        ways_(std::move(ways)),
+        stage_(quiet(options_.pipeline)) {
+    publish();
+  }
+  ~Impl() {
+    stop_.request_stop();
+    motion_job_.cancel();
+    camera_job_.cancel();
+    asked_job_.cancel();
+  }
+
+  void take(Client client, const std::string& message) {
+    const std::int64_t id = id_of(message).value_or(0);
+    try_to([&] { answer(client, request_from(message)); },
+           [&](const std::string& line) { ways_.send(client, error(id, line)); });
+  }
+
+  void leave(Client client) {
+    worker_.add({Urgency::kFrame, "", [this, client] { shown_.erase(client); }, {}});
+  }
+
+  void tick() {
+    document_->flush();
+    if (document_->look_at_disk()) {
+      publish();
+      tell_state();
+    }
+  }
+
+  void thumbnail(std::int64_t frame, int width, Done done) {
+    small(std::move(done), [this, frame, width]() -> std::optional<std::string> {
+      return stage_.clip(snapshot()->background).thumbnail(frame, width);
+    });
+  }
+
+  void aircraft_picture(const std::string& name, Done done) {
+    small(std::move(done), [this, name] { return gallery_.picture(name, stop_.get_token()); });
+  }
+
+  fs::path original_film() const { return snapshot()->background.video; }
+  std::optional<fs::path> rendered_film() const { return rendered_; }
+
+ private:
+  pipeline::Options quiet(pipeline::Options options) const {
+    options.stop = stop_.get_token();
+    options.warn = {};
+    options.progress = {};
+    return options;
+  }
+
+  // On the owner's thread.
+
+  std::shared_ptr<const Snapshot> snapshot() const {
+    const std::lock_guard lock(mutex_);
+    return snapshot_;
+  }
+
+  void publish() {
+    auto next = std::make_shared<Snapshot>();
+    next->revision = document_->revision();
+    next->scene = document_->scene();
+    next->problem = document_->problem();
+    next->tables = document_->tables();
+    if (next->scene)
+      next->background = next->scene->background;
+    else if (snapshot_)
+      next->background = snapshot_->background;
+    const std::lock_guard lock(mutex_);
+    snapshot_ = std::move(next);
+  }
+
+  Json state() const {
+    Json state = document_->state();
+    const std::lock_guard lock(mutex_);
+    state["motion"] = motion_state_;
+    state["camera"] = camera_state_;
+    return state;
+  }
+  void tell(const Json& event) {
+    ways_.send_all(event.dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+  void tell_state() { tell({{"event", "state"}, {"state", state()}}); }
+
+  void answer(Client client, Request request) {
+    switch (request.act) {
+      case Act::kOpen:
+        return on_worker(client, request.id, Urgency::kPlan, [this] { return clip_facts(); });
+      case Act::kEdit:
+        return change(client, request.id, [&] {
+          document_->edit(request.changes, request.merge);
+        });
+      case Act::kUndo:
+        return change(client, request.id, [&] { document_->undo(); });
+      case Act::kRedo:
+        return change(client, request.id, [&] { document_->redo(); });
+      case Act::kSave:
+        return change(client, request.id, [&] { document_->save(request.replace); });
+      case Act::kReload:
+        return change(client, request.id, [&] { document_->reload(); });
+      case Act::kFrame:
+        return show(client, std::move(request));
+      case Act::kPlan:
+        return on_worker(client, request.id, Urgency::kPlan, [this] { return plan(); });
+      case Act::kAircraft:
+        return on_worker(client, request.id, Urgency::kList, [this, word = request.search] {
+          return gallery_.groups(word);
+        });
+      case Act::kCalibrate:
+        return calibrate(client, request.id);
+      case Act::kRender:
+        return render(client, request.id);
+      case Act::kCancel:
+        asked_job_.cancel();
+        return ways_.send(client, ok(request.id, Json::object()));
+    }
+  }
+
+  template <typename Act>
+  void change(Client client, std::int64_t id, const Act& act) {
+    const std::int64_t before = document_->revision();
+    act();
+    if (document_->revision() != before) publish();
+    ways_.send(client, ok(id, {{"state", state()}}));
+    tell_state();
+  }
+
+  // Answers with what `act` gives on the worker's thread.
+  template <typename Act>
+  void on_worker(Client client, std::int64_t id, Urgency urgency, Act act) {
+    worker_.add({urgency,
+                 "",
+                 [this, client, id, act] {
+                   std::string text;
+                   try_to([&] { text = ok(id, act()); },
+                          [&](const std::string& line) { text = error(id, line); });
+                   reply(client, std::move(text));
+                 },
+                 [this, client, id] { reply(client, error(id, "too many requests wait")); }});
+  }
+  void reply(Client client, std::string text) {
+    ways_.post([this, client, text = std::move(text)] { ways_.send(client, text); });
+  }
+
+  template <typename Act>
+  void small(Done done, Act act) {
+    worker_.add({Urgency::kSmallPicture,
+                 "",
+                 [this, done, act] {
+                   std::optional<std::string> jpeg;
+                   try_to([&] { jpeg = act(); }, [](const std::string&) {});
+                   ways_.post([done, jpeg = std::move(jpeg)]() mutable { done(std::move(jpeg)); });
+                 },
+                 [this, done] { ways_.post([done] { done(std::nullopt); }); }});
+  }
+
+  // On the worker's thread.
+
+  Json clip_facts() {
+    const auto shot = snapshot();
+    Clip& clip = stage_.clip(shot->background);
+    const video::StreamInfo& info = clip.info();
+    Json result = {{"file", document_file_},
+                   {"clip",
+                    {{"video", shot->background.video.filename().string()},
+                     {"width", info.width},
+                     {"height", info.height},
+                     {"frames", clip.frame_count()},
+                     {"rate_hz", clip.rate_hz()},
+                     {"first_frame", shot->background.first_frame},
+                     {"duration_s", static_cast<double>(clip.frame_count()) / clip.rate_hz()}}}};
+    return result;
+  }
+
+  // Sets the present scene up. Returns why it cannot be; "": it is.
+  std::string set_up(const Snapshot& shot) {
+    if (!shot.scene) return shot.problem;
+    std::string problem;
+    try_to([&] { stage_.set(shot.revision, *shot.scene, measured_); },
+           [&](const std::string& line) { problem = line; });
+    if (problem.empty()) measure(*shot.scene);
+    return problem;
+  }
+
+  Json plan() {
+    const auto shot = snapshot();
+    if (const std::string problem = set_up(*shot); !problem.empty()) throw Error(problem);
+    return plan_of(stage_, shot->tables);
+  }
+
+  void show(Client client, Request request) {
+    const std::int64_t id = request.id;
+    worker_.add({Urgency::kFrame,
+                 fmt::format("frame {}", client),
+                 [this, client, request] { draw(client, request, false); },
+                 [this, client, id] { reply(client, ok(id, {{"dropped", true}})); }});
+  }
+
+  void draw(Client client, const Request& request, bool exact) {
+    try_to([&] { draw_now(client, request, exact); },
+           [&](const std::string& line) {
+             if (!exact) reply(client, error(request.id, line));
+           });
+  }
+
+  void draw_now(Client client, const Request& request, bool exact) {
+    const auto shot = snapshot();
+    Clip& clip = stage_.clip(shot->background);
+    Json header = {{"id", request.id}, {"frame", request.frame}, {"revision", shot->revision}};
+    const std::string problem = request.aircraft ? set_up(*shot) : "";
+    std::optional<Stage::Picture> made;
+    Json boxes = Json::array();
+    if (request.aircraft && problem.empty()) {
+      made = stage_.picture(request.frame, exact, [this] {
+        return worker_.is_wanted_for(Urgency::kSmallPicture);
+      });
+      if (!made) return again_later(client, request);
+      boxes = boxes_of(stage_, made->moment, shot->tables);
+    }
+    const auto plain = made ? nullptr : clip.frame(request.frame);
+    const image::Picture& picture = made ? made->picture() : plain->picture;
+    const PixelBox crop = crop_of(client, request, picture, made ? &*made : nullptr);
+    const std::string jpeg = jpeg_of(picture, crop, request.scale);
+    header["crop"] = {crop.x, crop.y, crop.width, crop.height};
+    header["scale"] = request.scale;
+    header["exact"] = made ? made->exact : false;
+    header["boxes"] = boxes;
+    header["problem"] = problem.empty() ? Json() : Json(problem);
+    send_picture(client, framed(header, jpeg));
+    if (made && !made->exact && stage_.is_complete()) again_later(client, request);
+  }
+
+  void send_picture(Client client, std::string bytes) {
+    ways_.post([this, client, bytes = std::move(bytes)] { ways_.send_binary(client, bytes); });
+  }
+
+  // The exact picture follows when there is nothing else to do.
+  void again_later(Client client, const Request& request) {
+    worker_.add({Urgency::kLater,
+                 fmt::format("exact {}", client),
+                 [this, client, request] { draw(client, request, true); },
+                 {}});
+  }
+
+  // The part of a picture that is sent; keeps what the page has then.
+  PixelBox crop_of(Client client,
+                   const Request& request,
+                   const image::Picture& picture,
+                   const Stage::Picture* made) {
+    const PixelBox whole{0, 0, picture.width, picture.height};
+    std::optional<PixelBox> drawn;
+    if (made)
+      if (const auto box = setup::search_bounds(made->moment))
+        drawn = intersection({box->x - kMarginPx,
+                              box->y - kMarginPx,
+                              box->width + 2 * kMarginPx,
+                              box->height + 2 * kMarginPx},
+                             whole);
+    if (made && !made->moment.spots.empty()) drawn = whole;
+    Shown& shown = shown_[client];
+    const Shown before = std::exchange(shown, {request.frame, drawn});
+    if (request.crop) return even(within(*request.crop, whole), whole.width, whole.height);
+    if (!request.crops_to_change || before.frame != request.frame) return whole;
+    if (!drawn && !before.drawn) return within({}, whole);
+    const PixelBox box = !drawn          ? *before.drawn
+                         : !before.drawn ? *drawn
+                                         : bounds(*drawn, *before.drawn);
+    return even(box, whole.width, whole.height);
+  }
+
+  // Begins to measure what the scene needs and nothing measures yet.
+  void measure(const scene::Scene& scene) {
+    measure_motion(scene);
+    measure_camera(scene);
+  }
+
+  void measure_motion(const scene::Scene& scene) {
+    const std::string key = motion_key(scene);
+    if (key == motion_wanted_) return;
+    motion_wanted_ = key;
+    set_state(motion_state_, "measuring");
+    motion_job_.start([this, scene, key](const std::stop_token& stop) {
+      std::shared_ptr<const setup::MotionSource> motion;
+      std::string problem;
+      try_to([&] { motion = motion_of(scene, stop); },
+             [&](const std::string& line) { problem = line; });
+      if (stop.stop_requested()) return;
+      worker_.add({Urgency::kFrame,
+                   "",
+                   [this, key, motion, problem] {
+                     if (motion) {
+                       measured_.motion = motion;
+                       measured_.motion_key = key;
+                     }
+                     set_state(motion_state_, motion ? "measured" : problem);
+                     finish("motion");
+                   },
+                   {}});
+    });
+  }
+
+  std::shared_ptr<const setup::MotionSource> motion_of(const scene::Scene& scene,
+                                                       const std::stop_token& stop) {
+    pipeline::Options options = options_.pipeline;
+    options.is_preview = true;
+    options.threads = 1;
+    options.stop = stop;
+    video::Reader reader = pipeline::open_background(scene, options);
+    const video::StreamInfo info = reader.info();
+    const lens::ImageSize size{info.width, info.height};
+    pipeline::StatedScene as_stated = pipeline::stated(scene, info);
+    scene::Scene& plain = as_stated.scene;
+    plain.composite.method = scene::CompositeMethod::kMatte;
+    plain.motion.model = setup::motion_model(scene);
+    std::shared_ptr<const image::Mask> mask;
+    if (plain.background.mask) mask = options.shared->mask_of(*plain.background.mask, size);
+    const lens::Lens lens = setup::lens_of(plain.lens, size);
+    const fs::path cache = pipeline::cache_folder(options, "motion");
+    const setup::MotionInputs inputs{
+        plain,
+        lens,
+        !setup::shutter_of(plain.camera_model).is_instant(),
+        setup::sha256_of_video(plain.background.video, *options.shared),
+        mask.get(),
+        cache.empty() ? disk_cache::Cache() : disk_cache::Cache(cache)};
+    const std::int64_t total = std::max<std::int64_t>(
+        1, info.frame_count_estimate - plain.background.first_frame);
+    const auto seen = [&](std::int64_t done) {
+      tell_progress("motion", done, plain.background.frame_count.value_or(total));
+    };
+    auto source = std::make_shared<setup::MotionSource>(
+        inputs,
+        setup::MotionPass{
+            .for_all = true, .open = [&] { return std::move(reader); }, .stop = stop, .seen = seen});
+    source->store();
+    return source;
+  }
+
+  void measure_camera(const scene::Scene& scene) {
+    std::string key;
+    try_to(
+        [&] {
+          if (pipeline::needs_calibration(scene)) key = calibration_key(scene);
+        },
+        [](const std::string&) {});
+    if (key == camera_wanted_) return;
+    camera_wanted_ = key;
+    camera_job_.cancel();
+    if (key.empty()) return set_state(camera_state_, "stated");
+    if (measured_.calibrated.count(key) > 0) return set_state(camera_state_, "measured");
+    set_state(camera_state_, "measuring");
+    camera_job_.start([this, scene, key](const std::stop_token& stop) {
+      std::string problem;
+      try_to([&] { pipeline::calibration_of(scene, for_job(stop, "calibrate")); },
+             [&](const std::string& line) { problem = line; });
+      if (stop.stop_requested()) return;
+      worker_.add({Urgency::kFrame,
+                   "",
+                   [this, key, problem] {
+                     if (problem.empty()) measured_.calibrated.insert(key);
+                     set_state(camera_state_, problem.empty() ? "measured" : problem);
+                     finish("calibrate");
+                   },
+                   {}});
+    });
+  }
+
+  void set_state(std::string& state, const std::string& word) {
+    {
+      const std::lock_guard lock(mutex_);
+      state = word;
+    }
+    ways_.post([this] { tell_state(); });
+  }
+  void finish(const std::string& what) {
+    ways_.post([this, what] { tell({{"event", "measured"}, {"of", what}}); });
+  }
+  void tell_progress(const std::string& what, std::int64_t done, std::int64_t total) {
+    ways_.post([this, what, done, total] {
+      tell({{"event", "progress"}, {"of", what}, {"done", done}, {"total", total}});
+    });
+  }
+
+  // What a page asks for that takes long; one at a time.
+
+  pipeline::Options for_job(const std::stop_token& stop, const std::string& what) {
+    pipeline::Options options = options_.pipeline;
+    options.stop = stop;
+    options.warn = [this](const std::string& line) {
+      ways_.post([this, line] { tell({{"event", "warning"}, {"line", line}}); });
+    };
+    options.progress = [this, what](const pipeline::Progress& progress) {
+      tell_progress(what, progress.frames_done, progress.frames_total);
+    };
+    return options;
+  }
+
+  template <typename Act>
+  void ask_for(Client client, std::int64_t id, Act act) {
+    if (is_asked_) throw Error("one is running; expected to cancel it, or to wait");
+    is_asked_ = true;
+    asked_job_.start([this, client, id, act](const std::stop_token& stop) {
+      std::string text;
+      try_to([&] { text = ok(id, act(stop)); },
+             [&](const std::string& line) { text = error(id, line); });
+      ways_.post([this, client, text = std::move(text)] {
+        is_asked_ = false;
+        ways_.send(client, text);
+      });
+    });
+  }
+
+  void calibrate(Client client, std::int64_t id) {
+    const auto shot = snapshot();
+    if (!shot->scene) throw Error(shot->problem);
+    ask_for(client, id, [this, scene = *shot->scene](const std::stop_token& stop) {
+      return Json{
+          {"values", values_of(pipeline::calibration_of(scene, for_job(stop, "calibrate")))}};
+    });
+  }
+
+  void render(Client client, std::int64_t id) {
+    if (!document_->state()["saved"].get<bool>())
+      throw Error("is not saved; expected a saved scene, from which the command line renders the "
+                  "same video",
+                  {document_->file().string()});
+    const fs::path file = document_->file();
+    ask_for(client, id, [this, file](const std::stop_token& stop) {
+      pipeline::Options options = for_job(stop, "render");
+      options.overwrite = true;
+      const scene::Scene scene = scene::read_scene(file);
+      const pipeline::Summary summary = pipeline::render(scene, options_.out, options);
+      const fs::path film =
+          summary.folder / (scene.name + video::extension(setup::format_of(scene.output.video)));
+      const Json boxes = boxes_of_film(summary.folder / "truth.jsonl");
+      ways_.post([this, film] { rendered_ = film; });
+      return Json{{"folder", summary.folder.string()},
+                  {"video", film.filename().string()},
+                  {"frames", summary.frames},
+                  {"boxes", boxes}};
+    });
+  }
+
+  struct Shown {
+    std::int64_t frame = -1;
+    std::optional<PixelBox> drawn;
+  };
+
+  std::stop_source stop_;
+  std::unique_ptr<document::Document> document_;
+  const std::string document_file_ = document_->file().string();
+  Options options_;
+  Ways ways_;
+  std::optional<fs::path> rendered_;
+  bool is_asked_ = false;
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Snapshot> snapshot_;
+  std::string motion_state_ = "measuring";
+  std::string camera_state_ = "stated";
+  // Of the worker's thread.
+  Stage stage_;
+  Gallery gallery_;
+  Measured measured_;
+  std::string motion_wanted_;
+  std::string camera_wanted_;
+  std::map<Client, Shown> shown_;
+  // The threads end before what they use.
+  Job motion_job_;
+  Job camera_job_;
+  Job asked_job_;
+  Worker worker_;
+};
+
+Session::Session(std::unique_ptr<document::Document> document, Options options, Ways ways)
+    : impl_(std::make_unique<Impl>(std::move(document), std::move(options), std::move(ways))) {}
+Session::~Session() = default;
+
+void Session::take(Client client, const std::string& message) { impl_->take(client, message); }
+void Session::leave(Client client) { impl_->leave(client); }
+void Session::tick() { impl_->tick(); }
+void Session::thumbnail(std::int64_t frame, int width, Done done) {
+  impl_->thumbnail(frame, width, std::move(done));
+}
+void Session::aircraft_picture(const std::string& name, Done done) {
+  impl_->aircraft_picture(name, std::move(done));
+}
+std::optional<fs::path> Session::original_film() const { return impl_->original_film(); }
+std::optional<fs::path> Session::rendered_film() const { return impl_->rendered_film(); }
+
+}  // namespace airtruth::session

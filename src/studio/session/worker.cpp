@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/worker.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace airtruth::session {
+
+Worker::Worker() : thread_([this] { run(); }) {}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+    waiting_.clear();
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Worker::add(Task task) {
+  std::function<void()> dropped;
+  {
+    const std::lock_guard lock(mutex_);
+    if (over_) return;
+    const auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const Task& one) {
+      return !one.name.empty() && one.name == task.name;
+    });
+    if (same != waiting_.end()) {
+      dropped = std::move(same->dropped);
+      waiting_.erase(same);
+    } else if (waiting_.size() >= kMostWaiting) {
+      dropped = std::move(task.dropped);
+      task.run = nullptr;
+    }
+    if (task.run) waiting_.push_back(std::move(task));
+  }
+  changed_.notify_all();
+  if (dropped) dropped();
+}
+
+bool Worker::is_wanted_for(Urgency urgency) const {
+  const std::lock_guard lock(mutex_);
+  return over_ || std::any_of(waiting_.begin(), waiting_.end(), [&](const Task& task) {
+           return task.urgency <= urgency;
+         });
+}
+
+bool Worker::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return over_;
+}
+
+void Worker::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return over_ || !waiting_.empty(); });
+    if (over_) return;
+    const auto first =
+        std::min_element(waiting_.begin(), waiting_.end(), [](const Task& a, const Task& b) {
+          return a.urgency < b.urgency;
+        });
+    const Task task = std::move(*first);
+    waiting_.erase(first);
+    lock.unlock();
+    task.run();
+    lock.lock();
+  }
+}
+
+}  // namespace airtruth::session
