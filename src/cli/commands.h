@@ -61,6 +61,7 @@ std::pair<int, int> size_from(const std::string& text);
 void add_render(CLI::App& app, Context& context);
 void add_scene(CLI::App& app, Context& context);
 void add_preview(CLI::App& app, Context& context);
+void add_studio(CLI::App& app, Context& context);
 void add_motion(CLI::App& app, Context& context);
 void add_calibrate(CLI::App& app, Context& context);
 void add_lens(CLI::App& app, Context& context);

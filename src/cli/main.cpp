@@ -111,6 +111,7 @@ void add_commands(CLI::App& app, cli::Context& context) {
   cli::add_render(app, context);
   cli::add_scene(app, context);
   cli::add_preview(app, context);
+  cli::add_studio(app, context);
   cli::add_overlay(app, context);
   cli::add_inspect(app, context);
   cli::add_motion(app, context);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
@@ -12,8 +13,6 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "show/drawing/draw.h"
 #include "studio/session/jpeg.h"
-
-#include <opencv2/imgproc.hpp>
 
 namespace airtruth::session {
 namespace {
@@ -142,17 +141,14 @@ std::string Clip::thumbnail(std::int64_t k, int width) {
   if (known == places_.end()) {
     if (!small_) small_.emplace(open(0));
     read = small_->at(static_cast<double>(k) / rate_hz());
-    if (!read)
-      throw Error(fmt::format("has no frame {}", k), {scene_.background.video.string()});
+    if (!read) throw Error(fmt::format("has no frame {}", k), {scene_.background.video.string()});
   }
-  const image::Picture& picture =
-      read ? read->picture : known->second->second->picture;
+  const image::Picture& picture = read ? read->picture : known->second->second->picture;
   const image::Rgb8 rgb = image::rgb8_from_picture(picture);
   const int height = std::max(
       1, static_cast<int>(std::lround(static_cast<double>(rgb.height) * width / rgb.width)));
   if (thumbnails_.size() >= kMostThumbnails) thumbnails_.clear();
-  return thumbnails_[{k, width}] =
-             jpeg_of(drawing::resized(rgb, width, height, cv::INTER_AREA));
+  return thumbnails_[{k, width}] = jpeg_of(drawing::resized(rgb, width, height, cv::INTER_AREA));
 }
 
 }  // namespace airtruth::session

@@ -59,8 +59,8 @@ class Clip {
   pipeline::Options options_;
   std::optional<video::Reader> reader_;
   video::StreamInfo info_;
-  std::int64_t next_ = 0;          // that the reader gives
-  std::int64_t first_sure_ = 0;    // from which on this reader knows the cuts
+  std::int64_t next_ = 0;        // that the reader gives
+  std::int64_t first_sure_ = 0;  // from which on this reader knows the cuts
   std::optional<std::int64_t> first_pts_;
   std::optional<std::int64_t> end_;  // where it was found
   std::list<Kept> kept_;             // the last used first

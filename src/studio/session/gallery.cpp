@@ -91,8 +91,9 @@ Json Gallery::groups(const std::string& word) {
 std::optional<std::string> Gallery::picture(const std::string& name, const std::stop_token& stop) {
   if (const auto found = pictures_.find(name); found != pictures_.end()) return found->second;
   fleet::Aircraft aircraft;
-  const auto kind = std::find_if(
-      kKinds.begin(), kKinds.end(), [&](scene::DistractorKind one) { return enum_name(one) == name; });
+  const auto kind = std::find_if(kKinds.begin(), kKinds.end(), [&](scene::DistractorKind one) {
+    return enum_name(one) == name;
+  });
   if (kind != kKinds.end()) {
     aircraft =
         *setup::aircraft_of(distractor_of(*kind), setup::camera_path(scene::Camera{}), {}, stop);

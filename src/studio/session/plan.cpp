@@ -144,8 +144,9 @@ class Planner {
               {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
               {"attitude", stage_.attitude_words()}}},
             {"horizontal_fov_deg", hundredths(view_deg())},
-            {"sun", {{"azimuth_deg", stage_.scene().light.sun_azimuth_deg},
-                     {"elevation_deg", stage_.scene().light.sun_elevation_deg}}},
+            {"sun",
+             {{"azimuth_deg", stage_.scene().light.sun_azimuth_deg},
+              {"elevation_deg", stage_.scene().light.sun_elevation_deg}}},
             {"tracks", tracks},
             {"horizon", horizon},
             {"volumes", volumes()},
@@ -179,8 +180,8 @@ class Planner {
       positions.push_back(state ? ned(state->position_in_world) : Json());
       if (state) points.push_back(point(moment, party.middle));
     }
-    const auto closest = passage::closest_approach(
-        stage_.world().camera, actor.path, 0, stage_.duration_s());
+    const auto closest =
+        passage::closest_approach(stage_.world().camera, actor.path, 0, stage_.duration_s());
     Json checks = Json::array();
     if (const auto found = checks_.find(stated.where.line); found != checks_.end())
       for (const std::string& line : found->second) checks.push_back(line);
@@ -220,10 +221,10 @@ class Planner {
     if (!table.is_array()) return result;
     const auto& seen = stage_.stated_seen(actor);
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      const auto frame = static_cast<std::int64_t>(
-          std::llround(seen[i].time_s * stage_.clip_rate_hz()));
-      const setup::Moment moment = setup::moment_at(
-          stage_.world(), frame, stage_.time_s(frame), stage_.shake_at(frame));
+      const auto frame =
+          static_cast<std::int64_t>(std::llround(seen[i].time_s * stage_.clip_rate_hz()));
+      const setup::Moment moment =
+          setup::moment_at(stage_.world(), frame, stage_.time_s(frame), stage_.shake_at(frame));
       Json path = table;
       path.push_back("seen");
       path.push_back(i);
@@ -282,8 +283,10 @@ class Planner {
 }  // namespace
 
 Json table_at(const std::vector<document::TablePlace>& tables, int line) {
-  const auto found = std::find_if(
-      tables.begin(), tables.end(), [&](const document::TablePlace& table) { return table.line == line; });
+  const auto found =
+      std::find_if(tables.begin(), tables.end(), [&](const document::TablePlace& table) {
+        return table.line == line;
+      });
   return found == tables.end() ? Json() : Json{found->array, found->index};
 }
 
@@ -297,13 +300,13 @@ Json boxes_of(const Stage& stage,
   Json result = Json::array();
   for (std::size_t i = 0; i < moment.search.size(); ++i) {
     if (!moment.search[i] || !moment.boxes[i].box) continue;
-    result.push_back({{"table", table_at(tables, stage.scene().intruders[i].where.line)},
-                      {"id", stage.world().actors[i].id},
-                      {"box", box_json(*moment.boxes[i].box)},
-                      {"range_m",
-                       hundredths((moment.states[i]->position_in_world -
-                                   moment.camera.position_in_world)
-                                      .norm())}});
+    result.push_back(
+        {{"table", table_at(tables, stage.scene().intruders[i].where.line)},
+         {"id", stage.world().actors[i].id},
+         {"box", box_json(*moment.boxes[i].box)},
+         {"range_m",
+          hundredths(
+              (moment.states[i]->position_in_world - moment.camera.position_in_world).norm())}});
   }
   return result;
 }

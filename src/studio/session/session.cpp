@@ -88,8 +88,8 @@ PixelBox even(PixelBox box, int width, int height) {
 }
 
 PixelBox within(const PixelBox& box, const PixelBox& whole) {
-  return intersection(box, whole).value_or(
-      PixelBox{0, 0, std::min(2, whole.width), std::min(2, whole.height)});
+  return intersection(box, whole)
+      .value_or(PixelBox{0, 0, std::min(2, whole.width), std::min(2, whole.height)});
 }
 
 Json values_of(const camera_file::Calibration& found) {
@@ -99,11 +99,11 @@ Json values_of(const camera_file::Calibration& found) {
     Json value, spread;
     if (quantity.values.size() == 1) {
       value = quantity.values[0].value;
-      spread = quantity.values[0].error;
+      spread = quantity.values[0].sigma;
     } else if (!quantity.values.empty()) {
       for (const auto& one : quantity.values) {
         value.push_back(one.value);
-        spread.push_back(one.error);
+        spread.push_back(one.sigma);
       }
     }
     values.push_back({{"key", key.name},
@@ -130,22 +130,30 @@ Json boxes_of_film(const fs::path& truth_file) {
   return frames;
 }
 
+// Aircraft and hashes are kept for all that the session does.
+Options with_inputs(Options options) {
+  if (!options.pipeline.shared)
+    options.pipeline.shared = std::make_shared<setup::SharedInputs>(
+        pipeline::cache_folder(options.pipeline, "ambient_occlusion"));
+  return options;
+}
+
 }  // namespace
 
 class Session::Impl {
  public:
   Impl(std::unique_ptr<document::Document> document, Options options, Ways ways)
       : document_(std::move(document)),
-        options_(std::move(options)),
+        options_(with_inputs(std::move(options))),
         ways_(std::move(ways)),
         stage_(quiet(options_.pipeline)) {
     publish();
   }
   ~Impl() {
     stop_.request_stop();
-    motion_job_.cancel();
-    camera_job_.cancel();
-    asked_job_.cancel();
+    for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->cancel();
+    worker_.end();
+    for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->stop();
   }
 
   void take(Client client, const std::string& message) {
@@ -223,11 +231,9 @@ class Session::Impl {
   void answer(Client client, Request request) {
     switch (request.act) {
       case Act::kOpen:
-        return on_worker(client, request.id, Urgency::kPlan, [this] { return clip_facts(); });
+        return open(client, request.id);
       case Act::kEdit:
-        return change(client, request.id, [&] {
-          document_->edit(request.changes, request.merge);
-        });
+        return change(client, request.id, [&] { document_->edit(request.changes, request.merge); });
       case Act::kUndo:
         return change(client, request.id, [&] { document_->undo(); });
       case Act::kRedo:
@@ -252,6 +258,24 @@ class Session::Impl {
         asked_job_.cancel();
         return ways_.send(client, ok(request.id, Json::object()));
     }
+  }
+
+  // The clip is opened by the worker; the state is that of the answer's moment.
+  void open(Client client, std::int64_t id) {
+    worker_.add({Urgency::kPlan,
+                 "",
+                 [this, client, id] {
+                   Json facts;
+                   std::string line;
+                   try_to([&] { facts = clip_facts(); },
+                          [&](const std::string& fault) { line = fault; });
+                   ways_.post([this, client, id, facts, line]() mutable {
+                     if (!line.empty()) return ways_.send(client, error(id, line));
+                     facts["state"] = state();
+                     ways_.send(client, ok(id, facts));
+                   });
+                 },
+                 {}});
   }
 
   template <typename Act>
@@ -331,7 +355,9 @@ class Session::Impl {
     worker_.add({Urgency::kFrame,
                  fmt::format("frame {}", client),
                  [this, client, request] { draw(client, request, false); },
-                 [this, client, id] { reply(client, ok(id, {{"dropped", true}})); }});
+                 [this, client, id] {
+                   reply(client, ok(id, {{"dropped", true}}));
+                 }});
   }
 
   void draw(Client client, const Request& request, bool exact) {
@@ -349,9 +375,8 @@ class Session::Impl {
     std::optional<Stage::Picture> made;
     Json boxes = Json::array();
     if (request.aircraft && problem.empty()) {
-      made = stage_.picture(request.frame, exact, [this] {
-        return worker_.is_wanted_for(Urgency::kSmallPicture);
-      });
+      made = stage_.picture(
+          request.frame, exact, [this] { return worker_.is_wanted_for(Urgency::kSmallPicture); });
       if (!made) return again_later(client, request);
       boxes = boxes_of(stage_, made->moment, shot->tables);
     }
@@ -461,15 +486,17 @@ class Session::Impl {
         setup::sha256_of_video(plain.background.video, *options.shared),
         mask.get(),
         cache.empty() ? disk_cache::Cache() : disk_cache::Cache(cache)};
-    const std::int64_t total = std::max<std::int64_t>(
-        1, info.frame_count_estimate - plain.background.first_frame);
+    const std::int64_t total =
+        std::max<std::int64_t>(1, info.frame_count_estimate - plain.background.first_frame);
     const auto seen = [&](std::int64_t done) {
       tell_progress("motion", done, plain.background.frame_count.value_or(total));
     };
     auto source = std::make_shared<setup::MotionSource>(
         inputs,
-        setup::MotionPass{
-            .for_all = true, .open = [&] { return std::move(reader); }, .stop = stop, .seen = seen});
+        setup::MotionPass{.for_all = true,
+                          .open = [&] { return std::move(reader); },
+                          .stop = stop,
+                          .seen = seen});
     source->store();
     return source;
   }
@@ -559,9 +586,10 @@ class Session::Impl {
 
   void render(Client client, std::int64_t id) {
     if (!document_->state()["saved"].get<bool>())
-      throw Error("is not saved; expected a saved scene, from which the command line renders the "
-                  "same video",
-                  {document_->file().string()});
+      throw Error(
+          "is not saved; expected a saved scene, from which the command line renders the "
+          "same video",
+          {document_->file().string()});
     const fs::path file = document_->file();
     ask_for(client, id, [this, file](const std::stop_token& stop) {
       pipeline::Options options = for_job(stop, "render");
@@ -602,7 +630,6 @@ class Session::Impl {
   std::string motion_wanted_;
   std::string camera_wanted_;
   std::map<Client, Shown> shown_;
-  // The threads end before what they use.
   Job motion_job_;
   Job camera_job_;
   Job asked_job_;

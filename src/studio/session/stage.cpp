@@ -98,11 +98,10 @@ Clip& Stage::clip(const scene::Background& background) {
 }
 
 void Stage::set(std::int64_t revision, const scene::Scene& scene, const Measured& measured) {
-  const std::string measured_as =
-      fmt::format("{} {} {}",
-                  static_cast<const void*>(measured.motion.get()),
-                  measured.motion_key,
-                  fmt::join(measured.calibrated, " "));
+  const std::string measured_as = fmt::format("{} {} {}",
+                                              static_cast<const void*>(measured.motion.get()),
+                                              measured.motion_key,
+                                              fmt::join(measured.calibrated, " "));
   if (maker_ && revision == revision_ && measured_as == measured_as_) return;
   maker_.reset();
   warnings_.clear();
@@ -232,13 +231,12 @@ std::optional<Stage::Picture> Stage::picture(std::int64_t frame,
   Picture result;
   result.plain = clip_->frame(frame);
   result.moment = moment(frame);
-  const bool has_any =
-      std::any_of(result.moment.search.begin(), result.moment.search.end(), [](const auto& one) {
-        return one.has_value();
-      }) ||
-      std::any_of(result.moment.spots.begin(), result.moment.spots.end(), [](const auto& one) {
-        return one.has_value();
-      });
+  const bool has_any = std::any_of(result.moment.search.begin(),
+                                   result.moment.search.end(),
+                                   [](const auto& one) { return one.has_value(); }) ||
+                       std::any_of(result.moment.spots.begin(),
+                                   result.moment.spots.end(),
+                                   [](const auto& one) { return one.has_value(); });
   result.exact = is_complete_;
   if (!has_any) return result;
   const auto lit = light(frame, result.moment, exact, leave);

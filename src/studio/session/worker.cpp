@@ -8,14 +8,14 @@ namespace airtruth::session {
 
 Worker::Worker() : thread_([this] { run(); }) {}
 
-Worker::~Worker() {
+void Worker::end() {
   {
     const std::lock_guard lock(mutex_);
     over_ = true;
     waiting_.clear();
   }
   changed_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void Worker::add(Task task) {
@@ -44,11 +44,6 @@ bool Worker::is_wanted_for(Urgency urgency) const {
   return over_ || std::any_of(waiting_.begin(), waiting_.end(), [&](const Task& task) {
            return task.urgency <= urgency;
          });
-}
-
-bool Worker::is_over() const {
-  const std::lock_guard lock(mutex_);
-  return over_;
 }
 
 void Worker::run() {

@@ -18,8 +18,7 @@ class Worker {
   enum class Urgency { kFrame, kPlan, kList, kSmallPicture, kLater };
 
   Worker();
-  // Drops what has not begun, and waits for what has.
-  ~Worker();
+  ~Worker() { end(); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
@@ -31,10 +30,11 @@ class Worker {
     std::function<void()> dropped;  // in its place, where it is replaced or there are too many
   };
   void add(Task task);
+  // Drops what has not begun, waits for what has, and takes no more.
+  void end();
 
   // For a task that takes long: true where one that is as urgent or more waits.
   bool is_wanted_for(Urgency urgency) const;
-  bool is_over() const;
 
  private:
   // So many wait at most: more than a page asks for at a time.

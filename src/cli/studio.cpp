@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <spawn.h>
+
+#include "cli/commands.h"
+#include "foundation/base/error.h"
+#include "sequence/new_scene/new_scene.h"
+#include "studio/document/document.h"
+#include "studio/server/server.h"
+#include "studio/session/session.h"
+
+namespace airtruth::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StudioArguments {
+  std::string input;
+  std::string lens;
+  std::optional<double> frame_rate_hz;
+  std::string out;
+  int port = 0;
+  bool open = false;
+};
+
+// The scene file; for a video that of its name in the folder where the command runs.
+fs::path scene_file(const fs::path& input) {
+  if (input.extension() == ".toml") return input;
+  const fs::path video = fs::absolute(input).lexically_normal();
+  return (video.has_filename() ? video : video.parent_path()).stem().string() + ".toml";
+}
+
+std::unique_ptr<document::Document> document_of(const StudioArguments& arguments,
+                                                const fs::path& file,
+                                                Context& context) {
+  Console& console = context.console();
+  std::optional<std::string> begun;
+  if (file != arguments.input && !fs::exists(file)) {
+    new_scene::NewSceneOptions options;
+    if (!arguments.lens.empty()) options.lens = arguments.lens;
+    options.picture_rate_hz = arguments.frame_rate_hz;
+    options.folder = fs::absolute(file).parent_path();
+    follow(options, context, "looking for lens and motion");
+    begun = new_scene::scene_text(arguments.input, options);
+    console.end_progress();
+  } else if (file != arguments.input) {
+    console.warning(fmt::format("{} is there and is opened", file.string()));
+  }
+  return std::make_unique<document::Document>(file, std::move(begun), console.warn());
+}
+
+// Begins the user's browser, which is not waited for.
+void open_in_browser(const std::string& address, Console& console) {
+  std::string program = "xdg-open";
+  std::string word = address;
+  char* arguments[] = {program.data(), word.data(), nullptr};
+  pid_t child = 0;
+  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0)
+    console.warning("xdg-open is not there (package xdg-utils); open the address yourself");
+}
+
+void studio(const StudioArguments& arguments, Context& context) {
+  Console& console = context.console();
+  const fs::path file = scene_file(arguments.input);
+  auto document = document_of(arguments, file, context);
+  server::Options where;
+  where.port = static_cast<std::uint16_t>(arguments.port);
+  // For work on the page.
+  if (const char* page = std::getenv("AIRTRUTH_STUDIO_PAGE")) where.page = page;
+  server::Server server(where);
+  session::Options how;
+  how.out = !arguments.out.empty() ? fs::path(arguments.out) : fs::path("out");
+  session::Session session(std::move(document), how, server.ways());
+  console.print(server.address() + "\n");
+  if (arguments.open) open_in_browser(server.address(), console);
+  server.run(session, context.stop);
+  throw Interrupted();
+}
+
+}  // namespace
+
+void add_studio(CLI::App& app, Context& context) {
+  auto [command, arguments] = add_command(
+      app, context, "studio", "Place aircraft by hand on the video, in a browser's page", studio);
+  command
+      ->add_option("SCENE|VIDEO",
+                   arguments->input,
+                   "Scene file (.toml), or an onboard video, for which one of its name is begun "
+                   "here, or opened where it exists")
+      ->required();
+  command->add_option(
+      "-o,--out", arguments->out, "Folder of the videos that the page renders [out]");
+  command->add_option(
+      "--lens", arguments->lens, "For a video: calibration (OpenCV or Gyroflow) of its camera");
+  command
+      ->add_option("--frame-rate",
+                   arguments->frame_rate_hz,
+                   "Frames a second of numbered pictures, which state none")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--port", arguments->port, "Port of 127.0.0.1; 0: any that is free [0]")
+      ->check(CLI::Range(0, 65535));
+  command->add_flag("--open", arguments->open, "Open the page in the browser");
+}
+
+}  // namespace airtruth::cli

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Approach, Change, Clip, Json, Path, Plan, State, Table, Track } from './contract';
+import { type Point, clamp, courseOf, radians, round, speedOf, turned, velocityAt } from './geometry';
+
+// How a flyer's path is stated.
+export type Statement = 'moments' | 'approach' | 'waypoints' | 'file' | 'drift' | 'lens';
+export type Kind = 'aircraft' | 'bird' | 'multirotor' | 'balloon' | 'glint' | 'dirt' | 'insect';
+
+// An intruder or a distractor of the scene.
+export interface Flyer {
+  path: Path;
+  table: Table;
+  id: string;
+  kind: Kind;
+  title: string;
+  statement: Statement;
+  colour: number; // of the seven of the palette
+}
+
+export interface Moment {
+  path: Path;
+  frame: number;
+  time_s: number;
+  pixel: Point;
+  range_m: number | null;
+  width_px: number | null;
+}
+
+const PALETTE = 7;
+const tables = (value: Json | undefined): Table[] => (Array.isArray(value) ? (value as Table[]) : []);
+export const tableOf = (value: Json | undefined): Table => (value && typeof value === 'object' && !Array.isArray(value) ? value : {});
+export const numberOf = (value: Json | undefined): number | null => (typeof value === 'number' ? value : null);
+export const isSame = (a: Path | null, b: Path | null) => JSON.stringify(a) === JSON.stringify(b);
+
+function statementOf(table: Table, kind: Kind): Statement {
+  if (kind === 'glint' || kind === 'dirt' || kind === 'insect') return 'lens';
+  if ('seen' in table) return 'moments';
+  if ('encounter' in table) return 'approach';
+  if ('path_file' in table) return 'file';
+  return 'position_ned_m' in table ? 'drift' : 'waypoints';
+}
+
+export function flyersOf(scene: Table): Flyer[] {
+  const intruders = tables(scene.intruder).map((table, k) => ({ table, path: ['intruder', k] as Path, kind: 'aircraft' as Kind, k }));
+  const counts = new Map<string, number>();
+  const others = tables(scene.distractor).map((table, k) => {
+    const kind = String(table.kind) as Kind;
+    counts.set(kind, (counts.get(kind) ?? 0) + 1);
+    return { table, path: ['distractor', k] as Path, kind, k: counts.get(kind)! - 1 };
+  });
+  return [...intruders, ...others].map(({ table, path, kind, k }, place) => ({
+    path,
+    table,
+    kind,
+    id: String(table.id ?? `${kind === 'aircraft' ? 'intruder' : kind}-${k + 1}`),
+    title: titleOf(table, kind),
+    statement: statementOf(table, kind),
+    colour: place % PALETTE,
+  }));
+}
+
+function titleOf(table: Table, kind: Kind): string {
+  if (kind === 'aircraft') return String(table.aircraft ?? 'no aircraft');
+  const count = numberOf(table.count) ?? 1;
+  return count > 1 ? `${count} ${kind}s` : kind;
+}
+
+export function flyerAt(state: State | null, path: Path | null): Flyer | null {
+  return state && path ? flyersOf(state.scene).find((one) => isSame(one.path, path)) ?? null : null;
+}
+
+export function trackOf(plan: Plan | null, path: Path | null): Track | null {
+  return plan?.tracks.find((one) => isSame(one.table, path)) ?? null;
+}
+
+export const frameOf = (time_s: number, clip: Clip) => Math.round(time_s * clip.rate_hz);
+export const timeOf = (frame: number, clip: Clip) => round(frame / clip.rate_hz, 3);
+
+export function momentsOf(flyer: Flyer, clip: Clip): Moment[] {
+  return tables(flyer.table.seen).map((seen, k) => {
+    const time_s = numberOf(seen.time_s) ?? 0;
+    const pixel = Array.isArray(seen.pixel) ? (seen.pixel as Point) : ([0, 0] as Point);
+    const path = [...flyer.path, 'seen', k];
+    return { path, time_s, frame: frameOf(time_s, clip), pixel, range_m: numberOf(seen.range_m), width_px: numberOf(seen.width_px) };
+  });
+}
+
+// As it is written: tenths of a pixel, and four digits of a distance.
+export const writtenPixel = ([x, y]: Point): Point => [round(x, 1), round(y, 1)];
+export const writtenRange = (range_m: number) => Number(clamp(range_m, 0.1, 1e6).toPrecision(4));
+export const writtenWidth = (width_px: number) => round(clamp(width_px, 0.1, 1e5), 1);
+
+// A moment made nearer by a factor, in the words that it is stated in.
+export function nearer(moment: Moment, factor: number): Change | null {
+  if (moment.width_px !== null) return { set: [...moment.path, 'width_px'], to: writtenWidth(moment.width_px * factor) };
+  if (moment.range_m !== null) return { set: [...moment.path, 'range_m'], to: writtenRange(moment.range_m / factor) };
+  return null;
+}
+
+const seenTable = (time_s: number, pixel: Point, range_m: number): Table => ({ time_s, pixel: writtenPixel(pixel), range_m: writtenRange(range_m) });
+
+// A moment at a frame: a new one in its place in time, or the one that is there moved.
+export function withMoment(flyer: Flyer, clip: Clip, frame: number, pixel: Point, range_m: number): { changes: Change[]; index: number } {
+  const moments = momentsOf(flyer, clip);
+  const there = moments.findIndex((one) => one.frame === frame);
+  if (there >= 0) return { changes: [{ set: [...moments[there].path, 'pixel'], to: writtenPixel(pixel) }], index: there };
+  const after = moments.findIndex((one) => one.frame > frame);
+  const index = after < 0 ? moments.length : after;
+  return { changes: [{ insert: [...flyer.path, 'seen'], at: index, table: seenTable(timeOf(frame, clip), pixel, range_m) }], index };
+}
+
+const PATH_KEYS = ['encounter', 'seen', 'waypoints_ned_m', 'speed_mps', 'times_s', 'path_file', 'start_s', 'position_ned_m', 'velocity_ned_mps', 'offset_ned_m'];
+const removed = (flyer: Flyer): Change[] => PATH_KEYS.filter((key) => key in flyer.table).map((key) => ({ remove: [...flyer.path, key] }));
+
+// The same path by moments in the picture: where it is in view, three of them.
+export function toMoments(flyer: Flyer, track: Track, clip: Clip): Change[] | null {
+  const inClip = track.points.filter((point) => point[0] >= 0 && point[0] < clip.frames && point[3] > 0);
+  const seen = inClip.filter((point) => point[5]);
+  const chosen = seen.length >= 2 ? seen : inClip;
+  if (chosen.length < 2) return null;
+  const places = chosen.length >= 3 ? [0, Math.floor((chosen.length - 1) / 2), chosen.length - 1] : [0, 1];
+  const moments = places.map((k) => chosen[k]);
+  const inserts = moments.map((point, at): Change => ({ insert: [...flyer.path, 'seen'], at, table: seenTable(timeOf(point[0], clip), [point[1], point[2]], point[3]) }));
+  return [...removed(flyer), ...inserts];
+}
+
+// The same path by its closest approach: its place and its velocity there.
+export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): Change[] | null {
+  const cpa = track.cpa;
+  if (!cpa) return null;
+  const frame = clamp(cpa.time_s * clip.rate_hz, plan.frames[0], plan.frames[plan.frames.length - 1]);
+  const [own, other] = [velocityAt(plan, plan.own.ned, frame, clip.rate_hz), velocityAt(plan, track.ned, frame, clip.rate_hz)];
+  if (!own || !other) return null;
+  const course = round(turned(courseOf(other) - courseOf(own)), 1);
+  const climb = round(-other[2], 1);
+  const words: [string, number][] = [
+    ['cpa_time_s', round(cpa.time_s, 2)],
+    ['cpa_right_m', round(cpa.right_m, 1)],
+    ['cpa_above_m', round(cpa.above_m, 1)],
+    ['course_deg', course],
+    ['speed_mps', Math.max(0.1, round(speedOf(other), 1))],
+    ...(climb ? ([['climb_mps', climb]] as [string, number][]) : []),
+  ];
+  return [...removed(flyer), ...words.map(([key, to]): Change => ({ set: [...flyer.path, 'encounter', key], to }))];
+}
+
+// What the gallery offers.
+export interface Choice {
+  kind: Kind;
+  aircraft?: string;
+  length_m: number;
+  count?: number;
+}
+
+const NEW_SHARE = 0.05; // of the picture's width, for what is new
+const CRUISE_MPS: Partial<Record<Kind, number>> = { bird: 12, multirotor: 8, balloon: 2 };
+const cruise = (choice: Choice) => CRUISE_MPS[choice.kind] ?? (choice.length_m > 20 ? 110 : 50);
+
+// Pixels of an object of 1 m at 1 m; a guess where a file states the lens.
+export function focalOf(scene: Table, clip: Clip): number {
+  const lens = tableOf(scene.lens);
+  if (Array.isArray(lens.focal_px)) return Number(lens.focal_px[0]);
+  const fov = numberOf(lens.vertical_fov_deg);
+  return fov && fov < 179 ? clip.height / 2 / Math.tan(radians(fov) / 2) : clip.width * 0.8;
+}
+
+// A flyer that crosses the picture and is at a pixel in the frame shown.
+export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point): Table {
+  const width_px = Math.max(16, clip.width * NEW_SHARE);
+  const range_m = writtenRange((choice.length_m * focalOf(scene, clip)) / width_px);
+  const rate_px_s = (cruise(choice) * width_px) / choice.length_m;
+  const span = clip.frames - 1;
+  const way = Math.max(1, Math.min(span, Math.round(clamp((clip.width * 0.45) / rate_px_s, 0.5, 6) * clip.rate_hz)));
+  const first = Math.max(0, Math.min(frame, span - way));
+  const direction = at[0] < clip.width / 2 ? 1 : -1;
+  const pixelAt = (k: number): Point => [at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz, at[1]];
+  const seen = [first, first + way].map((k) => seenTable(timeOf(k, clip), pixelAt(k), range_m));
+  if (choice.kind === 'aircraft') return { aircraft: choice.aircraft ?? '', seen };
+  const flock: Table = choice.count && choice.count > 1 ? { count: choice.count, spread_m: round(choice.length_m * 6, 0) } : {};
+  return { kind: choice.kind, ...flock, seen };
+}
+
+// Beside the one it is copied from, and with no id of its own.
+export function copyOf(flyer: Flyer, clip: Clip): Table {
+  const { id: _, ...table } = structuredClone(flyer.table);
+  const aside = Math.round(clip.height * 0.06);
+  for (const seen of tables(table.seen)) if (Array.isArray(seen.pixel)) seen.pixel = writtenPixel([Number(seen.pixel[0]), Number(seen.pixel[1]) + aside]);
+  const encounter = tableOf(table.encounter);
+  if ('encounter' in table) encounter.cpa_above_m = (numberOf(encounter.cpa_above_m) ?? 0) + 20;
+  return table;
+}
+
+// How far from its pixel a flyer may paint.
+export function reachOf(flyer: Flyer | null, width_px: number): number {
+  const size = numberOf(flyer?.table.size_m) ?? 1;
+  const spread = numberOf(flyer?.table.spread_m) ?? 0;
+  return width_px * 0.8 + 20 + (spread * width_px) / size;
+}
+
+export function ownSpeed(plan: Plan, frame: number, clip: Clip): number {
+  const own = velocityAt(plan, plan.own.ned, frame, clip.rate_hz);
+  return own ? Math.hypot(own[0], own[1]) : 0;
+}
+
+export const describedApproach = (cpa: Approach) =>
+  `closest at ${round(cpa.time_s, 1)} s: ${round(cpa.distance_m, 0)} m, ${side(cpa.right_m, 'right', 'left')}, ${side(cpa.above_m, 'above', 'below')}`;
+const side = (value: number, positive: string, negative: string) => `${Math.abs(round(value, 0))} m ${value >= 0 ? positive : negative}`;

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Ned, Plan, Track, TrackPoint } from './contract';
+
+export type Point = [number, number];
+
+export const clamp = (value: number, low: number, high: number) => Math.min(high, Math.max(low, value));
+export const mix = (a: number, b: number, share: number) => a + (b - a) * share;
+export const round = (value: number, decimals: number) => Number(value.toFixed(decimals));
+export const degrees = (radians: number) => (radians * 180) / Math.PI;
+export const radians = (deg: number) => (deg * Math.PI) / 180;
+// To 0 up to 360.
+export const turned = (deg: number) => ((deg % 360) + 360) % 360;
+
+export interface Seen {
+  pixel: Point;
+  range_m: number;
+  width_px: number;
+  isVisible: boolean;
+}
+
+const seenOf = (point: TrackPoint): Seen => ({ pixel: [point[1], point[2]], range_m: point[3], width_px: point[4], isVisible: Boolean(point[5]) });
+
+// Where a track is in a frame: its points in order of their frames, and what lies between two by straight lines. Beyond its ends
+// it is not there.
+export function seenAt(track: Track, frame: number): Seen | null {
+  const { points } = track;
+  if (!points.length || frame < points[0][0] || frame > points[points.length - 1][0]) return null;
+  let low = 0;
+  let high = points.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (points[middle][0] <= frame) low = middle;
+    else high = middle;
+  }
+  const [a, b] = [points[low], points[high]];
+  const share = b[0] > a[0] ? (frame - a[0]) / (b[0] - a[0]) : 0;
+  const isVisible = Boolean(share < 0.5 ? a[5] : b[5]);
+  return { pixel: [mix(a[1], b[1], share), mix(a[2], b[2], share)], range_m: mix(a[3], b[3], share), width_px: mix(a[4], b[4], share), isVisible };
+}
+
+// The same, going on straight beyond the ends; none of a track without points.
+export function seenNear(track: Track, frame: number): Seen | null {
+  const inside = seenAt(track, frame);
+  if (inside || !track.points.length) return inside;
+  const isBefore = frame < track.points[0][0];
+  return seenOf(isBefore ? track.points[0] : track.points[track.points.length - 1]);
+}
+
+const nedMix = (a: Ned, b: Ned, share: number): Ned => [mix(a[0], b[0], share), mix(a[1], b[1], share), mix(a[2], b[2], share)];
+
+// A place among those at the plan's frames. Outside of them it goes on straight.
+export function nedAt(plan: Plan, ned: (Ned | null)[], frame: number): Ned | null {
+  const known = plan.frames.map((f, k) => ({ f, ned: ned[k] })).filter((one): one is { f: number; ned: Ned } => Boolean(one.ned));
+  if (!known.length) return null;
+  if (known.length === 1) return known[0].ned;
+  let k = known.findIndex((one) => one.f >= frame);
+  k = clamp(k < 0 ? known.length - 1 : k, 1, known.length - 1);
+  const [a, b] = [known[k - 1], known[k]];
+  return nedMix(a.ned, b.ned, (frame - a.f) / (b.f - a.f));
+}
+
+// Metres a second, north-east-down.
+export function velocityAt(plan: Plan, ned: (Ned | null)[], frame: number, rate_hz: number): Ned | null {
+  const [a, b] = [nedAt(plan, ned, frame - 0.5), nedAt(plan, ned, frame + 0.5)];
+  return a && b ? [(b[0] - a[0]) * rate_hz, (b[1] - a[1]) * rate_hz, (b[2] - a[2]) * rate_hz] : null;
+}
+
+export const courseOf = (velocity: Ned) => degrees(Math.atan2(velocity[1], velocity[0]));
+export const speedOf = (velocity: Ned) => Math.hypot(...velocity);
+
+// The horizontal direction in which a closest approach can lie, as [right, ahead] of the own course: across the relative velocity.
+export function acrossRelative(own_mps: number, speed_mps: number, climb_mps: number, course_deg: number): Point {
+  const ground = Math.sqrt(Math.max(0, speed_mps * speed_mps - climb_mps * climb_mps));
+  const right = ground * Math.sin(radians(course_deg));
+  const ahead = ground * Math.cos(radians(course_deg)) - own_mps;
+  const length = Math.hypot(right, ahead);
+  return length < 1e-6 ? [1, 0] : [-ahead / length, right / length];
+}
+
+// The part of a frame around an aircraft, on whole blocks of a JPEG and within the frame.
+export type Crop = [number, number, number, number];
+const BLOCK = 16;
+
+export function cropAround(pixel: Point, reach_px: number, size: { width: number; height: number }): Crop | null {
+  const [x0, y0] = [pixel[0] - reach_px, pixel[1] - reach_px].map((v) => Math.floor(v / BLOCK) * BLOCK);
+  const [x1, y1] = [pixel[0] + reach_px, pixel[1] + reach_px].map((v) => Math.ceil(v / BLOCK) * BLOCK);
+  return within([x0, y0, x1 - x0, y1 - y0], size);
+}
+
+export function within([x, y, w, h]: Crop, size: { width: number; height: number }): Crop | null {
+  const [left, top] = [clamp(x, 0, size.width), clamp(y, 0, size.height)];
+  const [right, bottom] = [clamp(x + w, 0, size.width), clamp(y + h, 0, size.height)];
+  return right > left && bottom > top ? [left, top, right - left, bottom - top] : null;
+}
+
+export function joined(a: Crop | null, b: Crop | null): Crop | null {
+  if (!a || !b) return a ?? b;
+  const [left, top] = [Math.min(a[0], b[0]), Math.min(a[1], b[1])];
+  return [left, top, Math.max(a[0] + a[2], b[0] + b[2]) - left, Math.max(a[1] + a[3], b[1] + b[3]) - top];
+}

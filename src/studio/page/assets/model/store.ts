@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { AircraftGroup, Clip, MeasuredValue, Path, Plan, State } from './contract';
+
+// A line for the user; what is said twice is shown once.
+export interface Notice {
+  kind: 'error' | 'warning' | 'info';
+  line: string;
+}
+
+export interface Progress {
+  of: string;
+  done: number;
+  total: number;
+}
+
+export interface Film {
+  folder: string;
+  video: string;
+}
+
+// The part of the frame that is shown: its pixel at the stage's top-left corner, and screen pixels a frame pixel. None: all of it.
+export interface Look {
+  x: number;
+  y: number;
+  scale: number;
+}
+
+export type Tab = 'flyers' | 'light' | 'camera' | 'text';
+
+// A handle that is dragged stands where the pointer is, whatever the server has answered so far.
+export interface Draft {
+  path: Path;
+  pixel: [number, number];
+}
+
+// All that the page knows. Parts read it and are told which members changed.
+export interface Everything {
+  connected: boolean;
+  everConnected: boolean;
+  file: string;
+  clip: Clip | null;
+  state: State | null;
+  plan: Plan | null;
+  pending: number; // edits that the server has not answered
+  keepsMine: string | null; // the text of the state whose change on disk was declined
+  notices: Notice[];
+  progress: Progress | null;
+  busy: 'render' | 'calibrate' | null;
+  measured: MeasuredValue[] | null;
+  film: Film | null;
+  groups: AircraftGroup[] | null;
+  // view settings
+  frame: number;
+  playing: boolean;
+  speed: number;
+  selected: Path | null;
+  moment: number | null;
+  draft: Draft | null;
+  look: Look | null;
+  tab: Tab;
+  showsAircraft: boolean;
+  showsBoxes: boolean;
+  showsHorizon: boolean;
+  showsMotion: boolean;
+  dialog: 'gallery' | 'render' | 'help' | null;
+  addsAt: [number, number] | null; // where the gallery's choice is put
+  replaces: Path | null; // the flyer whose aircraft the gallery changes
+}
+
+export type Member = keyof Everything;
+
+const beginning: Everything = {
+  connected: false,
+  everConnected: false,
+  file: '',
+  clip: null,
+  state: null,
+  plan: null,
+  pending: 0,
+  keepsMine: null,
+  notices: [],
+  progress: null,
+  busy: null,
+  measured: null,
+  film: null,
+  groups: null,
+  frame: 0,
+  playing: false,
+  speed: 1,
+  selected: null,
+  moment: null,
+  draft: null,
+  look: null,
+  tab: 'flyers',
+  showsAircraft: true,
+  showsBoxes: true,
+  showsHorizon: false,
+  showsMotion: false,
+  dialog: null,
+  addsAt: null,
+  replaces: null,
+};
+
+// What a reload of the page keeps.
+const KEPT: Member[] = ['frame', 'selected', 'moment', 'tab', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'speed'];
+const KEY = 'airtruth-studio-view';
+
+type Listener = (changed: Set<Member>) => void;
+
+export class Store {
+  readonly now: Readonly<Everything>;
+  private values: Everything;
+  private listeners = new Set<Listener>();
+  private changed = new Set<Member>();
+  private isTold = true;
+
+  constructor(private kept: Storage | null = null) {
+    this.values = { ...beginning, ...this.remembered() };
+    this.now = this.values;
+  }
+
+  // Takes new values; listeners are told once, at the end of the running task.
+  put(values: Partial<Everything>): void {
+    for (const [key, value] of Object.entries(values) as [Member, never][]) {
+      if (this.values[key] === value) continue;
+      this.values[key] = value;
+      this.changed.add(key);
+    }
+    if (!this.changed.size || !this.isTold) return;
+    this.isTold = false;
+    queueMicrotask(() => this.tell());
+  }
+
+  listen(listener: Listener): () => void {
+    this.listeners.add(listener);
+    return () => this.listeners.delete(listener);
+  }
+
+  say(kind: Notice['kind'], line: string): void {
+    const others = this.values.notices.filter((notice) => notice.line !== line);
+    this.put({ notices: [...others, { kind, line }].slice(-4) });
+  }
+
+  unsay(line: string): void {
+    this.put({ notices: this.values.notices.filter((notice) => notice.line !== line) });
+  }
+
+  private tell(): void {
+    this.isTold = true;
+    const changed = this.changed;
+    this.changed = new Set();
+    if (KEPT.some((key) => changed.has(key))) this.remember();
+    for (const listener of [...this.listeners]) listener(changed);
+  }
+
+  private remember(): void {
+    this.kept?.setItem(KEY, JSON.stringify(Object.fromEntries(KEPT.map((key) => [key, this.values[key]]))));
+  }
+
+  private remembered(): Partial<Everything> {
+    try {
+      return JSON.parse(this.kept?.getItem(KEY) ?? '{}');
+    } catch {
+      return {};
+    }
+  }
+}

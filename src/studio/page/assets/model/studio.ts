@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+import { Connection, Lost, Refused } from './connection';
+import type { AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, ServerEvent, State } from './contract';
+import { type Edit, Edits, type Unsent } from './edits';
+import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, reachOf, trackOf, withMoment } from './flyers';
+import { type Crop, type Point, clamp, cropAround, joined, seenAt, seenNear } from './geometry';
+import { Pictures } from './pictures';
+import type { Store } from './store';
+
+const KEPT_LATENCIES = 500;
+const REST_MS = 150;
+const PLAN_EVERY_MS = 100;
+const UNSENT_KEY = 'airtruth-studio-unsent';
+
+// An edit and what of it is shown before the next one is sent.
+interface ShownEdit extends Edit {
+  shown?: { frame: number; crop: Crop; moved_ms: number };
+}
+
+// What a user can do, on the store and over the connection.
+export class Studio {
+  readonly latencies_ms: number[] = [];
+  readonly pictures: Pictures;
+  readonly edits: Edits;
+  private merges = 0;
+  private rest: ReturnType<typeof setTimeout> | undefined;
+  private planAsked = false;
+  private planStale = false;
+  private planned_ms = -Infinity;
+  private isDragged = false;
+
+  constructor(readonly store: Store, readonly connection: Connection, private kept: Storage) {
+    this.pictures = new Pictures(connection);
+    this.edits = new Edits({
+      send: (edit) => this.send(edit),
+      text: () => store.now.state?.text ?? '',
+      done: (state) => this.took(state),
+      refused: (line) => { store.say('error', line); this.settle(); },
+      pending: (pending) => store.put({ pending }),
+    });
+    this.pictures.onRefused = (line) => { if (!store.now.state?.problem) store.say('error', line); };
+    connection.onOpen = () => void this.opened();
+    connection.onLost = () => this.lost();
+    connection.onEvent = (event) => this.heard(event);
+    store.listen((changed) => {
+      if (['frame', 'showsAircraft', 'look', 'clip'].some((key) => changed.has(key as 'frame'))) this.refresh();
+    });
+  }
+
+  begin(): void {
+    this.connection.begin();
+  }
+
+  // For a page that ends: what the server has not answered is kept for the next one.
+  end(): void {
+    const unsent = this.edits.unsent();
+    if (unsent.length) this.kept.setItem(UNSENT_KEY, JSON.stringify({ file: this.store.now.file, unsent }));
+    else this.kept.removeItem(UNSENT_KEY);
+  }
+
+  get isIdle(): boolean {
+    return this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole && this.rest === undefined;
+  }
+
+  // A name for edits that are one step of undo.
+  merge(what: string): string {
+    return `${what}-${++this.merges}-${Date.now()}`;
+  }
+
+  // An edit. With a merge, what it changes is drawn at once, in the part of the frame given; latency counts from the event.
+  edit(changes: Change[], merge: string | null = null, shown?: { crop: Crop | null; moved_ms: number }): void {
+    const edit: ShownEdit = { changes, merge };
+    const isShown = shown?.crop && this.store.now.showsAircraft;
+    if (isShown) edit.shown = { frame: this.store.now.frame, crop: shown.crop!, moved_ms: shown.moved_ms };
+    this.edits.add(edit);
+  }
+
+  // Of everything that flies in the frame shown.
+  cropOfAll(): Crop | null {
+    const { state, plan, clip, frame } = this.store.now;
+    if (!state || !plan || !clip) return null;
+    return plan.tracks.reduce<Crop | null>((all, track) => {
+      const seen = seenAt(track, frame);
+      return seen ? joined(all, cropAround(seen.pixel, reachOf(flyerAt(state, track.table), seen.width_px), clip)) : all;
+    }, null);
+  }
+
+  // While a pointer holds something, the whole frame waits.
+  dragging(isDragged: boolean): void {
+    this.isDragged = isDragged;
+    if (!isDragged) this.settle();
+  }
+
+  async undo(): Promise<void> { await this.whole('undo'); }
+  async redo(): Promise<void> { await this.whole('redo'); }
+  async save(): Promise<void> { await this.whole('save'); }
+  async reload(): Promise<void> { await this.whole('reload'); }
+
+  select(selected: Path | null, moment: number | null = null): void {
+    this.store.put({ selected, moment });
+    if (selected && this.store.now.tab === 'text') this.store.put({ tab: 'flyers' });
+  }
+
+  show(frame: number): void {
+    const { clip } = this.store.now;
+    if (clip) this.store.put({ frame: clamp(Math.round(frame), 0, clip.frames - 1) });
+  }
+
+  add(choice: Choice, at: Point | null = null): void {
+    const { state, clip, frame } = this.store.now;
+    if (!state || !clip) return;
+    const key = choice.kind === 'aircraft' ? 'intruder' : 'distractor';
+    const list = state.scene[key];
+    const count = Array.isArray(list) ? list.length : 0;
+    const place = at ?? [clip.width * 0.3, clip.height * (0.3 + 0.08 * (flyersOf(state.scene).length % 5))];
+    this.edit([{ insert: [key], at: null, table: newFlyer(choice, state.scene, clip, frame, place as Point) }]);
+    this.store.put({ selected: [key, count], moment: null, tab: 'flyers' });
+  }
+
+  duplicate(path: Path): void {
+    const { state, clip } = this.store.now;
+    const flyer = flyerAt(state, path);
+    if (!flyer || !clip || !state) return;
+    const count = (state.scene[String(path[0])] as unknown[]).length;
+    this.edit([{ insert: [path[0]], at: null, table: copyOf(flyer, clip) }]);
+    this.store.put({ selected: [path[0], count], moment: null });
+  }
+
+  remove(path: Path): void {
+    this.edit([{ remove: path }]);
+    this.store.put({ selected: null, moment: null });
+  }
+
+  // A moment of the selected path at the frame shown: at a pixel, or where the path is then.
+  addMoment(at: Point | null = null): void {
+    const { state, clip, plan, frame, selected } = this.store.now;
+    const flyer = flyerAt(state, selected);
+    const track = trackOf(plan, selected);
+    if (!flyer || !clip || !track || flyer.statement !== 'moments') return;
+    const seen = seenNear(track, frame);
+    if (!seen) return;
+    const { changes, index } = withMoment(flyer, clip, frame, at ?? seen.pixel, seen.range_m);
+    this.edit(changes);
+    this.store.put({ moment: index });
+  }
+
+  removeMoment(): void {
+    const { state, clip, selected, moment } = this.store.now;
+    const flyer = flyerAt(state, selected);
+    if (!flyer || !clip || moment === null) return;
+    const moments = momentsOf(flyer, clip);
+    if (moment >= moments.length) return;
+    if (moments.length <= 2) {
+      this.store.say('info', 'A path has at least two moments. Delete the flyer with its button, or add a moment first.');
+      return;
+    }
+    this.edit([{ remove: moments[moment].path }]);
+    this.store.put({ moment: null });
+  }
+
+  // To the next or the last moment of the selected path.
+  goToMoment(step: 1 | -1): void {
+    const { state, clip, selected, frame } = this.store.now;
+    const flyer = flyerAt(state, selected);
+    if (!flyer || !clip) return;
+    const moments = momentsOf(flyer, clip);
+    const next = step > 0 ? moments.findIndex((one) => one.frame > frame) : moments.length - 1 - [...moments].reverse().findIndex((one) => one.frame < frame);
+    if (next < 0 || next >= moments.length) return;
+    this.store.put({ moment: next });
+    this.show(moments[next].frame);
+  }
+
+  async search(text: string): Promise<AircraftGroup[]> {
+    const { groups } = await this.connection.request<{ groups: AircraftGroup[] }>('aircraft', { search: text });
+    return groups;
+  }
+
+  calibrate(): Promise<void> {
+    return this.long('calibrate', async () => {
+      const { values } = await this.connection.request<{ values: MeasuredValue[] }>('calibrate');
+      this.store.put({ measured: values });
+    });
+  }
+
+  render(): Promise<void> {
+    return this.long('render', async () => {
+      const film = await this.connection.request<{ folder: string; video: string }>('render');
+      this.store.put({ film });
+    });
+  }
+
+  async cancel(): Promise<void> {
+    await this.connection.request('cancel').catch((error) => this.failed(error));
+  }
+
+  // The whole frame that is to be seen now.
+  refresh(): void {
+    const { clip, state, frame, showsAircraft, look, playing } = this.store.now;
+    if (!clip || !state || !this.store.now.connected) return;
+    const shownScale = (look?.scale ?? 0.5) * window.devicePixelRatio;
+    const scale = clip.width > 1920 && shownScale <= 0.5 && (playing || !this.edits.isIdle) ? 0.5 : 1;
+    this.pictures.want({ frame, revision: state.revision, aircraft: showsAircraft && !state.problem, scale });
+  }
+
+  private async send(edit: ShownEdit): Promise<State> {
+    const answer = this.connection.request<{ state: State }>('edit', { changes: edit.changes, merge: edit.merge });
+    const { shown } = edit;
+    const isShown = shown && shown.frame === this.pictures.frame && shown.frame === this.store.now.frame;
+    const part = isShown ? this.pictures.part(shown.frame, shown.crop).catch(() => null) : null;
+    const { state } = await answer;
+    if (part && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({ state });
+    const drawn = await part;
+    if (shown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - shown.moved_ms);
+    return state;
+  }
+
+  private measured(latency_ms: number): void {
+    this.latencies_ms.push(latency_ms);
+    if (this.latencies_ms.length > KEPT_LATENCIES) this.latencies_ms.shift();
+  }
+
+  private took(state: State): void {
+    const { selected } = this.store.now;
+    this.store.put({ state, ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? { selected: null, moment: null } : {}) });
+    this.settle();
+  }
+
+  // After an edit: the path at once, the whole frame when the hand rests.
+  private settle(): void {
+    void this.plan();
+    clearTimeout(this.rest);
+    const isSoon = this.edits.isIdle && !this.isDragged;
+    this.rest = setTimeout(() => {
+      this.rest = undefined;
+      if (this.edits.isIdle) this.refresh();
+      if (!this.isDragged && this.edits.isIdle && !this.planAsked) this.store.put({ draft: null });
+    }, isSoon ? 0 : REST_MS);
+  }
+
+  private async plan(): Promise<void> {
+    this.planStale = true;
+    if (this.planAsked) return;
+    this.planAsked = true;
+    try {
+      while (this.planStale) {
+        const wait_ms = this.planned_ms + PLAN_EVERY_MS - performance.now();
+        if (wait_ms > 0 && this.isDragged) await new Promise((done) => setTimeout(done, wait_ms));
+        this.planStale = false;
+        const plan = await this.connection.request<Plan>('plan');
+        this.planned_ms = performance.now();
+        const isDone = !this.isDragged && this.edits.isIdle && !this.planStale;
+        this.store.put({ plan, ...(isDone ? { draft: null } : {}) });
+      }
+    } catch (error) {
+      this.planStale = false;
+      if (error instanceof Refused && !this.store.now.state?.problem) this.store.say('error', error.message);
+    } finally {
+      this.planAsked = false;
+    }
+  }
+
+  private async whole(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<void> {
+    await this.edits.whenIdle();
+    try {
+      const { state } = await this.connection.request<{ state: State }>(what);
+      this.took(state);
+      if (what === 'save') this.store.say('info', `Saved ${this.store.now.file}`);
+    } catch (error) {
+      this.failed(error);
+    }
+  }
+
+  private async long(what: 'render' | 'calibrate', work: () => Promise<void>): Promise<void> {
+    if (this.store.now.busy) return;
+    await this.edits.whenIdle();
+    this.store.put({ busy: what, progress: { of: what, done: 0, total: 0 } });
+    try {
+      await work();
+    } catch (error) {
+      this.failed(error);
+    } finally {
+      this.store.put({ busy: null, progress: null });
+    }
+  }
+
+  private failed(error: unknown): void {
+    if (error instanceof Refused) this.store.say('error', error.message);
+    else if (!(error instanceof Lost)) throw error;
+  }
+
+  private async opened(): Promise<void> {
+    try {
+      const { file, clip, state } = await this.connection.request<{ file: string; clip: Clip; state: State }>('open');
+      this.pictures.begin(clip);
+      this.pictures.forget();
+      this.store.put({ connected: true, everConnected: true, file, clip, state, frame: clamp(this.store.now.frame, 0, clip.frames - 1) });
+      if (this.store.now.selected && !flyerAt(state, this.store.now.selected)) this.store.put({ selected: null, moment: null });
+      this.edits.resume();
+      this.takeUnsent(file);
+      this.settle();
+    } catch (error) {
+      this.failed(error);
+    }
+  }
+
+  private takeUnsent(file: string): void {
+    const kept = JSON.parse(this.kept.getItem(UNSENT_KEY) ?? 'null') as { file: string; unsent: Unsent[] } | null;
+    this.kept.removeItem(UNSENT_KEY);
+    if (kept?.file === file) this.edits.restore(kept.unsent);
+  }
+
+  private lost(): void {
+    this.edits.stop();
+    this.pictures.forget();
+    this.store.put({ connected: false, playing: false });
+  }
+
+  private heard(event: ServerEvent): void {
+    if (event.event === 'progress') {
+      this.store.put({ progress: event });
+    } else if (event.event === 'warning') {
+      this.store.say('warning', event.line);
+    } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
+      const isNew = event.state.revision !== this.store.now.state?.revision || event.state.text !== this.store.now.state?.text;
+      this.store.put({ state: event.state });
+      if (isNew) this.settle();
+    }
+  }
+}
+
+// Whether a state tells of a change on disk that the user has not answered.
+export const isOffered = (state: State | null, keepsMine: string | null) => Boolean(state?.changed_on_disk && keepsMine !== state.text);

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Path, Track } from '../model/contract';
+import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, reachOf, trackOf, writtenPixel } from '../model/flyers';
+import { type Crop, type Point, cropAround, joined, round, seenAt } from '../model/geometry';
+import type { Studio } from '../model/studio';
+import { distance } from './overlay_layer';
+import { Keyed, attribute, s, text } from './part';
+
+const HANDLE_PX = 8;
+const PAUSE_MS = 500; // after which turning the wheel on is a new step of undo
+const FAR = 30000; // pixels beyond which a path is not drawn
+
+interface Held {
+  moment: Moment;
+  flyer: Flyer;
+  offset: Point;
+  merge: string;
+  last: Point;
+  isMoved: boolean;
+}
+
+// The paths of all that flies, in the frame's coordinates, and the moments of the selected one as handles.
+export class PathLayer {
+  readonly element = s('g', { class: 'paths' });
+  private tracks: Keyed<{ track: Track; flyer: Flyer; isSelected: boolean }, SVGGElement>;
+  private handles: Keyed<{ moment: Moment; flyer: Flyer; index: number }, SVGGElement>;
+  private held: Held | null = null;
+  private wheelMerge = { name: '', at: -Infinity };
+  private scale = 1;
+
+  constructor(private studio: Studio, private pixelAt: (event: PointerEvent) => Point, private scaleNow: () => number) {
+    const [lines, handles] = [s('g'), s('g')];
+    this.element.append(lines, handles);
+    this.tracks = new Keyed(lines, (_, key) => this.makeTrack(key), (element, item) => this.renewTrack(element, item));
+    this.handles = new Keyed(handles, () => this.makeHandle(), (element, item) => this.renewHandle(element, item));
+  }
+
+  update(scale: number): void {
+    this.scale = scale;
+    const { state, plan, clip, selected } = this.studio.store.now;
+    if (!state || !clip) return;
+    const flyers = flyersOf(state.scene);
+    this.tracks.show(flyers.flatMap((flyer) => {
+      const track = trackOf(plan, flyer.path);
+      return track && flyer.statement !== 'lens' ? [{ key: JSON.stringify(flyer.path), item: { track, flyer, isSelected: isSame(selected, flyer.path) } }] : [];
+    }));
+    const flyer = flyers.find((one) => isSame(one.path, selected));
+    const moments = flyer?.statement === 'moments' ? momentsOf(flyer, clip) : [];
+    this.handles.show(moments.map((moment, index) => ({ key: `${JSON.stringify(selected)}${index}`, item: { moment, flyer: flyer!, index } })));
+  }
+
+  isOf(target: EventTarget | null): boolean {
+    return target instanceof Element && target.closest('.track, .handle') !== null;
+  }
+
+  isHandle(target: EventTarget | null): boolean {
+    return target instanceof Element && target.closest('.handle') !== null;
+  }
+
+  pathOf(target: EventTarget | null): Path | null {
+    const track = target instanceof Element ? target.closest<SVGElement>('.track') : null;
+    return track ? JSON.parse(track.dataset.path!) : null;
+  }
+
+  // A press on a handle holds it and shows its time; one on a path selects it.
+  down(event: PointerEvent): boolean {
+    const handle = (event.target as Element).closest<SVGGElement>('.handle');
+    const { state, clip, selected } = this.studio.store.now;
+    if (handle && state && clip) {
+      const flyer = flyerAt(state, selected);
+      const index = Number(handle.dataset.index);
+      const moment = flyer && momentsOf(flyer, clip)[index];
+      if (!flyer || !moment) return false;
+      handle.setPointerCapture(event.pointerId);
+      handle.focus();
+      const at = this.pixelAt(event);
+      this.held = { moment, flyer, merge: this.studio.merge('drag'), offset: [moment.pixel[0] - at[0], moment.pixel[1] - at[1]], last: moment.pixel, isMoved: false };
+      this.studio.store.put({ moment: index, playing: false });
+      this.studio.show(moment.frame);
+      this.studio.dragging(true);
+      return true;
+    }
+    const path = this.pathOf(event.target);
+    if (path) this.studio.select(path);
+    return false;
+  }
+
+  move(event: PointerEvent): boolean {
+    const { held } = this;
+    if (!held) return false;
+    const at = this.pixelAt(event);
+    this.moveTo(held, [at[0] + held.offset[0], at[1] + held.offset[1]], event.timeStamp);
+    return true;
+  }
+
+  up(event: PointerEvent): boolean {
+    const { held } = this;
+    if (!held) return false;
+    if (event.type === 'pointerup' && held.isMoved) this.move(event);
+    this.held = null;
+    this.studio.dragging(false);
+    return true;
+  }
+
+  // Whether the wheel turned above a handle, which then becomes nearer or farther.
+  wheel(event: WheelEvent, factor: number): boolean {
+    const handle = (event.target as Element).closest<SVGGElement>('.handle');
+    if (!handle) return false;
+    const index = Number(handle.dataset.index);
+    if (this.studio.store.now.moment !== index) this.studio.store.put({ moment: index });
+    this.size(index, factor, event.timeStamp);
+    return true;
+  }
+
+  pinch(factor: number): boolean {
+    if (!this.held) return false;
+    const { moment } = this.studio.store.now;
+    if (moment !== null) this.size(moment, factor, performance.now());
+    return true;
+  }
+
+  private size(index: number, factor: number, moved_ms: number): void {
+    const { state, clip, selected, plan } = this.studio.store.now;
+    const flyer = flyerAt(state, selected);
+    const moment = flyer && clip && momentsOf(flyer, clip)[index];
+    if (!flyer || !moment || !clip) return;
+    const change = nearer(moment, factor);
+    if (!change) return;
+    if (moved_ms - this.wheelMerge.at > PAUSE_MS) this.wheelMerge.name = this.studio.merge('size');
+    this.wheelMerge.at = moved_ms;
+    this.studio.show(moment.frame);
+    const track = trackOf(plan, flyer.path);
+    const width_px = (track && seenAt(track, moment.frame)?.width_px) ?? 40;
+    this.studio.edit([change], this.wheelMerge.name, { crop: cropAround(moment.pixel, reachOf(flyer, width_px * Math.max(1, factor)), clip), moved_ms });
+  }
+
+  private moveTo(held: Held, pixel: Point, moved_ms: number): void {
+    const { clip, plan } = this.studio.store.now;
+    const to = writtenPixel(pixel);
+    if (!clip || (to[0] === held.last[0] && to[1] === held.last[1])) return;
+    const track = trackOf(plan, held.flyer.path);
+    const seen = track && seenAt(track, held.moment.frame);
+    const reach_px = reachOf(held.flyer, held.moment.width_px ?? seen?.width_px ?? 40);
+    const crop: Crop | null = joined(cropAround(held.last, reach_px, clip), cropAround(to, reach_px, clip));
+    held.last = to;
+    held.isMoved = true;
+    this.studio.store.put({ draft: { path: held.moment.path, pixel: to } });
+    this.studio.edit([{ set: [...held.moment.path, 'pixel'], to }], held.merge, { crop, moved_ms });
+  }
+
+  private key(event: KeyboardEvent, index: number): void {
+    const step = event.shiftKey ? 10 : 1;
+    const moves: Record<string, Point> = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step] };
+    const { state, clip, selected, draft } = this.studio.store.now;
+    const flyer = flyerAt(state, selected);
+    const moment = flyer && clip && momentsOf(flyer, clip)[index];
+    if (!flyer || !moment || event.ctrlKey || event.altKey || event.metaKey) return;
+    const by = moves[event.key];
+    if (by) {
+      if (event.timeStamp - this.wheelMerge.at > PAUSE_MS) this.wheelMerge.name = this.studio.merge('keys');
+      this.wheelMerge.at = event.timeStamp;
+      const from = draft && isSame(draft.path, moment.path) ? draft.pixel : moment.pixel;
+      this.studio.show(moment.frame);
+      this.moveTo({ moment, flyer, offset: [0, 0], merge: this.wheelMerge.name, last: from, isMoved: false }, [from[0] + by[0], from[1] + by[1]], event.timeStamp);
+    } else if (event.key === '+' || event.key === '=') {
+      this.size(index, 1.05, event.timeStamp);
+    } else if (event.key === '-') {
+      this.size(index, 1 / 1.05, event.timeStamp);
+    } else {
+      return;
+    }
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private makeTrack(key: string): SVGGElement {
+    return s('g', { 'data-path': key }, s('path', { class: 'under' }), s('path', { class: 'beyond' }), s('path', { class: 'line' }), s('path', { class: 'grip' }), s('path', { class: 'seconds' }));
+  }
+
+  private renewTrack(element: SVGGElement, { track, flyer, isSelected }: { track: Track; flyer: Flyer; isSelected: boolean }): void {
+    attribute(element, 'class', `track colour-${flyer.colour}${isSelected ? ' selected' : ''}`);
+    const { clip } = this.studio.store.now;
+    const all = pathData(track, () => true);
+    const seen = pathData(track, (visible) => visible);
+    for (const [k, data] of [all, all, seen, all].entries()) attribute(element.children[k], 'd', data);
+    attribute(element.children[4], 'd', clip ? secondsOf(track, clip.rate_hz, 2.2 / this.scale) : '');
+  }
+
+  private makeHandle(): SVGGElement {
+    const handle: SVGGElement = s('g', { tabindex: 0, role: 'button', onkeydown: ((event: KeyboardEvent) => this.key(event, Number(handle.dataset.index))) as EventListener,
+      onfocus: () => this.focused(Number(handle.dataset.index)) },
+      s('circle', { class: 'reach' }), s('circle', { class: 'ring' }), s('circle', { class: 'dot' }), s('text'));
+    return handle;
+  }
+
+  private focused(index: number): void {
+    if (this.held || this.studio.store.now.moment === index) return;
+    const { state, clip, selected } = this.studio.store.now;
+    const flyer = flyerAt(state, selected);
+    const moment = flyer && clip && momentsOf(flyer, clip)[index];
+    this.studio.store.put({ moment: index });
+    if (moment) this.studio.show(moment.frame);
+  }
+
+  private renewHandle(element: SVGGElement, { moment, flyer, index }: { moment: Moment; flyer: Flyer; index: number }): void {
+    const { draft, frame, moment: chosen, plan } = this.studio.store.now;
+    const [x, y] = draft && isSame(draft.path, moment.path) ? draft.pixel : moment.pixel;
+    attribute(element, 'class', `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}`);
+    attribute(element, 'data-index', index);
+    const px = 1 / this.scaleNow();
+    for (const [k, radius] of [16, HANDLE_PX, 2.5].entries()) {
+      attribute(element.children[k], 'cx', x);
+      attribute(element.children[k], 'cy', y);
+      attribute(element.children[k], 'r', radius * px);
+    }
+    const label = element.children[3];
+    attribute(label, 'x', x);
+    attribute(label, 'y', y + 26 * px);
+    attribute(label, 'font-size', 12 * px);
+    text(label, `${round(moment.time_s, 2)} s`);
+    const known = trackOf(plan, flyer.path)?.handles[index];
+    const size = [known && distance(known.range_m), known && `${round(known.width_px, 1)} px wide`].filter(Boolean).join(', ');
+    attribute(element, 'aria-label', `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(x, 1)}, ${round(y, 1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
+  }
+}
+
+// The points of a track as a line that is broken where they are too far away or not as asked.
+function pathData(track: Track, isDrawn: (isVisible: boolean) => boolean): string {
+  let data = '';
+  let isDown = false;
+  for (const [, x, y, range_m, , visible] of track.points) {
+    const isIn = range_m > 0 && Math.abs(x) < FAR && Math.abs(y) < FAR && isDrawn(Boolean(visible));
+    if (isIn) data += `${isDown ? 'L' : 'M'}${round(x, 1)},${round(y, 1)}`;
+    isDown = isIn;
+  }
+  return data;
+}
+
+// A dot at every whole second.
+function secondsOf(track: Track, rate_hz: number, radius: number): string {
+  const { points } = track;
+  if (!points.length) return '';
+  const [first, last] = [Math.ceil(points[0][0] / rate_hz), Math.floor(points[points.length - 1][0] / rate_hz)];
+  if (last - first > 600) return '';
+  let data = '';
+  for (let second = first; second <= last; ++second) {
+    const seen = seenAt(track, second * rate_hz);
+    if (!seen?.isVisible) continue;
+    const [x, y] = seen.pixel;
+    data += `M${round(x - radius, 2)},${round(y, 2)}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
+  }
+  return data;
+}

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Change, Clip, Ned, Plan, State, Table, Track } from '../model/contract';
+import { type Flyer, flyersOf, focalOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth } from '../model/flyers';
+import { type Point, acrossRelative, courseOf, degrees, nedAt, radians, round, turned, velocityAt } from '../model/geometry';
+import type { Member } from '../model/store';
+import { Part, attribute, h, renewed, s } from './part';
+
+const MARGIN_PX = 26;
+const MOST_M = 20000; // from the own path, of what the view has room for
+const LEAST_M = 60;
+const LEAST_ACROSS = 0.2; // below which the place across follows from `cpa_ahead_m`, not from `cpa_right_m`
+const ARROW_PX = 46;
+
+// From north-east metres to the view's: right and up, the own course at the beginning upwards.
+interface Ground {
+  right: number;
+  ahead: number;
+}
+
+type Drag = { kind: 'approach' | 'course' | 'moment'; flyer: Flyer; index: number; merge: string };
+
+// From above, the own course upwards: paths, the field of view, well-clear volumes, closest approaches. Closest approaches, courses
+// and the ranges of moments are dragged.
+export class PlanView extends Part {
+  protected readonly watches: Member[] = ['plan', 'state', 'frame', 'selected', 'moment', 'clip'];
+  private svg = s('svg', { role: 'group', 'aria-label': 'Plan view, own course up' });
+  private drag: Drag | null = null;
+  private course_deg = 0;
+  private origin: Ned = [0, 0, 0];
+  private middle: Ground = { right: 0, ahead: 0 };
+  private scale = 1; // screen pixels a metre
+
+  protected build(): void {
+    this.append(h('h2', {}, 'From above'), this.svg);
+    new ResizeObserver(() => this.update()).observe(this.svg);
+    this.svg.addEventListener('pointerdown', (event) => this.down(event));
+    this.svg.addEventListener('pointermove', (event) => this.move(event));
+    for (const end of ['pointerup', 'pointercancel'] as const) this.svg.addEventListener(end, () => this.up());
+  }
+
+  protected update(): void {
+    const { plan, state, clip, frame } = this.now;
+    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
+    if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
+    if (!this.drag) this.frameAll(plan, clip, width, height);
+    attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
+    const own = nedAt(plan, plan.own.ned, frame);
+    renewed(this.svg, [
+      this.grid(width, height),
+      ...(own ? [this.fieldOfView(plan, state, clip, own), ...this.volumes(plan, own)] : []),
+      s('polyline', { class: 'own', points: this.points(plan.own.ned) }),
+      ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
+      ...(own ? [this.ownMark(plan, clip, own)] : []),
+    ]);
+  }
+
+  private get ownVelocity(): Ned | null {
+    const { plan, clip } = this.now;
+    return plan && clip ? velocityAt(plan, plan.own.ned, 0, clip.rate_hz) : null;
+  }
+
+  private ground([n, e]: Ned): Ground {
+    const [dn, de] = [n - this.origin[0], e - this.origin[1]];
+    const [c, si] = [Math.cos(radians(this.course_deg)), Math.sin(radians(this.course_deg))];
+    return { right: de * c - dn * si, ahead: dn * c + de * si };
+  }
+
+  private at(ned: Ned): Point {
+    return this.screen(this.ground(ned));
+  }
+
+  private screen({ right, ahead }: Ground): Point {
+    return [this.svg.clientWidth / 2 + (right - this.middle.right) * this.scale, this.svg.clientHeight / 2 - (ahead - this.middle.ahead) * this.scale];
+  }
+
+  private groundAt(event: PointerEvent): Ground {
+    const box = this.svg.getBoundingClientRect();
+    return { right: (event.clientX - box.left - box.width / 2) / this.scale + this.middle.right, ahead: -(event.clientY - box.top - box.height / 2) / this.scale + this.middle.ahead };
+  }
+
+  // The view holds the own path and, of the others, what is not too far away.
+  private frameAll(plan: Plan, clip: Clip, width: number, height: number): void {
+    this.origin = plan.own.ned[0] ?? [0, 0, 0];
+    const velocity = this.ownVelocity;
+    this.course_deg = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : this.yaw() ?? 0;
+    const others = plan.tracks.flatMap((track) => [...track.ned, approachOf(plan, track, clip)?.place ?? null]);
+    const near = others.filter((ned): ned is Ned => ned !== null && Math.hypot(ned[0] - this.origin[0], ned[1] - this.origin[1]) < MOST_M);
+    const all = [...plan.own.ned, ...near].map((ned) => this.ground(ned));
+    const [rights, aheads] = [all.map((one) => one.right), all.map((one) => one.ahead)];
+    const [left, right, low, high] = [Math.min(...rights), Math.max(...rights), Math.min(...aheads), Math.max(...aheads)];
+    this.middle = { right: (left + right) / 2, ahead: (low + high) / 2 };
+    const room = [Math.max(40, width - 2 * MARGIN_PX), Math.max(40, height - 2 * MARGIN_PX)];
+    this.scale = Math.min(room[0] / Math.max(LEAST_M, right - left), room[1] / Math.max(LEAST_M, high - low));
+  }
+
+  private yaw(): number | null {
+    const attitude = tableOf(this.now.state?.scene.camera).attitude_yaw_pitch_roll_deg;
+    return Array.isArray(attitude) ? Number(attitude[0]) : null;
+  }
+
+  private points(ned: (Ned | null)[]): string {
+    return ned.filter((one): one is Ned => one !== null).map((one) => this.at(one).map((v) => round(v, 1)).join()).join(' ');
+  }
+
+  // Lines at whole steps of metres, and how long a step is.
+  private grid(width: number, height: number): SVGGElement {
+    const step_m = niceStep(90 / this.scale);
+    const group = s('g', { class: 'grid' });
+    const [x0, y0] = this.screen({ right: 0, ahead: 0 });
+    const step = step_m * this.scale;
+    for (let x = x0 % step; x < width; x += step) group.append(s('line', { x1: x, x2: x, y1: 0, y2: height }));
+    for (let y = y0 % step; y < height; y += step) group.append(s('line', { x1: 0, x2: width, y1: y, y2: y }));
+    group.append(s('path', { class: 'scale', d: `M8,${height - 12}v6h${round(step, 1)}v-6` }), s('text', { x: 12, y: height - 16 }, step_m >= 1000 ? `${step_m / 1000} km` : `${step_m} m`));
+    return group;
+  }
+
+  private fieldOfView(plan: Plan, state: State, clip: Clip, own: Ned): SVGPathElement {
+    const half = Math.atan(clip.width / 2 / focalOf(state.scene, clip));
+    const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
+    const course = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : this.course_deg;
+    const looks = this.yaw() ?? course;
+    const [x, y] = this.at(own);
+    const far = Math.hypot(this.svg.clientWidth, this.svg.clientHeight);
+    const edge = (sign: number) => {
+      const angle = radians(looks - this.course_deg) + sign * half;
+      return `${round(x + far * Math.sin(angle), 1)},${round(y - far * Math.cos(angle), 1)}`;
+    };
+    return s('path', { class: 'view', d: `M${round(x, 1)},${round(y, 1)}L${edge(-1)}L${edge(1)}Z` });
+  }
+
+  private volumes(plan: Plan, own: Ned): SVGElement[] {
+    const [cx, cy] = this.at(own);
+    return plan.volumes.filter((volume) => volume.horizontal_m > 0).map((volume) =>
+      s('g', { class: 'volume' }, s('circle', { cx, cy, r: volume.horizontal_m * this.scale }, s('title', {}, `${volume.name}: ${round(volume.horizontal_m, 0)} m`))));
+  }
+
+  private ownMark(plan: Plan, clip: Clip, own: Ned): SVGGElement {
+    const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
+    const angle = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) - this.course_deg : 0;
+    const [x, y] = this.at(own);
+    return s('g', { class: 'own-mark', transform: `translate(${round(x, 1)} ${round(y, 1)}) rotate(${round(angle, 1)})` }, s('path', { d: 'M0,-9L6,7L0,3L-6,7Z' }, s('title', {}, 'The own aircraft')));
+  }
+
+  private flyer(flyer: Flyer, plan: Plan, clip: Clip, own: Ned | null): SVGElement[] {
+    const track = trackOf(plan, flyer.path);
+    if (!track) return [];
+    const isSelected = isSame(flyer.path, this.now.selected);
+    const group = s('g', { class: `flyer colour-${flyer.colour}${isSelected ? ' selected' : ''}`, 'data-path': JSON.stringify(flyer.path) });
+    group.append(s('polyline', { class: 'line', points: this.points(track.ned) }), s('polyline', { class: 'grip', points: this.points(track.ned) }));
+    const now = nedAt(plan, track.ned, this.now.frame);
+    if (now && own) {
+      const [[x, y], [ox, oy]] = [this.at(now), this.at(own)];
+      if (isSelected) group.append(s('line', { class: 'sight', x1: ox, y1: oy, x2: x, y2: y }));
+      group.append(s('circle', { class: 'place', cx: x, cy: y, r: 4.5 }, s('title', {}, flyer.id)));
+    }
+    if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
+    return [group];
+  }
+
+  private approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
+    const cpa = approachOf(plan, track, clip);
+    if (!cpa) return [];
+    const [[x, y], [ox, oy]] = [this.at(cpa.place), this.at(cpa.own)];
+    const isHandle = flyer.statement === 'approach';
+    const label = `Closest approach of ${flyer.id}: ${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`;
+    const parts: SVGElement[] = [
+      s('line', { class: 'miss', x1: ox, y1: oy, x2: x, y2: y }),
+      s('path', { class: `diamond${isHandle ? ' grab' : ''}`, d: `M${x},${y - 7}L${x + 7},${y}L${x},${y + 7}L${x - 7},${y}Z`, tabindex: isHandle ? 0 : null, role: 'button', 'aria-label': `${label}. Arrow keys move it.`,
+        'data-drag': isHandle ? 'approach' : null, onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'approach')) as EventListener }, s('title', {}, label)),
+      s('text', { x: x + 10, y: y + 4 }, `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`),
+    ];
+    if (!isHandle) return parts;
+    const course = numberOf(tableOf(flyer.table.encounter).course_deg) ?? 0;
+    const angle = radians(course + cpa.ownCourse_deg - this.course_deg);
+    const [tx, ty] = [x + ARROW_PX * Math.sin(angle), y - ARROW_PX * Math.cos(angle)];
+    parts.push(
+      s('line', { class: 'course', x1: x, y1: y, x2: tx, y2: ty }),
+      s('circle', { class: 'turn grab', cx: tx, cy: ty, r: 6, tabindex: 0, role: 'button', 'data-drag': 'course', 'aria-label': `Course of ${flyer.id}: ${round(course, 0)} degrees from the own course. Arrow keys turn it.`,
+        onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'course')) as EventListener }, s('title', {}, `Course ${round(course, 0)}° from the own course`)));
+    return parts;
+  }
+
+  private moments(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
+    return momentsOf(flyer, clip).flatMap((moment, index) => {
+      const place = nedAt(plan, track.ned, moment.frame);
+      if (!place) return [];
+      const [x, y] = this.at(place);
+      const isChosen = this.now.moment === index;
+      return [s('rect', { class: `moment grab${isChosen ? ' chosen' : ''}`, x: x - 5, y: y - 5, width: 10, height: 10, 'data-drag': 'moment', 'data-index': index }, s('title', {}, `${round(moment.time_s, 2)} s: drag for its range`))];
+    });
+  }
+
+  private down(event: PointerEvent): void {
+    const target = event.target as SVGElement;
+    const group = target.closest<SVGElement>('.flyer');
+    if (!group || event.button !== 0) return;
+    const path = JSON.parse(group.dataset.path!);
+    const flyer = this.now.state && flyersOf(this.now.state.scene).find((one) => isSame(one.path, path));
+    if (!flyer) return;
+    const kind = target.dataset.drag as Drag['kind'] | undefined;
+    const index = Number(target.dataset.index ?? 0);
+    if (!isSame(path, this.now.selected)) this.studio.select(path);
+    if (!kind) return;
+    if (kind === 'moment') {
+      this.studio.store.put({ moment: index });
+      if (this.now.clip) this.studio.show(momentsOf(flyer, this.now.clip)[index].frame);
+    }
+    this.drag = { kind, flyer, index, merge: this.studio.merge(kind) };
+    this.svg.setPointerCapture(event.pointerId);
+    this.studio.dragging(true);
+  }
+
+  private move(event: PointerEvent): void {
+    const { drag } = this;
+    if (!drag) return;
+    const changes = this.changesOf(drag, this.groundAt(event));
+    if (changes.length) this.studio.edit(changes, drag.merge, { crop: this.studio.cropOfAll(), moved_ms: event.timeStamp });
+  }
+
+  private up(): void {
+    if (!this.drag) return;
+    this.drag = null;
+    this.studio.dragging(false);
+  }
+
+  private changesOf({ kind, flyer, index }: Drag, to: Ground): Change[] {
+    const { plan, clip } = this.now;
+    const track = trackOf(plan, flyer.path);
+    if (!plan || !clip || !track) return [];
+    if (kind === 'moment') return this.rangeChange(flyer, index, track, plan, clip, to);
+    const cpa = approachOf(plan, track, clip);
+    if (!cpa) return [];
+    const from = this.ground(kind === 'course' ? cpa.place : cpa.own);
+    const [right, ahead] = [to.right - from.right, to.ahead - from.ahead];
+    const key = (name: string) => [...flyer.path, 'encounter', name];
+    if (kind === 'course') return [{ set: key('course_deg'), to: round(turned(degrees(Math.atan2(right, ahead)) + this.course_deg - cpa.ownCourse_deg), 0) }];
+    const turn = radians(cpa.ownCourse_deg - this.course_deg);
+    const across = acrossOf(flyer.table, ownSpeed(plan, cpa.frame, clip));
+    const own = [right * Math.cos(turn) - ahead * Math.sin(turn), ahead * Math.cos(turn) + right * Math.sin(turn)];
+    return setAcross(flyer, across, own[0] * across[0] + own[1] * across[1]);
+  }
+
+  // Along the line of sight: farther is smaller.
+  private rangeChange(flyer: Flyer, index: number, track: Track, plan: Plan, clip: Clip, to: Ground): Change[] {
+    const moment = momentsOf(flyer, clip)[index];
+    const handle = track.handles[index];
+    const [own, place] = [moment && nedAt(plan, plan.own.ned, moment.frame), moment && nedAt(plan, track.ned, moment.frame)];
+    if (!moment || !handle || !own || !place) return [];
+    const [from, there] = [this.ground(own), this.ground(place)];
+    const sight: Point = [there.right - from.right, there.ahead - from.ahead];
+    const length = Math.hypot(...sight);
+    if (length < 1e-3) return [];
+    const along = ((to.right - from.right) * sight[0] + (to.ahead - from.ahead) * sight[1]) / length;
+    const range_m = Math.max(5, (handle.range_m * along) / length);
+    if (moment.width_px !== null) return [{ set: [...moment.path, 'width_px'], to: writtenWidth((handle.width_px * handle.range_m) / range_m) }];
+    return [{ set: [...moment.path, 'range_m'], to: writtenRange(range_m) }];
+  }
+
+  private key(event: KeyboardEvent, flyer: Flyer, kind: 'approach' | 'course'): void {
+    const sign = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+    const { plan, clip } = this.now;
+    if (!sign || !plan || !clip || event.ctrlKey) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const step = sign * (event.shiftKey ? 10 : 1);
+    const encounter = tableOf(flyer.table.encounter);
+    if (kind === 'course') {
+      this.studio.edit([{ set: [...flyer.path, 'encounter', 'course_deg'], to: turned((numberOf(encounter.course_deg) ?? 0) + step) }], 'course-keys');
+      return;
+    }
+    const key = 'cpa_ahead_m' in encounter && !('cpa_right_m' in encounter) ? 'cpa_ahead_m' : 'cpa_right_m';
+    this.studio.edit([{ set: [...flyer.path, 'encounter', key], to: round((numberOf(encounter[key]) ?? 0) + step, 1) }], 'approach-keys');
+  }
+}
+
+// The direction in which the closest approach of an encounter can lie, as [right, ahead] of the own course.
+function acrossOf(table: Table, own_mps: number): Point {
+  const encounter = tableOf(table.encounter);
+  const number = (key: string) => numberOf(encounter[key]) ?? 0;
+  return acrossRelative(own_mps, number('speed_mps'), number('climb_mps'), number('course_deg'));
+}
+
+function setAcross(flyer: Flyer, across: Point, along_m: number): Change[] {
+  const isRight = Math.abs(across[0]) >= LEAST_ACROSS;
+  const [key, other] = isRight ? ['cpa_right_m', 'cpa_ahead_m'] : ['cpa_ahead_m', 'cpa_right_m'];
+  const set: Change = { set: [...flyer.path, 'encounter', key], to: round(along_m * across[isRight ? 0 : 1], 1) };
+  return other in tableOf(flyer.table.encounter) ? [{ remove: [...flyer.path, 'encounter', other] }, set] : [set];
+}
+
+// Where the two are at their closest approach.
+function approachOf(plan: Plan, track: Track, clip: Clip): { own: Ned; place: Ned; ownCourse_deg: number; frame: number } | null {
+  if (!track.cpa) return null;
+  const frame = track.cpa.time_s * clip.rate_hz;
+  const own = nedAt(plan, plan.own.ned, frame);
+  const velocity = velocityAt(plan, plan.own.ned, frame, clip.rate_hz);
+  if (!own || !velocity) return null;
+  const ownCourse_deg = Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : 0;
+  const [c, si] = [Math.cos(radians(ownCourse_deg)), Math.sin(radians(ownCourse_deg))];
+  const { right_m, ahead_m, above_m } = track.cpa;
+  return { own, place: [own[0] + ahead_m * c - right_m * si, own[1] + ahead_m * si + right_m * c, own[2] - above_m], ownCourse_deg, frame };
+}
+
+// 1, 2 or 5 times a power of ten, at least as much as given.
+export function niceStep(least: number): number {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return ([1, 2, 5, 10].find((k) => k * power >= least) ?? 10) * power;
+}
