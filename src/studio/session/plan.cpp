@@ -40,15 +40,40 @@ struct Sampled {
   std::vector<setup::Moment> moments;
 };
 
-Sampled sampled(const Stage& stage, std::int64_t count) {
+Sampled sampled(const Stage& stage, const setup::World& world) {
   Sampled result;
+  const std::int64_t count = stage.frame_count();
   const std::int64_t step = std::max<std::int64_t>(1, (count + kMostPoints - 1) / kMostPoints);
   for (std::int64_t k = 0; k < count; k += step) result.frames.push_back(k);
   if (result.frames.back() != count - 1) result.frames.push_back(count - 1);
   for (const std::int64_t k : result.frames)
-    result.moments.push_back(
-        setup::moment_at(stage.world(), k, stage.time_s(k), stage.shake_at(k)));
+    result.moments.push_back(setup::moment_at(world, k, stage.time_s(k), stage.shake_at(k)));
   return result;
+}
+
+// The world with one for each party, which stands for all of it: the boxes of a flock's birds in
+// hundreds of frames take longer than a drag may.
+setup::World world_of_middles(const setup::World& whole,
+                              const std::vector<preview::Party>& parties) {
+  setup::World world = whole;
+  world.actors.clear();
+  for (const preview::Party& party : parties) world.actors.push_back(whole.actors[party.middle]);
+  return world;
+}
+
+// Without what moves while a frame is exposed, which would take most of the time and widens a box
+// by less than is seen in a path.
+setup::World instant(setup::World world) {
+  world.shutter = {};
+  return world;
+}
+
+bool is_in_view(const setup::Moment& moment, const trajectory::Path& path) {
+  const auto state = path.at(moment.time_s);
+  const auto pixel =
+      state ? projection::pixel_from_world(moment.sight, state->position_in_world) : std::nullopt;
+  const lens::ImageSize size = moment.sight.lens->size();
+  return pixel && setup::meets_frame({pixel->x(), pixel->y(), 1, 1}, size);
 }
 
 // The two ends of the horizon where it crosses the picture's surroundings; empty where the camera
@@ -112,10 +137,13 @@ Json cpa_of(const std::optional<passage::Approach>& closest) {
 
 class Planner {
  public:
-  Planner(Stage& stage, const std::vector<document::TablePlace>& tables, std::int64_t frame_count)
+  Planner(Stage& stage, const std::vector<document::TablePlace>& tables)
       : stage_(stage),
         tables_(tables),
-        sampled_(sampled(stage, frame_count)),
+        parties_(preview::parties_of(stage.scene())),
+        middles_(world_of_middles(stage.world(), parties_)),
+        still_(instant(middles_)),
+        sampled_(sampled(stage, still_)),
         checks_(checks_of(stage)) {}
 
   Json plan() const {
@@ -132,10 +160,8 @@ class Planner {
     }
     const setup::Moment& first = sampled_.moments.front();
     Json tracks = Json::array();
-    const auto parties = preview::parties_of(stage_.scene());
-    const std::vector<std::string> approaches = approach_words(parties);
-    for (std::size_t i = 0; i < parties.size(); ++i)
-      tracks.push_back(track(parties[i], approaches[i]));
+    const std::vector<std::string> approaches = approach_words();
+    for (std::size_t i = 0; i < parties_.size(); ++i) tracks.push_back(track(i, approaches[i]));
     return {{"revision", stage_.revision()},
             {"complete", stage_.is_complete()},
             {"frames", sampled_.frames},
@@ -154,31 +180,39 @@ class Planner {
   }
 
  private:
-  std::vector<std::string> approach_words(const std::vector<preview::Party>& parties) const {
+  // Of the middles, with what is ever in view.
+  std::vector<std::string> approach_words() const {
+    std::vector<preview::Party> single;
     std::vector<preview::PreviewRow> rows;
-    for (std::size_t p = 0; p < parties.size(); ++p)
-      for (const setup::Moment& moment : sampled_.moments)
-        for (const std::size_t actor : parties[p].actors)
-          if (moment.search[actor]) {
-            preview::PreviewRow row;
-            row.party = p;
-            row.box_px = moment.boxes[actor].box;
-            rows.push_back(row);
-            break;
-          }
-    return preview::approach_lines(stage_.world(), parties, rows, stage_.duration_s());
+    for (std::size_t i = 0; i < parties_.size(); ++i) {
+      single.push_back({parties_[i].name, {i}, i});
+      const bool is_seen =
+          std::any_of(sampled_.moments.begin(), sampled_.moments.end(), [&](const auto& moment) {
+            if (moment.search[i]) return true;
+            return std::any_of(
+                parties_[i].actors.begin(), parties_[i].actors.end(), [&](std::size_t actor) {
+                  return is_in_view(moment, stage_.world().actors[actor].path);
+                });
+          });
+      if (!is_seen) continue;
+      rows.emplace_back();
+      rows.back().party = i;
+      rows.back().box_px.emplace();
+    }
+    return preview::approach_lines(middles_, single, rows, stage_.duration_s());
   }
 
-  Json track(const preview::Party& party, const std::string& approach) const {
-    const setup::Actor& actor = stage_.world().actors[party.middle];
+  Json track(std::size_t place, const std::string& approach) const {
+    const preview::Party& party = parties_[place];
+    const setup::Actor& actor = middles_.actors[place];
     const scene::Intruder& stated = stage_.scene().intruders[party.middle];
     const Json table = table_at(tables_, stated.where.line);
     Json points = Json::array();
     Json positions = Json::array();
     for (const setup::Moment& moment : sampled_.moments) {
-      const auto& state = moment.states[party.middle];
+      const auto& state = moment.states[place];
       positions.push_back(state ? ned(state->position_in_world) : Json());
-      if (state) points.push_back(point(moment, party.middle));
+      if (state) points.push_back(point(moment, place));
     }
     const auto closest =
         passage::closest_approach(stage_.world().camera, actor.path, 0, stage_.duration_s());
@@ -195,7 +229,7 @@ class Planner {
             {"count", party.actors.size()},
             {"points", points},
             {"ned", positions},
-            {"handles", handles(table, party.middle)},
+            {"handles", handles(table, place)},
             {"cpa", cpa_of(closest)},
             {"approach", approach},
             {"violations", violations(actor)},
@@ -219,7 +253,9 @@ class Planner {
   Json handles(const Json& table, std::size_t actor) const {
     Json result = Json::array();
     if (!table.is_array()) return result;
-    const auto& seen = stage_.stated_seen(actor);
+    const auto& seen = stage_.stated_seen(parties_[actor].middle);
+    setup::World alone = middles_;
+    alone.actors = {middles_.actors[actor]};
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const auto frame =
           static_cast<std::int64_t>(std::llround(seen[i].time_s * stage_.clip_rate_hz()));
@@ -228,8 +264,8 @@ class Planner {
       Json path = table;
       path.push_back("seen");
       path.push_back(i);
-      const auto& state = moment.states[actor];
-      const auto& box = moment.boxes[actor].box;
+      const auto& state = moment.states.front();
+      const auto& box = moment.boxes.front().box;
       result.push_back(
           {{"path", path},
            {"frame", frame},
@@ -276,6 +312,9 @@ class Planner {
 
   Stage& stage_;
   const std::vector<document::TablePlace>& tables_;
+  std::vector<preview::Party> parties_;
+  setup::World middles_;
+  setup::World still_;
   Sampled sampled_;
   std::map<int, std::vector<std::string>> checks_;
 };
@@ -291,7 +330,7 @@ Json table_at(const std::vector<document::TablePlace>& tables, int line) {
 }
 
 Json plan_of(Stage& stage, const std::vector<document::TablePlace>& tables) {
-  return Planner(stage, tables, stage.frame_count()).plan();
+  return Planner(stage, tables).plan();
 }
 
 Json boxes_of(const Stage& stage,
