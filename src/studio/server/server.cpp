@@ -19,10 +19,10 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "studio/messages/request.h"
+#include "studio/messages/target.h"
 #include "studio/page/page.h"
-#include "studio/server/target.h"
 #include "studio/server/token.h"
-#include "studio/session/request.h"
 
 namespace airtruth::server {
 namespace {
@@ -32,6 +32,10 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using Fault = boost::system::error_code;
+using messages::ByteRange;
+using messages::range_from;
+using messages::Target;
+using messages::target_from;
 using tcp = asio::ip::tcp;
 
 // Bounds. A page has one WebSocket and the six connections that browsers open to one server.
@@ -167,7 +171,7 @@ class Server::Impl::Page : public std::enable_shared_from_this<Page> {
 
   void begin(const Request& request) {
     socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-    socket_.read_message_max(session::kMostRequestBytes);
+    socket_.read_message_max(messages::kMostRequestBytes);
     socket_.async_accept(request, [self = shared_from_this()](Fault fault) {
       if (fault) return self->end();
       self->is_open_ = true;

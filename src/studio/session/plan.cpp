@@ -254,8 +254,8 @@ class Planner {
     Json result = Json::array();
     if (!table.is_array()) return result;
     const auto& seen = stage_.stated_seen(parties_[actor].middle);
-    setup::World alone = middles_;
-    alone.actors = {middles_.actors[actor]};
+    setup::World alone = still_;
+    alone.actors = {still_.actors[actor]};
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const auto frame =
           static_cast<std::int64_t>(std::llround(seen[i].time_s * stage_.clip_rate_hz()));
@@ -275,7 +275,10 @@ class Planner {
             state ? Json(hundredths(
                         (state->position_in_world - moment.camera.position_in_world).norm()))
                   : Json()},
-           {"width_px", box ? Json(hundredths(box->width)) : Json()}});
+           {"width_px",
+            seen[i].width_px ? Json(*seen[i].width_px)
+            : box            ? Json(hundredths(box->width))
+                             : Json()}});
     }
     return result;
   }

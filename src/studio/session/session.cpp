@@ -21,11 +21,12 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
+#include "studio/messages/request.h"
 #include "studio/session/gallery.h"
 #include "studio/session/job.h"
 #include "studio/session/jpeg.h"
+#include "studio/session/measure.h"
 #include "studio/session/plan.h"
-#include "studio/session/request.h"
 #include "studio/session/stage.h"
 #include "studio/session/worker.h"
 
@@ -34,6 +35,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+using messages::Act;
+using messages::Request;
 using Urgency = Worker::Urgency;
 
 // Around what is drawn: the reach of lens and sharpening, and the blocks of a JPEG.
@@ -47,8 +50,8 @@ std::string error(std::int64_t id, const std::string& line) {
 }
 
 // Runs `act`, and hands the line of its fault to `fail`.
-template <typename Act, typename Fail>
-void try_to(const Act& act, const Fail& fail) {
+template <typename Do, typename Fail>
+void try_to(const Do& act, const Fail& fail) {
   try {
     act();
   } catch (const Interrupted&) {
@@ -157,8 +160,8 @@ class Session::Impl {
   }
 
   void take(Client client, const std::string& message) {
-    const std::int64_t id = id_of(message).value_or(0);
-    try_to([&] { answer(client, request_from(message)); },
+    const std::int64_t id = messages::id_of(message).value_or(0);
+    try_to([&] { answer(client, messages::request_from(message)); },
            [&](const std::string& line) { ways_.send(client, error(id, line)); });
   }
 
@@ -278,8 +281,8 @@ class Session::Impl {
                  {}});
   }
 
-  template <typename Act>
-  void change(Client client, std::int64_t id, const Act& act) {
+  template <typename Do>
+  void change(Client client, std::int64_t id, const Do& act) {
     const std::int64_t before = document_->revision();
     act();
     if (document_->revision() != before) publish();
@@ -288,8 +291,8 @@ class Session::Impl {
   }
 
   // Answers with what `act` gives on the worker's thread.
-  template <typename Act>
-  void on_worker(Client client, std::int64_t id, Urgency urgency, Act act) {
+  template <typename Do>
+  void on_worker(Client client, std::int64_t id, Urgency urgency, Do act) {
     worker_.add({urgency,
                  "",
                  [this, client, id, act] {
@@ -304,8 +307,8 @@ class Session::Impl {
     ways_.post([this, client, text = std::move(text)] { ways_.send(client, text); });
   }
 
-  template <typename Act>
-  void small(Done done, Act act) {
+  template <typename Do>
+  void small(Done done, Do act) {
     worker_.add({Urgency::kSmallPicture,
                  "",
                  [this, done, act] {
@@ -447,8 +450,15 @@ class Session::Impl {
     motion_job_.start([this, scene, key](const std::stop_token& stop) {
       std::shared_ptr<const setup::MotionSource> motion;
       std::string problem;
-      try_to([&] { motion = motion_of(scene, stop); },
-             [&](const std::string& line) { problem = line; });
+      pipeline::Options options = for_job(stop, "motion");
+      options.threads = 1;
+      try_to(
+          [&] {
+            motion = motion_of(scene, options, [this](std::int64_t done, std::int64_t total) {
+              tell_progress("motion", done, total);
+            });
+          },
+          [&](const std::string& line) { problem = line; });
       if (stop.stop_requested()) return;
       worker_.add({Urgency::kFrame,
                    "",
@@ -462,45 +472,6 @@ class Session::Impl {
                    },
                    {}});
     });
-  }
-
-  std::shared_ptr<const setup::MotionSource> motion_of(const scene::Scene& scene,
-                                                       const std::stop_token& stop) {
-    pipeline::Options options = options_.pipeline;
-    options.is_preview = true;
-    options.threads = 1;
-    options.stop = stop;
-    video::Reader reader = pipeline::open_background(scene, options);
-    const video::StreamInfo info = reader.info();
-    const lens::ImageSize size{info.width, info.height};
-    pipeline::StatedScene as_stated = pipeline::stated(scene, info);
-    scene::Scene& plain = as_stated.scene;
-    plain.composite.method = scene::CompositeMethod::kMatte;
-    plain.motion.model = setup::motion_model(scene);
-    std::shared_ptr<const image::Mask> mask;
-    if (plain.background.mask) mask = options.shared->mask_of(*plain.background.mask, size);
-    const lens::Lens lens = setup::lens_of(plain.lens, size);
-    const fs::path cache = pipeline::cache_folder(options, "motion");
-    const setup::MotionInputs inputs{
-        plain,
-        lens,
-        !setup::shutter_of(plain.camera_model).is_instant(),
-        setup::sha256_of_video(plain.background.video, *options.shared),
-        mask.get(),
-        cache.empty() ? disk_cache::Cache() : disk_cache::Cache(cache)};
-    const std::int64_t total =
-        std::max<std::int64_t>(1, info.frame_count_estimate - plain.background.first_frame);
-    const auto seen = [&](std::int64_t done) {
-      tell_progress("motion", done, plain.background.frame_count.value_or(total));
-    };
-    auto source = std::make_shared<setup::MotionSource>(
-        inputs,
-        setup::MotionPass{.for_all = true,
-                          .open = [&] { return std::move(reader); },
-                          .stop = stop,
-                          .seen = seen});
-    source->store();
-    return source;
   }
 
   void measure_camera(const scene::Scene& scene) {
@@ -562,8 +533,8 @@ class Session::Impl {
     return options;
   }
 
-  template <typename Act>
-  void ask_for(Client client, std::int64_t id, Act act) {
+  template <typename Do>
+  void ask_for(Client client, std::int64_t id, Do act) {
     if (is_asked_) throw Error("one is running; expected to cancel it, or to wait");
     is_asked_ = true;
     asked_job_.start([this, client, id, act](const std::stop_token& stop) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studio/session/request.h"
+#include "studio/messages/request.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
 
-namespace airtruth::session {
+namespace airtruth::messages {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -131,4 +131,4 @@ Request request_from(std::string_view text) {
   return request;
 }
 
-}  // namespace airtruth::session
+}  // namespace airtruth::messages

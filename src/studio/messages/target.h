@@ -8,7 +8,7 @@
 #include <string_view>
 
 // The words of an HTTP request that the server reads itself.
-namespace airtruth::server {
+namespace airtruth::messages {
 
 // "/thumb?frame=7&name=a%2Fb": the path as it stands, the values without their escapes.
 struct Target {
@@ -36,4 +36,4 @@ std::optional<ByteRange> range_from(std::string_view header,
                                     std::uint64_t size,
                                     std::uint64_t most);
 
-}  // namespace airtruth::server
+}  // namespace airtruth::messages

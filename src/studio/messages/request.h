@@ -12,7 +12,7 @@
 #include "foundation/geometry/box.h"
 #include "studio/document/change.h"
 
-namespace airtruth::session {
+namespace airtruth::messages {
 
 enum class Act {
   kOpen,
@@ -71,4 +71,4 @@ std::optional<std::int64_t> id_of(std::string_view text);
 // Throws Error where the text is no message of the page.
 Request request_from(std::string_view text);
 
-}  // namespace airtruth::session
+}  // namespace airtruth::messages

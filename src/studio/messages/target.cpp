@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "studio/server/target.h"
+#include "studio/messages/target.h"
 
 #include <algorithm>
 #include <charconv>
 
-namespace airtruth::server {
+namespace airtruth::messages {
 namespace {
 
 constexpr std::size_t kMostBytes = 2048;
@@ -87,4 +87,4 @@ std::optional<ByteRange> range_from(std::string_view header,
   return range;
 }
 
-}  // namespace airtruth::server
+}  // namespace airtruth::messages

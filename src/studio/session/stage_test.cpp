@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/stage.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "foundation/base/error.h"
+#include "scene/synthetic/flight.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/pipeline/frame_by_frame.h"
+#include "sequence/pipeline/resolved_scene.h"
+#include "sequence/setup/shared_inputs.h"
+#include "studio/session/plan.h"
+#include "support/temporary_folder.h"
+
+namespace airtruth::session {
+namespace {
+
+constexpr int kFrames = 40;
+
+class OverAFlight : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test_support::TemporaryFolder();
+    synthetic::FlightOptions flight;
+    flight.seed = 5;
+    flight.width = 320;
+    flight.height = 240;
+    flight.frame_count = kFrames;
+    flight.own_aircraft = false;
+    demo::write_flight(synthetic::Flight(flight), *folder_ / "flight.mp4", {});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static pipeline::Options options() {
+    pipeline::Options options;
+    options.cache = *folder_ / "cache";
+    options.threads = 1;
+    options.shared = std::make_shared<setup::SharedInputs>();
+    return options;
+  }
+  static scene::Scene scene_of(const std::string& more, const std::string& background = "") {
+    return scene::parse_scene("[background]\nvideo = \"flight.mp4\"\n" + background +
+                                  "[lens]\nvertical_fov_deg = 60\n[camera]\nposition_ned_m = [0, "
+                                  "0, -300]\nvelocity_ned_mps = [25, 0, 0]\n" +
+                                  more,
+                              *folder_ / "scene.toml");
+  }
+  static Measured measured_of(const scene::Scene& scene, const pipeline::Options& options) {
+    Measured measured;
+    measured.motion = motion_of(scene, options, [](std::int64_t, std::int64_t) {});
+    measured.motion_key = motion_key(scene);
+    return measured;
+  }
+
+  // Frames in an order in which no reader gives them are those of a run over the clip.
+  static void expect_as_rendered(const scene::Scene& scene) {
+    std::vector<pipeline::FrameByFrame::Made> made;
+    pipeline::FrameByFrame frames(scene, options());
+    while (auto frame = frames.next()) made.push_back(std::move(*frame));
+    ASSERT_GE(made.size(), 20u);
+    Stage stage(options());
+    stage.set(1, scene, measured_of(scene, options()));
+    const auto last = std::ssize(made) - 1;
+    int changed = 0;
+    for (const std::int64_t k : {std::int64_t{13},
+                                 std::int64_t{0},
+                                 last,
+                                 std::int64_t{5},
+                                 std::int64_t{6},
+                                 std::int64_t{7},
+                                 last - 9}) {
+      const auto picture = stage.picture(k, true);
+      ASSERT_TRUE(picture);
+      EXPECT_TRUE(picture->exact);
+      EXPECT_TRUE(
+          image::identical(picture->picture(), made[static_cast<std::size_t>(k)].frame.picture))
+          << "frame " << k;
+      changed += picture->plain ? 0 : 1;
+    }
+    EXPECT_GE(changed, 4);
+  }
+
+  static inline test_support::TemporaryFolder* folder_ = nullptr;
+};
+
+const std::string kAircraft = "[[intruder]]\nid = \"a\"\naircraft = \"c172/news\"\n";
+const std::string kSeen = kAircraft +
+                          "[[intruder.seen]]\ntime_s = 0.1\npixel = [80, 100]\nrange_m = 150\n"
+                          "[[intruder.seen]]\ntime_s = 1.2\npixel = [220, 130]\nwidth_px = 30\n";
+const std::string kEncounter = kAircraft +
+                               "[intruder.encounter]\ncpa_time_s = 4\ncpa_right_m = 10\n"
+                               "cpa_above_m = 5\ncourse_deg = 180\nspeed_mps = 40\n";
+
+TEST_F(OverAFlight, PicturesAreThoseOfARun) { expect_as_rendered(scene_of(kEncounter)); }
+
+TEST_F(OverAFlight, SoAreTheyOfWhatIsSeenAndOfAFlock) {
+  expect_as_rendered(
+      scene_of("[motion]\nreference = \"smoothed\"\n" + kSeen +
+               "[[distractor]]\nkind = \"bird\"\ncount = 5\nspread_m = 4\nposition_ned_m = [40, 0, "
+               "-300]\nvelocity_ned_mps = [25, 0, 0]\n"));
+}
+
+TEST_F(OverAFlight, SoAreTheyWithACameraModel) {
+  expect_as_rendered(scene_of(
+      "[shutter]\nexposure_s = 0.01\nreadout_s = 0.01\n[optics]\npoint_spread_px = 0.7\n[sensor]\n"
+      "noise_gain = 1e-4\nnoise_floor = 1e-5\n[air]\nextinction_per_km = [0.1, 0.1, 0.1]\n" +
+      kSeen));
+}
+
+TEST_F(OverAFlight, SoAreTheyOfAPartOfTheClip) {
+  std::string seen = kSeen;
+  expect_as_rendered(
+      scene_of(seen.replace(seen.find("1.2"), 3, "0.9"), "first_frame = 7\nframe_count = 31\n"));
+}
+
+TEST_F(OverAFlight, SoAreTheyWhereTheSceneIsEditedInBetween) {
+  const scene::Scene before = scene_of(kEncounter);
+  const scene::Scene after = scene_of(kSeen);
+  const Measured measured = measured_of(before, options());
+  Stage stage(options());
+  stage.set(1, before, measured);
+  stage.picture(20, true);
+  stage.set(2, after, measured);
+  EXPECT_FALSE(stage.picture(20, false)->exact);
+  pipeline::FrameByFrame frames(after, options());
+  for (int k = 0; k < 20; ++k) frames.next();
+  EXPECT_TRUE(image::identical(stage.picture(20, true)->picture(), frames.next()->frame.picture));
+}
+
+TEST_F(OverAFlight, WithoutItsMotionTheCameraStandsAtItsNominalPose) {
+  Stage stage(options());
+  stage.set(1, scene_of(kSeen), {});
+  EXPECT_FALSE(stage.is_complete());
+  const auto picture = stage.picture(3, true);
+  EXPECT_FALSE(picture->exact);
+  const Pixel seen = projection::pixel_from_world(picture->moment.sight,
+                                                  picture->moment.states[0]->position_in_world)
+                         .value();
+  EXPECT_NEAR(seen.x(), 80, 1);
+  EXPECT_NEAR(seen.y(), 100, 1);
+}
+
+TEST_F(OverAFlight, WhatTheClipWouldTellOfTheCameraIsLeftOutUntilItIsMeasured) {
+  const scene::Scene scene = scene_of("[realism]\nauto = true\nfallback = true\n" + kSeen);
+  Measured measured = measured_of(scene, options());
+  Stage stage(options());
+  stage.set(1, scene, measured);
+  EXPECT_FALSE(stage.is_complete());
+  EXPECT_FALSE(stage.scene().camera_model.noise_gain);
+  pipeline::calibration_of(scene, options());
+  measured.calibrated.insert(calibration_key(scene));
+  stage.set(1, scene, measured);
+  EXPECT_TRUE(stage.is_complete());
+  EXPECT_TRUE(stage.scene().camera_model.noise_gain);
+  EXPECT_FALSE(stage.scene().camera_model.codec_step);
+}
+
+TEST_F(OverAFlight, AFrameBeyondTheEndIsSaid) {
+  Stage stage(options());
+  const scene::Scene scene = scene_of(kSeen);
+  EXPECT_THROW(stage.clip(scene.background).frame(kFrames), Error);
+  EXPECT_THROW(stage.clip(scene.background).frame(kFrames + 1000), Error);
+  EXPECT_EQ(stage.clip(scene.background).frame(kFrames - 1)->index, kFrames - 1);
+  EXPECT_EQ(stage.clip(scene.background).frame_count(), kFrames);
+}
+
+TEST_F(OverAFlight, ThePlanPassesTheHandles) {
+  const scene::Scene scene = scene_of(kSeen);
+  Stage stage(options());
+  stage.set(1, scene, measured_of(scene, options()));
+  const auto plan = plan_of(stage, {{"intruder", 0, scene.intruders[0].where.line}});
+  EXPECT_TRUE(plan["complete"].get<bool>());
+  EXPECT_EQ(plan["frames"].size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(plan["own"]["ned"].size(), plan["frames"].size());
+  const auto& track = plan["tracks"][0];
+  EXPECT_EQ(track["table"], nlohmann::ordered_json::parse(R"(["intruder", 0])"));
+  EXPECT_EQ(track["ned"].size(), plan["frames"].size());
+  ASSERT_EQ(track["handles"].size(), 2u);
+  for (const auto& handle : track["handles"]) {
+    const auto frame = handle["frame"].get<std::size_t>();
+    const auto& point = track["points"][frame];
+    EXPECT_EQ(point[0], frame);
+    EXPECT_NEAR(point[1].get<double>(), handle["pixel"][0].get<double>(), 0.05);
+    EXPECT_NEAR(point[2].get<double>(), handle["pixel"][1].get<double>(), 0.05);
+    EXPECT_TRUE(point[5].get<bool>());
+  }
+  EXPECT_NEAR(track["handles"][0]["range_m"].get<double>(), 150, 0.1);
+  EXPECT_NEAR(track["points"][36][4].get<double>(), 30, 0.5);
+  EXPECT_FALSE(plan["horizon"].empty());
+}
+
+TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {
+  const scene::Scene scene = scene_of(
+      kAircraft + "waypoints_ned_m = [[100, 0, -300], [400, 0, 200]]\nspeed_mps = 500\n" +
+      "[[intruder]]\nid = \"b\"\naircraft = \"c172/news\"\nwaypoints_ned_m = [[-900, 0, -300], "
+      "[-400, 0, -300]]\nspeed_mps = 50\n");
+  Stage stage(options());
+  stage.set(1, scene, {});
+  const auto plan = plan_of(stage,
+                            {{"intruder", 0, scene.intruders[0].where.line},
+                             {"intruder", 1, scene.intruders[1].where.line}});
+  const std::string first = plan["tracks"][0]["checks"].dump();
+  EXPECT_NE(first.find("cannot fly its path"), std::string::npos) << first;
+  EXPECT_NE(first.find("below the ground"), std::string::npos) << first;
+  const std::string second = plan["tracks"][1]["checks"].dump();
+  EXPECT_NE(second.find("never in view"), std::string::npos) << second;
+}
+
+}  // namespace
+}  // namespace airtruth::session
