@@ -23,6 +23,8 @@ pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl gl)
 pkg_check_modules(yamlcpp REQUIRED IMPORTED_TARGET yaml-cpp)
 pkg_check_modules(geographiclib REQUIRED IMPORTED_TARGET geographiclib)
 pkg_check_modules(libcrypto REQUIRED IMPORTED_TARGET libcrypto)
+# HTTP and WebSocket of the studio, in headers alone; on the compiler's own path.
+find_path(BOOST_BEAST boost/beast.hpp REQUIRED)
 # Networks run on onnxruntime where the system has it (libonnxruntime-dev, from Debian 13 on), else on OpenCV's dnn.
 pkg_check_modules(onnxruntime IMPORTED_TARGET libonnxruntime)
 if(AIRTRUTH_TESTS)

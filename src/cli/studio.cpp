@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
@@ -24,7 +28,7 @@ struct StudioArguments {
   std::string input;
   std::string lens;
   std::optional<double> frame_rate_hz;
-  std::string out;
+  std::string out = "out";
   int port = 0;
   bool open = false;
 };
@@ -55,13 +59,31 @@ std::unique_ptr<document::Document> document_of(const StudioArguments& arguments
   return std::make_unique<document::Document>(file, std::move(begun), console.warn());
 }
 
-// Begins the user's browser, which is not waited for.
+// Begins the user's browser, which is not waited for. It takes no signal mask of ours, and says
+// nothing on this terminal.
 void open_in_browser(const std::string& address, Console& console) {
   std::string program = "xdg-open";
   std::string word = address;
   char* arguments[] = {program.data(), word.data(), nullptr};
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  for (const int file : {0, 1, 2})
+    posix_spawn_file_actions_addopen(&files, file, "/dev/null", O_RDWR, 0);
+  posix_spawn_file_actions_addclosefrom_np(&files, 3);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  sigset_t pipe = none;
+  sigaddset(&pipe, SIGPIPE);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &pipe);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   pid_t child = 0;
-  if (posix_spawnp(&child, "xdg-open", nullptr, nullptr, arguments, environ) != 0)
+  const int fault = posix_spawnp(&child, program.c_str(), &files, &attributes, arguments, environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&files);
+  if (fault != 0)
     console.warning("xdg-open is not there (package xdg-utils); open the address yourself");
 }
 
@@ -75,7 +97,7 @@ void studio(const StudioArguments& arguments, Context& context) {
   if (const char* page = std::getenv("AIRTRUTH_STUDIO_PAGE")) where.page = page;
   server::Server server(where);
   session::Options how;
-  how.out = !arguments.out.empty() ? fs::path(arguments.out) : fs::path("out");
+  how.out = arguments.out;
   session::Session session(std::move(document), how, server.ways());
   console.print(server.address() + "\n");
   if (arguments.open) open_in_browser(server.address(), console);

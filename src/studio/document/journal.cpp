@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
@@ -162,10 +163,11 @@ void Journal::write(const std::string& line) {
     done += static_cast<std::size_t>(wrote);
   }
   bytes_ += line.size();
+  is_flushed_ = false;
 }
 
 void Journal::flush() {
-  if (file_ >= 0) ::fdatasync(file_);
+  if (file_ >= 0 && !std::exchange(is_flushed_, true)) ::fdatasync(file_);
 }
 
 void Journal::remove() {

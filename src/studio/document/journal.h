@@ -84,6 +84,7 @@ class Journal {
   std::filesystem::path path_;
   int file_ = -1;
   std::size_t bytes_ = 0;
+  bool is_flushed_ = true;
 };
 
 }  // namespace airtruth::document
