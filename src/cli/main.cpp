@@ -11,10 +11,10 @@
 #include <vector>
 
 #include <airtruth/version.h>
+#include <CLI/CLI.hpp>
 #include <malloc.h>
 
 #include "cli/commands.h"
-#include "cli/help_format.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 
@@ -30,6 +30,20 @@ constexpr const char* kAbout =
     "Puts 3D aircraft into real onboard video, as that camera would have seen them, and writes the "
     "exact truth of\n"
     "every frame. Start with `airtruth demo`, then `airtruth render SCENE.toml --out DIR`.";
+
+// CLI11 2.1 (Debian 12) writes an option's default value as "INT=3", 2.4 (Debian 13) as "INT [3] ".
+// Help has the first form on both.
+class HelpFormat : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    std::string text = CLI::Formatter::make_option_opts(option);
+    const std::string value = option->get_default_str();
+    const std::string bracketed = " [" + value + "] ";
+    if (const std::size_t at = text.find(bracketed); !value.empty() && at != std::string::npos)
+      text.replace(at, bracketed.size(), "=" + value);
+    return text;
+  }
+};
 
 // Frames are allocated and released continually. The allocator keeps their memory, so that the
 // kernel need not supply and clear it again.
@@ -138,7 +152,7 @@ int main(int argc, char** argv) {
   keep_memory();
   const cli::StopOnSignal signals;
   CLI::App app(kAbout, "airtruth");
-  app.formatter(std::make_shared<cli::HelpFormat>());
+  app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", std::string("airtruth ") + kVersion);
   app.require_subcommand(1);
   app.fallthrough();
