@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Approach, Change, Clip, Json, Path, Plan, State, Table, Track } from './contract';
-import { type Point, clamp, courseOf, radians, round, speedOf, turned, velocityAt } from './geometry';
+import { type Point, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt } from './geometry';
 
 // How a flyer's path is stated.
 export type Statement = 'moments' | 'approach' | 'waypoints' | 'file' | 'drift' | 'lens';
@@ -114,7 +114,7 @@ const removed = (flyer: Flyer): Change[] => PATH_KEYS.filter((key) => key in fly
 
 // The same path by moments in the picture: where it is in view, three of them.
 export function toMoments(flyer: Flyer, track: Track, clip: Clip): Change[] | null {
-  const inClip = track.points.filter((point) => point[0] >= 0 && point[0] < clip.frames && point[3] > 0);
+  const inClip = track.points.filter(isPlaced).filter((point) => point[0] >= 0 && point[0] < clip.frames && point[3] > 0);
   const seen = inClip.filter((point) => point[5]);
   const chosen = seen.length >= 2 ? seen : inClip;
   if (chosen.length < 2) return null;
@@ -188,13 +188,6 @@ export function copyOf(flyer: Flyer, clip: Clip): Table {
   const encounter = tableOf(table.encounter);
   if ('encounter' in table) encounter.cpa_above_m = (numberOf(encounter.cpa_above_m) ?? 0) + 20;
   return table;
-}
-
-// How far from its pixel a flyer may paint.
-export function reachOf(flyer: Flyer | null, width_px: number): number {
-  const size = numberOf(flyer?.table.size_m) ?? 1;
-  const spread = numberOf(flyer?.table.spread_m) ?? 0;
-  return width_px * 0.8 + 20 + (spread * width_px) / size;
 }
 
 export function ownSpeed(plan: Plan, frame: number, clip: Clip): number {

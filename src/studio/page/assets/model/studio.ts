@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Connection, Lost, Refused } from './connection';
-import type { AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, ServerEvent, State } from './contract';
+import type { AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State } from './contract';
 import { type Edit, Edits, type Unsent } from './edits';
-import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, reachOf, trackOf, withMoment } from './flyers';
-import { type Crop, type Point, clamp, cropAround, joined, seenAt, seenNear } from './geometry';
+import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, trackOf, withMoment } from './flyers';
+import { type Point, clamp, seenNear } from './geometry';
 import { Pictures } from './pictures';
 import type { Store } from './store';
 
@@ -12,9 +12,9 @@ const REST_MS = 150;
 const PLAN_EVERY_MS = 100;
 const UNSENT_KEY = 'airtruth-studio-unsent';
 
-// An edit and what of it is shown before the next one is sent.
+// An edit that is drawn before the next one is sent, and when the hand moved.
 interface ShownEdit extends Edit {
-  shown?: { frame: number; crop: Crop; moved_ms: number };
+  moved_ms?: number;
 }
 
 // What a user can do, on the store and over the connection.
@@ -38,7 +38,8 @@ export class Studio {
       refused: (line) => { store.say('error', line); this.settle(); },
       pending: (pending) => store.put({ pending }),
     });
-    this.pictures.onRefused = (line) => { if (!store.now.state?.problem) store.say('error', line); };
+    this.pictures.onRefused = (line) => store.say('error', line);
+    this.pictures.onDrawn = ({ frame, boxes }) => store.put({ boxes: { frame, boxes } });
     connection.onOpen = () => void this.opened();
     connection.onLost = () => this.lost();
     connection.onEvent = (event) => this.heard(event);
@@ -67,22 +68,10 @@ export class Studio {
     return `${what}-${++this.merges}-${Date.now()}`;
   }
 
-  // An edit. With a merge, what it changes is drawn at once, in the part of the frame given; latency counts from the event.
-  edit(changes: Change[], merge: string | null = null, shown?: { crop: Crop | null; moved_ms: number }): void {
-    const edit: ShownEdit = { changes, merge };
-    const isShown = shown?.crop && this.store.now.showsAircraft;
-    if (isShown) edit.shown = { frame: this.store.now.frame, crop: shown.crop!, moved_ms: shown.moved_ms };
+  // An edit. Of a drag, which states when the hand moved, what it changes in the frame is drawn at once.
+  edit(changes: Change[], merge: string | null = null, moved_ms?: number): void {
+    const edit: ShownEdit = { changes, merge, moved_ms };
     this.edits.add(edit);
-  }
-
-  // Of everything that flies in the frame shown.
-  cropOfAll(): Crop | null {
-    const { state, plan, clip, frame } = this.store.now;
-    if (!state || !plan || !clip) return null;
-    return plan.tracks.reduce<Crop | null>((all, track) => {
-      const seen = seenAt(track, frame);
-      return seen ? joined(all, cropAround(seen.pixel, reachOf(flyerAt(state, track.table), seen.width_px), clip)) : all;
-    }, null);
   }
 
   // While a pointer holds something, the whole frame waits.
@@ -93,7 +82,7 @@ export class Studio {
 
   async undo(): Promise<void> { await this.whole('undo'); }
   async redo(): Promise<void> { await this.whole('redo'); }
-  async save(): Promise<void> { await this.whole('save'); }
+  async save(): Promise<void> { if (await this.whole('save')) this.store.say('info', `Saved ${this.store.now.file}`); }
   async reload(): Promise<void> { await this.whole('reload'); }
 
   select(selected: Path | null, moment: number | null = null): void {
@@ -184,8 +173,8 @@ export class Studio {
 
   render(): Promise<void> {
     return this.long('render', async () => {
-      const film = await this.connection.request<{ folder: string; video: string }>('render');
-      this.store.put({ film });
+      if (!this.store.now.state?.saved && !(await this.whole('save'))) return;
+      this.store.put({ film: await this.connection.request<Rendered>('render') });
     });
   }
 
@@ -204,13 +193,14 @@ export class Studio {
 
   private async send(edit: ShownEdit): Promise<State> {
     const answer = this.connection.request<{ state: State }>('edit', { changes: edit.changes, merge: edit.merge });
-    const { shown } = edit;
-    const isShown = shown && shown.frame === this.pictures.frame && shown.frame === this.store.now.frame;
-    const part = isShown ? this.pictures.part(shown.frame, shown.crop).catch(() => null) : null;
+    const { moved_ms } = edit;
+    const { frame, showsAircraft } = this.store.now;
+    const isShown = moved_ms !== undefined && showsAircraft && frame === this.pictures.frame;
+    const change = isShown ? this.pictures.change(frame).catch(() => null) : null;
     const { state } = await answer;
-    if (part && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({ state });
-    const drawn = await part;
-    if (shown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - shown.moved_ms);
+    if (change && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({ state });
+    const drawn = await change;
+    if (isShown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - moved_ms);
     return state;
   }
 
@@ -221,7 +211,7 @@ export class Studio {
 
   private took(state: State): void {
     const { selected } = this.store.now;
-    this.store.put({ state, ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? { selected: null, moment: null } : {}) });
+    this.store.put({ state, ...(state.changed_on_disk ? {} : { keepsMine: false }), ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? { selected: null, moment: null } : {}) });
     this.settle();
   }
 
@@ -249,24 +239,29 @@ export class Studio {
         const plan = await this.connection.request<Plan>('plan');
         this.planned_ms = performance.now();
         const isDone = !this.isDragged && this.edits.isIdle && !this.planStale;
-        this.store.put({ plan, ...(isDone ? { draft: null } : {}) });
+        this.store.put({ plan, planProblem: null, ...(isDone ? { draft: null } : {}) });
       }
     } catch (error) {
       this.planStale = false;
-      if (error instanceof Refused && !this.store.now.state?.problem) this.store.say('error', error.message);
+      if (error instanceof Refused) this.store.put({ planProblem: error.message });
     } finally {
       this.planAsked = false;
     }
   }
 
-  private async whole(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<void> {
+  // What is done to the whole text, after all edits; whether it was.
+  private async whole(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<boolean> {
     await this.edits.whenIdle();
+    const { state: before } = this.store.now;
+    if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
     try {
-      const { state } = await this.connection.request<{ state: State }>(what);
+      const isAnswered = what === 'save' && before?.changed_on_disk && !isOffered(before, this.store.now.keepsMine);
+      const { state } = await this.connection.request<{ state: State }>(what, isAnswered ? { replace: true } : {});
       this.took(state);
-      if (what === 'save') this.store.say('info', `Saved ${this.store.now.file}`);
+      return true;
     } catch (error) {
       this.failed(error);
+      return false;
     }
   }
 
@@ -318,6 +313,10 @@ export class Studio {
   private heard(event: ServerEvent): void {
     if (event.event === 'progress') {
       this.store.put({ progress: event });
+    } else if (event.event === 'measured') {
+      this.store.put({ progress: this.store.now.busy ? this.store.now.progress : null });
+      this.pictures.forget();
+      this.settle();
     } else if (event.event === 'warning') {
       this.store.say('warning', event.line);
     } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
@@ -329,4 +328,4 @@ export class Studio {
 }
 
 // Whether a state tells of a change on disk that the user has not answered.
-export const isOffered = (state: State | null, keepsMine: string | null) => Boolean(state?.changed_on_disk && keepsMine !== state.text);
+export const isOffered = (state: State | null, keepsMine: boolean) => Boolean(state?.changed_on_disk && !keepsMine);

@@ -23,7 +23,7 @@ export class FlyerList extends Part {
     const flyers = state ? flyersOf(state.scene) : [];
     this.empty.hidden = flyers.length > 0 || !state;
     this.items.show(flyers.map((flyer) => ({ key: JSON.stringify(flyer.path), item: flyer })));
-    this.general.replaceChildren(...(plan?.checks ?? []).map((line) => h('li', {}, line)));
+    this.general.replaceChildren(...(plan?.warnings ?? []).map((line) => h('li', {}, line)));
     if (!flyers.some((flyer) => isSame(flyer.path, this.now.selected))) this.panel.remove();
   }
 

@@ -164,7 +164,7 @@ export class HeightView extends Part {
       return;
     }
     const changes = this.changesOf(drag, event);
-    if (changes.length) this.studio.edit(changes, drag.merge, { crop: this.studio.cropOfAll(), moved_ms: event.timeStamp });
+    if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
   }
 
   private up(): void {

@@ -10,6 +10,10 @@ const RADIUS = 90;
 const SUN: [string, number, number, number][] = [['sun_azimuth_deg', 180, -360, 360], ['sun_elevation_deg', 45, -90, 90]];
 const KOSCHMIEDER = Math.log(50); // visibility in km is this over the extinction in 1/km
 
+// The unit that a key's name ends with.
+const UNITS: Record<string, string> = { px: 'px', s: 's', deg: '°', per_km: '1/km' };
+const unitOf = (key: string) => UNITS[Object.keys(UNITS).find((unit) => key.endsWith(`_${unit}`)) ?? ''] ?? '';
+
 interface WeatherKey {
   key: string;
   label: string;
@@ -80,7 +84,7 @@ export class LightPanel extends Part {
         const [path, to] = change(value);
         const isThere = path[0] in (this.now.state?.scene ?? {}) && path[1] in tableOf(this.now.state?.scene[path[0]]);
         if (to === null && !isThere) return;
-        this.studio.edit([to === null ? { remove: path } : { set: path, to }], merge, { crop: this.studio.cropOfAll(), moved_ms });
+        this.studio.edit([to === null ? { remove: path } : { set: path, to }], merge, moved_ms);
       },
       ended: () => this.studio.dragging(false),
     });
@@ -136,7 +140,7 @@ export class LightPanel extends Part {
 
   private setSun([azimuth, elevation]: Point, merge: string, moved_ms: number): void {
     this.placeSun(azimuth, elevation);
-    this.studio.edit([{ set: ['light', SUN[0][0]], to: azimuth }, { set: ['light', SUN[1][0]], to: elevation }], merge, { crop: this.studio.cropOfAll(), moved_ms });
+    this.studio.edit([{ set: ['light', SUN[0][0]], to: azimuth }, { set: ['light', SUN[1][0]], to: elevation }], merge, moved_ms);
   }
 
   private auto_(isOn: boolean): void {
@@ -149,10 +153,10 @@ export class LightPanel extends Part {
     const number = (value: Json): string => (Array.isArray(value) ? value.map(number).join(', ') : typeof value === 'number' ? String(Number(value.toPrecision(3))) : value === null ? '' : String(value));
     const row = (cells: string[]) => h('tr', {}, ...cells.map((cell, k) => h(k ? 'td' : 'th', { scope: k ? null : 'row' }, cell)));
     const hasError = (error: Json) => error !== null && error !== undefined;
-    this.values.replaceChildren(...measured.map(({ key, value, error, unit }) => row([key, `${number(value)}${hasError(error) ? ` ± ${number(error)}` : ''}${unit ? ` ${unit}` : ''}`])));
+    this.values.replaceChildren(...measured.map(({ key, value, error, missing, unit }) => row([key, value === null ? missing : `${number(value)}${hasError(error) ? ` ± ${number(error)}` : ''} ${unit ?? unitOf(key)}`])));
   }
 
   private useMeasured(): void {
-    this.studio.edit((this.now.measured ?? []).map(({ key, value }) => ({ set: key.split('.'), to: value })));
+    this.studio.edit((this.now.measured ?? []).filter(({ value }) => value !== null).map(({ key, value }) => ({ set: key.split('.'), to: value })));
   }
 }

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Track } from '../model/contract';
-import { flyersOf, isSame, reachOf } from '../model/flyers';
-import { type Seen, nedAt, round, seenAt } from '../model/geometry';
+import type { ExactBox } from '../model/contract';
+import { flyersOf, isSame } from '../model/flyers';
+import { nedAt, round } from '../model/geometry';
 import type { Everything } from '../model/store';
 import { Keyed, attribute, s, text } from './part';
 
 const MOTION_FRAMES = 30;
 
 interface Box {
-  track: Track;
-  seen: Seen;
+  exact: ExactBox;
   colour: number;
   isSelected: boolean;
-  reach_px: number;
 }
 
 // What is measured or follows, drawn over the frame: boxes with range and size, the horizon, and how it moved lately.
@@ -33,31 +31,28 @@ export class OverlayLayer {
     this.scale = scale;
     this.showHorizon(now);
     this.showMotion(now);
-    const { plan, state, frame, showsBoxes } = now;
+    const { boxes, state, frame, showsBoxes } = now;
     const flyers = state ? flyersOf(state.scene) : [];
-    const boxes = (showsBoxes ? plan?.tracks ?? [] : []).flatMap((track) => {
-      const seen = seenAt(track, frame);
-      const flyer = flyers.find((one) => isSame(one.path, track.table));
-      if (!seen || !flyer || !seen.isVisible) return [];
-      const item = { track, seen, colour: flyer.colour, isSelected: isSame(now.selected, track.table), reach_px: reachOf(flyer, seen.width_px) };
-      return [{ key: JSON.stringify(track.table), item }];
-    });
-    this.boxes.show(boxes);
+    const shown = showsBoxes && boxes?.frame === frame ? boxes.boxes : [];
+    this.boxes.show(shown.map((exact) => {
+      const colour = flyers.find((one) => isSame(one.path, exact.table))?.colour ?? 0;
+      return { key: exact.id, item: { exact, colour, isSelected: isSame(now.selected, exact.table) } };
+    }));
   }
 
-  private renew(element: SVGGElement, { track, seen, colour, isSelected }: Box): void {
+  private renew(element: SVGGElement, { exact, colour, isSelected }: Box): void {
     attribute(element, 'class', `box colour-${colour}${isSelected ? ' selected' : ''}`);
     const [path, label] = [element.children[0], element.children[1]];
     const px = 1 / this.scale;
-    const half = [seen.width_px / 2 + 4 * px, Math.max(seen.width_px / 3.2, 8 * px)];
-    const [x0, x1, y0, y1] = [seen.pixel[0] - half[0], seen.pixel[0] + half[0], seen.pixel[1] - half[1], seen.pixel[1] + half[1]];
-    const arm = Math.min(12 * px, half[0] / 1.5, half[1] / 1.5);
-    const corner = (x: number, y: number, dx: number, dy: number) => `M${x + dx * arm},${y}H${x}V${y + dy * arm}`;
+    const [x, y, w, h] = exact.box;
+    const [x0, y0, x1, y1] = [x - 3 * px, y - 3 * px, x + w + 3 * px, y + h + 3 * px];
+    const arm = Math.min(12 * px, (x1 - x0) / 3, (y1 - y0) / 3);
+    const corner = (cx: number, cy: number, dx: number, dy: number) => `M${cx + dx * arm},${cy}H${cx}V${cy + dy * arm}`;
     attribute(path, 'd', corner(x0, y0, 1, 1) + corner(x1, y0, -1, 1) + corner(x0, y1, 1, -1) + corner(x1, y1, -1, -1));
-    attribute(label, 'x', x1 + 6 * px);
-    attribute(label, 'y', y0 - 2 * px);
+    attribute(label, 'x', x1 + 4 * px);
+    attribute(label, 'y', y0 - 3 * px);
     attribute(label, 'font-size', 13 * px);
-    text(label, `${track.id}  ${distance(seen.range_m)}  ${round(seen.width_px, 1)} px`);
+    text(label, isSelected ? `${exact.id}  ${distance(exact.range_m)}  ${round(w, 1)} × ${round(h, 1)} px` : exact.id);
   }
 
   private showHorizon({ plan, frame, showsHorizon }: Readonly<Everything>): void {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Path, Track } from '../model/contract';
-import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, reachOf, trackOf, writtenPixel } from '../model/flyers';
-import { type Crop, type Point, cropAround, joined, round, seenAt } from '../model/geometry';
+import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel } from '../model/flyers';
+import { type Point, isPlaced, round, seenAt } from '../model/geometry';
 import type { Studio } from '../model/studio';
 import { distance } from './overlay_layer';
 import { Keyed, attribute, s, text } from './part';
@@ -120,32 +120,25 @@ export class PathLayer {
   }
 
   private size(index: number, factor: number, moved_ms: number): void {
-    const { state, clip, selected, plan } = this.studio.store.now;
+    const { state, clip, selected } = this.studio.store.now;
     const flyer = flyerAt(state, selected);
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
-    if (!flyer || !moment || !clip) return;
+    if (!moment) return;
     const change = nearer(moment, factor);
     if (!change) return;
     if (moved_ms - this.wheelMerge.at > PAUSE_MS) this.wheelMerge.name = this.studio.merge('size');
     this.wheelMerge.at = moved_ms;
     this.studio.show(moment.frame);
-    const track = trackOf(plan, flyer.path);
-    const width_px = (track && seenAt(track, moment.frame)?.width_px) ?? 40;
-    this.studio.edit([change], this.wheelMerge.name, { crop: cropAround(moment.pixel, reachOf(flyer, width_px * Math.max(1, factor)), clip), moved_ms });
+    this.studio.edit([change], this.wheelMerge.name, moved_ms);
   }
 
   private moveTo(held: Held, pixel: Point, moved_ms: number): void {
-    const { clip, plan } = this.studio.store.now;
     const to = writtenPixel(pixel);
-    if (!clip || (to[0] === held.last[0] && to[1] === held.last[1])) return;
-    const track = trackOf(plan, held.flyer.path);
-    const seen = track && seenAt(track, held.moment.frame);
-    const reach_px = reachOf(held.flyer, held.moment.width_px ?? seen?.width_px ?? 40);
-    const crop: Crop | null = joined(cropAround(held.last, reach_px, clip), cropAround(to, reach_px, clip));
+    if (to[0] === held.last[0] && to[1] === held.last[1]) return;
     held.last = to;
     held.isMoved = true;
     this.studio.store.put({ draft: { path: held.moment.path, pixel: to } });
-    this.studio.edit([{ set: [...held.moment.path, 'pixel'], to }], held.merge, { crop, moved_ms });
+    this.studio.edit([{ set: [...held.moment.path, 'pixel'], to }], held.merge, moved_ms);
   }
 
   private key(event: KeyboardEvent, index: number): void {
@@ -219,7 +212,7 @@ export class PathLayer {
     attribute(label, 'font-size', 12 * px);
     text(label, `${round(moment.time_s, 2)} s`);
     const known = trackOf(plan, flyer.path)?.handles[index];
-    const size = [known && distance(known.range_m), known && `${round(known.width_px, 1)} px wide`].filter(Boolean).join(', ');
+    const size = [known?.range_m && distance(known.range_m), known?.width_px && `${round(known.width_px, 1)} px wide`].filter(Boolean).join(', ');
     attribute(element, 'aria-label', `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(x, 1)}, ${round(y, 1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
   }
 }
@@ -228,9 +221,9 @@ export class PathLayer {
 function pathData(track: Track, isDrawn: (isVisible: boolean) => boolean): string {
   let data = '';
   let isDown = false;
-  for (const [, x, y, range_m, , visible] of track.points) {
-    const isIn = range_m > 0 && Math.abs(x) < FAR && Math.abs(y) < FAR && isDrawn(Boolean(visible));
-    if (isIn) data += `${isDown ? 'L' : 'M'}${round(x, 1)},${round(y, 1)}`;
+  for (const point of track.points) {
+    const isIn = isPlaced(point) && Math.abs(point[1]) < FAR && Math.abs(point[2]) < FAR && isDrawn(point[5]);
+    if (isIn) data += `${isDown ? 'L' : 'M'}${round(point[1], 1)},${round(point[2], 1)}`;
     isDown = isIn;
   }
   return data;

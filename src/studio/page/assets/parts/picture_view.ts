@@ -13,7 +13,7 @@ const PIXELS_FROM_SCALE = 3; // frame pixels are shown as squares from here on
 // The frame on a canvas, and above it drawings in the frame's own coordinates. The wheel zooms about the pointer, the background is
 // dragged, two fingers do both.
 export class PictureView extends Part {
-  protected readonly watches: Member[] = ['clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'connected'];
+  protected readonly watches: Member[] = ['clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'boxes', 'showsBoxes', 'showsHorizon', 'showsMotion', 'connected'];
   private canvas = h('canvas', { role: 'img', 'aria-label': 'The frame with the aircraft in it' });
   private svg = s('svg', { class: 'over', role: 'group', 'aria-label': 'Paths over the frame' });
   private overlay = new OverlayLayer();
@@ -24,7 +24,6 @@ export class PictureView extends Part {
   protected build(): void {
     this.svg.append(this.overlay.element, this.paths.element);
     this.append(this.canvas, this.svg);
-    this.studio.pictures.onDrawn = () => this.draw();
     new ResizeObserver(() => this.resized()).observe(this);
     this.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     this.addEventListener('pointerdown', (event) => this.down(event));
@@ -34,7 +33,7 @@ export class PictureView extends Part {
   }
 
   protected update(changed: Set<Member>): void {
-    if (changed.has('look') || changed.has('clip')) this.draw();
+    if (changed.has('look') || changed.has('clip') || changed.has('boxes')) this.draw();
     this.place();
     const scale = this.scale;
     this.overlay.update(this.now, scale);

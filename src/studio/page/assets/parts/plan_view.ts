@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Change, Clip, Ned, Plan, State, Table, Track } from '../model/contract';
-import { type Flyer, flyersOf, focalOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth } from '../model/flyers';
+import type { Change, Clip, Ned, Plan, Table, Track } from '../model/contract';
+import { type Flyer, flyersOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth } from '../model/flyers';
 import { type Point, acrossRelative, courseOf, degrees, nedAt, radians, round, turned, velocityAt } from '../model/geometry';
 import type { Member } from '../model/store';
 import { Part, attribute, h, renewed, s } from './part';
@@ -47,7 +47,7 @@ export class PlanView extends Part {
     const own = nedAt(plan, plan.own.ned, frame);
     renewed(this.svg, [
       this.grid(width, height),
-      ...(own ? [this.fieldOfView(plan, state, clip, own), ...this.volumes(plan, own)] : []),
+      ...(own ? [this.fieldOfView(plan, own), ...this.volumes(plan, own)] : []),
       s('polyline', { class: 'own', points: this.points(plan.own.ned) }),
       ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
       ...(own ? [this.ownMark(plan, clip, own)] : []),
@@ -82,7 +82,7 @@ export class PlanView extends Part {
   private frameAll(plan: Plan, clip: Clip, width: number, height: number): void {
     this.origin = plan.own.ned[0] ?? [0, 0, 0];
     const velocity = this.ownVelocity;
-    this.course_deg = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : this.yaw() ?? 0;
+    this.course_deg = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : plan.own.heading_deg;
     const others = plan.tracks.flatMap((track) => [...track.ned, approachOf(plan, track, clip)?.place ?? null]);
     const near = others.filter((ned): ned is Ned => ned !== null && Math.hypot(ned[0] - this.origin[0], ned[1] - this.origin[1]) < MOST_M);
     const all = [...plan.own.ned, ...near].map((ned) => this.ground(ned));
@@ -91,11 +91,6 @@ export class PlanView extends Part {
     this.middle = { right: (left + right) / 2, ahead: (low + high) / 2 };
     const room = [Math.max(40, width - 2 * MARGIN_PX), Math.max(40, height - 2 * MARGIN_PX)];
     this.scale = Math.min(room[0] / Math.max(LEAST_M, right - left), room[1] / Math.max(LEAST_M, high - low));
-  }
-
-  private yaw(): number | null {
-    const attitude = tableOf(this.now.state?.scene.camera).attitude_yaw_pitch_roll_deg;
-    return Array.isArray(attitude) ? Number(attitude[0]) : null;
   }
 
   private points(ned: (Ned | null)[]): string {
@@ -114,15 +109,12 @@ export class PlanView extends Part {
     return group;
   }
 
-  private fieldOfView(plan: Plan, state: State, clip: Clip, own: Ned): SVGPathElement {
-    const half = Math.atan(clip.width / 2 / focalOf(state.scene, clip));
-    const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
-    const course = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : this.course_deg;
-    const looks = this.yaw() ?? course;
+  private fieldOfView(plan: Plan, own: Ned): SVGPathElement {
+    const half = radians(plan.horizontal_fov_deg / 2);
     const [x, y] = this.at(own);
     const far = Math.hypot(this.svg.clientWidth, this.svg.clientHeight);
     const edge = (sign: number) => {
-      const angle = radians(looks - this.course_deg) + sign * half;
+      const angle = radians(plan.own.heading_deg - this.course_deg) + sign * half;
       return `${round(x + far * Math.sin(angle), 1)},${round(y - far * Math.cos(angle), 1)}`;
     };
     return s('path', { class: 'view', d: `M${round(x, 1)},${round(y, 1)}L${edge(-1)}L${edge(1)}Z` });
@@ -214,7 +206,7 @@ export class PlanView extends Part {
     const { drag } = this;
     if (!drag) return;
     const changes = this.changesOf(drag, this.groundAt(event));
-    if (changes.length) this.studio.edit(changes, drag.merge, { crop: this.studio.cropOfAll(), moved_ms: event.timeStamp });
+    if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
   }
 
   private up(): void {
@@ -245,14 +237,14 @@ export class PlanView extends Part {
     const moment = momentsOf(flyer, clip)[index];
     const handle = track.handles[index];
     const [own, place] = [moment && nedAt(plan, plan.own.ned, moment.frame), moment && nedAt(plan, track.ned, moment.frame)];
-    if (!moment || !handle || !own || !place) return [];
+    if (!moment || !handle?.range_m || !own || !place) return [];
     const [from, there] = [this.ground(own), this.ground(place)];
     const sight: Point = [there.right - from.right, there.ahead - from.ahead];
     const length = Math.hypot(...sight);
     if (length < 1e-3) return [];
     const along = ((to.right - from.right) * sight[0] + (to.ahead - from.ahead) * sight[1]) / length;
     const range_m = Math.max(5, (handle.range_m * along) / length);
-    if (moment.width_px !== null) return [{ set: [...moment.path, 'width_px'], to: writtenWidth((handle.width_px * handle.range_m) / range_m) }];
+    if (moment.width_px !== null && handle.width_px !== null) return [{ set: [...moment.path, 'width_px'], to: writtenWidth((handle.width_px * handle.range_m) / range_m) }];
     return [{ set: [...moment.path, 'range_m'], to: writtenRange(range_m) }];
   }
 
