@@ -152,7 +152,11 @@ export interface Choice {
   count?: number;
 }
 
-const NEW_SHARE = 0.05; // of the picture's width, for what is new
+// Of the picture's width, for what is new; a flock takes some more than a bird of it.
+const NEW_SHARE = 0.05;
+const SMALL_SHARE = 0.025;
+const FLOCK_SHARE = 0.014;
+const NEAREST_SHARE = 0.5; // of its first range, for the second moment
 const CRUISE_MPS: Partial<Record<Kind, number>> = { bird: 12, multirotor: 8, balloon: 2 };
 const cruise = (choice: Choice) => CRUISE_MPS[choice.kind] ?? (choice.length_m > 20 ? 110 : 50);
 
@@ -164,19 +168,22 @@ export function focalOf(scene: Table, clip: Clip): number {
   return fov && fov < 179 ? clip.height / 2 / Math.tan(radians(fov) / 2) : clip.width * 0.8;
 }
 
-// A flyer that crosses the picture and is at a pixel in the frame shown.
-export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point): Table {
-  const width_px = Math.max(16, clip.width * NEW_SHARE);
-  const range_m = writtenRange((choice.length_m * focalOf(scene, clip)) / width_px);
+// A flyer that crosses the picture, and the way of the own aircraft, and is at a pixel in the frame shown.
+export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point, own_mps: number): Table {
+  const isFlock = choice.count !== undefined && choice.count > 1;
+  const width_px = Math.max(14, clip.width * (choice.kind === 'aircraft' ? NEW_SHARE : isFlock ? FLOCK_SHARE : SMALL_SHARE));
+  const range_m = (choice.length_m * focalOf(scene, clip)) / width_px;
   const rate_px_s = (cruise(choice) * width_px) / choice.length_m;
   const span = clip.frames - 1;
-  const way = Math.max(1, Math.min(span, Math.round(clamp((clip.width * 0.45) / rate_px_s, 0.5, 6) * clip.rate_hz)));
+  const lasts_s = Math.min((clip.width * 0.45) / rate_px_s, (range_m * (1 - NEAREST_SHARE)) / Math.max(1, own_mps));
+  const way = Math.max(1, Math.min(span, Math.round(clamp(lasts_s, 0.5, 6) * clip.rate_hz)));
   const first = Math.max(0, Math.min(frame, span - way));
   const direction = at[0] < clip.width / 2 ? 1 : -1;
   const pixelAt = (k: number): Point => [at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz, at[1]];
-  const seen = [first, first + way].map((k) => seenTable(timeOf(k, clip), pixelAt(k), range_m));
+  const rangeAt = (k: number) => Math.max(range_m * NEAREST_SHARE, range_m - (own_mps * (k - first)) / clip.rate_hz);
+  const seen = [first, first + way].map((k) => seenTable(timeOf(k, clip), pixelAt(k), rangeAt(k)));
   if (choice.kind === 'aircraft') return { aircraft: choice.aircraft ?? '', seen };
-  const flock: Table = choice.count && choice.count > 1 ? { count: choice.count, spread_m: round(choice.length_m * 6, 0) } : {};
+  const flock: Table = isFlock ? { count: choice.count!, spread_m: round(choice.length_m * 6, 0) } : {};
   return { kind: choice.kind, ...flock, seen };
 }
 

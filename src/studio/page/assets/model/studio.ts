@@ -2,7 +2,7 @@
 import { Connection, Lost, Refused } from './connection';
 import type { AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State } from './contract';
 import { type Edit, Edits, type Unsent } from './edits';
-import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, trackOf, withMoment } from './flyers';
+import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment } from './flyers';
 import { type Point, clamp, seenNear } from './geometry';
 import { Pictures } from './pictures';
 import type { Store } from './store';
@@ -96,13 +96,13 @@ export class Studio {
   }
 
   add(choice: Choice, at: Point | null = null): void {
-    const { state, clip, frame } = this.store.now;
+    const { state, clip, plan, frame } = this.store.now;
     if (!state || !clip) return;
     const key = choice.kind === 'aircraft' ? 'intruder' : 'distractor';
     const list = state.scene[key];
     const count = Array.isArray(list) ? list.length : 0;
     const place = at ?? [clip.width * 0.3, clip.height * (0.3 + 0.08 * (flyersOf(state.scene).length % 5))];
-    this.edit([{ insert: [key], at: null, table: newFlyer(choice, state.scene, clip, frame, place as Point) }]);
+    this.edit([{ insert: [key], at: null, table: newFlyer(choice, state.scene, clip, frame, place as Point, plan ? ownSpeed(plan, frame, clip) : 0) }]);
     this.store.put({ selected: [key, count], moment: null, tab: 'flyers' });
   }
 

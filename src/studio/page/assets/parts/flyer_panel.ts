@@ -40,6 +40,7 @@ export class FlyerPanel extends Part {
   private built = '';
   private fields: { options: KeyOptions; field: NumberField }[] = [];
   private rows: MomentRow[] = [];
+  private portrait = h('img', { alt: '', width: 56, height: 56 });
   private seenAs = h('p', { class: 'hint' });
 
   protected build(): void {}
@@ -58,6 +59,10 @@ export class FlyerPanel extends Part {
     text(this.seenAs, track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '');
     const title = this.querySelector('.what .title');
     if (title) text(title, flyer.title);
+    const name = flyer.kind === 'aircraft' ? flyer.title : flyer.kind;
+    const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
+    attribute(this.portrait, 'src', `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`);
+    this.portrait.hidden = flyer.statement === 'lens' || /\.\w+$/.test(name); // what is on the lens, and a model file, have no picture
   }
 
   private shape(flyer: Flyer, moments: Moment[]): void {
@@ -67,7 +72,7 @@ export class FlyerPanel extends Part {
     const isNatural = flyer.kind === 'bird' || flyer.kind === 'multirotor' || flyer.kind === 'balloon';
     const keys = isNatural ? FLOCK.filter(({ key }) => flyer.kind === 'bird' || key[0] === 'size_m') : [];
     this.replaceChildren(
-      h('div', { class: 'what' }, h('span', { class: 'title' }),
+      h('div', { class: 'what' }, this.portrait, h('span', { class: 'title' }),
         flyer.kind === 'aircraft' && h('button', { onclick: () => this.studio.store.put({ dialog: 'gallery', replaces: path, addsAt: null }) }, 'Change …')),
       ...(keys.length ? [h('div', { class: 'grid' }, ...keys.map((one) => this.keyField(one)))] : []),
       h('h3', {}, PATHS[flyer.statement]),

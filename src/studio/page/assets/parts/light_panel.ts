@@ -33,9 +33,10 @@ const WEATHER: WeatherKey[] = [
 
 // The sun on a dome seen from above, weather, and what is measured from the clip.
 export class LightPanel extends Part {
-  protected readonly watches: Member[] = ['state', 'busy', 'measured', 'clip'];
+  protected readonly watches: Member[] = ['state', 'plan', 'busy', 'measured', 'clip'];
   private sun = s('circle', { class: 'sun', r: 9 });
   private dome = s('svg', { class: 'dome', viewBox: '-120 -112 240 224', tabindex: 0, role: 'slider', 'aria-label': 'The sun. Arrow keys turn and raise it' });
+  private view = s('path', { class: 'view' });
   private fields: NumberField[] = [];
   private sliders: Slider[] = [];
   private haze!: Slider;
@@ -50,7 +51,7 @@ export class LightPanel extends Part {
     this.buildDome();
     this.fields = SUN.map(([key, , min, max]) => new NumberField({ label: key === SUN[0][0] ? 'Azimuth from north' : 'Elevation', unit: '°', step: 1, min, max, taken: (value) => this.studio.edit([{ set: ['light', key], to: value }]) }));
     this.sliders = WEATHER.map(({ key, ...options }) => this.slider(options, (value) => [['weather', key], value]));
-    this.haze = this.slider({ label: 'Visibility', min: 1, max: 200, isLogarithmic: true, shown: (km) => (km >= 200 ? 'as measured' : `${round(km, 1)} km`) }, (km) => [['air', 'extinction_per_km'], km >= 200 ? null : [1, 1, 1].map(() => round(KOSCHMIEDER / km, 4))]);
+    this.haze = this.slider({ label: 'Visibility', min: 1, max: 200, isLogarithmic: true, shown: (km) => (km >= 200 ? 'measured' : `${round(km, 1)} km`) }, (km) => [['air', 'extinction_per_km'], km >= 200 ? null : [1, 1, 1].map(() => round(KOSCHMIEDER / km, 4))]);
     this.append(h('h2', {}, 'Sun'), this.dome, h('div', { class: 'grid' }, ...this.fields.map((one) => one.element)),
       h('h2', {}, 'Weather of what is inserted'), ...this.sliders.map((one) => one.element), this.haze.element,
       h('p', { class: 'hint' }, 'The clip’s own picture stays as it is. Blur and noise need the clip’s own, measured or stated.'),
@@ -62,6 +63,7 @@ export class LightPanel extends Part {
     if (!state) return;
     const light = tableOf(state.scene.light);
     const [azimuth, elevation] = SUN.map(([key, usual]) => numberOf(light[key]) ?? usual);
+    this.showView();
     if (!this.isHeld) this.placeSun(azimuth, elevation);
     this.fields[0].show(azimuth);
     this.fields[1].show(elevation);
@@ -93,7 +95,7 @@ export class LightPanel extends Part {
   private buildDome(): void {
     const ring = (r: number) => s('circle', { class: 'ring', r });
     const words = (x: number, y: number, word: string) => s('text', { x, y }, word);
-    this.dome.append(s('circle', { class: 'sky', r: RADIUS }), ring(RADIUS / 3), ring((2 * RADIUS) / 3), words(0, -97, 'N'), words(103, 4, 'E'), words(0, 108, 'S'), words(-103, 4, 'W'),
+    this.dome.append(s('circle', { class: 'sky', r: RADIUS }), this.view, ring(RADIUS / 3), ring((2 * RADIUS) / 3), words(0, -97, 'N'), words(103, 4, 'E'), words(0, 108, 'S'), words(-103, 4, 'W'),
       words(0, -RADIUS / 3 + 12, '60°'), words(0, (-2 * RADIUS) / 3 + 12, '30°'), this.sun);
     this.dome.addEventListener('pointerdown', (event) => {
       this.merge = this.studio.merge('sun');
@@ -119,6 +121,16 @@ export class LightPanel extends Part {
     const words = `azimuth ${round(turned(azimuth_deg), 0)} degrees, elevation ${round(elevation_deg, 0)} degrees`;
     attribute(this.dome, 'aria-valuetext', words);
     attribute(this.dome, 'aria-valuenow', round(elevation_deg, 0));
+  }
+
+  // Where the camera looks.
+  private showView(): void {
+    const { plan } = this.now;
+    if (!plan) return;
+    const half = Math.min(89, plan.horizontal_fov_deg / 2);
+    const edge = (deg: number) => `${round(RADIUS * Math.sin(radians(deg)), 1)},${round(-RADIUS * Math.cos(radians(deg)), 1)}`;
+    const looks = plan.own.heading_deg;
+    attribute(this.view, 'd', `M0,0L${edge(looks - half)}A${RADIUS},${RADIUS} 0 0 1 ${edge(looks + half)}Z`);
   }
 
   private drag(event: PointerEvent): void {

@@ -18,7 +18,7 @@ export class OverlayLayer {
   readonly element = s('g', { class: 'overlay' });
   private horizon = s('line', { class: 'horizon' });
   private motion = s('g', { class: 'motion' });
-  private scale = 1;
+  private px = 1; // frame pixels of a screen pixel
   private boxes: Keyed<Box, SVGGElement>;
 
   constructor() {
@@ -27,8 +27,8 @@ export class OverlayLayer {
     this.boxes = new Keyed<Box, SVGGElement>(boxes, () => s('g', {}, s('path'), s('text')), (element, box) => this.renew(element, box));
   }
 
-  update(now: Readonly<Everything>, scale: number): void {
-    this.scale = scale;
+  update(now: Readonly<Everything>, px: number): void {
+    this.px = px;
     this.showHorizon(now);
     this.showMotion(now);
     const { boxes, state, frame, showsBoxes } = now;
@@ -43,7 +43,7 @@ export class OverlayLayer {
   private renew(element: SVGGElement, { exact, colour, isSelected }: Box): void {
     attribute(element, 'class', `box colour-${colour}${isSelected ? ' selected' : ''}`);
     const [path, label] = [element.children[0], element.children[1]];
-    const px = 1 / this.scale;
+    const { px } = this;
     const [x, y, w, h] = exact.box;
     const [x0, y0, x1, y1] = [x - 3 * px, y - 3 * px, x + w + 3 * px, y + h + 3 * px];
     const arm = Math.min(12 * px, (x1 - x0) / 3, (y1 - y0) / 3);
@@ -69,7 +69,7 @@ export class OverlayLayer {
     lines.forEach(([, [x1, y1, x2, y2]], k) => this.motion.append(s('line', { x1, y1, x2, y2, opacity: round(0.1 + (0.5 * k) / Math.max(1, lines.length), 2) })));
     const [a, b] = [nedAt(plan, plan.own.ned, frame), nedAt(plan, plan.own.ned, frame + 1)];
     if (!a || !b) return;
-    const px = 1 / this.scale;
+    const { px } = this;
     const speed_mps = Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * clip.rate_hz;
     const label = s('text', { x: 10 * px, y: clip.height - 10 * px, 'font-size': 13 * px });
     label.textContent = `own speed ${round(speed_mps, 1)} m/s, height ${round(-a[2], 0)} m`;

@@ -26,17 +26,17 @@ export class PathLayer {
   private handles: Keyed<{ moment: Moment; flyer: Flyer; index: number }, SVGGElement>;
   private held: Held | null = null;
   private wheelMerge = { name: '', at: -Infinity };
-  private scale = 1;
+  private px = 1; // frame pixels of a screen pixel
 
-  constructor(private studio: Studio, private pixelAt: (event: PointerEvent) => Point, private scaleNow: () => number) {
+  constructor(private studio: Studio, private pixelAt: (event: PointerEvent) => Point) {
     const [lines, handles] = [s('g'), s('g')];
     this.element.append(lines, handles);
     this.tracks = new Keyed(lines, (_, key) => this.makeTrack(key), (element, item) => this.renewTrack(element, item));
     this.handles = new Keyed(handles, () => this.makeHandle(), (element, item) => this.renewHandle(element, item));
   }
 
-  update(scale: number): void {
-    this.scale = scale;
+  update(px: number): void {
+    this.px = px;
     const { state, plan, clip, selected } = this.studio.store.now;
     if (!state || !clip) return;
     const flyers = flyersOf(state.scene);
@@ -176,7 +176,7 @@ export class PathLayer {
     const all = pathData(track, () => true);
     const seen = pathData(track, (visible) => visible);
     for (const [k, data] of [all, all, seen, all].entries()) attribute(element.children[k], 'd', data);
-    attribute(element.children[4], 'd', clip ? secondsOf(track, clip.rate_hz, 2.2 / this.scale) : '');
+    attribute(element.children[4], 'd', clip ? secondsOf(track, clip.rate_hz, 2.2 * this.px) : '');
   }
 
   private makeHandle(): SVGGElement {
@@ -200,7 +200,7 @@ export class PathLayer {
     const [x, y] = draft && isSame(draft.path, moment.path) ? draft.pixel : moment.pixel;
     attribute(element, 'class', `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}`);
     attribute(element, 'data-index', index);
-    const px = 1 / this.scaleNow();
+    const { px } = this;
     for (const [k, radius] of [16, HANDLE_PX, 2.5].entries()) {
       attribute(element.children[k], 'cx', x);
       attribute(element.children[k], 'cy', y);

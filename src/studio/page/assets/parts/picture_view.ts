@@ -3,7 +3,7 @@ import { frameOf } from '../model/flyers';
 import { type Point, clamp } from '../model/geometry';
 import type { Look, Member } from '../model/store';
 import { OverlayLayer } from './overlay_layer';
-import { Part, attribute, h, s } from './part';
+import { Part, attribute, h, s, ui } from './part';
 import { PathLayer } from './path_layer';
 
 const MOST_SCALE = 40;
@@ -17,7 +17,7 @@ export class PictureView extends Part {
   private canvas = h('canvas', { role: 'img', 'aria-label': 'The frame with the aircraft in it' });
   private svg = s('svg', { class: 'over', role: 'group', 'aria-label': 'Paths over the frame' });
   private overlay = new OverlayLayer();
-  private paths = new PathLayer(this.studio, (event) => this.pixelAt(event), () => this.scale);
+  private paths = new PathLayer(this.studio, (event) => this.pixelAt(event));
   private pointers = new Map<number, Point>();
   private dragged = false;
 
@@ -35,9 +35,9 @@ export class PictureView extends Part {
   protected update(changed: Set<Member>): void {
     if (changed.has('look') || changed.has('clip') || changed.has('boxes')) this.draw();
     this.place();
-    const scale = this.scale;
-    this.overlay.update(this.now, scale);
-    this.paths.update(scale);
+    const px = ui() / this.scale;
+    this.overlay.update(this.now, px);
+    this.paths.update(px);
   }
 
   // All of the frame, in the middle.
