@@ -8,8 +8,7 @@ import { Pictures } from './pictures';
 import type { Store } from './store';
 
 const KEPT_LATENCIES = 500;
-const REST_MS = 150;
-const PLAN_EVERY_MS = 100;
+const REST_MS = 100;
 const UNSENT_KEY = 'airtruth-studio-unsent';
 
 // An edit that is drawn before the next one is sent, and when the hand moved.
@@ -26,7 +25,6 @@ export class Studio {
   private rest: ReturnType<typeof setTimeout> | undefined;
   private planAsked = false;
   private planStale = false;
-  private planned_ms = -Infinity;
   private isDragged = false;
 
   constructor(readonly store: Store, readonly connection: Connection, private kept: Storage) {
@@ -39,7 +37,6 @@ export class Studio {
       pending: (pending) => store.put({ pending }),
     });
     this.pictures.onRefused = (line) => store.say('error', line);
-    this.pictures.onDrawn = ({ frame, boxes }) => store.put({ boxes: { frame, boxes } });
     connection.onOpen = () => void this.opened();
     connection.onLost = () => this.lost();
     connection.onEvent = (event) => this.heard(event);
@@ -215,15 +212,16 @@ export class Studio {
     this.settle();
   }
 
-  // After an edit: the path at once, the whole frame when the hand rests.
+  // After an edit: the paths, and the whole frame where its part was not enough, when the hand rests; both take longer than a
+  // picture of a drag may.
   private settle(): void {
-    void this.plan();
     clearTimeout(this.rest);
     const isSoon = this.edits.isIdle && !this.isDragged;
     this.rest = setTimeout(() => {
       this.rest = undefined;
-      if (this.edits.isIdle) this.refresh();
-      if (!this.isDragged && this.edits.isIdle && !this.planAsked) this.store.put({ draft: null });
+      if (!this.edits.isIdle) return;
+      this.refresh();
+      void this.plan();
     }, isSoon ? 0 : REST_MS);
   }
 
@@ -233,11 +231,8 @@ export class Studio {
     this.planAsked = true;
     try {
       while (this.planStale) {
-        const wait_ms = this.planned_ms + PLAN_EVERY_MS - performance.now();
-        if (wait_ms > 0 && this.isDragged) await new Promise((done) => setTimeout(done, wait_ms));
         this.planStale = false;
         const plan = await this.connection.request<Plan>('plan');
-        this.planned_ms = performance.now();
         const isDone = !this.isDragged && this.edits.isIdle && !this.planStale;
         this.store.put({ plan, planProblem: null, ...(isDone ? { draft: null } : {}) });
       }

@@ -16,7 +16,7 @@ type Drag = { kind: 'approach' | 'moment' | 'time'; flyer: Flyer | null; index: 
 // Heights over time: own path, the others, the ground, volumes about the own height. Closest approaches are dragged in time and
 // height, moments in time.
 export class HeightView extends Part {
-  protected readonly watches: Member[] = ['plan', 'state', 'frame', 'selected', 'moment', 'clip'];
+  protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
   private svg = s('svg', { role: 'group', 'aria-label': 'Height over time' });
   private drag: Drag | null = null;
   private low_m = 0;

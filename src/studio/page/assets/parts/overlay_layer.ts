@@ -11,6 +11,7 @@ interface Box {
   exact: ExactBox;
   colour: number;
   isSelected: boolean;
+  label: string;
 }
 
 // What is measured or follows, drawn over the frame: boxes with range and size, the horizon, and how it moved lately.
@@ -34,13 +35,21 @@ export class OverlayLayer {
     const { boxes, state, frame, showsBoxes } = now;
     const flyers = state ? flyersOf(state.scene) : [];
     const shown = showsBoxes && boxes?.frame === frame ? boxes.boxes : [];
-    this.boxes.show(shown.map((exact) => {
-      const colour = flyers.find((one) => isSame(one.path, exact.table))?.colour ?? 0;
-      return { key: exact.id, item: { exact, colour, isSelected: isSame(now.selected, exact.table) } };
+    const tables = shown.map((one) => JSON.stringify(one.table));
+    this.boxes.show(shown.map((exact, k) => {
+      const flyer = flyers.find((one) => isSame(one.path, exact.table));
+      const isSelected = isSame(now.selected, exact.table);
+      // Of a flock one bird has the label.
+      const isFirst = tables.indexOf(tables[k]) === k;
+      const count = tables.filter((one) => one === tables[k]).length;
+      const [w, h] = [exact.box[2], exact.box[3]];
+      const words = count > 1 ? `${flyer?.id ?? exact.id}  ${count} of them` : exact.id;
+      const label = !isFirst ? '' : isSelected ? `${words}  ${distance(exact.range_m)}${count > 1 ? '' : `  ${round(w, 1)} × ${round(h, 1)} px`}` : words;
+      return { key: exact.id, item: { exact, colour: flyer?.colour ?? 0, isSelected, label } };
     }));
   }
 
-  private renew(element: SVGGElement, { exact, colour, isSelected }: Box): void {
+  private renew(element: SVGGElement, { exact, colour, isSelected, label: words }: Box): void {
     attribute(element, 'class', `box colour-${colour}${isSelected ? ' selected' : ''}`);
     const [path, label] = [element.children[0], element.children[1]];
     const { px } = this;
@@ -52,7 +61,7 @@ export class OverlayLayer {
     attribute(label, 'x', x1 + 4 * px);
     attribute(label, 'y', y0 - 3 * px);
     attribute(label, 'font-size', 13 * px);
-    text(label, isSelected ? `${exact.id}  ${distance(exact.range_m)}  ${round(w, 1)} × ${round(h, 1)} px` : exact.id);
+    text(label, words);
   }
 
   private showHorizon({ plan, frame, showsHorizon }: Readonly<Everything>): void {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Path, Track } from '../model/contract';
+import type { Clip, Path, Track } from '../model/contract';
 import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel } from '../model/flyers';
-import { type Point, isPlaced, round, seenAt } from '../model/geometry';
+import { type Point, round } from '../model/geometry';
+import { bent, steadied, through } from '../model/steady';
 import type { Studio } from '../model/studio';
 import { distance } from './overlay_layer';
 import { Keyed, attribute, s, text } from './part';
@@ -24,6 +25,7 @@ export class PathLayer {
   readonly element = s('g', { class: 'paths' });
   private tracks: Keyed<{ track: Track; flyer: Flyer; isSelected: boolean }, SVGGElement>;
   private handles: Keyed<{ moment: Moment; flyer: Flyer; index: number }, SVGGElement>;
+  private steady = new WeakMap<Track, (Point | null)[]>();
   private held: Held | null = null;
   private wheelMerge = { name: '', at: -Infinity };
   private px = 1; // frame pixels of a screen pixel
@@ -172,11 +174,28 @@ export class PathLayer {
 
   private renewTrack(element: SVGGElement, { track, flyer, isSelected }: { track: Track; flyer: Flyer; isSelected: boolean }): void {
     attribute(element, 'class', `track colour-${flyer.colour}${isSelected ? ' selected' : ''}`);
-    const { clip } = this.studio.store.now;
-    const all = pathData(track, () => true);
-    const seen = pathData(track, (visible) => visible);
+    const { clip, frame } = this.studio.store.now;
+    if (!clip) return;
+    const line = this.dragged(flyer, track, clip, through(track, this.steadyOf(track, clip.rate_hz), frame, clip.rate_hz));
+    const all = pathData(track, line, () => true);
+    const seen = pathData(track, line, (visible) => visible);
     for (const [k, data] of [all, all, seen, all].entries()) attribute(element.children[k], 'd', data);
-    attribute(element.children[4], 'd', clip ? secondsOf(track, clip.rate_hz, 2.2 * this.px) : '');
+    attribute(element.children[4], 'd', secondsOf(track, line, clip.rate_hz, 2.2 * this.px));
+  }
+
+  private dragged(flyer: Flyer, track: Track, clip: Clip, line: (Point | null)[]): (Point | null)[] {
+    const { draft } = this.studio.store.now;
+    const index = draft ? track.handles.findIndex((one) => isSame(one.path, draft.path)) : -1;
+    if (!draft || index < 0) return line;
+    const [from, to] = [track.handles[index].pixel, draft.pixel];
+    const frames = momentsOf(flyer, clip).map((moment) => moment.frame);
+    return bent(track, line, frames, index, [to[0] - from[0], to[1] - from[1]]);
+  }
+
+  private steadyOf(track: Track, rate_hz: number): (Point | null)[] {
+    const known = this.steady.get(track) ?? steadied(track, rate_hz);
+    this.steady.set(track, known);
+    return known;
   }
 
   private makeHandle(): SVGGElement {
@@ -218,29 +237,26 @@ export class PathLayer {
 }
 
 // The points of a track as a line that is broken where they are too far away or not as asked.
-function pathData(track: Track, isDrawn: (isVisible: boolean) => boolean): string {
+function pathData(track: Track, line: (Point | null)[], isDrawn: (isVisible: boolean) => boolean): string {
   let data = '';
   let isDown = false;
-  for (const point of track.points) {
-    const isIn = isPlaced(point) && Math.abs(point[1]) < FAR && Math.abs(point[2]) < FAR && isDrawn(point[5]);
-    if (isIn) data += `${isDown ? 'L' : 'M'}${round(point[1], 1)},${round(point[2], 1)}`;
+  line.forEach((point, k) => {
+    const isIn = point !== null && Math.abs(point[0]) < FAR && Math.abs(point[1]) < FAR && isDrawn(track.points[k][5]);
+    if (isIn) data += `${isDown ? 'L' : 'M'}${round(point[0], 1)},${round(point[1], 1)}`;
     isDown = isIn;
-  }
+  });
   return data;
 }
 
-// A dot at every whole second.
-function secondsOf(track: Track, rate_hz: number, radius: number): string {
-  const { points } = track;
-  if (!points.length) return '';
-  const [first, last] = [Math.ceil(points[0][0] / rate_hz), Math.floor(points[points.length - 1][0] / rate_hz)];
-  if (last - first > 600) return '';
+// A dot at every whole second in view.
+function secondsOf(track: Track, line: (Point | null)[], rate_hz: number, radius: number): string {
   let data = '';
-  for (let second = first; second <= last; ++second) {
-    const seen = seenAt(track, second * rate_hz);
-    if (!seen?.isVisible) continue;
-    const [x, y] = seen.pixel;
-    data += `M${round(x - radius, 2)},${round(y, 2)}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
-  }
+  let last = -1;
+  line.forEach((point, k) => {
+    const second = Math.floor(track.points[k][0] / rate_hz + 1e-6);
+    if (point && second !== last && track.points[k][5])
+      data += `M${round(point[0] - radius, 2)},${round(point[1], 2)}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
+    last = second;
+  });
   return data;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { BoxPx } from '../model/contract';
 import { frameOf } from '../model/flyers';
 import { type Point, clamp } from '../model/geometry';
 import type { Look, Member } from '../model/store';
@@ -24,6 +25,10 @@ export class PictureView extends Part {
   protected build(): void {
     this.svg.append(this.overlay.element, this.paths.element);
     this.append(this.canvas, this.svg);
+    this.studio.pictures.onDrawn = (header) => {
+      this.draw(header.crop);
+      this.studio.store.put({ boxes: header });
+    };
     new ResizeObserver(() => this.resized()).observe(this);
     this.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     this.addEventListener('pointerdown', (event) => this.down(event));
@@ -33,7 +38,7 @@ export class PictureView extends Part {
   }
 
   protected update(changed: Set<Member>): void {
-    if (changed.has('look') || changed.has('clip') || changed.has('boxes')) this.draw();
+    if (changed.has('look') || changed.has('clip')) this.draw();
     this.place();
     const px = ui() / this.scale;
     this.overlay.update(this.now, px);
@@ -87,17 +92,20 @@ export class PictureView extends Part {
     attribute(this.svg, 'viewBox', `${x} ${y} ${Math.max(1, this.clientWidth) / scale} ${Math.max(1, this.clientHeight) / scale}`);
   }
 
-  private draw(): void {
+  // The frame, or what changed of it.
+  private draw(part?: BoxPx): void {
     const context = this.canvas.getContext('2d')!;
     const { x, y, scale } = this.look;
     const on = scale * window.devicePixelRatio;
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    if (!this.now.clip) return;
+    if (!part) context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    const { clip } = this.now;
+    if (!clip) return;
     context.setTransform(on, 0, 0, on, -x * on, -y * on);
     context.imageSmoothingEnabled = on < PIXELS_FROM_SCALE;
-    context.imageSmoothingQuality = 'high';
-    context.drawImage(this.studio.pictures.canvas, 0, 0);
+    context.imageSmoothingQuality = 'medium';
+    const [left, top, width, height] = part ?? [0, 0, clip.width, clip.height];
+    context.drawImage(this.studio.pictures.canvas, left, top, width, height, left, top, width, height);
   }
 
   private wheel(event: WheelEvent): void {

@@ -22,7 +22,7 @@ type Drag = { kind: 'approach' | 'course' | 'moment'; flyer: Flyer; index: numbe
 // From above, the own course upwards: paths, the field of view, well-clear volumes, closest approaches. Closest approaches, courses
 // and the ranges of moments are dragged.
 export class PlanView extends Part {
-  protected readonly watches: Member[] = ['plan', 'state', 'frame', 'selected', 'moment', 'clip'];
+  protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
   private svg = s('svg', { role: 'group', 'aria-label': 'Plan view, own course up' });
   private drag: Drag | null = null;
   private course_deg = 0;
