@@ -43,6 +43,12 @@ export class Gallery extends DialogPart {
     void this.search();
   }
 
+  // Pictures that are still to come would hold up those of the frame.
+  protected override closed(): void {
+    this.asked += 1;
+    this.cards.replaceChildren();
+  }
+
   private searchSoon(): void {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => void this.search(), SEARCH_AFTER_MS);
