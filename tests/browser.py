@@ -115,15 +115,15 @@ class Browser:
         return result["result"].get("value")
 
     def wait(self, script, seconds=60):
-        """Until an expression is true: its value."""
+        """Until an expression is true."""
         until = time.monotonic() + seconds
         while True:
             try:
-                value = self.run(script)
+                value = self.run(f"Boolean({script})")
             except RuntimeError:  # a page between two
                 value = None
             if value:
-                return value
+                return
             if time.monotonic() > until:
                 raise RuntimeError(f"never true: {script}; the console says {self.errors[-5:]}")
             time.sleep(0.02)

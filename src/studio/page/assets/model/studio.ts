@@ -22,6 +22,7 @@ export class Studio {
   readonly pictures: Pictures;
   readonly edits: Edits;
   private merges = 0;
+  private wholes = 0; // undos and the like under way
   private rest: ReturnType<typeof setTimeout> | undefined;
   private planAsked = false;
   private planStale = false;
@@ -57,7 +58,7 @@ export class Studio {
   }
 
   get isIdle(): boolean {
-    return this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole && this.rest === undefined;
+    return this.wholes === 0 && this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole && this.rest === undefined;
   }
 
   // A name for edits that are one step of undo.
@@ -246,7 +247,16 @@ export class Studio {
 
   // What is done to the whole text, after all edits; whether it was.
   private async whole(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<boolean> {
-    await this.edits.whenIdle();
+    this.wholes += 1;
+    try {
+      await this.edits.whenIdle();
+      return await this.ask(what);
+    } finally {
+      this.wholes -= 1;
+    }
+  }
+
+  private async ask(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<boolean> {
     const { state: before } = this.store.now;
     if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
     try {

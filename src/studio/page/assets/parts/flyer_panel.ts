@@ -61,8 +61,9 @@ export class FlyerPanel extends Part {
     if (title) text(title, flyer.title);
     const name = flyer.kind === 'aircraft' ? flyer.title : flyer.kind;
     const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
-    attribute(this.portrait, 'src', `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`);
-    this.portrait.hidden = flyer.statement === 'lens' || /\.\w+$/.test(name); // what is on the lens, and a model file, have no picture
+    // What cannot be loaded, a model file and what is on the lens have no picture.
+    this.portrait.hidden = !track || flyer.statement === 'lens' || /\.\w+$/.test(name);
+    if (!this.portrait.hidden) attribute(this.portrait, 'src', `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`);
   }
 
   private shape(flyer: Flyer, moments: Moment[]): void {

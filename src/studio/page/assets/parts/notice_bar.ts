@@ -8,7 +8,7 @@ const INFO_MS = 5000;
 // Lines for the user: no connection, a text that cannot be used, a change on disk with its two answers, and what the server says.
 export class NoticeBar extends Part {
   protected readonly watches: Member[] = ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'keepsMine', 'busy', 'progress'];
-  private lost = h('p', { class: 'notice error' }, 'No connection to airtruth studio. What you do is kept and sent when it is back.');
+  private lost = h('p', { class: 'notice error' }, 'No connection to airtruth studio. What you do is kept and sent when it is back. If it was started again, open the address that it prints.');
   private problem = h('p', { class: 'notice error' });
   private progress = h('p', { class: 'notice info' });
   private disk = h('p', { class: 'notice warning' });
