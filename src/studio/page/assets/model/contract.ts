@@ -92,7 +92,6 @@ export interface MeasuredValue {
   value: Json;
   error: Json;
   missing: string; // why there is no value
-  unit?: string;
 }
 
 export interface PictureHeader {

@@ -21,7 +21,7 @@ export class Gallery extends DialogPart {
   protected readonly watches: Member[] = ['dialog', 'replaces'];
   protected readonly name = 'gallery';
   protected readonly title_ = 'What flies';
-  private input = h('input', { type: 'search', placeholder: 'Search: a320, cessna, ryanair …', 'aria-label': 'Search aircraft', autocomplete: 'off', oninput: () => this.searchSoon() });
+  private input = h('input', { type: 'text', role: 'searchbox', placeholder: 'Search: a320, cessna, ryanair …', 'aria-label': 'Search aircraft', autocomplete: 'off', oninput: () => this.searchSoon() });
   private count = h('output', { class: 'hint' });
   private cards = h('div', { class: 'cards' });
   private natural = h('div', { class: 'natural' });
