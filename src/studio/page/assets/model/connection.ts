@@ -19,6 +19,8 @@ export class Connection {
   onOpen: () => void = () => {};
   onLost: () => void = () => {};
   onEvent: (event: ServerEvent) => void = () => {};
+  // A finer picture than the one that was the answer.
+  onPicture: (picture: Picture) => void = () => {};
 
   private socket: WebSocket | null = null;
   private waiting = new Map<number, Waiting>();
@@ -65,7 +67,7 @@ export class Connection {
   private take(data: string | ArrayBuffer): void {
     if (typeof data !== 'string') {
       const picture = pictureOf(data);
-      this.settle(picture.header.id, (one) => one.resolve(picture));
+      if (!this.settle(picture.header.id, (one) => one.resolve(picture))) this.onPicture(picture);
       return;
     }
     const message = JSON.parse(data);
@@ -73,10 +75,11 @@ export class Connection {
     else this.settle(message.id, (one) => ('error' in message ? one.reject(new Refused(message.error)) : one.resolve(message.ok)));
   }
 
-  private settle(id: number, how: (one: Waiting) => void): void {
+  private settle(id: number, how: (one: Waiting) => void): boolean {
     const one = this.waiting.get(id);
     this.waiting.delete(id);
     if (one) how(one);
+    return one !== undefined;
   }
 }
 

@@ -32,8 +32,8 @@ export interface Handle {
   path: Path;
   frame: number;
   pixel: [number, number];
-  range_m: number;
-  width_px: number;
+  range_m: number | null;
+  width_px: number | null;
 }
 
 export interface Approach {
@@ -44,8 +44,8 @@ export interface Approach {
   distance_m: number;
 }
 
-// frame, x, y, range_m, width_px, visible
-export type TrackPoint = [number, number, number, number, number, boolean | number];
+// frame, x, y, range_m, width_px, visible; without a place where the lens has none, and without a width where there is no box
+export type TrackPoint = [number, number | null, number | null, number, number | null, boolean];
 export type Ned = [number, number, number];
 
 export interface Track {
@@ -56,6 +56,8 @@ export interface Track {
   handles: Handle[];
   cpa: Approach | null;
   checks: string[];
+  approach: string; // the command line's words
+  violations: { volume: string; begin_s: number; end_s: number }[];
 }
 
 export interface Volume {
@@ -67,18 +69,21 @@ export interface Volume {
 export interface Plan {
   revision: number;
   frames: number[];
-  own: { ned: Ned[] };
+  own: { ned: Ned[]; heading_deg: number; attitude: string };
+  horizontal_fov_deg: number;
   tracks: Track[];
   horizon: [number, [number, number, number, number]][];
   volumes: Volume[];
-  checks?: string[];
+  warnings: string[];
 }
 
 export interface AircraftGroup {
   name: string;
   kind: 'aircraft' | 'bird' | 'multirotor' | 'balloon';
-  length_m: number;
-  span_m: number;
+  type: string; // published
+  length_m: number | null;
+  span_m: number | null;
+  picture: string; // a name for /aircraft.jpg
   liveries: string[];
 }
 
@@ -86,15 +91,33 @@ export interface MeasuredValue {
   key: string;
   value: Json;
   error: Json;
-  unit: string;
+  missing: string; // why there is no value
 }
 
 export interface PictureHeader {
   id: number;
   frame: number;
   revision: number;
-  crop: [number, number, number, number] | null;
+  crop: BoxPx;
   scale: number;
+  boxes: ExactBox[];
+  problem: string | null; // why there is nothing in it but the clip
+}
+
+export type BoxPx = [number, number, number, number];
+
+// What render() wrote, and the boxes in its frames.
+export interface Rendered {
+  folder: string;
+  video: string;
+  boxes: [number, { id: string; box: BoxPx }[]][];
+}
+
+export interface ExactBox {
+  table: Path;
+  id: string;
+  box: BoxPx;
+  range_m: number;
 }
 
 export interface Picture {
@@ -105,4 +128,5 @@ export interface Picture {
 export type ServerEvent =
   | { event: 'state'; state: State }
   | { event: 'progress'; of: string; done: number; total: number }
+  | { event: 'measured'; of: string }
   | { event: 'warning'; line: string };

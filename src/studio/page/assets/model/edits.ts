@@ -38,7 +38,7 @@ export class Edits {
     const last = this.waiting[this.waiting.length - 1];
     const isOfSameDrag = last && edit.merge !== null && last.merge === edit.merge && isRepeatable(last) && isRepeatable(edit);
     if (isOfSameDrag) {
-      last.changes = [...last.changes.filter((old) => !edit.changes.some((one) => sameTarget(one, old))), ...edit.changes];
+      Object.assign(last, edit, { changes: [...last.changes.filter((old) => !edit.changes.some((one) => sameTarget(one, old))), ...edit.changes] });
     } else {
       this.waiting.push({ ...edit });
     }

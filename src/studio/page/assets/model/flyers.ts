@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Approach, Change, Clip, Json, Path, Plan, State, Table, Track } from './contract';
-import { type Point, clamp, courseOf, radians, round, speedOf, turned, velocityAt } from './geometry';
+import { type Point, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt } from './geometry';
 
 // How a flyer's path is stated.
 export type Statement = 'moments' | 'approach' | 'waypoints' | 'file' | 'drift' | 'lens';
@@ -114,7 +114,7 @@ const removed = (flyer: Flyer): Change[] => PATH_KEYS.filter((key) => key in fly
 
 // The same path by moments in the picture: where it is in view, three of them.
 export function toMoments(flyer: Flyer, track: Track, clip: Clip): Change[] | null {
-  const inClip = track.points.filter((point) => point[0] >= 0 && point[0] < clip.frames && point[3] > 0);
+  const inClip = track.points.filter(isPlaced).filter((point) => point[0] >= 0 && point[0] < clip.frames && point[3] > 0);
   const seen = inClip.filter((point) => point[5]);
   const chosen = seen.length >= 2 ? seen : inClip;
   if (chosen.length < 2) return null;
@@ -152,7 +152,11 @@ export interface Choice {
   count?: number;
 }
 
-const NEW_SHARE = 0.05; // of the picture's width, for what is new
+// Of the picture's width, for what is new; a flock takes some more than a bird of it.
+const NEW_SHARE = 0.05;
+const SMALL_SHARE = 0.025;
+const FLOCK_SHARE = 0.014;
+const NEAREST_SHARE = 0.5; // of its first range, for the second moment
 const CRUISE_MPS: Partial<Record<Kind, number>> = { bird: 12, multirotor: 8, balloon: 2 };
 const cruise = (choice: Choice) => CRUISE_MPS[choice.kind] ?? (choice.length_m > 20 ? 110 : 50);
 
@@ -164,19 +168,22 @@ export function focalOf(scene: Table, clip: Clip): number {
   return fov && fov < 179 ? clip.height / 2 / Math.tan(radians(fov) / 2) : clip.width * 0.8;
 }
 
-// A flyer that crosses the picture and is at a pixel in the frame shown.
-export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point): Table {
-  const width_px = Math.max(16, clip.width * NEW_SHARE);
-  const range_m = writtenRange((choice.length_m * focalOf(scene, clip)) / width_px);
+// A flyer that crosses the picture, and the way of the own aircraft, and is at a pixel in the frame shown.
+export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point, own_mps: number): Table {
+  const isFlock = choice.count !== undefined && choice.count > 1;
+  const width_px = Math.max(14, clip.width * (choice.kind === 'aircraft' ? NEW_SHARE : isFlock ? FLOCK_SHARE : SMALL_SHARE));
+  const range_m = (choice.length_m * focalOf(scene, clip)) / width_px;
   const rate_px_s = (cruise(choice) * width_px) / choice.length_m;
   const span = clip.frames - 1;
-  const way = Math.max(1, Math.min(span, Math.round(clamp((clip.width * 0.45) / rate_px_s, 0.5, 6) * clip.rate_hz)));
+  const lasts_s = Math.min((clip.width * 0.45) / rate_px_s, (range_m * (1 - NEAREST_SHARE)) / Math.max(1, own_mps));
+  const way = Math.max(1, Math.min(span, Math.round(clamp(lasts_s, 0.5, 6) * clip.rate_hz)));
   const first = Math.max(0, Math.min(frame, span - way));
   const direction = at[0] < clip.width / 2 ? 1 : -1;
   const pixelAt = (k: number): Point => [at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz, at[1]];
-  const seen = [first, first + way].map((k) => seenTable(timeOf(k, clip), pixelAt(k), range_m));
+  const rangeAt = (k: number) => Math.max(range_m * NEAREST_SHARE, range_m - (own_mps * (k - first)) / clip.rate_hz);
+  const seen = [first, first + way].map((k) => seenTable(timeOf(k, clip), pixelAt(k), rangeAt(k)));
   if (choice.kind === 'aircraft') return { aircraft: choice.aircraft ?? '', seen };
-  const flock: Table = choice.count && choice.count > 1 ? { count: choice.count, spread_m: round(choice.length_m * 6, 0) } : {};
+  const flock: Table = isFlock ? { count: choice.count!, spread_m: round(choice.length_m * 6, 0) } : {};
   return { kind: choice.kind, ...flock, seen };
 }
 
@@ -188,13 +195,6 @@ export function copyOf(flyer: Flyer, clip: Clip): Table {
   const encounter = tableOf(table.encounter);
   if ('encounter' in table) encounter.cpa_above_m = (numberOf(encounter.cpa_above_m) ?? 0) + 20;
   return table;
-}
-
-// How far from its pixel a flyer may paint.
-export function reachOf(flyer: Flyer | null, width_px: number): number {
-  const size = numberOf(flyer?.table.size_m) ?? 1;
-  const spread = numberOf(flyer?.table.spread_m) ?? 0;
-  return width_px * 0.8 + 20 + (spread * width_px) / size;
 }
 
 export function ownSpeed(plan: Plan, frame: number, clip: Clip): number {

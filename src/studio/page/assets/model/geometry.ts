@@ -18,7 +18,9 @@ export interface Seen {
   isVisible: boolean;
 }
 
-const seenOf = (point: TrackPoint): Seen => ({ pixel: [point[1], point[2]], range_m: point[3], width_px: point[4], isVisible: Boolean(point[5]) });
+export const isPlaced = (point: TrackPoint): point is [number, number, number, number, number | null, boolean] => point[1] !== null && point[2] !== null;
+const seenOf = (point: TrackPoint): Seen | null =>
+  isPlaced(point) ? { pixel: [point[1], point[2]], range_m: point[3], width_px: point[4] ?? 0, isVisible: point[5] } : null;
 
 // Where a track is in a frame: its points in order of their frames, and what lies between two by straight lines. Beyond its ends
 // it is not there.
@@ -34,8 +36,11 @@ export function seenAt(track: Track, frame: number): Seen | null {
   }
   const [a, b] = [points[low], points[high]];
   const share = b[0] > a[0] ? (frame - a[0]) / (b[0] - a[0]) : 0;
-  const isVisible = Boolean(share < 0.5 ? a[5] : b[5]);
-  return { pixel: [mix(a[1], b[1], share), mix(a[2], b[2], share)], range_m: mix(a[3], b[3], share), width_px: mix(a[4], b[4], share), isVisible };
+  const [from, to] = [seenOf(a), seenOf(b)];
+  if (!from || !to) return share < 0.5 ? from : to;
+  const between = (of: (seen: Seen) => number) => mix(of(from), of(to), share);
+  const pixel: Point = [between((seen) => seen.pixel[0]), between((seen) => seen.pixel[1])];
+  return { pixel, range_m: between((seen) => seen.range_m), width_px: between((seen) => seen.width_px), isVisible: share < 0.5 ? from.isVisible : to.isVisible };
 }
 
 // The same, going on straight beyond the ends; none of a track without points.
@@ -75,26 +80,4 @@ export function acrossRelative(own_mps: number, speed_mps: number, climb_mps: nu
   const ahead = ground * Math.cos(radians(course_deg)) - own_mps;
   const length = Math.hypot(right, ahead);
   return length < 1e-6 ? [1, 0] : [-ahead / length, right / length];
-}
-
-// The part of a frame around an aircraft, on whole blocks of a JPEG and within the frame.
-export type Crop = [number, number, number, number];
-const BLOCK = 16;
-
-export function cropAround(pixel: Point, reach_px: number, size: { width: number; height: number }): Crop | null {
-  const [x0, y0] = [pixel[0] - reach_px, pixel[1] - reach_px].map((v) => Math.floor(v / BLOCK) * BLOCK);
-  const [x1, y1] = [pixel[0] + reach_px, pixel[1] + reach_px].map((v) => Math.ceil(v / BLOCK) * BLOCK);
-  return within([x0, y0, x1 - x0, y1 - y0], size);
-}
-
-export function within([x, y, w, h]: Crop, size: { width: number; height: number }): Crop | null {
-  const [left, top] = [clamp(x, 0, size.width), clamp(y, 0, size.height)];
-  const [right, bottom] = [clamp(x + w, 0, size.width), clamp(y + h, 0, size.height)];
-  return right > left && bottom > top ? [left, top, right - left, bottom - top] : null;
-}
-
-export function joined(a: Crop | null, b: Crop | null): Crop | null {
-  if (!a || !b) return a ?? b;
-  const [left, top] = [Math.min(a[0], b[0]), Math.min(a[1], b[1])];
-  return [left, top, Math.max(a[0] + a[2], b[0] + b[2]) - left, Math.max(a[1] + a[3], b[1] + b[3]) - top];
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Lost, type Connection } from './connection';
-import type { Clip, Picture } from './contract';
-import { type Crop, joined } from './geometry';
+import type { Clip, Picture, PictureHeader } from './contract';
 
 // What is to be seen in the picture.
 export interface Wanted {
@@ -11,22 +10,30 @@ export interface Wanted {
   scale: number;
 }
 
+// Whether what is shown is what is wanted, or newer.
+const isMet = (shown: Wanted | null, wanted: Wanted | null) =>
+  Boolean(shown && wanted && shown.frame === wanted.frame && shown.aircraft === wanted.aircraft && shown.scale === wanted.scale && shown.revision >= wanted.revision);
 const isSameWanted = (a: Wanted | null, b: Wanted | null) => JSON.stringify(a) === JSON.stringify(b);
 const isPicture = (answer: unknown): answer is Picture => typeof answer === 'object' && answer !== null && 'jpeg' in answer;
 
-// The frame that is shown, on a canvas of the clip's size: asked for whole when things rest, and in parts while something is dragged.
+// The frame that is shown, on a canvas of the clip's size: asked for whole when things rest, and by what changed of it while something
+// is dragged.
 export class Pictures {
   readonly canvas = document.createElement('canvas');
-  onDrawn: () => void = () => {};
+  onDrawn: (header: PictureHeader) => void = () => {};
   onRefused: (line: string) => void = () => {};
 
   private shown: Wanted | null = null;
   private wanted: Wanted | null = null;
   private asked: Wanted | null = null;
-  private dirty: Crop | null = null; // painted by parts since the last whole frame
-  private parts = 0;
+  private drawing: Promise<void> = Promise.resolve();
 
-  constructor(private connection: Connection) {}
+  constructor(private connection: Connection) {
+    connection.onPicture = (picture) => {
+      const { frame, revision } = picture.header;
+      if (this.shown?.aircraft && this.shown.frame === frame && this.shown.revision === revision) void this.draw(picture);
+    };
+  }
 
   begin(clip: Clip): void {
     if (this.canvas.width === clip.width && this.canvas.height === clip.height) return;
@@ -39,12 +46,13 @@ export class Pictures {
     this.shown = this.asked = null;
   }
 
+  // Of the frame that is on the canvas.
   get frame(): number | null {
     return this.shown?.frame ?? null;
   }
 
   get isWhole(): boolean {
-    return !this.asked && !this.dirty && isSameWanted(this.shown, this.wanted);
+    return !this.asked && isMet(this.shown, this.wanted);
   }
 
   // The whole frame: one request at a time, and then the newest wish.
@@ -53,38 +61,30 @@ export class Pictures {
     void this.ask();
   }
 
-  // A part of the frame shown, after an edit that was sent just before. Whether it was drawn, and of which revision.
-  async part(frame: number, crop: Crop): Promise<number | null> {
-    const region = joined(this.dirty, crop)!;
-    this.dirty = region;
-    this.parts += 1;
-    try {
-      const answer = await this.connection.request('frame', { frame, aircraft: true, crop: region, scale: 1 });
-      if (!isPicture(answer) || this.shown?.frame !== frame) return null;
-      await this.draw(answer);
-      this.dirty = crop;
-      return answer.header.revision;
-    } finally {
-      this.parts -= 1;
-    }
+  // What changed of the frame shown by an edit that was sent just before: the revision that was drawn, or none.
+  async change(frame: number): Promise<number | null> {
+    const answer = await this.connection.request('frame', { frame, aircraft: true, crop: 'change', scale: 1 });
+    if (!isPicture(answer) || this.shown?.frame !== frame) return null;
+    await this.draw(answer);
+    if (this.shown?.frame !== frame) return null;
+    this.shown = { ...this.shown, revision: answer.header.revision };
+    return answer.header.revision;
   }
 
   private async ask(): Promise<void> {
-    if (this.asked || !this.wanted || (isSameWanted(this.wanted, this.shown) && !this.dirty)) return;
+    if (this.asked || !this.wanted || isMet(this.shown, this.wanted)) return;
     const asked = this.wanted;
     this.asked = asked;
     try {
-      const parts = this.parts;
       const answer = await this.connection.request('frame', { frame: asked.frame, aircraft: asked.aircraft, crop: null, scale: asked.scale });
-      if (this.asked !== asked) return;
-      this.asked = null;
       if (isPicture(answer)) {
         await this.draw(answer);
-        this.shown = { ...asked, revision: answer.header.revision };
-        if (!parts && !this.parts) this.dirty = null;
-      } else if (isSameWanted(asked, this.wanted)) {
-        return; // another request took its place, and asks again when it is done
+        // What is newer than the wish is as good.
+        if (this.asked === asked) this.shown = { ...asked, revision: Math.max(asked.revision, answer.header.revision) };
       }
+      if (this.asked !== asked) return;
+      this.asked = null;
+      if (!isPicture(answer) && isSameWanted(asked, this.wanted)) return; // another request took its place, and asks again when it is done
     } catch (error) {
       if (this.asked === asked) this.asked = null;
       if (error instanceof Lost) return;
@@ -94,11 +94,17 @@ export class Pictures {
     void this.ask();
   }
 
-  private async draw({ header, jpeg }: Picture): Promise<void> {
-    const bitmap = await createImageBitmap(jpeg);
-    const [x, y, w, h] = header.crop ?? [0, 0, this.canvas.width, this.canvas.height];
+  // In the order of their coming, whatever decoding takes.
+  private draw(picture: Picture): Promise<void> {
+    const bitmap = createImageBitmap(picture.jpeg);
+    this.drawing = this.drawing.then(async () => this.put(picture.header, await bitmap)).catch(() => undefined);
+    return this.drawing;
+  }
+
+  private put(header: PictureHeader, bitmap: ImageBitmap): void {
+    const [x, y, w, h] = header.crop;
     this.canvas.getContext('2d')!.drawImage(bitmap, x, y, w, h);
     bitmap.close();
-    this.onDrawn();
+    this.onDrawn(header);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { AircraftGroup, Clip, MeasuredValue, Path, Plan, State } from './contract';
+import type { AircraftGroup, Clip, ExactBox, MeasuredValue, Path, Plan, Rendered, State } from './contract';
 
 // A line for the user; what is said twice is shown once.
 export interface Notice {
@@ -11,11 +11,6 @@ export interface Progress {
   of: string;
   done: number;
   total: number;
-}
-
-export interface Film {
-  folder: string;
-  video: string;
 }
 
 // The part of the frame that is shown: its pixel at the stage's top-left corner, and screen pixels a frame pixel. None: all of it.
@@ -41,13 +36,15 @@ export interface Everything {
   clip: Clip | null;
   state: State | null;
   plan: Plan | null;
+  planProblem: string | null; // why there is no plan of the scene as it is
+  boxes: { frame: number; boxes: ExactBox[] } | null; // of the picture that is shown
   pending: number; // edits that the server has not answered
-  keepsMine: string | null; // the text of the state whose change on disk was declined
+  keepsMine: boolean; // the change on disk was declined
   notices: Notice[];
   progress: Progress | null;
   busy: 'render' | 'calibrate' | null;
   measured: MeasuredValue[] | null;
-  film: Film | null;
+  film: Rendered | null;
   groups: AircraftGroup[] | null;
   // view settings
   frame: number;
@@ -76,8 +73,10 @@ const beginning: Everything = {
   clip: null,
   state: null,
   plan: null,
+  planProblem: null,
+  boxes: null,
   pending: 0,
-  keepsMine: null,
+  keepsMine: false,
   notices: [],
   progress: null,
   busy: null,

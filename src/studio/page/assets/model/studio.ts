@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 import { Connection, Lost, Refused } from './connection';
-import type { AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, ServerEvent, State } from './contract';
+import type { AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State } from './contract';
 import { type Edit, Edits, type Unsent } from './edits';
-import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, reachOf, trackOf, withMoment } from './flyers';
-import { type Crop, type Point, clamp, cropAround, joined, seenAt, seenNear } from './geometry';
+import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment } from './flyers';
+import { type Point, clamp, seenNear } from './geometry';
 import { Pictures } from './pictures';
 import type { Store } from './store';
 
 const KEPT_LATENCIES = 500;
-const REST_MS = 150;
-const PLAN_EVERY_MS = 100;
+const REST_MS = 100;
 const UNSENT_KEY = 'airtruth-studio-unsent';
 
-// An edit and what of it is shown before the next one is sent.
+// An edit that is drawn before the next one is sent, and when the hand moved.
 interface ShownEdit extends Edit {
-  shown?: { frame: number; crop: Crop; moved_ms: number };
+  moved_ms?: number;
 }
 
 // What a user can do, on the store and over the connection.
@@ -23,10 +22,10 @@ export class Studio {
   readonly pictures: Pictures;
   readonly edits: Edits;
   private merges = 0;
+  private wholes = 0; // undos and the like under way
   private rest: ReturnType<typeof setTimeout> | undefined;
   private planAsked = false;
   private planStale = false;
-  private planned_ms = -Infinity;
   private isDragged = false;
 
   constructor(readonly store: Store, readonly connection: Connection, private kept: Storage) {
@@ -38,7 +37,7 @@ export class Studio {
       refused: (line) => { store.say('error', line); this.settle(); },
       pending: (pending) => store.put({ pending }),
     });
-    this.pictures.onRefused = (line) => { if (!store.now.state?.problem) store.say('error', line); };
+    this.pictures.onRefused = (line) => store.say('error', line);
     connection.onOpen = () => void this.opened();
     connection.onLost = () => this.lost();
     connection.onEvent = (event) => this.heard(event);
@@ -59,7 +58,7 @@ export class Studio {
   }
 
   get isIdle(): boolean {
-    return this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole && this.rest === undefined;
+    return this.wholes === 0 && this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole && this.rest === undefined;
   }
 
   // A name for edits that are one step of undo.
@@ -67,22 +66,10 @@ export class Studio {
     return `${what}-${++this.merges}-${Date.now()}`;
   }
 
-  // An edit. With a merge, what it changes is drawn at once, in the part of the frame given; latency counts from the event.
-  edit(changes: Change[], merge: string | null = null, shown?: { crop: Crop | null; moved_ms: number }): void {
-    const edit: ShownEdit = { changes, merge };
-    const isShown = shown?.crop && this.store.now.showsAircraft;
-    if (isShown) edit.shown = { frame: this.store.now.frame, crop: shown.crop!, moved_ms: shown.moved_ms };
+  // An edit. Of a drag, which states when the hand moved, what it changes in the frame is drawn at once.
+  edit(changes: Change[], merge: string | null = null, moved_ms?: number): void {
+    const edit: ShownEdit = { changes, merge, moved_ms };
     this.edits.add(edit);
-  }
-
-  // Of everything that flies in the frame shown.
-  cropOfAll(): Crop | null {
-    const { state, plan, clip, frame } = this.store.now;
-    if (!state || !plan || !clip) return null;
-    return plan.tracks.reduce<Crop | null>((all, track) => {
-      const seen = seenAt(track, frame);
-      return seen ? joined(all, cropAround(seen.pixel, reachOf(flyerAt(state, track.table), seen.width_px), clip)) : all;
-    }, null);
   }
 
   // While a pointer holds something, the whole frame waits.
@@ -93,7 +80,7 @@ export class Studio {
 
   async undo(): Promise<void> { await this.whole('undo'); }
   async redo(): Promise<void> { await this.whole('redo'); }
-  async save(): Promise<void> { await this.whole('save'); }
+  async save(): Promise<void> { if (await this.whole('save')) this.store.say('info', `Saved ${this.store.now.file}`); }
   async reload(): Promise<void> { await this.whole('reload'); }
 
   select(selected: Path | null, moment: number | null = null): void {
@@ -107,13 +94,13 @@ export class Studio {
   }
 
   add(choice: Choice, at: Point | null = null): void {
-    const { state, clip, frame } = this.store.now;
+    const { state, clip, plan, frame } = this.store.now;
     if (!state || !clip) return;
     const key = choice.kind === 'aircraft' ? 'intruder' : 'distractor';
     const list = state.scene[key];
     const count = Array.isArray(list) ? list.length : 0;
     const place = at ?? [clip.width * 0.3, clip.height * (0.3 + 0.08 * (flyersOf(state.scene).length % 5))];
-    this.edit([{ insert: [key], at: null, table: newFlyer(choice, state.scene, clip, frame, place as Point) }]);
+    this.edit([{ insert: [key], at: null, table: newFlyer(choice, state.scene, clip, frame, place as Point, plan ? ownSpeed(plan, frame, clip) : 0) }]);
     this.store.put({ selected: [key, count], moment: null, tab: 'flyers' });
   }
 
@@ -184,8 +171,8 @@ export class Studio {
 
   render(): Promise<void> {
     return this.long('render', async () => {
-      const film = await this.connection.request<{ folder: string; video: string }>('render');
-      this.store.put({ film });
+      if (!this.store.now.state?.saved && !(await this.whole('save'))) return;
+      this.store.put({ film: await this.connection.request<Rendered>('render') });
     });
   }
 
@@ -204,13 +191,14 @@ export class Studio {
 
   private async send(edit: ShownEdit): Promise<State> {
     const answer = this.connection.request<{ state: State }>('edit', { changes: edit.changes, merge: edit.merge });
-    const { shown } = edit;
-    const isShown = shown && shown.frame === this.pictures.frame && shown.frame === this.store.now.frame;
-    const part = isShown ? this.pictures.part(shown.frame, shown.crop).catch(() => null) : null;
+    const { moved_ms } = edit;
+    const { frame, showsAircraft } = this.store.now;
+    const isShown = moved_ms !== undefined && showsAircraft && frame === this.pictures.frame;
+    const change = isShown ? this.pictures.change(frame).catch(() => null) : null;
     const { state } = await answer;
-    if (part && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({ state });
-    const drawn = await part;
-    if (shown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - shown.moved_ms);
+    if (change && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({ state });
+    const drawn = await change;
+    if (isShown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - moved_ms);
     return state;
   }
 
@@ -221,19 +209,20 @@ export class Studio {
 
   private took(state: State): void {
     const { selected } = this.store.now;
-    this.store.put({ state, ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? { selected: null, moment: null } : {}) });
+    this.store.put({ state, ...(state.changed_on_disk ? {} : { keepsMine: false }), ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? { selected: null, moment: null } : {}) });
     this.settle();
   }
 
-  // After an edit: the path at once, the whole frame when the hand rests.
+  // After an edit: the paths, and the whole frame where its part was not enough, when the hand rests; both take longer than a
+  // picture of a drag may.
   private settle(): void {
-    void this.plan();
     clearTimeout(this.rest);
     const isSoon = this.edits.isIdle && !this.isDragged;
     this.rest = setTimeout(() => {
       this.rest = undefined;
-      if (this.edits.isIdle) this.refresh();
-      if (!this.isDragged && this.edits.isIdle && !this.planAsked) this.store.put({ draft: null });
+      if (!this.edits.isIdle) return;
+      this.refresh();
+      void this.plan();
     }, isSoon ? 0 : REST_MS);
   }
 
@@ -243,30 +232,41 @@ export class Studio {
     this.planAsked = true;
     try {
       while (this.planStale) {
-        const wait_ms = this.planned_ms + PLAN_EVERY_MS - performance.now();
-        if (wait_ms > 0 && this.isDragged) await new Promise((done) => setTimeout(done, wait_ms));
         this.planStale = false;
         const plan = await this.connection.request<Plan>('plan');
-        this.planned_ms = performance.now();
         const isDone = !this.isDragged && this.edits.isIdle && !this.planStale;
-        this.store.put({ plan, ...(isDone ? { draft: null } : {}) });
+        this.store.put({ plan, planProblem: null, ...(isDone ? { draft: null } : {}) });
       }
     } catch (error) {
       this.planStale = false;
-      if (error instanceof Refused && !this.store.now.state?.problem) this.store.say('error', error.message);
+      if (error instanceof Refused) this.store.put({ planProblem: error.message });
     } finally {
       this.planAsked = false;
     }
   }
 
-  private async whole(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<void> {
-    await this.edits.whenIdle();
+  // What is done to the whole text, after all edits; whether it was.
+  private async whole(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<boolean> {
+    this.wholes += 1;
     try {
-      const { state } = await this.connection.request<{ state: State }>(what);
+      await this.edits.whenIdle();
+      return await this.ask(what);
+    } finally {
+      this.wholes -= 1;
+    }
+  }
+
+  private async ask(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<boolean> {
+    const { state: before } = this.store.now;
+    if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
+    try {
+      const isAnswered = what === 'save' && before?.changed_on_disk && !isOffered(before, this.store.now.keepsMine);
+      const { state } = await this.connection.request<{ state: State }>(what, isAnswered ? { replace: true } : {});
       this.took(state);
-      if (what === 'save') this.store.say('info', `Saved ${this.store.now.file}`);
+      return true;
     } catch (error) {
       this.failed(error);
+      return false;
     }
   }
 
@@ -318,6 +318,10 @@ export class Studio {
   private heard(event: ServerEvent): void {
     if (event.event === 'progress') {
       this.store.put({ progress: event });
+    } else if (event.event === 'measured') {
+      this.store.put({ progress: this.store.now.busy ? this.store.now.progress : null });
+      this.pictures.forget();
+      this.settle();
     } else if (event.event === 'warning') {
       this.store.say('warning', event.line);
     } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
@@ -329,4 +333,4 @@ export class Studio {
 }
 
 // Whether a state tells of a change on disk that the user has not answered.
-export const isOffered = (state: State | null, keepsMine: string | null) => Boolean(state?.changed_on_disk && keepsMine !== state.text);
+export const isOffered = (state: State | null, keepsMine: boolean) => Boolean(state?.changed_on_disk && !keepsMine);

@@ -10,12 +10,16 @@ export abstract class DialogPart extends Part {
 
   protected abstract fill(): Node[];
   protected opened(): void {}
+  protected closed(): void {}
 
   protected build(): void {
     const close = h('button', { class: 'close', 'aria-label': 'Close', title: 'Close (Escape)', onclick: () => this.dialog.close() }, '×');
     this.dialog.setAttribute('aria-label', this.title_);
     this.dialog.append(h('header', {}, h('h2', {}, this.title_), close), ...this.fill());
-    this.dialog.addEventListener('close', () => { if (this.now.dialog === this.name) this.studio.store.put({ dialog: null }); });
+    this.dialog.addEventListener('close', () => {
+      this.closed();
+      if (this.now.dialog === this.name) this.studio.store.put({ dialog: null });
+    });
     // A click beside it closes it.
     this.dialog.addEventListener('pointerdown', (event) => { if (event.target === this.dialog) this.dialog.close(); });
     this.append(this.dialog);

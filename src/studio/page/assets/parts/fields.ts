@@ -17,24 +17,43 @@ export class NumberField {
   readonly element: HTMLElement;
   readonly input: HTMLInputElement;
 
-  constructor(options: NumberOptions) {
+  constructor(private options: NumberOptions) {
     this.input = h('input', {
-      type: 'number', step: options.step ?? 'any', min: options.min, max: options.max, placeholder: options.placeholder,
+      type: 'number', step: 'any', placeholder: options.placeholder,
       'aria-label': `${options.label}${options.unit ? `, ${options.unit}` : ''}`,
-      onchange: () => {
-        const value = this.input.valueAsNumber;
-        if (Number.isFinite(value) && this.input.validity.valid) options.taken(value);
-      },
+      oninput: () => this.mark(),
+      onchange: () => { if (this.mark()) options.taken(this.input.valueAsNumber); },
+      onkeydown: ((event: KeyboardEvent) => this.key(event)) as EventListener,
     });
     const unit = options.unit ? h('span', { class: 'unit', 'aria-hidden': 'true' }, options.unit) : null;
     this.element = h('label', { class: 'field' }, options.isLabelHidden ? null : h('span', { class: 'name' }, options.label), h('span', { class: 'entry' }, this.input, unit));
+  }
+
+  // Whether what is entered is a number in its range. The browser would ask for whole steps as well.
+  private mark(): boolean {
+    const value = this.input.valueAsNumber;
+    const { min = -Infinity, max = Infinity } = this.options;
+    const isGood = Number.isFinite(value) && value >= min && value <= max;
+    this.input.setAttribute('aria-invalid', String(!isGood));
+    return isGood;
+  }
+
+  private key(event: KeyboardEvent): void {
+    const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+    if (!sign || event.ctrlKey || event.altKey) return;
+    event.preventDefault();
+    const step = sign * (this.options.step ?? 1) * (event.shiftKey ? 10 : 1);
+    this.input.value = String(Number(((Number.isFinite(this.input.valueAsNumber) ? this.input.valueAsNumber : 0) + step).toFixed(3)));
+    if (this.mark()) this.options.taken(this.input.valueAsNumber);
   }
 
   // Leaves alone what is being typed.
   show(value: number | null): void {
     const shown = value === null ? '' : String(value);
     const isTyped = document.activeElement === this.input && this.input.value !== '' && this.input.valueAsNumber === value;
-    if (!isTyped && this.input.value !== shown) this.input.value = shown;
+    if (isTyped || this.input.value === shown) return;
+    this.input.value = shown;
+    this.input.removeAttribute('aria-invalid');
   }
 }
 

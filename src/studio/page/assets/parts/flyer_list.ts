@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { Track } from '../model/contract';
 import { type Flyer, flyersOf, isSame, trackOf } from '../model/flyers';
 import type { Member } from '../model/store';
 import { FlyerPanel } from './flyer_panel';
@@ -23,7 +24,7 @@ export class FlyerList extends Part {
     const flyers = state ? flyersOf(state.scene) : [];
     this.empty.hidden = flyers.length > 0 || !state;
     this.items.show(flyers.map((flyer) => ({ key: JSON.stringify(flyer.path), item: flyer })));
-    this.general.replaceChildren(...(plan?.checks ?? []).map((line) => h('li', {}, line)));
+    this.general.replaceChildren(...(plan?.warnings ?? []).map((line) => h('li', {}, line)));
     if (!flyers.some((flyer) => isSame(flyer.path, this.now.selected))) this.panel.remove();
   }
 
@@ -42,8 +43,15 @@ export class FlyerList extends Part {
     attribute(button, 'aria-expanded', String(isSelected));
     text(button.children[1], flyer.id);
     text(button.children[2], flyer.title);
-    const lines = trackOf(this.now.plan, flyer.path)?.checks ?? [];
+    const lines = checksOf(trackOf(this.now.plan, flyer.path));
     if (checks.childElementCount !== lines.length || lines.some((line, k) => checks.children[k].textContent !== line)) checks.replaceChildren(...lines.map((line) => h('li', {}, line)));
     if (isSelected && this.panel.parentElement !== element) element.append(this.panel);
   }
+}
+
+// What the server says of a flyer, and whether it is seen at all.
+function checksOf(track: Track | null): string[] {
+  if (!track) return [];
+  const isSeen = track.points.some((point) => point[5]) || track.checks.some((line) => line.includes('never'));
+  return isSeen ? track.checks : [...track.checks, 'never in view'];
 }

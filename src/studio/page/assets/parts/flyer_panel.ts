@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Change, Json, Path } from '../model/contract';
-import { type Flyer, type Moment, describedApproach, flyerAt, momentsOf, numberOf, tableOf, timeOf, toApproach, toMoments, trackOf } from '../model/flyers';
-import { round } from '../model/geometry';
+import { type Flyer, type Moment, describedApproach, flyerAt, momentsOf, numberOf, tableOf, timeOf, toApproach, toMoments, trackOf, writtenRange, writtenWidth } from '../model/flyers';
 import type { Member } from '../model/store';
 import { NumberField, type NumberOptions, choiceField } from './fields';
 import { Part, attribute, h, text } from './part';
@@ -41,6 +40,7 @@ export class FlyerPanel extends Part {
   private built = '';
   private fields: { options: KeyOptions; field: NumberField }[] = [];
   private rows: MomentRow[] = [];
+  private portrait = h('img', { alt: '', width: 56, height: 56 });
   private seenAs = h('p', { class: 'hint' });
 
   protected build(): void {}
@@ -56,9 +56,14 @@ export class FlyerPanel extends Part {
     for (const { options, field } of this.fields) field.show(valueAt(flyer.table, options.key) ?? options.default);
     moments.forEach((moment, k) => this.rows[k].show(moment, this.now.moment === k));
     const track = trackOf(plan, flyer.path);
-    text(this.seenAs, track?.cpa ? `${describedApproach(track.cpa)}.` : '');
+    text(this.seenAs, track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '');
     const title = this.querySelector('.what .title');
     if (title) text(title, flyer.title);
+    const name = flyer.kind === 'aircraft' ? flyer.title : flyer.kind;
+    const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
+    // What cannot be loaded, a model file and what is on the lens have no picture.
+    this.portrait.hidden = !track || flyer.statement === 'lens' || /\.\w+$/.test(name);
+    if (!this.portrait.hidden) attribute(this.portrait, 'src', `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`);
   }
 
   private shape(flyer: Flyer, moments: Moment[]): void {
@@ -68,7 +73,7 @@ export class FlyerPanel extends Part {
     const isNatural = flyer.kind === 'bird' || flyer.kind === 'multirotor' || flyer.kind === 'balloon';
     const keys = isNatural ? FLOCK.filter(({ key }) => flyer.kind === 'bird' || key[0] === 'size_m') : [];
     this.replaceChildren(
-      h('div', { class: 'what' }, h('span', { class: 'title' }),
+      h('div', { class: 'what' }, this.portrait, h('span', { class: 'title' }),
         flyer.kind === 'aircraft' && h('button', { onclick: () => this.studio.store.put({ dialog: 'gallery', replaces: path, addsAt: null }) }, 'Change …')),
       ...(keys.length ? [h('div', { class: 'grid' }, ...keys.map((one) => this.keyField(one)))] : []),
       h('h3', {}, PATHS[flyer.statement]),
@@ -134,10 +139,10 @@ export class FlyerPanel extends Part {
     const { clip, plan } = this.now;
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
     const handle = flyer && trackOf(plan, flyer.path)?.handles[index];
-    if (!moment || !handle) return;
+    const known = handle?.[key];
+    if (!moment || !known) return;
     const other = key === 'range_m' ? 'width_px' : 'range_m';
-    const value = key === 'range_m' ? Number(handle.range_m.toPrecision(4)) : round(Math.max(0.1, handle.width_px), 1);
-    this.studio.edit([{ remove: [...moment.path, other] }, { set: [...moment.path, key], to: value }]);
+    this.studio.edit([{ remove: [...moment.path, other] }, { set: [...moment.path, key], to: key === 'range_m' ? writtenRange(known) : writtenWidth(known) }]);
   }
 
   choose(index: number): void {

@@ -21,7 +21,7 @@ export class Gallery extends DialogPart {
   protected readonly watches: Member[] = ['dialog', 'replaces'];
   protected readonly name = 'gallery';
   protected readonly title_ = 'What flies';
-  private input = h('input', { type: 'search', placeholder: 'Search: a320, cessna, ryanair …', 'aria-label': 'Search aircraft', autocomplete: 'off', oninput: () => this.searchSoon() });
+  private input = h('input', { type: 'text', role: 'searchbox', placeholder: 'Search: a320, cessna, ryanair …', 'aria-label': 'Search aircraft', autocomplete: 'off', oninput: () => this.searchSoon() });
   private count = h('output', { class: 'hint' });
   private cards = h('div', { class: 'cards' });
   private natural = h('div', { class: 'natural' });
@@ -41,6 +41,12 @@ export class Gallery extends DialogPart {
     this.input.select();
     this.input.focus();
     void this.search();
+  }
+
+  // Pictures that are still to come would hold up those of the frame.
+  protected override closed(): void {
+    this.asked += 1;
+    this.cards.replaceChildren();
   }
 
   private searchSoon(): void {
@@ -66,12 +72,12 @@ export class Gallery extends DialogPart {
     const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     const names = group.liveries.length ? group.liveries : [group.name];
     const addressOf = (name: string) => `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`;
-    const picture = h('img', { alt: '', loading: 'lazy', src: addressOf(names[0]) });
+    const picture = h('img', { alt: '', loading: 'lazy', width: 150, height: 150, src: addressOf(group.picture) });
     const livery: HTMLSelectElement = h('select', { 'aria-label': `Livery of ${group.name}`, onchange: () => { picture.src = addressOf(livery.value); } }, ...names.map((name) => h('option', { value: name }, shortName(name))));
-    const choose = () => this.chosen({ kind: 'aircraft', aircraft: livery.value, length_m: group.length_m });
-    const size = group.length_m > 0 ? `${round(group.length_m, 1)} m long${group.span_m > 0 ? `, span ${round(group.span_m, 1)} m` : ''}` : '';
+    const choose = () => this.chosen({ kind: 'aircraft', aircraft: livery.value, length_m: group.length_m ?? 12 });
+    const size = group.length_m ? `${round(group.length_m, 1)} m long${group.span_m ? `, span ${round(group.span_m, 1)} m` : ''}` : 'size not published';
     return h('article', { class: 'card' },
-      h('button', { class: 'choose', onclick: choose, 'aria-label': `${this.now.replaces ? 'Use' : 'Add'} ${group.name}` }, picture, h('strong', {}, group.name), h('span', { class: 'hint' }, size)),
+      h('button', { class: 'choose', onclick: choose, 'aria-label': `${this.now.replaces ? 'Use' : 'Add'} ${group.type || group.name}` }, picture, h('strong', {}, group.type || group.name), h('span', { class: 'hint' }, size)),
       names.length > 1 ? livery : null);
   }
 

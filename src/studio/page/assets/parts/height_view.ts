@@ -3,13 +3,11 @@ import type { Change, Clip, Ned, Plan, Track } from '../model/contract';
 import { type Flyer, flyersOf, isSame, momentsOf, numberOf, tableOf, trackOf } from '../model/flyers';
 import { clamp, nedAt, round } from '../model/geometry';
 import type { Member } from '../model/store';
-import { Part, attribute, h, renewed, s } from './part';
-import { niceStep } from './plan_view';
+import { Part, attribute, h, renewed, s, ui } from './part';
+import { diamond, niceStep } from './plan_view';
 
-const LEFT = 52;
-const RIGHT = 12;
-const TOP = 10;
-const BOTTOM = 24;
+// Around the plot, where text is 16 px.
+const MARGINS = { left: 56, right: 12, top: 10, bottom: 24 };
 const LEAST_M = 40;
 const MOST_ABOVE_M = 1500; // from the own height, of what the view has room for
 
@@ -18,11 +16,12 @@ type Drag = { kind: 'approach' | 'moment' | 'time'; flyer: Flyer | null; index: 
 // Heights over time: own path, the others, the ground, volumes about the own height. Closest approaches are dragged in time and
 // height, moments in time.
 export class HeightView extends Part {
-  protected readonly watches: Member[] = ['plan', 'state', 'frame', 'selected', 'moment', 'clip'];
+  protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
   private svg = s('svg', { role: 'group', 'aria-label': 'Height over time' });
   private drag: Drag | null = null;
   private low_m = 0;
   private high_m = 100;
+  private px = 1;
 
   protected build(): void {
     this.append(h('h2', {}, 'Height over time'), this.svg);
@@ -37,6 +36,7 @@ export class HeightView extends Part {
     const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
     if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
     attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
+    this.px = ui();
     if (!this.drag) this.frameAll(plan);
     const own = nedAt(plan, plan.own.ned, frame);
     const x = this.x(frame / clip.rate_hz);
@@ -44,10 +44,15 @@ export class HeightView extends Part {
       this.axes(clip, width, height),
       ...(own ? plan.volumes.filter((one) => one.vertical_m > 0).map((one) => this.volume(plan, one.vertical_m, one.name)) : []),
       s('polyline', { class: 'own', points: this.points(plan, plan.own.ned) }),
-      s('line', { class: 'cursor', x1: x, x2: x, y1: TOP, y2: height - BOTTOM }),
+      s('line', { class: 'cursor', x1: x, x2: x, y1: this.top, y2: height - this.bottom }),
       ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip)),
     ]);
   }
+
+  private get left(): number { return MARGINS.left * this.px; }
+  private get right(): number { return MARGINS.right * this.px; }
+  private get top(): number { return MARGINS.top * this.px; }
+  private get bottom(): number { return MARGINS.bottom * this.px; }
 
   private get end_s(): number {
     const { clip } = this.now;
@@ -55,21 +60,21 @@ export class HeightView extends Part {
   }
 
   private x(time_s: number): number {
-    return LEFT + (time_s / this.end_s) * (this.svg.clientWidth - LEFT - RIGHT);
+    return this.left + (time_s / this.end_s) * (this.svg.clientWidth - this.left - this.right);
   }
 
   private y(height_m: number): number {
-    return TOP + ((this.high_m - height_m) / (this.high_m - this.low_m)) * (this.svg.clientHeight - TOP - BOTTOM);
+    return this.top + ((this.high_m - height_m) / (this.high_m - this.low_m)) * (this.svg.clientHeight - this.top - this.bottom);
   }
 
   private timeAt(event: PointerEvent): number {
     const box = this.svg.getBoundingClientRect();
-    return ((event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT)) * this.end_s;
+    return ((event.clientX - box.left - this.left) / (box.width - this.left - this.right)) * this.end_s;
   }
 
   private heightAt(event: PointerEvent): number {
     const box = this.svg.getBoundingClientRect();
-    return this.high_m - ((event.clientY - box.top - TOP) / (box.height - TOP - BOTTOM)) * (this.high_m - this.low_m);
+    return this.high_m - ((event.clientY - box.top - this.top) / (box.height - this.top - this.bottom)) * (this.high_m - this.low_m);
   }
 
   private frameAll(plan: Plan): void {
@@ -88,14 +93,14 @@ export class HeightView extends Part {
 
   private axes(clip: Clip, width: number, height: number): SVGGElement {
     const group = s('g', { class: 'grid' });
-    const metres = niceStep((this.high_m - this.low_m) / Math.max(2, (height - TOP - BOTTOM) / 36));
+    const metres = niceStep((this.high_m - this.low_m) / Math.max(2, (height - this.top - this.bottom) / (36 * this.px)));
     for (let m = Math.ceil(this.low_m / metres) * metres; m <= this.high_m; m += metres)
-      group.append(s('line', { x1: LEFT, x2: width - RIGHT, y1: this.y(m), y2: this.y(m) }), s('text', { class: 'end', x: LEFT - 5, y: this.y(m) + 4 }, `${round(m, 1)} m`));
-    const seconds = niceStep(this.end_s / Math.max(2, (width - LEFT - RIGHT) / 90));
+      group.append(s('line', { x1: this.left, x2: width - this.right, y1: this.y(m), y2: this.y(m) }), s('text', { class: 'end', x: this.left - 5 * this.px, y: this.y(m) + 4 * this.px }, `${round(m, 1)} m`));
+    const seconds = niceStep(this.end_s / Math.max(2, (width - this.left - this.right) / (90 * this.px)));
     for (let t = 0; t <= this.end_s + 1e-6; t += seconds) {
-      group.append(s('line', { x1: this.x(t), x2: this.x(t), y1: TOP, y2: height - BOTTOM }), s('text', { class: this.x(t) > width - 30 ? 'end' : 'middle', x: Math.min(this.x(t), width - 3), y: height - 8 }, `${round(t, 2)} s`));
+      group.append(s('line', { x1: this.x(t), x2: this.x(t), y1: this.top, y2: height - this.bottom }), s('text', { class: this.x(t) > width - 30 * this.px ? 'end' : 'middle', x: Math.min(this.x(t), width - 3), y: height - 8 * this.px }, `${round(t, 2)} s`));
     }
-    if (this.low_m < 0) group.append(s('rect', { class: 'earth', x: LEFT, width: Math.max(0, width - LEFT - RIGHT), y: this.y(0), height: Math.max(0, height - BOTTOM - this.y(0)) }, s('title', {}, 'Below the ground')));
+    if (this.low_m < 0) group.append(s('rect', { class: 'earth', x: this.left, width: Math.max(0, width - this.left - this.right), y: this.y(0), height: Math.max(0, height - this.bottom - this.y(0)) }, s('title', {}, 'Below the ground')));
     attribute(group, 'data-rate', clip.rate_hz);
     return group;
   }
@@ -112,7 +117,7 @@ export class HeightView extends Part {
     const points = this.points(plan, track.ned);
     group.append(s('polyline', { class: 'line', points }), s('polyline', { class: 'grip', points }));
     const now = nedAt(plan, track.ned, this.now.frame);
-    if (now) group.append(s('circle', { class: 'place', cx: this.x(this.now.frame / clip.rate_hz), cy: this.y(-now[2]), r: 4.5 }));
+    if (now) group.append(s('circle', { class: 'place', cx: this.x(this.now.frame / clip.rate_hz), cy: this.y(-now[2]), r: 4.5 * this.px }));
     if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
     return [group];
   }
@@ -126,7 +131,7 @@ export class HeightView extends Part {
     const label = `Closest approach of ${flyer.id}: ${round(track.cpa.time_s, 1)} s, ${round(track.cpa.above_m, 0)} m above`;
     return [
       s('line', { class: 'miss', x1: x, x2: x, y1: oy, y2: y }),
-      s('path', { class: `diamond${isHandle ? ' grab' : ''}`, d: `M${x},${y - 7}L${x + 7},${y}L${x},${y + 7}L${x - 7},${y}Z`, tabindex: isHandle ? 0 : null, role: 'button', 'aria-label': `${label}. Arrow keys move it.`, 'data-drag': isHandle ? 'approach' : null,
+      s('path', { class: `diamond${isHandle ? ' grab' : ''}`, d: diamond(x, y, 7 * this.px), tabindex: isHandle ? 0 : null, role: 'button', 'aria-label': `${label}. Arrow keys move it.`, 'data-drag': isHandle ? 'approach' : null,
         onkeydown: ((event: KeyboardEvent) => this.key(event, flyer)) as EventListener }, s('title', {}, label)),
     ];
   }
@@ -136,7 +141,7 @@ export class HeightView extends Part {
       const place = nedAt(plan, track.ned, moment.frame);
       if (!place) return [];
       const [x, y] = [this.x(moment.time_s), this.y(-place[2])];
-      return [s('rect', { class: `moment grab${this.now.moment === index ? ' chosen' : ''}`, x: x - 5, y: y - 5, width: 10, height: 10, 'data-drag': 'moment', 'data-index': index }, s('title', {}, `${round(moment.time_s, 2)} s: drag for its time`))];
+      return [s('rect', { class: `moment grab${this.now.moment === index ? ' chosen' : ''}`, x: x - 5 * this.px, y: y - 5 * this.px, width: 10 * this.px, height: 10 * this.px, 'data-drag': 'moment', 'data-index': index }, s('title', {}, `${round(moment.time_s, 2)} s: drag for its time`))];
     });
   }
 
@@ -164,7 +169,7 @@ export class HeightView extends Part {
       return;
     }
     const changes = this.changesOf(drag, event);
-    if (changes.length) this.studio.edit(changes, drag.merge, { crop: this.studio.cropOfAll(), moved_ms: event.timeStamp });
+    if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
   }
 
   private up(): void {

@@ -7,8 +7,8 @@ const INFO_MS = 5000;
 
 // Lines for the user: no connection, a text that cannot be used, a change on disk with its two answers, and what the server says.
 export class NoticeBar extends Part {
-  protected readonly watches: Member[] = ['notices', 'connected', 'everConnected', 'state', 'keepsMine', 'busy', 'progress'];
-  private lost = h('p', { class: 'notice error' }, 'No connection to airtruth studio. What you do is kept and sent when it is back.');
+  protected readonly watches: Member[] = ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'keepsMine', 'busy', 'progress'];
+  private lost = h('p', { class: 'notice error' }, 'No connection to airtruth studio. What you do is kept and sent when it is back. If it was started again, open the address that it prints.');
   private problem = h('p', { class: 'notice error' });
   private progress = h('p', { class: 'notice info' });
   private disk = h('p', { class: 'notice warning' });
@@ -17,15 +17,16 @@ export class NoticeBar extends Part {
 
   protected build(): void {
     this.setAttribute('role', 'status');
-    this.disk.append(h('span', {}, 'The file was changed by another program.'), h('button', { onclick: () => void this.studio.reload() }, 'Take the file'), h('button', { onclick: () => this.studio.store.put({ keepsMine: this.now.state?.text ?? null }) }, 'Keep mine'));
+    this.disk.append(h('span', {}, 'The file was changed by another program.'), h('button', { onclick: () => void this.studio.reload() }, 'Take the file'), h('button', { onclick: () => this.studio.store.put({ keepsMine: true }) }, 'Keep mine'));
     this.append(this.lost, this.problem, this.disk, this.progress, this.list);
   }
 
   protected update(): void {
-    const { connected, everConnected, state, keepsMine, notices, busy, progress } = this.now;
+    const { connected, everConnected, state, planProblem, keepsMine, notices, busy, progress } = this.now;
     this.lost.hidden = connected || !everConnected;
-    this.problem.hidden = !state?.problem;
-    text(this.problem, state?.problem ?? '');
+    const problem = state?.problem ?? planProblem;
+    this.problem.hidden = !problem;
+    text(this.problem, problem ?? '');
     this.disk.hidden = !isOffered(state, keepsMine);
     const isMeasured = progress !== null && busy !== 'render' && (progress.total === 0 || progress.done < progress.total);
     this.progress.hidden = !isMeasured;

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Track } from '../model/contract';
-import { flyersOf, isSame, reachOf } from '../model/flyers';
-import { type Seen, nedAt, round, seenAt } from '../model/geometry';
+import type { ExactBox } from '../model/contract';
+import { flyersOf, isSame } from '../model/flyers';
+import { nedAt, round } from '../model/geometry';
 import type { Everything } from '../model/store';
 import { Keyed, attribute, s, text } from './part';
 
 const MOTION_FRAMES = 30;
 
 interface Box {
-  track: Track;
-  seen: Seen;
+  exact: ExactBox;
   colour: number;
   isSelected: boolean;
-  reach_px: number;
+  label: string;
 }
 
 // What is measured or follows, drawn over the frame: boxes with range and size, the horizon, and how it moved lately.
@@ -20,7 +19,7 @@ export class OverlayLayer {
   readonly element = s('g', { class: 'overlay' });
   private horizon = s('line', { class: 'horizon' });
   private motion = s('g', { class: 'motion' });
-  private scale = 1;
+  private px = 1; // frame pixels of a screen pixel
   private boxes: Keyed<Box, SVGGElement>;
 
   constructor() {
@@ -29,35 +28,40 @@ export class OverlayLayer {
     this.boxes = new Keyed<Box, SVGGElement>(boxes, () => s('g', {}, s('path'), s('text')), (element, box) => this.renew(element, box));
   }
 
-  update(now: Readonly<Everything>, scale: number): void {
-    this.scale = scale;
+  update(now: Readonly<Everything>, px: number): void {
+    this.px = px;
     this.showHorizon(now);
     this.showMotion(now);
-    const { plan, state, frame, showsBoxes } = now;
+    const { boxes, state, frame, showsBoxes } = now;
     const flyers = state ? flyersOf(state.scene) : [];
-    const boxes = (showsBoxes ? plan?.tracks ?? [] : []).flatMap((track) => {
-      const seen = seenAt(track, frame);
-      const flyer = flyers.find((one) => isSame(one.path, track.table));
-      if (!seen || !flyer || !seen.isVisible) return [];
-      const item = { track, seen, colour: flyer.colour, isSelected: isSame(now.selected, track.table), reach_px: reachOf(flyer, seen.width_px) };
-      return [{ key: JSON.stringify(track.table), item }];
-    });
-    this.boxes.show(boxes);
+    const shown = showsBoxes && boxes?.frame === frame ? boxes.boxes : [];
+    const tables = shown.map((one) => JSON.stringify(one.table));
+    this.boxes.show(shown.map((exact, k) => {
+      const flyer = flyers.find((one) => isSame(one.path, exact.table));
+      const isSelected = isSame(now.selected, exact.table);
+      // Of a flock one bird has the label.
+      const isFirst = tables.indexOf(tables[k]) === k;
+      const count = tables.filter((one) => one === tables[k]).length;
+      const [w, h] = [exact.box[2], exact.box[3]];
+      const words = count > 1 ? `${flyer?.id ?? exact.id}  ${count} of them` : exact.id;
+      const label = !isFirst ? '' : isSelected ? `${words}  ${distance(exact.range_m)}${count > 1 ? '' : `  ${round(w, 1)} × ${round(h, 1)} px`}` : words;
+      return { key: exact.id, item: { exact, colour: flyer?.colour ?? 0, isSelected, label } };
+    }));
   }
 
-  private renew(element: SVGGElement, { track, seen, colour, isSelected }: Box): void {
+  private renew(element: SVGGElement, { exact, colour, isSelected, label: words }: Box): void {
     attribute(element, 'class', `box colour-${colour}${isSelected ? ' selected' : ''}`);
     const [path, label] = [element.children[0], element.children[1]];
-    const px = 1 / this.scale;
-    const half = [seen.width_px / 2 + 4 * px, Math.max(seen.width_px / 3.2, 8 * px)];
-    const [x0, x1, y0, y1] = [seen.pixel[0] - half[0], seen.pixel[0] + half[0], seen.pixel[1] - half[1], seen.pixel[1] + half[1]];
-    const arm = Math.min(12 * px, half[0] / 1.5, half[1] / 1.5);
-    const corner = (x: number, y: number, dx: number, dy: number) => `M${x + dx * arm},${y}H${x}V${y + dy * arm}`;
+    const { px } = this;
+    const [x, y, w, h] = exact.box;
+    const [x0, y0, x1, y1] = [x - 3 * px, y - 3 * px, x + w + 3 * px, y + h + 3 * px];
+    const arm = Math.min(12 * px, (x1 - x0) / 3, (y1 - y0) / 3);
+    const corner = (cx: number, cy: number, dx: number, dy: number) => `M${cx + dx * arm},${cy}H${cx}V${cy + dy * arm}`;
     attribute(path, 'd', corner(x0, y0, 1, 1) + corner(x1, y0, -1, 1) + corner(x0, y1, 1, -1) + corner(x1, y1, -1, -1));
-    attribute(label, 'x', x1 + 6 * px);
-    attribute(label, 'y', y0 - 2 * px);
+    attribute(label, 'x', x1 + 4 * px);
+    attribute(label, 'y', y0 - 3 * px);
     attribute(label, 'font-size', 13 * px);
-    text(label, `${track.id}  ${distance(seen.range_m)}  ${round(seen.width_px, 1)} px`);
+    text(label, words);
   }
 
   private showHorizon({ plan, frame, showsHorizon }: Readonly<Everything>): void {
@@ -74,7 +78,7 @@ export class OverlayLayer {
     lines.forEach(([, [x1, y1, x2, y2]], k) => this.motion.append(s('line', { x1, y1, x2, y2, opacity: round(0.1 + (0.5 * k) / Math.max(1, lines.length), 2) })));
     const [a, b] = [nedAt(plan, plan.own.ned, frame), nedAt(plan, plan.own.ned, frame + 1)];
     if (!a || !b) return;
-    const px = 1 / this.scale;
+    const { px } = this;
     const speed_mps = Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * clip.rate_hz;
     const label = s('text', { x: 10 * px, y: clip.height - 10 * px, 'font-size': 13 * px });
     label.textContent = `own speed ${round(speed_mps, 1)} m/s, height ${round(-a[2], 0)} m`;

@@ -36,6 +36,9 @@ export abstract class Part extends HTMLElement {
   }
 }
 
+// Screen pixels of what is drawn as large as text: 1 where text is 16 px.
+export const ui = (): number => parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
+
 type Child = Node | string | null | undefined | false;
 type Attributes = Record<string, string | number | boolean | null | undefined | EventListener>;
 

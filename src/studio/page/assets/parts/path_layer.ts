@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Path, Track } from '../model/contract';
-import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, reachOf, trackOf, writtenPixel } from '../model/flyers';
-import { type Crop, type Point, cropAround, joined, round, seenAt } from '../model/geometry';
+import type { Clip, Path, Track } from '../model/contract';
+import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel } from '../model/flyers';
+import { type Point, round } from '../model/geometry';
+import { bent, steadied, through } from '../model/steady';
 import type { Studio } from '../model/studio';
 import { distance } from './overlay_layer';
 import { Keyed, attribute, s, text } from './part';
@@ -24,19 +25,20 @@ export class PathLayer {
   readonly element = s('g', { class: 'paths' });
   private tracks: Keyed<{ track: Track; flyer: Flyer; isSelected: boolean }, SVGGElement>;
   private handles: Keyed<{ moment: Moment; flyer: Flyer; index: number }, SVGGElement>;
+  private steady = new WeakMap<Track, (Point | null)[]>();
   private held: Held | null = null;
   private wheelMerge = { name: '', at: -Infinity };
-  private scale = 1;
+  private px = 1; // frame pixels of a screen pixel
 
-  constructor(private studio: Studio, private pixelAt: (event: PointerEvent) => Point, private scaleNow: () => number) {
+  constructor(private studio: Studio, private pixelAt: (event: PointerEvent) => Point) {
     const [lines, handles] = [s('g'), s('g')];
     this.element.append(lines, handles);
     this.tracks = new Keyed(lines, (_, key) => this.makeTrack(key), (element, item) => this.renewTrack(element, item));
     this.handles = new Keyed(handles, () => this.makeHandle(), (element, item) => this.renewHandle(element, item));
   }
 
-  update(scale: number): void {
-    this.scale = scale;
+  update(px: number): void {
+    this.px = px;
     const { state, plan, clip, selected } = this.studio.store.now;
     if (!state || !clip) return;
     const flyers = flyersOf(state.scene);
@@ -120,32 +122,25 @@ export class PathLayer {
   }
 
   private size(index: number, factor: number, moved_ms: number): void {
-    const { state, clip, selected, plan } = this.studio.store.now;
+    const { state, clip, selected } = this.studio.store.now;
     const flyer = flyerAt(state, selected);
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
-    if (!flyer || !moment || !clip) return;
+    if (!moment) return;
     const change = nearer(moment, factor);
     if (!change) return;
     if (moved_ms - this.wheelMerge.at > PAUSE_MS) this.wheelMerge.name = this.studio.merge('size');
     this.wheelMerge.at = moved_ms;
     this.studio.show(moment.frame);
-    const track = trackOf(plan, flyer.path);
-    const width_px = (track && seenAt(track, moment.frame)?.width_px) ?? 40;
-    this.studio.edit([change], this.wheelMerge.name, { crop: cropAround(moment.pixel, reachOf(flyer, width_px * Math.max(1, factor)), clip), moved_ms });
+    this.studio.edit([change], this.wheelMerge.name, moved_ms);
   }
 
   private moveTo(held: Held, pixel: Point, moved_ms: number): void {
-    const { clip, plan } = this.studio.store.now;
     const to = writtenPixel(pixel);
-    if (!clip || (to[0] === held.last[0] && to[1] === held.last[1])) return;
-    const track = trackOf(plan, held.flyer.path);
-    const seen = track && seenAt(track, held.moment.frame);
-    const reach_px = reachOf(held.flyer, held.moment.width_px ?? seen?.width_px ?? 40);
-    const crop: Crop | null = joined(cropAround(held.last, reach_px, clip), cropAround(to, reach_px, clip));
+    if (to[0] === held.last[0] && to[1] === held.last[1]) return;
     held.last = to;
     held.isMoved = true;
     this.studio.store.put({ draft: { path: held.moment.path, pixel: to } });
-    this.studio.edit([{ set: [...held.moment.path, 'pixel'], to }], held.merge, { crop, moved_ms });
+    this.studio.edit([{ set: [...held.moment.path, 'pixel'], to }], held.merge, moved_ms);
   }
 
   private key(event: KeyboardEvent, index: number): void {
@@ -179,11 +174,28 @@ export class PathLayer {
 
   private renewTrack(element: SVGGElement, { track, flyer, isSelected }: { track: Track; flyer: Flyer; isSelected: boolean }): void {
     attribute(element, 'class', `track colour-${flyer.colour}${isSelected ? ' selected' : ''}`);
-    const { clip } = this.studio.store.now;
-    const all = pathData(track, () => true);
-    const seen = pathData(track, (visible) => visible);
+    const { clip, frame } = this.studio.store.now;
+    if (!clip) return;
+    const line = this.dragged(flyer, track, clip, through(track, this.steadyOf(track, clip.rate_hz), frame, clip.rate_hz));
+    const all = pathData(track, line, () => true);
+    const seen = pathData(track, line, (visible) => visible);
     for (const [k, data] of [all, all, seen, all].entries()) attribute(element.children[k], 'd', data);
-    attribute(element.children[4], 'd', clip ? secondsOf(track, clip.rate_hz, 2.2 / this.scale) : '');
+    attribute(element.children[4], 'd', secondsOf(track, line, clip.rate_hz, 2.2 * this.px));
+  }
+
+  private dragged(flyer: Flyer, track: Track, clip: Clip, line: (Point | null)[]): (Point | null)[] {
+    const { draft } = this.studio.store.now;
+    const index = draft ? track.handles.findIndex((one) => isSame(one.path, draft.path)) : -1;
+    if (!draft || index < 0) return line;
+    const [from, to] = [track.handles[index].pixel, draft.pixel];
+    const frames = momentsOf(flyer, clip).map((moment) => moment.frame);
+    return bent(track, line, frames, index, [to[0] - from[0], to[1] - from[1]]);
+  }
+
+  private steadyOf(track: Track, rate_hz: number): (Point | null)[] {
+    const known = this.steady.get(track) ?? steadied(track, rate_hz);
+    this.steady.set(track, known);
+    return known;
   }
 
   private makeHandle(): SVGGElement {
@@ -207,7 +219,7 @@ export class PathLayer {
     const [x, y] = draft && isSame(draft.path, moment.path) ? draft.pixel : moment.pixel;
     attribute(element, 'class', `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}`);
     attribute(element, 'data-index', index);
-    const px = 1 / this.scaleNow();
+    const { px } = this;
     for (const [k, radius] of [16, HANDLE_PX, 2.5].entries()) {
       attribute(element.children[k], 'cx', x);
       attribute(element.children[k], 'cy', y);
@@ -219,35 +231,32 @@ export class PathLayer {
     attribute(label, 'font-size', 12 * px);
     text(label, `${round(moment.time_s, 2)} s`);
     const known = trackOf(plan, flyer.path)?.handles[index];
-    const size = [known && distance(known.range_m), known && `${round(known.width_px, 1)} px wide`].filter(Boolean).join(', ');
+    const size = [known?.range_m && distance(known.range_m), known?.width_px && `${round(known.width_px, 1)} px wide`].filter(Boolean).join(', ');
     attribute(element, 'aria-label', `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(x, 1)}, ${round(y, 1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
   }
 }
 
 // The points of a track as a line that is broken where they are too far away or not as asked.
-function pathData(track: Track, isDrawn: (isVisible: boolean) => boolean): string {
+function pathData(track: Track, line: (Point | null)[], isDrawn: (isVisible: boolean) => boolean): string {
   let data = '';
   let isDown = false;
-  for (const [, x, y, range_m, , visible] of track.points) {
-    const isIn = range_m > 0 && Math.abs(x) < FAR && Math.abs(y) < FAR && isDrawn(Boolean(visible));
-    if (isIn) data += `${isDown ? 'L' : 'M'}${round(x, 1)},${round(y, 1)}`;
+  line.forEach((point, k) => {
+    const isIn = point !== null && Math.abs(point[0]) < FAR && Math.abs(point[1]) < FAR && isDrawn(track.points[k][5]);
+    if (isIn) data += `${isDown ? 'L' : 'M'}${round(point[0], 1)},${round(point[1], 1)}`;
     isDown = isIn;
-  }
+  });
   return data;
 }
 
-// A dot at every whole second.
-function secondsOf(track: Track, rate_hz: number, radius: number): string {
-  const { points } = track;
-  if (!points.length) return '';
-  const [first, last] = [Math.ceil(points[0][0] / rate_hz), Math.floor(points[points.length - 1][0] / rate_hz)];
-  if (last - first > 600) return '';
+// A dot at every whole second in view.
+function secondsOf(track: Track, line: (Point | null)[], rate_hz: number, radius: number): string {
   let data = '';
-  for (let second = first; second <= last; ++second) {
-    const seen = seenAt(track, second * rate_hz);
-    if (!seen?.isVisible) continue;
-    const [x, y] = seen.pixel;
-    data += `M${round(x - radius, 2)},${round(y, 2)}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
-  }
+  let last = -1;
+  line.forEach((point, k) => {
+    const second = Math.floor(track.points[k][0] / rate_hz + 1e-6);
+    if (point && second !== last && track.points[k][5])
+      data += `M${round(point[0] - radius, 2)},${round(point[1], 2)}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
+    last = second;
+  });
   return data;
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { BoxPx } from '../model/contract';
 import { frameOf } from '../model/flyers';
 import { type Point, clamp } from '../model/geometry';
 import type { Look, Member } from '../model/store';
 import { OverlayLayer } from './overlay_layer';
-import { Part, attribute, h, s } from './part';
+import { Part, attribute, h, s, ui } from './part';
 import { PathLayer } from './path_layer';
 
 const MOST_SCALE = 40;
@@ -13,18 +14,21 @@ const PIXELS_FROM_SCALE = 3; // frame pixels are shown as squares from here on
 // The frame on a canvas, and above it drawings in the frame's own coordinates. The wheel zooms about the pointer, the background is
 // dragged, two fingers do both.
 export class PictureView extends Part {
-  protected readonly watches: Member[] = ['clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'connected'];
+  protected readonly watches: Member[] = ['clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'boxes', 'showsBoxes', 'showsHorizon', 'showsMotion', 'connected'];
   private canvas = h('canvas', { role: 'img', 'aria-label': 'The frame with the aircraft in it' });
   private svg = s('svg', { class: 'over', role: 'group', 'aria-label': 'Paths over the frame' });
   private overlay = new OverlayLayer();
-  private paths = new PathLayer(this.studio, (event) => this.pixelAt(event), () => this.scale);
+  private paths = new PathLayer(this.studio, (event) => this.pixelAt(event));
   private pointers = new Map<number, Point>();
   private dragged = false;
 
   protected build(): void {
     this.svg.append(this.overlay.element, this.paths.element);
     this.append(this.canvas, this.svg);
-    this.studio.pictures.onDrawn = () => this.draw();
+    this.studio.pictures.onDrawn = (header) => {
+      this.draw(header.crop);
+      this.studio.store.put({ boxes: header });
+    };
     new ResizeObserver(() => this.resized()).observe(this);
     this.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     this.addEventListener('pointerdown', (event) => this.down(event));
@@ -36,9 +40,9 @@ export class PictureView extends Part {
   protected update(changed: Set<Member>): void {
     if (changed.has('look') || changed.has('clip')) this.draw();
     this.place();
-    const scale = this.scale;
-    this.overlay.update(this.now, scale);
-    this.paths.update(scale);
+    const px = ui() / this.scale;
+    this.overlay.update(this.now, px);
+    this.paths.update(px);
   }
 
   // All of the frame, in the middle.
@@ -88,17 +92,20 @@ export class PictureView extends Part {
     attribute(this.svg, 'viewBox', `${x} ${y} ${Math.max(1, this.clientWidth) / scale} ${Math.max(1, this.clientHeight) / scale}`);
   }
 
-  private draw(): void {
+  // The frame, or what changed of it.
+  private draw(part?: BoxPx): void {
     const context = this.canvas.getContext('2d')!;
     const { x, y, scale } = this.look;
     const on = scale * window.devicePixelRatio;
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    if (!this.now.clip) return;
+    if (!part) context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    const { clip } = this.now;
+    if (!clip) return;
     context.setTransform(on, 0, 0, on, -x * on, -y * on);
     context.imageSmoothingEnabled = on < PIXELS_FROM_SCALE;
-    context.imageSmoothingQuality = 'high';
-    context.drawImage(this.studio.pictures.canvas, 0, 0);
+    context.imageSmoothingQuality = 'medium';
+    const [left, top, width, height] = part ?? [0, 0, clip.width, clip.height];
+    context.drawImage(this.studio.pictures.canvas, left, top, width, height, left, top, width, height);
   }
 
   private wheel(event: WheelEvent): void {

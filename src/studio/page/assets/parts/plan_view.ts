@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Change, Clip, Ned, Plan, State, Table, Track } from '../model/contract';
-import { type Flyer, flyersOf, focalOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth } from '../model/flyers';
+import type { Change, Clip, Ned, Plan, Table, Track } from '../model/contract';
+import { type Flyer, flyersOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth } from '../model/flyers';
 import { type Point, acrossRelative, courseOf, degrees, nedAt, radians, round, turned, velocityAt } from '../model/geometry';
 import type { Member } from '../model/store';
-import { Part, attribute, h, renewed, s } from './part';
+import { Part, attribute, h, renewed, s, ui } from './part';
 
 const MARGIN_PX = 26;
 const MOST_M = 20000; // from the own path, of what the view has room for
@@ -22,13 +22,14 @@ type Drag = { kind: 'approach' | 'course' | 'moment'; flyer: Flyer; index: numbe
 // From above, the own course upwards: paths, the field of view, well-clear volumes, closest approaches. Closest approaches, courses
 // and the ranges of moments are dragged.
 export class PlanView extends Part {
-  protected readonly watches: Member[] = ['plan', 'state', 'frame', 'selected', 'moment', 'clip'];
+  protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
   private svg = s('svg', { role: 'group', 'aria-label': 'Plan view, own course up' });
   private drag: Drag | null = null;
   private course_deg = 0;
   private origin: Ned = [0, 0, 0];
   private middle: Ground = { right: 0, ahead: 0 };
   private scale = 1; // screen pixels a metre
+  private px = 1;
 
   protected build(): void {
     this.append(h('h2', {}, 'From above'), this.svg);
@@ -42,12 +43,13 @@ export class PlanView extends Part {
     const { plan, state, clip, frame } = this.now;
     const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
     if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
+    this.px = ui();
     if (!this.drag) this.frameAll(plan, clip, width, height);
     attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
     const own = nedAt(plan, plan.own.ned, frame);
     renewed(this.svg, [
       this.grid(width, height),
-      ...(own ? [this.fieldOfView(plan, state, clip, own), ...this.volumes(plan, own)] : []),
+      ...(own ? [this.fieldOfView(plan, own), ...this.volumes(plan, own)] : []),
       s('polyline', { class: 'own', points: this.points(plan.own.ned) }),
       ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
       ...(own ? [this.ownMark(plan, clip, own)] : []),
@@ -82,20 +84,15 @@ export class PlanView extends Part {
   private frameAll(plan: Plan, clip: Clip, width: number, height: number): void {
     this.origin = plan.own.ned[0] ?? [0, 0, 0];
     const velocity = this.ownVelocity;
-    this.course_deg = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : this.yaw() ?? 0;
+    this.course_deg = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : plan.own.heading_deg;
     const others = plan.tracks.flatMap((track) => [...track.ned, approachOf(plan, track, clip)?.place ?? null]);
     const near = others.filter((ned): ned is Ned => ned !== null && Math.hypot(ned[0] - this.origin[0], ned[1] - this.origin[1]) < MOST_M);
     const all = [...plan.own.ned, ...near].map((ned) => this.ground(ned));
     const [rights, aheads] = [all.map((one) => one.right), all.map((one) => one.ahead)];
     const [left, right, low, high] = [Math.min(...rights), Math.max(...rights), Math.min(...aheads), Math.max(...aheads)];
     this.middle = { right: (left + right) / 2, ahead: (low + high) / 2 };
-    const room = [Math.max(40, width - 2 * MARGIN_PX), Math.max(40, height - 2 * MARGIN_PX)];
+    const room = [Math.max(40, width - 2 * MARGIN_PX * this.px), Math.max(40, height - 2 * MARGIN_PX * this.px)];
     this.scale = Math.min(room[0] / Math.max(LEAST_M, right - left), room[1] / Math.max(LEAST_M, high - low));
-  }
-
-  private yaw(): number | null {
-    const attitude = tableOf(this.now.state?.scene.camera).attitude_yaw_pitch_roll_deg;
-    return Array.isArray(attitude) ? Number(attitude[0]) : null;
   }
 
   private points(ned: (Ned | null)[]): string {
@@ -104,25 +101,22 @@ export class PlanView extends Part {
 
   // Lines at whole steps of metres, and how long a step is.
   private grid(width: number, height: number): SVGGElement {
-    const step_m = niceStep(90 / this.scale);
+    const step_m = niceStep((90 * this.px) / this.scale);
     const group = s('g', { class: 'grid' });
     const [x0, y0] = this.screen({ right: 0, ahead: 0 });
     const step = step_m * this.scale;
     for (let x = x0 % step; x < width; x += step) group.append(s('line', { x1: x, x2: x, y1: 0, y2: height }));
     for (let y = y0 % step; y < height; y += step) group.append(s('line', { x1: 0, x2: width, y1: y, y2: y }));
-    group.append(s('path', { class: 'scale', d: `M8,${height - 12}v6h${round(step, 1)}v-6` }), s('text', { x: 12, y: height - 16 }, step_m >= 1000 ? `${step_m / 1000} km` : `${step_m} m`));
+    group.append(s('path', { class: 'scale', d: `M8,${height - 12 * this.px}v${6 * this.px}h${round(step, 1)}v${-6 * this.px}` }), s('text', { x: 12, y: height - 16 * this.px }, step_m >= 1000 ? `${step_m / 1000} km` : `${step_m} m`));
     return group;
   }
 
-  private fieldOfView(plan: Plan, state: State, clip: Clip, own: Ned): SVGPathElement {
-    const half = Math.atan(clip.width / 2 / focalOf(state.scene, clip));
-    const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
-    const course = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : this.course_deg;
-    const looks = this.yaw() ?? course;
+  private fieldOfView(plan: Plan, own: Ned): SVGPathElement {
+    const half = radians(plan.horizontal_fov_deg / 2);
     const [x, y] = this.at(own);
     const far = Math.hypot(this.svg.clientWidth, this.svg.clientHeight);
     const edge = (sign: number) => {
-      const angle = radians(looks - this.course_deg) + sign * half;
+      const angle = radians(plan.own.heading_deg - this.course_deg) + sign * half;
       return `${round(x + far * Math.sin(angle), 1)},${round(y - far * Math.cos(angle), 1)}`;
     };
     return s('path', { class: 'view', d: `M${round(x, 1)},${round(y, 1)}L${edge(-1)}L${edge(1)}Z` });
@@ -131,14 +125,15 @@ export class PlanView extends Part {
   private volumes(plan: Plan, own: Ned): SVGElement[] {
     const [cx, cy] = this.at(own);
     return plan.volumes.filter((volume) => volume.horizontal_m > 0).map((volume) =>
-      s('g', { class: 'volume' }, s('circle', { cx, cy, r: volume.horizontal_m * this.scale }, s('title', {}, `${volume.name}: ${round(volume.horizontal_m, 0)} m`))));
+      s('g', { class: 'volume' }, s('circle', { cx, cy, r: volume.horizontal_m * this.scale }, s('title', {}, `${volume.name}: ${round(volume.horizontal_m, 0)} m`)),
+        s('text', { class: 'middle', x: cx, y: cy - volume.horizontal_m * this.scale - 4 * this.px }, volume.name)));
   }
 
   private ownMark(plan: Plan, clip: Clip, own: Ned): SVGGElement {
     const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
     const angle = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) - this.course_deg : 0;
     const [x, y] = this.at(own);
-    return s('g', { class: 'own-mark', transform: `translate(${round(x, 1)} ${round(y, 1)}) rotate(${round(angle, 1)})` }, s('path', { d: 'M0,-9L6,7L0,3L-6,7Z' }, s('title', {}, 'The own aircraft')));
+    return s('g', { class: 'own-mark', transform: `translate(${round(x, 1)} ${round(y, 1)}) rotate(${round(angle, 1)}) scale(${this.px})` }, s('path', { d: 'M0,-9L6,7L0,3L-6,7Z' }, s('title', {}, 'The own aircraft')));
   }
 
   private flyer(flyer: Flyer, plan: Plan, clip: Clip, own: Ned | null): SVGElement[] {
@@ -151,7 +146,7 @@ export class PlanView extends Part {
     if (now && own) {
       const [[x, y], [ox, oy]] = [this.at(now), this.at(own)];
       if (isSelected) group.append(s('line', { class: 'sight', x1: ox, y1: oy, x2: x, y2: y }));
-      group.append(s('circle', { class: 'place', cx: x, cy: y, r: 4.5 }, s('title', {}, flyer.id)));
+      group.append(s('circle', { class: 'place', cx: x, cy: y, r: 4.5 * this.px }, s('title', {}, flyer.id)));
     }
     if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
     return [group];
@@ -165,17 +160,17 @@ export class PlanView extends Part {
     const label = `Closest approach of ${flyer.id}: ${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`;
     const parts: SVGElement[] = [
       s('line', { class: 'miss', x1: ox, y1: oy, x2: x, y2: y }),
-      s('path', { class: `diamond${isHandle ? ' grab' : ''}`, d: `M${x},${y - 7}L${x + 7},${y}L${x},${y + 7}L${x - 7},${y}Z`, tabindex: isHandle ? 0 : null, role: 'button', 'aria-label': `${label}. Arrow keys move it.`,
+      s('path', { class: `diamond${isHandle ? ' grab' : ''}`, d: diamond(x, y, 7 * this.px), tabindex: isHandle ? 0 : null, role: 'button', 'aria-label': `${label}. Arrow keys move it.`,
         'data-drag': isHandle ? 'approach' : null, onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'approach')) as EventListener }, s('title', {}, label)),
-      s('text', { x: x + 10, y: y + 4 }, `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`),
+      s('text', { x: x + 10 * this.px, y: y + 4 * this.px }, `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`),
     ];
     if (!isHandle) return parts;
     const course = numberOf(tableOf(flyer.table.encounter).course_deg) ?? 0;
     const angle = radians(course + cpa.ownCourse_deg - this.course_deg);
-    const [tx, ty] = [x + ARROW_PX * Math.sin(angle), y - ARROW_PX * Math.cos(angle)];
+    const [tx, ty] = [x + ARROW_PX * this.px * Math.sin(angle), y - ARROW_PX * this.px * Math.cos(angle)];
     parts.push(
       s('line', { class: 'course', x1: x, y1: y, x2: tx, y2: ty }),
-      s('circle', { class: 'turn grab', cx: tx, cy: ty, r: 6, tabindex: 0, role: 'button', 'data-drag': 'course', 'aria-label': `Course of ${flyer.id}: ${round(course, 0)} degrees from the own course. Arrow keys turn it.`,
+      s('circle', { class: 'turn grab', cx: tx, cy: ty, r: 6 * this.px, tabindex: 0, role: 'button', 'data-drag': 'course', 'aria-label': `Course of ${flyer.id}: ${round(course, 0)} degrees from the own course. Arrow keys turn it.`,
         onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'course')) as EventListener }, s('title', {}, `Course ${round(course, 0)}° from the own course`)));
     return parts;
   }
@@ -186,7 +181,7 @@ export class PlanView extends Part {
       if (!place) return [];
       const [x, y] = this.at(place);
       const isChosen = this.now.moment === index;
-      return [s('rect', { class: `moment grab${isChosen ? ' chosen' : ''}`, x: x - 5, y: y - 5, width: 10, height: 10, 'data-drag': 'moment', 'data-index': index }, s('title', {}, `${round(moment.time_s, 2)} s: drag for its range`))];
+      return [s('rect', { class: `moment grab${isChosen ? ' chosen' : ''}`, x: x - 5 * this.px, y: y - 5 * this.px, width: 10 * this.px, height: 10 * this.px, 'data-drag': 'moment', 'data-index': index }, s('title', {}, `${round(moment.time_s, 2)} s: drag for its range`))];
     });
   }
 
@@ -214,7 +209,7 @@ export class PlanView extends Part {
     const { drag } = this;
     if (!drag) return;
     const changes = this.changesOf(drag, this.groundAt(event));
-    if (changes.length) this.studio.edit(changes, drag.merge, { crop: this.studio.cropOfAll(), moved_ms: event.timeStamp });
+    if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
   }
 
   private up(): void {
@@ -245,14 +240,14 @@ export class PlanView extends Part {
     const moment = momentsOf(flyer, clip)[index];
     const handle = track.handles[index];
     const [own, place] = [moment && nedAt(plan, plan.own.ned, moment.frame), moment && nedAt(plan, track.ned, moment.frame)];
-    if (!moment || !handle || !own || !place) return [];
+    if (!moment || !handle?.range_m || !own || !place) return [];
     const [from, there] = [this.ground(own), this.ground(place)];
     const sight: Point = [there.right - from.right, there.ahead - from.ahead];
     const length = Math.hypot(...sight);
     if (length < 1e-3) return [];
     const along = ((to.right - from.right) * sight[0] + (to.ahead - from.ahead) * sight[1]) / length;
     const range_m = Math.max(5, (handle.range_m * along) / length);
-    if (moment.width_px !== null) return [{ set: [...moment.path, 'width_px'], to: writtenWidth((handle.width_px * handle.range_m) / range_m) }];
+    if (moment.width_px !== null && handle.width_px !== null) return [{ set: [...moment.path, 'width_px'], to: writtenWidth((handle.width_px * handle.range_m) / range_m) }];
     return [{ set: [...moment.path, 'range_m'], to: writtenRange(range_m) }];
   }
 
@@ -299,6 +294,8 @@ function approachOf(plan: Plan, track: Track, clip: Clip): { own: Ned; place: Ne
   const { right_m, ahead_m, above_m } = track.cpa;
   return { own, place: [own[0] + ahead_m * c - right_m * si, own[1] + ahead_m * si + right_m * c, own[2] - above_m], ownCourse_deg, frame };
 }
+
+export const diamond = (x: number, y: number, r: number) => `M${x},${y - r}L${x + r},${y}L${x},${y + r}L${x - r},${y}Z`;
 
 // 1, 2 or 5 times a power of ten, at least as much as given.
 export function niceStep(least: number): number {

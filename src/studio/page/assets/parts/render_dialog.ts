@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+import type { BoxPx, Rendered } from '../model/contract';
 import { clamp, round } from '../model/geometry';
 import type { Member } from '../model/store';
 import { DialogPart } from './dialog';
-import { h, text } from './part';
+import { tick } from './fields';
+import { attribute, h, s, text } from './part';
 
 const LEAST_OFF_S = 0.05; // of two films, after which one is moved to the other's time
 
@@ -18,22 +20,26 @@ export class RenderDialog extends DialogPart {
   private where = h('p', { class: 'hint' });
   private original = h('video', { muted: true, playsinline: true, preload: 'auto', 'aria-label': 'The original' });
   private rendered = h('video', { muted: true, playsinline: true, preload: 'auto', 'aria-label': 'With the aircraft' });
+  private boxes = s('svg', { 'aria-hidden': 'true' });
+  private boxesOf = new Map<number, { id: string; box: BoxPx }[]>();
+  private showsBoxes = tick('Boxes', () => this.showBoxes(this.rendered.currentTime));
   private stage = h('div', { class: 'films' });
   private line = h('div', { class: 'line', 'aria-hidden': 'true' });
   private swipe: HTMLInputElement = h('input', { type: 'range', min: 0, max: 100, value: 50, step: 0.5, 'aria-label': 'Swipe between the original and the film', oninput: () => this.partFilms() });
   private play: HTMLButtonElement = h('button', { onclick: () => this.toggle() }, 'Play');
   private time: HTMLInputElement = h('input', { type: 'range', min: 0, max: 1, step: 0.001, value: 0, 'aria-label': 'Time in the film', oninput: () => this.seek() });
   private film = h('div', { class: 'film' });
-  private shown: unknown = null;
+  private shown: Rendered | null = null;
 
   protected fill(): Node[] {
-    this.stage.append(this.original, this.rendered, this.line, this.swipe, h('span', { class: 'left' }, 'original'), h('span', { class: 'right' }, 'with aircraft'));
+    this.stage.append(this.original, this.rendered, this.boxes, this.line, this.swipe, h('span', { class: 'left' }, 'original'), h('span', { class: 'right' }, 'with aircraft'));
     this.stage.addEventListener('pointermove', (event) => { if (event.buttons & 1) this.swipeTo(event); });
     this.stage.addEventListener('pointerdown', (event) => this.swipeTo(event));
     this.rendered.addEventListener('timeupdate', () => this.follow());
     this.rendered.addEventListener('ended', () => this.follow());
-    this.rendered.addEventListener('loadedmetadata', () => { this.stage.style.aspectRatio = `${this.rendered.videoWidth} / ${this.rendered.videoHeight}`; });
-    this.film.append(this.stage, h('div', { class: 'actions' }, this.play, this.time));
+    this.rendered.addEventListener('loadedmetadata', () => this.shape());
+    this.rendered.addEventListener('seeked', () => this.showBoxes(this.rendered.currentTime));
+    this.film.append(this.stage, h('div', { class: 'actions' }, this.play, this.time, this.showsBoxes.element));
     return [h('div', { class: 'actions' }, this.begin, this.cancel, this.bar, this.words), this.where, this.film];
   }
 
@@ -56,14 +62,35 @@ export class RenderDialog extends DialogPart {
     if (dialog !== 'render') this.pause();
   }
 
-  private load(film: unknown): void {
+  private load(film: Rendered): void {
     this.shown = film;
+    this.boxesOf = new Map(film.boxes);
     const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     // A number of its own makes the browser ask again after another render.
     const address = (which: string) => `/film?token=${token}&which=${which}&of=${Date.now()}`;
     this.original.src = address('original');
     this.rendered.src = address('rendered');
     this.partFilms();
+  }
+
+  // As large as there is room for, with the boxes in the film's own pixels.
+  private shape(): void {
+    const { videoWidth, videoHeight } = this.rendered;
+    this.stage.style.width = `min(100%, calc(62vh * ${videoWidth / videoHeight}))`;
+    this.stage.style.aspectRatio = `${videoWidth} / ${videoHeight}`;
+    attribute(this.boxes, 'viewBox', `0 0 ${videoWidth} ${videoHeight}`);
+    this.showBoxes(this.rendered.currentTime);
+    const next = (_: number, { mediaTime }: { mediaTime: number }) => {
+      this.showBoxes(mediaTime);
+      this.rendered.requestVideoFrameCallback?.(next);
+    };
+    this.rendered.requestVideoFrameCallback?.(next);
+  }
+
+  private showBoxes(time_s: number): void {
+    const { clip } = this.now;
+    const boxes = this.showsBoxes.input.checked && clip ? this.boxesOf.get(Math.round(time_s * clip.rate_hz)) ?? [] : [];
+    this.boxes.replaceChildren(...boxes.map(({ id, box: [x, y, width, height] }) => s('rect', { x: x - 2, y: y - 2, width: width + 4, height: height + 4 }, s('title', {}, id))));
   }
 
   private swipeTo(event: PointerEvent): void {
@@ -74,7 +101,7 @@ export class RenderDialog extends DialogPart {
 
   private partFilms(): void {
     const share = this.swipe.valueAsNumber;
-    this.rendered.style.clipPath = `inset(0 0 0 ${share}%)`;
+    this.rendered.style.clipPath = this.boxes.style.clipPath = `inset(0 0 0 ${share}%)`;
     this.line.style.left = `${share}%`;
   }
 

@@ -2,7 +2,7 @@
 import type { Member } from '../model/store';
 import { Part, h } from './part';
 
-const WORDS = /(#.*$)|(^\s*\[\[?[^\]]*\]\]?)|(^\s*[\w.-]+(?=\s*=))/;
+const WORDS = /^(\s*\[\[?[^\]]*\]\]?)|^(\s*[\w.-]+)(?=\s*=)/;
 
 // The scene file as it would be saved, to read.
 export class TextPanel extends Part {
@@ -23,16 +23,24 @@ export class TextPanel extends Part {
   }
 }
 
-// A comment, a table's name and a key each as a span.
+// A table's name, a key and a comment each as a span.
 function coloured(line: string): (Node | string)[] {
-  const found = WORDS.exec(line);
-  if (!found) return [line];
-  const before = line.slice(0, found.index);
-  const rest = line.slice(found.index + found[0].length);
-  const isComment = found[1] !== undefined;
-  const kind = isComment ? 'comment' : found[2] !== undefined ? 'table' : 'key';
-  if (isComment && /"[^"]*$/.test(before)) return [line]; // a # within a string
-  const comment = isComment ? -1 : rest.search(/\s#[^"]*$/);
-  const tail = comment < 0 ? [rest] : [rest.slice(0, comment), h('span', { class: 'comment' }, rest.slice(comment))];
-  return [before, h('span', { class: kind }, found[0]), ...tail];
+  const comment = commentAt(line);
+  const words = line.slice(0, comment);
+  const found = WORDS.exec(words);
+  const parts = found ? [h('span', { class: found[1] !== undefined ? 'table' : 'key' }, found[0]), words.slice(found[0].length)] : [words];
+  return comment < line.length ? [...parts, h('span', { class: 'comment' }, line.slice(comment))] : parts;
+}
+
+// Where the comment of a line begins: at a # that is in no string.
+function commentAt(line: string): number {
+  let quote = '';
+  for (let k = 0; k < line.length; ++k) {
+    const c = line[k];
+    if (quote === '"' && c === '\\') ++k;
+    else if (quote) quote = c === quote ? '' : quote;
+    else if (c === '"' || c === "'") quote = c;
+    else if (c === '#') return k;
+  }
+  return line.length;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { flyersOf, momentsOf } from '../model/flyers';
+import { flyersOf, isSame, momentsOf } from '../model/flyers';
 import { clamp, round } from '../model/geometry';
 import type { Member } from '../model/store';
 import { Part, attribute, h, s, text } from './part';
@@ -20,6 +20,7 @@ export class TimeBar extends Part {
   private speed: HTMLSelectElement = h('select', { 'aria-label': 'Speed of play', title: 'Speed of play', onchange: () => this.studio.store.put({ speed: Number(this.speed.value) }) },
     ...SPEEDS.map((v) => h('option', { value: v }, `${v}×`)));
   private shown = '';
+  private shownMarks = '';
   private begun = { frame: 0, ms: 0 };
 
   protected build(): void {
@@ -86,10 +87,10 @@ export class TimeBar extends Part {
     const { clip, state, selected } = this.now;
     if (!clip || !state) return;
     attribute(this.marks, 'viewBox', `0 0 ${Math.max(1, clip.frames - 1)} 1`);
-    const chosen = JSON.stringify(selected);
-    this.marks.replaceChildren(...flyersOf(state.scene).flatMap((flyer) => momentsOf(flyer, clip).map((moment) => {
-      const isOfChosen = JSON.stringify(flyer.path) === chosen;
-      return s('line', { class: `colour-${flyer.colour}${isOfChosen ? ' selected' : ''}`, x1: moment.frame, x2: moment.frame, y1: isOfChosen ? 0 : 0.6, y2: 1 });
-    })));
+    const marks = flyersOf(state.scene).flatMap((flyer) => momentsOf(flyer, clip).map(({ frame }) => ({ frame, colour: flyer.colour, isOfChosen: isSame(flyer.path, selected) })));
+    const shown = JSON.stringify(marks);
+    if (shown === this.shownMarks) return;
+    this.shownMarks = shown;
+    this.marks.replaceChildren(...marks.map(({ frame, colour, isOfChosen }) => s('line', { class: `colour-${colour}`, x1: frame, x2: frame, y1: isOfChosen ? 0 : 0.6, y2: 1 })));
   }
 }

@@ -30,7 +30,7 @@ export class ToolBar extends Part {
     text(this.file, name);
     attribute(this.file, 'title', file);
     document.title = `${state && !state.saved ? '• ' : ''}${name || 'airtruth studio'}`;
-    text(this.saved, !connected ? 'no connection' : pending ? 'changing …' : !state ? '' : state.saved ? 'saved' : 'not saved');
+    text(this.saved, !connected ? 'no connection' : !state ? '' : state.saved && !pending ? 'saved' : 'not saved');
     this.saved.classList.toggle('open', Boolean(state && !state.saved));
     this.undo.disabled = !state?.undo;
     this.redo.disabled = !state?.redo;

@@ -1,0 +1,496 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The studio's page in a real browser: python3 studio_test.py AIRTRUTH [--drags N] [--monkey SECONDS] [--only NAME]
+
+From a virtual flight to a saved scene with two aircraft and a flock by the mouse alone, rendered by the command line with all of it
+where the handles stood; edits through reloads, lost connections and other programs; random clicks, drags, keys, resizes and reloads;
+no text cut, on another or too faint. How long a drag takes until its picture is drawn is printed, never asserted.
+"""
+
+import argparse
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+
+from browser import CONTROL, SHIFT, Browser
+from report_page_test import browser_or_skip
+
+FRAMES, WIDTH, HEIGHT, FOV_DEG = 45, 640, 480, 60
+IDLE = "window.airtruthStudio && airtruthStudio.isIdle() && airtruthStudio.studio.store.now.connected"
+STORE = "airtruthStudio.studio.store.now"
+BESIDE_PX = 1  # of where a handle stood, in the rendered video
+HEAP_GROWTH = 24 << 20
+SERVER_GROWTH = 300 << 20
+
+# What the layout has to say in one state of the page.
+LOOK = r"""(() => {
+  const faults = [];
+  const wide = innerWidth, high = innerHeight;
+  const isShown = (e) => e.checkVisibility({ opacityProperty: true, visibilityProperty: true });
+  const scrolls = (e) => { for (let p = e; p; p = p.parentElement) if (['auto', 'scroll'].includes(getComputedStyle(p).overflowY)) return p; return null; };
+  if (document.documentElement.scrollWidth > wide) faults.push(`the page is ${document.documentElement.scrollWidth - wide} px too wide`);
+  const open = document.querySelector('dialog[open]');
+  const root = open || document.body;
+  const lines = [];
+  const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+    const parent = node.parentElement;
+    const text = node.textContent.trim().slice(0, 40);
+    if (!text || parent.closest('script, style, option, title, noscript, .over') || !isShown(parent)) continue;
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    const scroller = scrolls(parent);
+    const room = scroller ? scroller.getBoundingClientRect() : { left: 0, top: 0, right: wide, bottom: high };
+    for (const rect of range.getClientRects()) {
+      if (!rect.width) continue;
+      if (rect.left < room.left - 1 || rect.right > room.right + 1) faults.push(`"${text}" leaves its panel`);
+      if (!scroller && (rect.bottom > high + 1 || rect.top < -1)) faults.push(`"${text}" leaves the screen`);
+      if (!scroller || (rect.top >= room.top && rect.bottom <= room.bottom)) lines.push({ text, node, left: rect.left, right: rect.right, top: rect.top, bottom: rect.bottom });
+    }
+    for (let holder = parent; holder !== root; holder = holder.parentElement)
+      if (getComputedStyle(holder).overflowX !== 'visible' && getComputedStyle(holder).display !== 'inline' && holder.clientWidth && holder.scrollWidth > holder.clientWidth + 1) { faults.push(`"${text}" is cut`); break; }
+  }
+  for (const input of root.querySelectorAll('input')) {
+    if (!isShown(input) || !['number', 'search', 'text'].includes(input.type)) continue;
+    if (input.value && input.scrollWidth > input.clientWidth + 1) faults.push(`the value ${input.value} of "${input.getAttribute('aria-label')}" is cut`);
+  }
+  lines.sort((a, b) => a.top - b.top);
+  for (let i = 0; i < lines.length; ++i)
+    for (let k = i + 1; k < lines.length && lines[k].top < lines[i].bottom; ++k) {
+      const [a, b] = [lines[i], lines[k]];
+      if (a.node === b.node || a.node.parentElement.closest('svg') || b.node.parentElement.closest('svg')) continue;
+      if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1.5 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 3) faults.push(`"${a.text}" and "${b.text}" on each other`);
+    }
+  // Names for those who do not see the page, and contrast for those who do.
+  for (const e of root.querySelectorAll('button, input, select, [role=button], [role=slider]'))
+    if (isShown(e) && !e.labels?.length && !(e.getAttribute('aria-label') || e.textContent.trim())) faults.push(`no name: ${e.outerHTML.slice(0, 80)}`);
+  const numbers = (colour) => (colour.match(/[\d.]+/g) || [0, 0, 0, 0]).map(Number);
+  const bright = ([r, g, b]) => [r, g, b].map((v) => v / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)).reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
+  for (const { text, node } of lines) {
+    const parent = node.parentElement;
+    if (parent.closest('svg') || parent.closest(':disabled')) continue;
+    let ground = null;
+    for (let e = parent; e && !ground; e = e.parentElement) { const c = numbers(getComputedStyle(e).backgroundColor); if (c.length < 4 || c[3] > 0.9) ground = c; }
+    const [a, b] = [bright(numbers(getComputedStyle(parent).color)), bright(ground || [255, 255, 255])].sort((p, q) => q - p);
+    if ((a + 0.05) / (b + 0.05) < 4.5) faults.push(`"${text}" is faint: ${((a + 0.05) / (b + 0.05)).toFixed(1)} to 1`);
+  }
+  return [...new Set(faults)];
+})()"""
+
+
+class Server:
+    """`airtruth studio` on a video or a scene, in a folder."""
+
+    def __init__(self, airtruth, folder, what):
+        self.process = subprocess.Popen([airtruth, "--quiet", "studio", what, "--out", "out"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.address = self.process.stdout.readline().strip()
+        if not self.address.startswith("http://127.0.0.1:"):
+            raise AssertionError(f"{self.address!r} {self.process.stderr.read()}")
+
+    def memory(self):
+        with open(f"/proc/{self.process.pid}/status", encoding="utf-8") as status:
+            return next(int(line.split()[1]) << 10 for line in status if line.startswith("VmRSS"))
+
+    def end(self, how=signal.SIGINT):
+        self.process.send_signal(how)
+        try:
+            code = self.process.wait(60)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            code = self.process.wait()
+        errors = self.process.stderr.read()
+        for pipe in (self.process.stdout, self.process.stderr):
+            pipe.close()
+        if how == signal.SIGINT and code != 130:
+            raise AssertionError(f"the server ended with {code}; expected 130\n{errors}")
+
+
+class Page:
+    """What a hand does on the page."""
+
+    def __init__(self, browser):
+        self.browser = browser
+
+    def open(self, address):
+        self.browser.open(address)
+        self.rest()
+
+    def rest(self):
+        self.browser.wait(IDLE, 120)
+
+    def state(self):
+        return self.browser.run(f"{STORE}.state")
+
+    def screen(self, pixel):
+        """Where a pixel of the frame is on the screen."""
+        return self.browser.run(f"(() => {{ const svg = document.querySelector('.over'); const p = new DOMPoint({pixel[0]}, {pixel[1]}).matrixTransform(svg.getScreenCTM()); return [p.x, p.y]; }})()")
+
+    def add(self, search, k=0):
+        self.browser.key("n")
+        self.browser.wait("document.querySelector('studio-gallery dialog[open]')")
+        count = self.browser.run("document.querySelectorAll('.handle').length")
+        self.browser.type(search)
+        self.browser.wait("[...document.querySelectorAll('.card')].length > 0 && document.querySelector('.search output').textContent !== ''")
+        time.sleep(0.6)  # what is typed is searched for a moment later
+        self.browser.click_on(".card .choose", k)
+        self.browser.wait(f"document.querySelectorAll('.handle').length === 2 || {count} === 2")
+        self.rest()
+
+    def add_flock(self):
+        self.browser.key("n")
+        self.browser.wait("document.querySelector('studio-gallery dialog[open]')")
+        self.browser.click_on(".natural button", 0)
+        self.rest()
+
+    def select(self, k):
+        if self.browser.run(f"document.querySelectorAll('button.flyer')[{k}].getAttribute('aria-expanded')") != "true":
+            self.browser.click_on("button.flyer", k)
+        self.rest()
+
+    def drag_handle(self, k, pixel, steps=10):
+        begin = self.browser.middle(".handle .ring", k)
+        self.browser.drag(begin, self.screen(pixel), steps)
+        self.rest()
+
+    def boxes(self):
+        return self.browser.run(f"{STORE}.boxes.boxes")
+
+
+def flight(airtruth, folder, frames=FRAMES, width=WIDTH, height=HEIGHT):
+    subprocess.run([airtruth, "--quiet", "synth", "--out", "flight.mp4", "--frames", str(frames), "--width", str(width), "--height", str(height), "--seed", "7", "--no-own-aircraft"], cwd=folder, check=True)
+
+
+def near(what, got, wanted, tolerance):
+    if any(abs(a - b) > tolerance for a, b in zip(got, wanted)):
+        raise AssertionError(f"{what}: {got}; expected {wanted} within {tolerance}")
+
+
+def expect(what, got, wanted):
+    if got != wanted:
+        raise AssertionError(f"{what}: {got!r}; expected {wanted!r}")
+
+
+def moments_of(table):
+    return [(one["time_s"], one["pixel"]) for one in table["seen"]]
+
+
+def test_handles(airtruth, browser, root):
+    """From a video to a saved scene by the mouse, and what the command line renders from it."""
+    flight(airtruth, root)
+    server = Server(airtruth, root, "flight.mp4")
+    page = Page(browser)
+    page.open(server.address)
+    begun = page.state()["text"]
+    # The scene begins with one aircraft by its closest approach.
+    page.select(0)
+    browser.run("[...document.querySelectorAll('studio-flyer button')].find((b) => b.textContent.startsWith('State by moments')).scrollIntoView()")
+    buttons = browser.run("[...document.querySelectorAll('studio-flyer button')].map((b) => b.textContent)")
+    browser.click_on("studio-flyer button", next(k for k, words in enumerate(buttons) if words.startswith("State by moments")))
+    browser.wait("document.querySelectorAll('.handle').length >= 2")
+    page.rest()
+    page.drag_handle(0, (200, 120))
+    page.add("738")
+    page.drag_handle(0, (150, 200))
+    page.drag_handle(1, (480, 170))
+    # Nearer by the wheel above a handle.
+    before = page.state()["scene"]["intruder"][1]["seen"][1]["range_m"]
+    browser.wheel(*browser.middle(".handle .ring", 1), -240)
+    page.rest()
+    after = page.state()["scene"]["intruder"][1]["seen"][1]["range_m"]
+    if not after < 0.85 * before:
+        raise AssertionError(f"the wheel made {before} m to {after} m; expected nearer")
+    # A moment of its own where the path is double-clicked.
+    browser.key("Escape")
+    frame = FRAMES // 3
+    browser.run(f"airtruthStudio.studio.show({frame})")
+    page.rest()
+    browser.click(*page.screen((320, 150)), count=2)
+    browser.wait("document.querySelectorAll('.handle').length === 3")
+    page.rest()
+    browser.run("airtruthStudio.studio.show(0)")
+    page.rest()
+    page.add_flock()
+    page.drag_handle(0, (420, 100))
+    # The boxes in the page's pictures, at each moment of all paths.
+    shown = {}
+    state = page.state()
+    for frame in sorted({round(time_s * 30) for key in ("intruder", "distractor") for table in state["scene"][key] for time_s, _ in moments_of(table)}):
+        browser.run(f"airtruthStudio.studio.show({frame})")
+        page.rest()
+        shown[frame] = {one["id"]: one["box"] for one in page.boxes()}
+    browser.key("s", CONTROL)
+    browser.wait(f"{STORE}.state.saved")
+    expect("console", browser.errors, [])
+    server.end()
+    saved = open(os.path.join(root, "flight.toml"), encoding="utf-8").read()
+    expect("saved text", saved, state["text"])
+    lost = [line for line in begun.splitlines() if line.startswith("#") and line not in saved.splitlines()]
+    expect("lost comments", lost, [])
+    scene = tomllib.loads(saved)
+    expect("flyers", (len(scene["intruder"]), [one["kind"] for one in scene["distractor"]]), (2, ["bird"]))
+    near("first handle", scene["intruder"][0]["seen"][0]["pixel"], (200, 120), 0.6)
+    near("second handle", scene["intruder"][1]["seen"][0]["pixel"], (150, 200), 0.6)
+    subprocess.run([airtruth, "--quiet", "render", "flight.toml", "--out", "rendered"], cwd=root, check=True, stderr=subprocess.DEVNULL)
+    check_rendered(root, scene, shown)
+    print(f"handles: two aircraft and a flock; {sum(map(len, shown.values()))} boxes of {len(shown)} frames as rendered")
+
+
+def check_rendered(root, scene, shown):
+    """The truth of the render beside the handles and the boxes of the page."""
+    with open(os.path.join(root, "rendered", "flight", "truth.jsonl"), encoding="utf-8") as file:
+        frames = {one["frame"]: {intruder["id"]: intruder for intruder in one["intruders"]} for one in map(json.loads, file) if "intruders" in one}
+    focal = HEIGHT / 2 / math.tan(math.radians(scene["lens"]["vertical_fov_deg"]) / 2)
+    for k, table in enumerate(scene["intruder"]):
+        for time_s, pixel in moments_of(table):
+            x, y, z = frames[round(time_s * 30)][table.get("id", f"intruder-{k + 1}")]["position_in_cam_m"]
+            near(f"intruder-{k + 1} at {time_s} s", (WIDTH / 2 + focal * x / z, HEIGHT / 2 + focal * y / z), pixel, BESIDE_PX)
+    for frame, boxes in shown.items():
+        for name, box in boxes.items():
+            near(f"box of {name} in frame {frame}", frames[frame][name]["exact_box_px"], box, BESIDE_PX)
+
+
+def test_edits(airtruth, browser, root):
+    """Undo to the beginning, other programs, reloads and lost connections."""
+    flight(airtruth, root)
+    server = Server(airtruth, root, "flight.mp4")
+    file = os.path.join(root, "flight.toml")
+    page = Page(browser)
+    page.open(server.address)
+    begun = page.state()["text"]
+    page.add("c172")
+    page.drag_handle(0, (300, 200))
+    page.drag_handle(1, (400, 220))
+    expect("steps of undo", page.state()["undo"], 3)
+    moved = page.state()["text"]
+    # Keys: a handle by arrows, a moment away and back.
+    browser.run("document.querySelector('.handle').focus()")
+    x = page.state()["scene"]["intruder"][1]["seen"][0]["pixel"][0]
+    browser.key("ArrowRight", SHIFT)
+    page.rest()
+    near("arrow key", [page.state()["scene"]["intruder"][1]["seen"][0]["pixel"][0]], [x + 10], 0.05)
+    for _ in range(4):
+        browser.key("z", CONTROL)
+        page.rest()
+    expect("undone to the beginning", page.state()["text"], begun)
+    for _ in range(3):
+        browser.key("z", CONTROL | SHIFT)
+        page.rest()
+    expect("done again", page.state()["text"], moved)
+    # A reload keeps all, and so does a connection that is lost in the middle of a drag.
+    page.open(server.address)
+    expect("after a reload", page.state()["text"], moved)
+    page.select(1)
+    begin = browser.middle(".handle .ring", 0)
+    browser.mouse("mouseMoved", *begin)
+    browser.mouse("mousePressed", *begin, button="left", buttons=1, clickCount=1)
+    for k in range(1, 21):
+        browser.mouse("mouseMoved", begin[0] + 4 * k, begin[1] + k, button="left", buttons=1)
+        if k == 10:
+            browser.run("airtruthStudio.studio.connection.socket.close()")
+    browser.mouse("mouseReleased", begin[0] + 80, begin[1] + 20, button="left", clickCount=1)
+    page.rest()
+    near("a drag over a lost connection", browser.middle(".handle .ring", 0), (begin[0] + 80, begin[1] + 20), 1)
+    # What was not answered when the page ended is done by the next one.
+    browser.run("airtruthStudio.studio.edit([{ set: ['seed'], to: 77 }]); airtruthStudio.studio.edit([{ set: ['light', 'sun_elevation_deg'], to: 33 }]); location.reload(); 1")
+    browser.wait(f"window.airtruthStudio && {STORE}.state && {STORE}.state.scene.seed === 77 && {STORE}.state.scene.light.sun_elevation_deg === 33")
+    page.rest()
+    # A crash of the server: the journal has it.
+    kept = page.state()["text"]
+    server.end(signal.SIGKILL)
+    server = Server(airtruth, root, "flight.mp4")
+    page.open(server.address)
+    expect("after a crash of the server", page.state()["text"], kept)
+    browser.key("s", CONTROL)
+    browser.wait(f"{STORE}.state.saved")
+    # Another program changes the file: taken where nothing is unsaved, else offered.
+    page.rest()
+    write(file, kept + "\n# by hand\n")
+    browser.wait(f"{STORE}.state.text.endsWith('# by hand\\n')")
+    page.rest()
+    browser.run("airtruthStudio.studio.edit([{ set: ['seed'], to: 78 }])")
+    page.rest()
+    write(file, kept + "\n# again\n")
+    browser.wait("[...document.querySelectorAll('.notice button')].some((b) => b.textContent === 'Keep mine' && b.checkVisibility())")
+    browser.click_on(".notice.warning button", 1)
+    browser.key("s", CONTROL)
+    browser.wait(f"{STORE}.state.saved")
+    expect("mine was kept", tomllib.loads(open(file, encoding="utf-8").read())["seed"], 78)
+    browser.run("airtruthStudio.studio.edit([{ set: ['seed'], to: 79 }])")
+    page.rest()
+    write(file, kept + "\n# theirs\n")
+    browser.wait("[...document.querySelectorAll('.notice button')].some((b) => b.textContent === 'Take the file' && b.checkVisibility())")
+    browser.click_on(".notice.warning button", 0)
+    browser.wait(f"{STORE}.state.text.endsWith('# theirs\\n')")
+    expect("console", [error for error in browser.errors if "WebSocket" not in error and "ERR_CONNECTION" not in error], [])
+    server.end()
+    print("edits: undo to the beginning; reload, lost connection, crash and another program lose nothing")
+
+
+def write(file, text):
+    with open(file + ".new", "w", encoding="utf-8") as out:
+        out.write(text)
+    os.replace(file + ".new", file)
+
+
+def test_latency(airtruth, browser, root, drags):
+    flight(airtruth, root, frames=60, width=1280, height=960)
+    server = Server(airtruth, root, "flight.mp4")
+    page = Page(browser)
+    page.open(server.address)
+    page.add("738")
+    browser.wait(f"{STORE}.progress === null")
+    page.rest()
+    chance = random.Random(1)
+    for _ in range(drags):
+        begin = browser.middle(".handle .ring", 0)
+        browser.drag(begin, page.screen((chance.uniform(200, 1000), chance.uniform(150, 600))), 6, 1 / 60)
+        page.rest()
+    latencies = sorted(browser.run("airtruthStudio.latencies_ms"))
+    part = lambda share: latencies[min(len(latencies) - 1, int(share * len(latencies)))]
+    expect("console", browser.errors, [])
+    server.end()
+    print(f"latency of {drags} drags at 1280x960, {len(latencies)} pictures: median {part(0.5):.0f} ms, 95 % {part(0.95):.0f} ms, most {latencies[-1]:.0f} ms; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+
+
+def test_layout(airtruth, browser, root):
+    flight(airtruth, root, frames=20, width=320, height=240)
+    server = Server(airtruth, root, "flight.mp4")
+    page = Page(browser)
+    page.open(server.address)
+    page.add("738")
+    page.add_flock()
+    browser.run("airtruthStudio.studio.edit([{ set: ['intruder', 0, 'id'], to: 'the_aircraft_that_comes_from_the_right_with_a_very_long_name' }, { set: ['intruder', 1, 'seen', 0, 'range_m'], to: 12345.6 }])")
+    page.rest()
+    states = [("flyer by approach", "airtruthStudio.studio.select(['intruder', 0])"), ("flyer by moments", "airtruthStudio.studio.select(['intruder', 1], 0)"), ("flock", "airtruthStudio.studio.select(['distractor', 0])"),
+              *((tab, f"airtruthStudio.studio.store.put({{ tab: '{tab}' }})") for tab in ("light", "camera", "text")),
+              *((dialog, f"airtruthStudio.studio.store.put({{ dialog: '{dialog}', tab: 'flyers' }})") for dialog in ("help", "gallery", "render"))]
+    faults = []
+    for size in ((1024, 768), (1600, 1000), (3840, 2160)):
+        for is_dark in (False, True):
+            browser.looks(size, is_dark)
+            for name, script in states:
+                browser.run(f"{script}; 1")
+                time.sleep(0.15)
+                page.rest()
+                found = browser.run(LOOK)
+                for _ in range(10):  # a page may still be drawing on a busy machine: what stays is a fault
+                    if not found:
+                        break
+                    time.sleep(0.2)
+                    found = browser.run(LOOK)
+                faults += [f"{size[0]} px, {'dark' if is_dark else 'light'}, {name}: {fault}" for fault in found]
+            browser.run("airtruthStudio.studio.store.put({ dialog: null, tab: 'flyers' }); 1")
+    browser.looks((1600, 1000))
+    expect("console", browser.errors, [])
+    server.end()
+    if faults:
+        raise AssertionError("\n  ".join([f"{len(faults)} faults of layout", *faults[:20]]))
+    print(f"layout: {len(states)} states at 3 sizes, dark and light: no text cut, on another or faint; everything has a name")
+
+
+KEYS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End", " ", "[", "]", "m", "Delete", "1", "2", "3", "4", "+", "-", "f", "n", "?", "Escape", "Enter", "Tab", "r"]
+
+
+def test_monkey(airtruth, browser, root, seconds):
+    """Anything, anywhere. What is on the page in the end is what the server has, and a reload changes nothing."""
+    flight(airtruth, root, frames=20, width=320, height=240)
+    server = Server(airtruth, root, "flight.mp4")
+    page = Page(browser)
+    page.open(server.address)
+    page.add("c172")
+    page.add_flock()
+    chance = random.Random(os.environ.get("AIRTRUTH_SEED", "1"))
+    heap, nodes = browser.memory()
+    resident = server.memory()
+    until = time.monotonic() + seconds
+    size, steps, reloads = (1600, 1000), 0, 0
+    place = lambda: (chance.uniform(0, size[0]), chance.uniform(0, size[1]))
+    while time.monotonic() < until:
+        steps += 1
+        what = chance.random()
+        if what < 0.25:
+            browser.click(*place(), count=chance.choice((1, 1, 1, 2)))
+        elif what < 0.5:
+            handles = browser.run("document.querySelectorAll('.handle, .grab').length")
+            begin = browser.middle(".handle, .grab", chance.randrange(handles)) if handles and chance.random() < 0.6 else place()
+            browser.drag(begin, place(), chance.randrange(1, 8), 0.005)
+        elif what < 0.6:
+            browser.wheel(*place(), chance.uniform(-400, 400))
+        elif what < 0.9:
+            browser.key(chance.choice(KEYS), SHIFT if chance.random() < 0.1 else 0)
+        elif what < 0.96:
+            browser.key(chance.choice("zzzy"), CONTROL)
+        elif what < 0.975:
+            browser.key("s", CONTROL)
+        elif what < 0.985:
+            size = chance.choice(((1024, 768), (1600, 1000), (2200, 1300)))
+            browser.looks(size, chance.random() < 0.5)
+        elif what < 0.99:
+            browser.run("airtruthStudio.studio.connection.socket?.close()")
+        else:
+            reloads += 1
+            reload_and_compare(browser, page, server)
+    browser.key("Escape")
+    reload_and_compare(browser, page, server)
+    text = page.state()["text"]
+    page.open(server.address)
+    expect("after the last reload", page.state()["text"], text)
+    # All of it can be taken back and done again.
+    undo = page.state()["undo"]
+    browser.run(f"(async () => {{ for (let k = 0; k < {undo}; ++k) await airtruthStudio.studio.undo(); }})()")
+    expect("undone", page.state()["undo"], 0)
+    browser.run(f"(async () => {{ for (let k = 0; k < {undo}; ++k) await airtruthStudio.studio.redo(); }})()")
+    page.rest()
+    expect("done again", page.state()["text"], text)
+    grown = browser.memory()
+    errors = [error for error in browser.errors if "WebSocket" not in error]
+    expect("console", errors, [])
+    print(f"monkey: {steps} steps in {seconds:.0f} s, {reloads} reloads, {undo} steps of undo; heap {heap >> 20} -> {grown[0] >> 20} MiB, "
+          f"{nodes:.0f} -> {grown[1]:.0f} nodes, server {resident >> 20} -> {server.memory() >> 20} MiB")
+    if grown[0] > heap + HEAP_GROWTH or server.memory() > resident + SERVER_GROWTH:
+        raise AssertionError("memory grows")
+    server.end()
+
+
+def reload_and_compare(browser, page, server):
+    """No edit that the page had taken is lost with it."""
+    unsent = browser.run("airtruthStudio.studio.edits.unsent().map((one) => one.edit.changes)")
+    page.open(server.address)
+    scene = page.state()["scene"]
+    last = {json.dumps(change["set"]): change for changes in unsent for change in changes if "set" in change}
+    if any("set" not in change for changes in unsent for change in changes):
+        return  # tables moved
+    for change in last.values():
+        value = scene
+        for key in change["set"]:
+            value = value[key]
+        expect(f"{change['set']} after a reload", value, change["to"])
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("airtruth")
+    arguments.add_argument("--drags", type=int, default=20)
+    arguments.add_argument("--monkey", type=float, default=20, help="seconds")
+    arguments.add_argument("--only")
+    arguments = arguments.parse_args()
+    airtruth = os.path.abspath(arguments.airtruth)
+    program = browser_or_skip("studio_test")
+    tests = {"handles": test_handles, "edits": test_edits, "layout": test_layout,
+             "latency": lambda *given: test_latency(*given, arguments.drags), "monkey": lambda *given: test_monkey(*given, arguments.monkey)}
+    for name, test in tests.items():
+        if arguments.only not in (None, name):
+            continue
+        with tempfile.TemporaryDirectory(prefix="airtruth_studio_", ignore_cleanup_errors=True) as root:
+            with Browser(program, os.path.join(root, ".profile")) as browser:
+                test(airtruth, browser, root)
+
+
+if __name__ == "__main__":
+    main()
