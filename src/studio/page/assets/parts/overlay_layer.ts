@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { ExactBox } from '../model/contract';
-import { flyersOf, isSame } from '../model/flyers';
+import { flyersOf, isSame, trackOf } from '../model/flyers';
 import { nedAt, round } from '../model/geometry';
 import type { Everything } from '../model/store';
 import { Keyed, attribute, s, text } from './part';
@@ -43,7 +43,8 @@ export class OverlayLayer {
       const isFirst = tables.indexOf(tables[k]) === k;
       const count = tables.filter((one) => one === tables[k]).length;
       const [w, h] = [exact.box[2], exact.box[3]];
-      const words = count > 1 ? `${flyer?.id ?? exact.id}  ${count} of them` : exact.id;
+      const mark = trackOf(now.plan, exact.table)?.checks.length ? '⚠ ' : '';
+      const words = mark + (count > 1 ? `${flyer?.id ?? exact.id}  ${count} of them` : exact.id);
       const label = !isFirst ? '' : isSelected ? `${words}  ${distance(exact.range_m)}${count > 1 ? '' : `  ${round(w, 1)} × ${round(h, 1)} px`}` : words;
       return { key: exact.id, item: { exact, colour: flyer?.colour ?? 0, isSelected, label } };
     }));
