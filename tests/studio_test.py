@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The studio's page in a real browser: python3 studio_test.py AIRTRUTH [--drags N] [--monkey SECONDS] [--only NAME]
+"""The studio's page in a real browser: python3 studio_test.py AIRTRUTH SOURCE [--drags N] [--monkey SECONDS] [--only NAME]
 
 From a virtual flight to a saved scene with two aircraft and a flock by the mouse alone, rendered by the command line with all of it
 where the handles stood; edits through reloads, lost connections and other programs; random clicks, drags, keys, resizes and reloads;
@@ -178,6 +178,17 @@ def expect(what, got, wanted):
 
 def moments_of(table):
     return [(one["time_s"], one["pixel"]) for one in table["seen"]]
+
+
+def test_model(browser, source, root):
+    """The page's state by itself."""
+    bundle = os.path.join(root, "model_test.js")
+    subprocess.run(["esbuild", os.path.join(source, "src/studio/page/assets/model/model_test.ts"), "--bundle", "--format=iife", "--target=es2021", "--log-level=warning", f"--outfile={bundle}"], check=True)
+    browser.run(open(bundle, encoding="utf-8").read() + "; 1")
+    said = browser.run("modelTest")
+    if not said[0].endswith(" good"):
+        raise AssertionError("\n  ".join(["model:", *said]))
+    print(f"model: {said[0]}")
 
 
 def test_handles(airtruth, browser, root):
@@ -476,13 +487,14 @@ def reload_and_compare(browser, page, server):
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("airtruth")
+    arguments.add_argument("source")
     arguments.add_argument("--drags", type=int, default=20)
     arguments.add_argument("--monkey", type=float, default=20, help="seconds")
     arguments.add_argument("--only")
     arguments = arguments.parse_args()
     airtruth = os.path.abspath(arguments.airtruth)
     program = browser_or_skip("studio_test")
-    tests = {"handles": test_handles, "edits": test_edits, "layout": test_layout,
+    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "edits": test_edits, "layout": test_layout,
              "latency": lambda *given: test_latency(*given, arguments.drags), "monkey": lambda *given: test_monkey(*given, arguments.monkey)}
     for name, test in tests.items():
         if arguments.only not in (None, name):

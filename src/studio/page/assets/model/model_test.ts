@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page's state without its elements. tests/studio_test.py bundles and runs it in a browser.
+import { Lost, Refused } from './connection';
+import type { Clip, State, Table, Track } from './contract';
+import { type Edit, Edits } from './edits';
+import { type Flyer, flyersOf, momentsOf, nearer, newFlyer, toMoments, withMoment } from './flyers';
+import { acrossRelative, nedAt, seenAt, turned } from './geometry';
+import { bent, steadied, through } from './steady';
+import { Store } from './store';
+
+type Test = () => void | Promise<void>;
+const tests: Record<string, Test> = {};
+const turn = () => new Promise<void>((done) => setTimeout(done, 0));
+
+function same(got: unknown, wanted: unknown): void {
+  if (JSON.stringify(got) !== JSON.stringify(wanted)) throw new Error(`${JSON.stringify(got)}; expected ${JSON.stringify(wanted)}`);
+}
+function near(got: number, wanted: number, tolerance: number): void {
+  if (!(Math.abs(got - wanted) <= tolerance)) throw new Error(`${got}; expected ${wanted} within ${tolerance}`);
+}
+
+const CLIP: Clip = { width: 1280, height: 960, frames: 150, rate_hz: 30, first_frame: 0, duration_s: 5 };
+const flyer = (table: Table, key = 'intruder'): Flyer => flyersOf({ [key]: [table] })[0];
+const track = (pixel: (frame: number) => [number, number], frames = 150): Track => ({
+  table: ['intruder', 0], id: 'a', handles: [], cpa: null, checks: [], approach: '', violations: [], ned: [],
+  points: Array.from({ length: frames }, (_, k) => [k, ...pixel(k), 500, 40, true]),
+});
+
+// A server that answers when it is told to.
+class Server {
+  text = 'text 0';
+  sent: Edit[] = [];
+  states: number[] = [];
+  refusals: string[] = [];
+  pending = 0;
+  private answers: { resolve: (state: State) => void; reject: (error: Error) => void }[] = [];
+  edits = new Edits({
+    send: (edit) => { this.sent.push(edit); return new Promise((resolve, reject) => this.answers.push({ resolve, reject })); },
+    text: () => this.text,
+    done: (state) => { this.text = state.text; this.states.push(state.revision); },
+    refused: (line) => this.refusals.push(line),
+    pending: (count) => { this.pending = count; },
+  });
+
+  async answer(): Promise<void> {
+    const revision = this.states.length + 1;
+    this.answers.shift()!.resolve({ revision, text: `text ${revision}` } as State);
+    await turn();
+  }
+  async fail(error: Error): Promise<void> {
+    this.answers.shift()!.reject(error);
+    await turn();
+  }
+  set(to: number, merge: string | null = null): void {
+    this.edits.add({ changes: [{ set: ['seed'], to }], merge });
+  }
+  insert(): void {
+    this.edits.add({ changes: [{ insert: ['intruder'], at: null, table: {} }], merge: null });
+  }
+  values(): unknown[] {
+    return this.sent.map((edit) => ('to' in edit.changes[0] ? edit.changes[0].to : 'insert'));
+  }
+}
+
+tests['Of a drag that waits only the newest is sent'] = async () => {
+  const server = new Server();
+  server.edits.resume();
+  for (let k = 1; k <= 5; ++k) server.set(k, 'drag');
+  same(server.values(), [1]);
+  await server.answer();
+  same(server.values(), [1, 5]);
+  await server.answer();
+  same([server.edits.isIdle, server.pending], [true, 0]);
+};
+tests['Edits of two drags, and of none, stay apart and in order'] = async () => {
+  const server = new Server();
+  server.edits.resume();
+  server.set(1, 'a');
+  server.set(2, 'a');
+  server.set(3, 'b');
+  server.set(4);
+  server.set(5);
+  for (let k = 0; k < 5; ++k) await server.answer();
+  same(server.values(), [1, 2, 3, 4, 5]);
+};
+tests['An edit that is refused is said, and the next goes on'] = async () => {
+  const server = new Server();
+  server.edits.resume();
+  server.set(1);
+  server.set(2);
+  await server.fail(new Refused('no'));
+  same([server.refusals, server.values()], [['no'], [1, 2]]);
+};
+tests['After a lost connection what was not answered is sent again'] = async () => {
+  const server = new Server();
+  server.edits.resume();
+  server.set(1);
+  server.set(2);
+  server.edits.stop();
+  await server.fail(new Lost('gone'));
+  same([server.values(), server.edits.isIdle], [[1], false]);
+  server.edits.resume();
+  await server.answer();
+  await server.answer();
+  same(server.values(), [1, 1, 2]);
+};
+tests['A table that was inserted before the connection was lost is not inserted twice'] = async () => {
+  for (const isDone of [false, true]) {
+    const server = new Server();
+    server.edits.resume();
+    server.insert();
+    server.edits.stop();
+    await server.fail(new Lost('gone'));
+    if (isDone) server.text = 'text with it';
+    server.edits.resume();
+    same(server.sent.length, isDone ? 1 : 2);
+  }
+};
+tests['What a page left behind is taken up by the next'] = async () => {
+  const first = new Server();
+  first.edits.resume();
+  first.set(1);
+  first.insert();
+  first.set(2);
+  const left = JSON.parse(JSON.stringify(first.edits.unsent()));
+  const next = new Server();
+  next.edits.resume();
+  next.edits.restore(left);
+  for (let k = 0; k < 3; ++k) await next.answer();
+  same(next.values(), [1, 'insert', 2]);
+};
+tests['Listeners are told once of all that changed'] = async () => {
+  const store = new Store();
+  const told: string[][] = [];
+  store.listen((changed) => told.push([...changed].sort()));
+  store.put({ frame: 3 });
+  store.put({ frame: 4, playing: true });
+  store.put({ frame: 4 });
+  await turn();
+  same(told, [['frame', 'playing']]);
+};
+tests['A place across the relative velocity'] = () => {
+  // Head-on it is abeam; at right angles ahead is right times the intruder's speed over the own.
+  same(acrossRelative(20, 40, 0, 180).map((v) => Math.round(Math.abs(v) * 1e6) / 1e6), [1, 0]);
+  const [right, ahead] = acrossRelative(20, 40, 0, 90);
+  near(ahead / right, 2, 1e-9);
+};
+tests['Between the points of a track, and beyond its ends'] = () => {
+  const one = track((k) => [10 * k, 100], 11);
+  near(seenAt(one, 4.5)!.pixel[0], 45, 1e-9);
+  same(seenAt(one, 11), null);
+  const plan = { frames: [0, 10], own: { ned: [] } } as never;
+  same(nedAt(plan, [[0, 0, -100], [10, 20, -110]], 15), [15, 30, -115]);
+  same(turned(-90), 270);
+};
+tests['A line without the shake: a parabola stays, a zigzag goes, and the place in the frame shown is on it'] = () => {
+  const parabola = steadied(track((k) => [k * k * 0.05, 3 * k]), 30);
+  near(parabola[75]![0], 75 * 75 * 0.05, 1e-6);
+  const zigzag = track((k) => [5 * k, 300 + (k % 2 ? 6 : -6)]);
+  const line = steadied(zigzag, 30);
+  near(line[75]![1], 300, 1);
+  near(through(zigzag, line, 75, 30)[75]![1], 306, 1e-6);
+  const dragged = bent(zigzag, line, [30, 75, 120], 1, [0, 50]);
+  same([30, 120].map((k) => dragged[k]![1] - line[k]![1]), [0, 0]);
+  near(dragged[75]![1] - line[75]![1], 50, 1e-9);
+};
+tests['What is new is in the clip, and at its pixel in the frame shown'] = () => {
+  for (const frame of [0, 60, 149]) {
+    const table = newFlyer({ kind: 'aircraft', aircraft: '738/738-ANA', length_m: 39.5 }, { lens: { vertical_fov_deg: 60 } }, CLIP, frame, [300, 200], 25);
+    same(Object.keys(table), ['aircraft', 'seen']);
+    const moments = momentsOf(flyer(table), CLIP);
+    same([moments.length, moments.every((one) => one.frame >= 0 && one.frame < 150), moments[1].frame > moments[0].frame], [2, true, true]);
+    const share = (frame - moments[0].frame) / (moments[1].frame - moments[0].frame);
+    near(moments[0].pixel[0] + share * (moments[1].pixel[0] - moments[0].pixel[0]), 300, 0.2);
+  }
+};
+tests['A moment stands in its place in time, or moves the one that is there'] = () => {
+  const one = flyer({ aircraft: 'a', seen: [{ time_s: 0, pixel: [1, 1], range_m: 100 }, { time_s: 2, pixel: [2, 2], width_px: 30 }] });
+  same(withMoment(one, CLIP, 30, [5, 5], 120), { changes: [{ insert: ['intruder', 0, 'seen'], at: 1, table: { time_s: 1, pixel: [5, 5], range_m: 120 } }], index: 1 });
+  same(withMoment(one, CLIP, 60, [5.04, 5], 120).changes, [{ set: ['intruder', 0, 'seen', 1, 'pixel'], to: [5, 5] }]);
+  const moments = momentsOf(one, CLIP);
+  same(moments.map((moment) => nearer(moment, 2)), [{ set: ['intruder', 0, 'seen', 0, 'range_m'], to: 50 }, { set: ['intruder', 0, 'seen', 1, 'width_px'], to: 60 }]);
+};
+tests['Another statement takes the place of the first'] = () => {
+  const one = flyer({ aircraft: 'a', encounter: { cpa_time_s: 1 }, start_s: 1 });
+  const changes = toMoments(one, track((k) => [k, k]), CLIP)!;
+  same(changes.filter((change) => 'remove' in change), [{ remove: ['intruder', 0, 'encounter'] }, { remove: ['intruder', 0, 'start_s'] }]);
+  same(changes.flatMap((change) => ('insert' in change ? [[change.at, change.table.time_s]] : [])), [[0, 0], [1, 2.467], [2, 4.967]]);
+};
+tests['Flyers have names, kinds and statements'] = () => {
+  const all = flyersOf({ intruder: [{ aircraft: 'x', encounter: {} }, { id: 'me', aircraft: 'y', path_file: 'p' }], distractor: [{ kind: 'bird', count: 4, seen: [] }, { kind: 'dirt' }] });
+  same(all.map((one) => [one.id, one.kind, one.statement, one.title]), [['intruder-1', 'aircraft', 'approach', 'x'], ['me', 'aircraft', 'file', 'y'], ['bird-1', 'bird', 'moments', '4 birds'], ['dirt-1', 'dirt', 'lens', 'dirt']]);
+};
+
+async function run(): Promise<string[]> {
+  const faults: string[] = [];
+  for (const [name, test] of Object.entries(tests)) {
+    try {
+      await test();
+    } catch (error) {
+      faults.push(`${name}: ${(error as Error).message}`);
+    }
+  }
+  return faults.length ? faults : [`${Object.keys(tests).length} good`];
+}
+Object.assign(window, { modelTest: run() });
