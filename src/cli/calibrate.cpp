@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/camera_file/calibrate.h"
 
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,8 +23,6 @@
 
 namespace airtruth::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct CalibrateArguments {
   std::vector<std::string> videos;

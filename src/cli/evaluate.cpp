@@ -19,12 +19,11 @@
 #include "evaluation/tracker_evaluation/page.h"
 #include "evaluation/tracker_evaluation/tables.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/run_files/run_files.h"
 
 namespace airtruth::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 // What `evaluate` is told about detectors' results.
 struct EvaluateDetections {

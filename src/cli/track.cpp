@@ -7,13 +7,12 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
+#include "foundation/base/files.h"
 #include "runners/runs/tracker_run.h"
 #include "runners/tracking/tracker.h"
 
 namespace airtruth::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Track {
   std::string source;

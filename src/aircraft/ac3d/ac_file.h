@@ -2,18 +2,16 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "aircraft/model/mesh.h"
+#include "foundation/base/files.h"
 
 // The content of an AC3D text file (.ac) after checks, without interpretation. The format:
 // https://www.inivis.com/ac3d/man/ac3dfileformat.html
 namespace airtruth::ac3d {
-
-namespace fs = std::filesystem;
 
 struct AcCorner {
   std::uint32_t vertex = 0;  // index into AcObject::vertices

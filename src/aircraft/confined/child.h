@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
-
 #include "aircraft/model/load_options.h"
 #include "aircraft/model/raw_model.h"
 #include "aircraft/wrapper/model_files.h"
+#include "foundation/base/files.h"
 
 // Untrusted models are read in a child process, airtruth-model-reader, which can only return plain
 // arrays: see foundation/sandbox.
 namespace airtruth::confined {
-
-namespace fs = std::filesystem;
 
 // The wall time in seconds after which the child is ended. Chosen: the largest aircraft of the
 // catalogue are read in a small part of it.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
 #include "aircraft/model/load_options.h"
 #include "aircraft/model/raw_model.h"
 #include "aircraft/wrapper/model_files.h"
+#include "foundation/base/files.h"
 #include "foundation/disk_cache/disk_cache.h"
 
 // Converted untrusted models in the cache. The model file's bytes, the options and the reader's
@@ -14,8 +14,6 @@
 // content. An entry is used where all of these files are unchanged, and it is checked like the
 // result of a reader.
 namespace airtruth::confined {
-
-namespace fs = std::filesystem;
 
 // The key of a model; empty where it cannot be read. Asks `files` for the model file's bytes.
 std::optional<disk_cache::Key> model_key(wrapper::DiskFiles& files,

@@ -11,6 +11,7 @@
 
 #include "aircraft/model/load_options.h"
 #include "aircraft/model/mesh.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 // Aircraft by name from Debian's package flightgear-data-ai ("738/738-Ryanair") or made in code
@@ -21,8 +22,6 @@
 // whose wings span 9.63 m, where 11.00 m is published for its type, gets a catalogue_scale of
 // 11.00 / 9.63 = 1.142 if its length is too short as well (scale.h).
 namespace airtruth::fleet {
-
-namespace fs = std::filesystem;
 
 struct Entry {
   // The path of the wrapper XML below AI/Aircraft without its extension: "738/738-Ryanair".

@@ -21,11 +21,10 @@
 
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::model_reader {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states no normals; chosen
 constexpr int kMaxNodeDepth = 256;     // bounds the recursion over a hostile file

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "foundation/base/names.h"
 
 namespace airtruth::wrapper {
-
-namespace fs = std::filesystem;
 
 // The files that a model may be read from: those below one folder. Paths are relative to that
 // folder. A path that leaves it ("..", an absolute path, a symbolic link) counts as missing.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -10,13 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "foundation/geometry/transform.h"
 
 // The content of one FlightGear PropertyList, before the files that it names are searched.
 // Coordinates are FlightGear's: x back, y right, z up, metres; rotations are right-handed.
 namespace airtruth::wrapper {
-
-namespace fs = std::filesystem;
 
 // A bound for untrusted files; the largest wrapper of flightgear-data-ai has 87 KB.
 constexpr std::size_t kMaxWrapperBytes = 8u << 20;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "calibration/optics/edge_profile.h"
 #include "calibration/sensor/noise.h"
 #include "camera/lens/lens.h"
+#include "foundation/base/files.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 #include "scene/scene/scene.h"
@@ -22,8 +22,6 @@
 // are the values of scene::CameraModel. Each value has a standard error, or the reason why the clip
 // does not show it.
 namespace airtruth::camera_file {
-
-namespace fs = std::filesystem;
 
 // The horizon found in one frame.
 struct FrameHorizon {

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/image/layer.h"
 
 namespace airtruth::own_aircraft {
-
-namespace fs = std::filesystem;
 
 struct MaskOptions {
   std::stop_token stop;

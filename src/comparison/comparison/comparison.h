@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "comparison/match/real.h"
 #include "comparison/match/sun.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
@@ -21,8 +21,6 @@
 // Compares an inserted aircraft with a real one, in the same frames of the same clip and at the
 // same apparent size (the paper, section II.D, Figures 8 to 10).
 namespace airtruth::comparison {
-
-namespace fs = std::filesystem;
 
 struct Options {
   bool overwrite = false;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
@@ -24,8 +24,6 @@
 // frame by frame, so it is taken from the centres of their boxes; widths and heights have no part
 // in it.
 namespace airtruth::evision {
-
-namespace fs = std::filesystem;
 
 // One frame of one sequence.
 struct EvisionFramePair {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <stop_token>
@@ -10,12 +9,11 @@
 
 #include <opencv2/core.hpp>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
 
 namespace airtruth::match {
-
-namespace fs = std::filesystem;
 
 // A real aircraft's boxes by frame. The file is CSV with a header and the columns frame, x, y,
 // width, height (or w, h), with frames from 0. `origin_px` is subtracted from x and y (1 for

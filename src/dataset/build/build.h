@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <stop_token>
@@ -11,6 +10,7 @@
 
 #include "dataset/catalogue/expand.h"
 #include "dataset/sequences/layout.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 // The folder of a data set (docs/formats/dataset.md):
@@ -23,8 +23,6 @@
 //   dataset.json          written last, once every sequence exists
 //   failed.jsonl          the sequences that could not be made, with the reason
 namespace airtruth::build {
-
-namespace fs = std::filesystem;
 
 struct BuildProgress {
   // Sequences of this run's share that were made, or found whole.

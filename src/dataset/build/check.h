@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <string>
 
 #include "dataset/catalogue/catalogue.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::build {
-
-namespace fs = std::filesystem;
 
 // Checks the inputs of a catalogue on this machine before any work begins. Aircraft must be known
 // and videos must exist. Each background's mask, lens, camera file and path must be readable and

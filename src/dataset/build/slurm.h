@@ -7,6 +7,7 @@
 
 #include "dataset/catalogue/folder.h"
 #include "dataset/catalogue/slurm_options.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::build {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dataset/catalogue/folder.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::build {
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include "dataset/catalogue/distractors.h"
 #include "dataset/catalogue/drawn_rule.h"
 #include "dataset/catalogue/encounter_rule.h"
+#include "foundation/base/files.h"
 #include "scene/scene/scene.h"
 #include "scene/synthetic/flight.h"
 
@@ -24,8 +24,6 @@
 // all of them describe 2 x 1 x 2 = 4 sequences. With a [[random]] rule of count = 10 beside it, the
 // catalogue describes 14 (expand.h).
 namespace airtruth::catalogue {
-
-namespace fs = std::filesystem;
 
 struct Background {
   std::string name;

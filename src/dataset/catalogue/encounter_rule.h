@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "dataset/catalogue/drawn_rule.h"
 #include "encounter/pairing/geometric.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "scene/scene/scene.h"
 #include "scene/scene/table_reader.h"
 
@@ -21,8 +21,6 @@ class Sampler;
 }
 
 namespace airtruth::catalogue {
-
-namespace fs = std::filesystem;
 
 struct Background;
 struct Catalogue;

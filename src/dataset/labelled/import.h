@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "dataset/sequences/layout.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "labels/exchange/exchange.h"
 
 namespace airtruth::labelled {
-
-namespace fs = std::filesystem;
 
 struct ImportOptions {
   exchange::Format format = exchange::Format::kCoco;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,11 +9,10 @@
 
 #include "dataset/sequences/labels_of_truth.h"
 #include "dataset/sequences/sequence_folders.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 namespace airtruth::labelled {
-
-namespace fs = std::filesystem;
 
 // Facts about a sequence that are available before its labels are read.
 struct ClipFacts {

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+
+#include "foundation/base/files.h"
 
 // The place of each sequence below a data set's folder `sequences`. A small set has its sequences
 // in that folder itself (sequences/NAME). A larger set has them in numbered folders
@@ -12,8 +13,6 @@
 // Example: with 4,000 sequences in a folder, number 0 of 10,000 lies in sequences/0001, number
 // 4,000 in sequences/0002 and number 9,999 in sequences/0003. All of 3,000 lie in sequences.
 namespace airtruth::sequences {
-
-namespace fs = std::filesystem;
 
 // A set with more sequences is divided. Below this number a listing with the files' sizes takes
 // some tens of milliseconds on a local disk and under a second on a network file system of 0.2 ms

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 
 // The finished sequences of a folder: a data set that `dataset build` made, complete or not; the
 // output of `dataset import`; or one or more sequences that `render` made.
 namespace airtruth::sequences {
-
-namespace fs = std::filesystem;
 
 // The labels of an imported clip, in its folder; a rendered sequence has none.
 inline constexpr const char* kLabels = "labels.jsonl";

@@ -3,13 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <stop_token>
 
-namespace airtruth::set_report {
+#include "foundation/base/files.h"
 
-namespace fs = std::filesystem;
+namespace airtruth::set_report {
 
 struct ReportOptions {
   bool overwrite = false;

@@ -28,8 +28,6 @@
 namespace airtruth::stream {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A background that was opened.
 struct Clip {
   catalogue::BackgroundFiles files;

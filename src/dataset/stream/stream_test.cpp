@@ -10,6 +10,7 @@
 
 #include "dataset/stream/places.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "labels/annotation/truth.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
@@ -22,8 +23,6 @@ namespace airtruth::stream {
 namespace {
 
 using testing::HasSubstr;
-namespace fs = std::filesystem;
-
 TEST(Places, LanesTakeTurnsAndAFrameIsUsedOftenBeforeTheNext) {
   const Place later = place_of(8 * 64 * 8 + 3, 8);  // the lanes' first runs are over
   EXPECT_EQ(place_of(9, 8).run, 1);

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "foundation/base/files.h"
 
 // An airspace encounter model of MIT Lincoln Laboratory: a dynamic Bayesian network that describes
 // how aircraft fly. The initial network gives the bins of all variables at time 0; the transition
@@ -15,8 +16,6 @@
 // estimating collision risk"; of the file: the text files of em-model-manned-bayes
 // (docs/formats/encounters.md).
 namespace airtruth::encounter_model {
-
-namespace fs = std::filesystem;
 
 // A variable of a network with the distribution of its bins given those of its parents.
 struct Node {

@@ -5,7 +5,6 @@
 // thousand random pairs.
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <string>
@@ -16,12 +15,11 @@
 #include <unistd.h>
 
 #include "encounter/separation/violation.h"
+#include "foundation/base/files.h"
 #include "support/random_encounter.h"
 
 namespace airtruth::separation {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kMpsPerKnot = kMetresPerNauticalMile / 3600;
 constexpr double kMpsPerFpm = kMetresPerFoot / 60;

@@ -4,19 +4,17 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "encounter/track/track.h"
+#include "foundation/base/files.h"
 #include "foundation/base/names.h"
 
 // Encounters in files, in the formats of docs/formats/encounters.md.
 namespace airtruth::tracks_file {
-
-namespace fs = std::filesystem;
 
 enum class TracksFormat {
   kCsv,        // airtruth's own; any number of encounters

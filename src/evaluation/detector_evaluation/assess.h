@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -11,12 +10,11 @@
 
 #include "dataset/sequences/condition.h"
 #include "evaluation/scores/detector_score.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 // Detectors' results in files, scored against a data set in files.
 namespace airtruth::detector_evaluation {
-
-namespace fs = std::filesystem;
 
 // True for results of a detector: a folder with detector.json, a COCO results file or a folder with
 // one alone, a folder with det.txt files, and MOTChallenge text without tracks. MOTChallenge text

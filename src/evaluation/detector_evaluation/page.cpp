@@ -21,7 +21,6 @@
 namespace airtruth::detector_evaluation {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // Of one detector in one frame, the strongest are drawn.

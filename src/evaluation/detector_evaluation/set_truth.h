@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -13,12 +12,11 @@
 #include "encounter/separation/measures.h"
 #include "encounter/separation/violation.h"
 #include "evaluation/scores/truth.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 // The truth of a data set as the measures of detections take it.
 namespace airtruth::detector_evaluation {
-
-namespace fs = std::filesystem;
 
 struct SetTruthOptions {
   // Name of a volume whose violation counts; empty: none.

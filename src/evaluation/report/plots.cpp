@@ -7,13 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "show/plot/gnuplot.h"
 #include "show/plot/plot_json.h"
 
 namespace airtruth::report {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Heights of figures, in units of which their width has 16: of one plot, of three below each other,
 // and of a ranking.

@@ -14,8 +14,6 @@
 namespace airtruth::report {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Column {
   std::string name;
   Json::json_pointer place;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <airtruth/box.h>
+
+#include "foundation/base/files.h"
 
 // Regions in which detections count neither way, as for real aircraft of a background that nobody
 // labelled. A CSV file with the heading
@@ -21,8 +22,6 @@
 //   sequence,first_frame,last_frame,x,y,width,height
 //   cumulus_a4.mp4,300,420,850,40,200,60
 namespace airtruth::scores {
-
-namespace fs = std::filesystem;
 
 struct IgnoredRegion {
   std::string sequence;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -17,11 +16,10 @@
 #include "evaluation/matching/boxes.h"
 #include "evaluation/measures/outcome.h"
 #include "evaluation/tracker_evaluation/truth.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 namespace airtruth::tracker_evaluation {
-
-namespace fs = std::filesystem;
 
 // One number of a sequence's score, by which trackers are compared and ranked, with an interval.
 struct Measure {

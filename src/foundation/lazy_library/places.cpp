@@ -3,10 +3,10 @@
 
 #include <dlfcn.h>
 
+#include "foundation/base/files.h"
+
 namespace airtruth::lazy_library {
 namespace {
-
-namespace fs = std::filesystem;
 
 // The place where a shared library holds this code, in PREFIX/lib or, as on Debian, in
 // PREFIX/lib/x86_64-linux-gnu. It is empty in a program, whose name need not be a path.

@@ -6,12 +6,11 @@
 #include <map>
 #include <numeric>
 
+#include "foundation/base/files.h"
 #include "foundation/base/names.h"
 
 namespace airtruth::picture_series {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array kPictureEndings = {
     ".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".ppm", ".pgm", ".webp"};

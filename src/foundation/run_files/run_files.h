@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "foundation/base/files.h"
 
 // What a command reads and writes, as one set. It is checked before anything is written, and the
 // files appear together when all of them are whole.
@@ -21,8 +22,6 @@
 // Every file is written in a hidden folder of this run beside its place, so that several runs that
 // write one file at the same time do not meet before commit(), which moves a whole set at a time.
 namespace airtruth {
-
-namespace fs = std::filesystem;
 
 class RunFiles {
  public:

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/lazy_library/places.h"
 
 extern "C" char** environ;
@@ -24,7 +25,6 @@ extern "C" char** environ;
 namespace airtruth::sandbox {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kPollMs = 50;       // the interval at which a stop request is noticed

@@ -2,19 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
 
+#include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
 
 // Tar archives (POSIX.1-2001, "ustar Interchange Format"; a name of more than 100 bytes stands in a
 // pax header before its file). GNU tar and Python's tarfile read them.
 namespace airtruth::tar {
-
-namespace fs = std::filesystem;
 
 // The bytes of a file in an archive: the same names and bytes give the same archive.
 class Writer {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,11 +9,11 @@
 
 #include <airtruth/labels.h>
 
+#include "foundation/base/files.h"
+
 // Writes labelled clips one by one in the formats of <airtruth/labels.h>, without holding the whole
 // set in memory.
 namespace airtruth::exchange {
-
-namespace fs = std::filesystem;
 
 struct WriteOptions {
   // Every category that the clips use, in the order of the classes.

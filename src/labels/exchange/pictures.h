@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,13 +10,12 @@
 #include <airtruth/labels.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 // Pictures with labels become clips. A picture is known by its file name, and labels belong to the
 // picture that they name; the order of a file and the numbers in it join nothing.
 namespace airtruth::exchange {
-
-namespace fs = std::filesystem;
 
 struct LabelledPicture {
   // As the set states it, relative to its folder of pictures.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,12 +11,11 @@
 
 #include <airtruth/labels.h>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 
 // Helpers that the formats' readers and writers share.
 namespace airtruth::exchange {
-
-namespace fs = std::filesystem;
 
 // The lines of a text file, without blank lines and those that begin with '#'.
 struct Line {

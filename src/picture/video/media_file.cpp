@@ -9,11 +9,10 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::video {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array kContainers = {
     "mov",      "matroska",     "avi",       "mpegts",   "mpeg",      "mxf",

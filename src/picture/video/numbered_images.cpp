@@ -16,8 +16,6 @@
 namespace airtruth::video {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Of a list of pictures: a million paths of 100 bytes.
 constexpr std::size_t kMaxListBytes = 100'000'000;
 

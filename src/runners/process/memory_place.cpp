@@ -9,11 +9,10 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 
 namespace airtruth::process {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kBegins = "airtruth-run-";
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "runners/results/detections.h"
 
 // Detections as files (docs/detection.md). A folder holds one detector's:
@@ -23,8 +23,6 @@
 //   backgrounds/      .txt and .json of the videos that the set was made over
 // Coordinates are written to 1/1000 px and scores with 9 digits.
 namespace airtruth::results {
-
-namespace fs = std::filesystem;
 
 // Whether a tracker's or detector's results can have this name: 1 to 80 of letters, digits, '-',
 // '_' and '.', and no '.' first.

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <airtruth/labels.h>
 #include <airtruth/vot.h>
+
+#include "foundation/base/files.h"
 
 // Trackers' results as files (docs/evaluation.md). A folder holds one tracker's:
 //   SEQUENCE.txt                              one pass, a line "x,y,w,h" a frame
@@ -21,8 +22,6 @@
 // runs (SEQUENCE_001.bin, vot_regions.h) and times with blank lines, GOT-10k's
 // SEQUENCE/SEQUENCE_001.txt, and MOTChallenge's SEQUENCE.txt.
 namespace airtruth::results {
-
-namespace fs = std::filesystem;
 
 enum class Protocol { kOnePass, kRestart, kMultiStart };
 // "ope", "restart", "multistart"; Error with the nearest for anything else.

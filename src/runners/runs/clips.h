@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
 #include "dataset/labelled/labelled_set.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "picture/video/reader.h"
 #include "runners/detector/detector.h"
@@ -18,8 +18,6 @@
 
 // What detectors run over.
 namespace airtruth::runs {
-
-namespace fs = std::filesystem;
 
 struct DetectionClip {
   std::string name;

@@ -2,20 +2,18 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "runners/association/associator.h"
 #include "runners/runs/make_detector.h"
 
 namespace airtruth::runs {
-
-namespace fs = std::filesystem;
 
 struct DetectOptions {
   // make_detector.h; each may be NAME=DETECTOR.

@@ -2,19 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <stop_token>
 #include <string>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
 #include "runners/results/trajectories.h"
 #include "runners/tracking/tracker.h"
 
 namespace airtruth::runs {
-
-namespace fs = std::filesystem;
 
 struct TrackOptions {
   std::string tracker = "am3";  // tracking::make_tracker, or NAME=trax:COMMAND

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 #include "runners/process/child.h"
@@ -18,8 +18,6 @@
 #include "runners/tracking/trax_message.h"
 
 namespace airtruth::tracking {
-
-namespace fs = std::filesystem;
 
 // How pictures reach a tracker: as a PNG's path; as samples in the message, "image:W;H;rgb;BASE64";
 // or as a PNG's bytes in the message, "data:image/png;BASE64".

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +10,7 @@
 
 #include "camera/lens/lens.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
 #include "scene/scene/choices.h"
@@ -38,8 +38,6 @@
 // starts at the pixel (640 - 625.5 * 40 / 800, 480) = (608.7, 480), reaches the image's centre
 // after 1 s and ends after 2 s.
 namespace airtruth::scene {
-
-namespace fs = std::filesystem;
 
 // [background]: the onboard video and the range of its frames that is rendered.
 struct Background {

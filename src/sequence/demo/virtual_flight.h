@@ -2,16 +2,14 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <stop_token>
 
+#include "foundation/base/files.h"
 #include "picture/video/writer.h"
 #include "scene/synthetic/flight.h"
 
 namespace airtruth::demo {
-
-namespace fs = std::filesystem;
 
 struct VirtualFlightOptions {
   video::Format format = video::Format::kMp4;

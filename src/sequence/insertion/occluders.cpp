@@ -2,7 +2,6 @@
 #include "sequence/insertion/occluders.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -10,13 +9,13 @@
 
 #include "camera/horizon/horizon.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
 
 namespace airtruth::insertion {
 namespace {
 
-namespace fs = std::filesystem;
 using GreyPtr = std::shared_ptr<const video::Grey>;
 
 GreyPtr grey_mask(const fs::path& file, const lens::ImageSize& size) {

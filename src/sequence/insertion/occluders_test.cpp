@@ -3,7 +3,6 @@
 #include "sequence/insertion/occluders.h"
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
@@ -18,8 +17,6 @@
 
 namespace airtruth::insertion {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr lens::ImageSize kFrame{320, 240};
 

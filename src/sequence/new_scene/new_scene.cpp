@@ -25,8 +25,6 @@
 namespace airtruth::new_scene {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kGuessedViewDeg = 60;  // vertical view of a lens that nothing states: chosen
 constexpr std::int64_t kMaxEstimateFrames =
     900;  // half a minute at 30 frames/s turns enough or never

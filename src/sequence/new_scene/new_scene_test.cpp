@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <string>
@@ -13,6 +12,7 @@
 
 #include "camera/lens/calibration_file.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/new_scene/first_encounter.h"
@@ -23,8 +23,6 @@
 
 namespace airtruth::new_scene {
 namespace {
-
-namespace fs = std::filesystem;
 
 TEST(LensHint, TheSubtitlesFocalLengthIsInTenthsAboveAHundred) {
   EXPECT_EQ(equivalent_mm_in_subtitles("[iso : 100] [focal_len : 280] [latitude: 1]"), 28);

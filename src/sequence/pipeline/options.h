@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/disk_cache/disk_cache.h"
 
@@ -16,8 +16,6 @@ class SharedInputs;
 }  // namespace airtruth::setup
 
 namespace airtruth::pipeline {
-
-namespace fs = std::filesystem;
 
 struct Progress {
   std::int64_t frames_done = 0;

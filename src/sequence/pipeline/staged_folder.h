@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth::pipeline {
-
-namespace fs = std::filesystem;
 
 // A folder that appears whole or not at all. Files are written to a hidden folder beside it
 // (".NAME.part"), which commit() renames to the final name. Destruction before commit() removes the

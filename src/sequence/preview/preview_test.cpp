@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/preview/preview.h"
 
-#include <filesystem>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "labels/annotation/truth.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/pipeline/render.h"
@@ -18,8 +17,6 @@
 
 namespace airtruth::preview {
 namespace {
-
-namespace fs = std::filesystem;
 
 TEST(PreviewRows, ALongClipHasNoMoreThanSixtyTimes) {
   EXPECT_THAT(whole_seconds(3.5), testing::ElementsAre(0, 1, 2, 3));

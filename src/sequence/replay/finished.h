@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/image/picture.h"
 #include "labels/annotation/truth.h"
@@ -16,8 +16,6 @@
 
 // Opens a folder that `render` or `dataset import` has made.
 namespace airtruth::replay {
-
-namespace fs = std::filesystem;
 
 struct Finished {
   fs::path folder;

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/setup/from_scene.h"
 
-#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::setup {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct OwnLog : testing::Test {
   fs::path write(const std::string& name, const std::string& text) const {

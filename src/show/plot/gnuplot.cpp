@@ -17,8 +17,6 @@
 namespace airtruth::plot {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Text in gnuplot's single quotes. A line end would end the command, and a quote the text: gnuplot
 // 5.4 does not read a doubled quote at its beginning. A typographic apostrophe stands for it.
 std::string quoted(const std::string& text) {

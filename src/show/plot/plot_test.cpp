@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <limits>
 
 #include <gmock/gmock.h>
 
+#include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "show/plot/gnuplot.h"
 #include "show/plot/plot_json.h"
@@ -14,8 +14,6 @@
 
 namespace airtruth::plot {
 namespace {
-
-namespace fs = std::filesystem;
 
 bool has_gnuplot() { return std::system("command -v gnuplot > /dev/null 2>&1") == 0; }
 
