@@ -109,8 +109,9 @@ void measure(const MotionArguments& arguments, Context& context) {
   const setup::ClipMotion found = setup::clip_motion(arguments.video, options);
   const std::vector<motion::FrameMotion>& all = found.frames;
   report_gyro(found.gyro, console);
-  files.write(arguments.out,
-              [&](const fs::path& at) { write_file(at, motion::csv_from_motion(all)); });
+  files.write(arguments.out, [&](const fs::path& at) {
+    write_file(at, [&](const AddBytes& add) { motion::write_csv(add, all); });
+  });
   files.write(arguments.plot, [&](const fs::path& at) {
     video::write_still(
         at,

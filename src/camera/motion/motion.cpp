@@ -37,10 +37,11 @@ namespace {
 constexpr const char* kHeader =
     "frame,time_s,h11,h12,h13,h21,h22,h23,h31,h32,h33,inliers,rms_px,state";
 constexpr const char* kRotationHeader = "frame,time_s,qw,qx,qy,qz,inliers,rms_px,state";
+constexpr std::size_t kCsvBlockBytes = std::size_t{1} << 16;  // chosen: few calls, little memory
 
 }  // namespace
 
-std::string csv_from_motion(const std::vector<FrameMotion>& motion) {
+void write_csv(const AddBytes& add, const std::vector<FrameMotion>& motion) {
   const bool rotations = !motion.empty() && motion.front().rotation;
   std::string text = std::string(rotations ? kRotationHeader : kHeader) + "\n";
   for (const FrameMotion& m : motion) {
@@ -53,8 +54,11 @@ std::string csv_from_motion(const std::vector<FrameMotion>& motion) {
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) text += fmt::format(",{}", m.frame_from_reference(r, c));
     text += fmt::format(",{},{},{}\n", m.inliers, m.rms_px, name(m.state));
+    if (text.size() < kCsvBlockBytes) continue;
+    add(text);
+    text.clear();
   }
-  return text;
+  add(text);
 }
 
 namespace {
@@ -105,7 +109,7 @@ std::vector<FrameMotion> within_reach(std::vector<FrameMotion> against_first,
 
 namespace {
 
-// The first line of an entry, before the packed frames.
+// What follows the packed frames of an entry.
 constexpr std::string_view kToTheEnd = "to the end\n";  // of the video
 constexpr std::string_view kUntilThere = "until there\n";
 
@@ -160,8 +164,8 @@ std::optional<Kept> kept_in(const std::optional<std::string>& body) {
   if (!body) return std::nullopt;
   const std::string_view text = *body;
   for (const std::string_view line : {kToTheEnd, kUntilThere}) {
-    if (!text.starts_with(line)) continue;
-    const Kept kept{text.substr(line.size()), line == kToTheEnd};
+    if (!text.ends_with(line)) continue;
+    const Kept kept{text.substr(0, text.size() - line.size()), line == kToTheEnd};
     if (kept.packed.size() % kept.frame_size() == 0) return kept;
   }
   return std::nullopt;
@@ -224,14 +228,14 @@ std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache,
   return motion;
 }
 
-void store(const disk_cache::Cache& cache, const CacheKey& key, const std::string& packed) {
+void store(const disk_cache::Cache& cache, const CacheKey& key, std::string packed) {
   Kept now{packed, true};
   now.to_the_end = key.frame_count < 0 || static_cast<std::int64_t>(now.frames()) < key.frame_count;
   const auto body = cache.find(key.entry());
   const auto before = kept_in(body);
   if (before && (before->to_the_end || (!now.to_the_end && before->frames() >= now.frames())))
     return;
-  cache.keep(key.entry(), std::string(now.to_the_end ? kToTheEnd : kUntilThere) + packed);
+  cache.keep(key.entry(), packed += now.to_the_end ? kToTheEnd : kUntilThere);
 }
 
 }  // namespace airtruth::motion

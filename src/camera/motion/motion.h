@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "foundation/base/files.h"
 #include "foundation/disk_cache/disk_cache.h"
 #include "foundation/geometry/transform.h"
 
@@ -84,10 +85,10 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-// The text of motion.csv. The columns are frame,time_s,h11,...,h33,inliers,rms_px,state
+// Writes motion.csv line by line. The columns are frame,time_s,h11,...,h33,inliers,rms_px,state
 // for homographies and frame,time_s,qw,qx,qy,qz,inliers,rms_px,state for rotations. Numbers
 // round-trip exactly.
-std::string csv_from_motion(const std::vector<FrameMotion>& motion);
+void write_csv(const AddBytes& add, const std::vector<FrameMotion>& motion);
 
 // The limit of a homography. One plane shows only what lies ahead of the reference camera: for
 // a turn, the map of unit determinant from the frame to the reference has at a pixel the
@@ -137,6 +138,6 @@ std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache, c
 // The frames of a clip are of one model, in order.
 void pack(const FrameMotion& motion, std::string& packed);
 // Keeps packed motion, unless the cache already holds more frames for this key.
-void store(const disk_cache::Cache& cache, const CacheKey& key, const std::string& packed);
+void store(const disk_cache::Cache& cache, const CacheKey& key, std::string packed);
 
 }  // namespace airtruth::motion

@@ -220,6 +220,12 @@ TEST(Estimator, IgnoresTheOwnAircraft) {
             2.0);
 }
 
+std::string csv_of(const std::vector<FrameMotion>& motion) {
+  std::string text;
+  write_csv([&](std::string_view line) { text += line; }, motion);
+  return text;
+}
+
 TEST(Estimator, TwoRunsAgreeToTheBit) {
   const cv::Mat texture = wall();
   std::vector<std::string> runs;
@@ -228,7 +234,7 @@ TEST(Estimator, TwoRunsAgreeToTheBit) {
     Estimator estimator(kWidth, kHeight, {});
     std::vector<FrameMotion> all;
     for (int k = 0; k < 8; ++k) all.push_back(estimator.next(frame(texture, k), k / 30.0));
-    runs.push_back(csv_from_motion(all));
+    runs.push_back(csv_of(all));
   }
   cv::setNumThreads(-1);
   EXPECT_EQ(runs[0], runs[1]);
@@ -265,7 +271,7 @@ TEST(Csv, NumbersAreExact) {
   motion[2].state = State::kBridged;
   motion[3].state = State::kCut;
   motion[3].rms_px = 0.1 + 0.2;
-  const std::string text = csv_from_motion(motion);
+  const std::string text = csv_of(motion);
   EXPECT_THAT(text, testing::EndsWith(",0.30000000000000004,cut\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
   EXPECT_EQ(std::count(text.begin(), text.end(), ','), 5 * 13);
@@ -290,9 +296,9 @@ TEST(Cache, KnowsTheFramesItHolds) {
     std::string packed;
     for (const FrameMotion& frame : motion) pack(frame, packed);
     EXPECT_EQ(packed.size(), 5u * (is_rotation ? 56 : 96));
-    store(cache, key, packed);
+    store(cache, key, std::move(packed));
     ASSERT_TRUE(cached(cache, key));
-    EXPECT_EQ(csv_from_motion(*cached(cache, key)), csv_from_motion(motion));
+    EXPECT_EQ(csv_of(*cached(cache, key)), csv_of(motion));
     CacheKey shorter = key;
     shorter.frame_count = 3;
     EXPECT_EQ(cached(cache, shorter)->size(), 3u);

@@ -157,11 +157,18 @@ Descriptor new_part(const fs::path& path, fs::path& part) {
 }  // namespace
 
 void write_file(const fs::path& path, std::string_view bytes, Flush flush) {
+  write_file(
+      path, [&](const AddBytes& add) { add(bytes); }, flush);
+}
+
+void write_file(const fs::path& path,
+                const std::function<void(const AddBytes& add)>& write,
+                Flush flush) {
   fs::path part;
   Descriptor file = new_part(path, part);
   Unfinished unfinished = Unfinished::path(part);
   try {
-    write_all(file, bytes, path);
+    write([&](std::string_view bytes) { write_all(file, bytes, path); });
     if (flush == Flush::kNow && ::fsync(file.get()) != 0 && errno != EINVAL && errno != EROFS)
       throw Error("cannot write: " + reason(), {path.string()});
     // A network's file system tells of a full disk when a descriptor is closed. The lock is held on

@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
 namespace airtruth {
 
+// Every module names files and paths by it.
 namespace fs = std::filesystem;
 
 // The whole file as bytes. Throws Error when it is missing, a folder, unreadable, or larger than
@@ -21,6 +23,11 @@ std::string read_file(const fs::path& path, std::size_t max_bytes = std::size_t{
 // flush_files().
 enum class Flush { kNow, kLater };
 void write_file(const fs::path& path, std::string_view bytes, Flush flush = Flush::kNow);
+// The same where the bytes come part by part: `write` calls `add` with each part, in order.
+using AddBytes = std::function<void(std::string_view bytes)>;
+void write_file(const fs::path& path,
+                const std::function<void(const AddBytes& add)>& write,
+                Flush flush = Flush::kNow);
 
 // Throws Error where the path exists and may not be replaced.
 void refuse_existing(const fs::path& path, bool overwrite);

@@ -16,8 +16,6 @@
 namespace airtruth::disk_cache {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Number of hexadecimal digits of a SHA-256, the name of an entry and its first bytes.
 constexpr std::size_t kHashDigits = 64;
 // Chosen: a project that rests over a season keeps its entries.
@@ -148,7 +146,11 @@ void Cache::keep(const Key& key, std::string_view body) const {
   make();
   if (!is_own()) return;
   try {
-    write_file(folder_ / key.name(), sha256_of(body).append(body), Flush::kLater);
+    const auto write = [&](const AddBytes& add) {
+      add(sha256_of(body));
+      add(body);
+    };
+    write_file(folder_ / key.name(), write, Flush::kLater);
     remove_unused(folder_);
   } catch (const std::exception&) {  // a read-only folder or a full disk
   }

@@ -21,6 +21,9 @@
 namespace airtruth::setup {
 namespace {
 
+// The most frames for which memory is set aside on the word of a container.
+constexpr std::int64_t kMostReserved = 1'000'000;
+
 // The motion of the frame that all others are measured against, and of each in a clip that does not
 // shake.
 motion::FrameMotion reference_at(const video::Frame& frame, bool is_rotation = false) {
@@ -173,8 +176,6 @@ motion::Estimator MotionSource::estimator(int width, int height) const {
 }
 
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
-  if (is_to_be_stored())
-    for (const motion::FrameMotion& motion : against_first) motion::pack(motion, against_first_);
   gyro_fit_ = bridge_by_gyro(gyro_, against_first);
   all_ = smoothed_ ? motion::smoothed(std::move(against_first), options_)
                    : motion::within_reach(std::move(against_first), size_.width, size_.height);
@@ -183,9 +184,16 @@ void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
 
 void MotionSource::measure(const MotionPass& pass) {
   video::Reader reader = pass.open();
-  if (!none_)
-    return set_pass(measure_motion(
-        reader, estimator(reader.info().width, reader.info().height), pass.stop, pass.seen));
+  if (!none_) {
+    auto against_first = measure_motion(
+        reader, estimator(reader.info().width, reader.info().height), pass.stop, pass.seen);
+    if (cache_.keeps()) {
+      std::string packed;
+      for (const motion::FrameMotion& motion : against_first) motion::pack(motion, packed);
+      motion::store(cache_, key_, std::move(packed));
+    }
+    return set_pass(std::move(against_first));
+  }
   while (const auto frame = reader.next()) {
     if (pass.stop.stop_requested()) throw Interrupted();
     all_.push_back(reference_at(*frame));
@@ -225,12 +233,12 @@ motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
   motion::FrameMotion motion =
       estimator_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
   motion.frame = frame.index;
-  if (is_to_be_stored()) motion::pack(motion, against_first_);
+  if (cache_.keeps()) motion::pack(motion, against_first_);
   return motion;
 }
 
 void MotionSource::store() const {
-  if (is_to_be_stored()) motion::store(cache_, key_, against_first_);
+  if (!against_first_.empty()) motion::store(cache_, key_, against_first_);
 }
 
 std::vector<gyro::GyroSample> gyro_of(const fs::path& video) {
@@ -247,6 +255,9 @@ std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
                                                 const std::stop_token& stop,
                                                 const std::function<void(std::int64_t)>& seen) {
   std::vector<motion::FrameMotion> result;
+  // A vector that grows holds its frames twice.
+  result.reserve(static_cast<std::size_t>(
+      std::clamp<std::int64_t>(reader.info().frame_count_estimate, 0, kMostReserved)));
   while (const auto frame = reader.next()) {
     if (stop.stop_requested()) throw Interrupted();
     result.push_back(
@@ -280,22 +291,21 @@ ClipMotion clip_motion(const fs::path& video, const ClipMotionOptions& options) 
   // A homography knows no lens, but for the size of its pictures.
   const lens::Lens lens = result.lens.value_or(lens::pinhole_from_vertical_fov(60, size));
   SharedInputs inputs;
-  const MotionSource source(
-      {.scene = scene,
-       .lens = lens,
-       .video_sha256 = options.cache.keeps() ? sha256_of_video(video, inputs) : "",
-       .mask = mask ? &*mask : nullptr,
-       .cache = options.cache},
-      {.for_all = true,
-       .open = [&] { return std::move(reader); },
-       .stop = options.stop,
-       .seen =
-           [&](std::int64_t done) {
-             if (options.progress) options.progress(done, result.info.frame_count_estimate);
-           }});
-  source.store();
-  result.frames = source.all();
+  MotionSource source({.scene = scene,
+                       .lens = lens,
+                       .video_sha256 = options.cache.keeps() ? sha256_of_video(video, inputs) : "",
+                       .mask = mask ? &*mask : nullptr,
+                       .cache = options.cache},
+                      {.for_all = true,
+                       .open = [&] { return std::move(reader); },
+                       .stop = options.stop,
+                       .seen =
+                           [&](std::int64_t done) {
+                             if (options.progress)
+                               options.progress(done, result.info.frame_count_estimate);
+                           }});
   result.gyro = source.gyro_fit();
+  result.frames = std::move(source).all();
   warn_of(result, source.has_gyro(), options.warn);
   return result;
 }

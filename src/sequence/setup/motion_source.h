@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -13,6 +12,7 @@
 #include "camera/lens/lens.h"
 #include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
+#include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/disk_cache/disk_cache.h"
 #include "foundation/image/layer.h"
@@ -25,8 +25,6 @@
 namespace airtruth::setup {
 
 class SharedInputs;
-
-namespace fs = std::filesystem;
 
 // SHA-256 of a file's bytes, or over the names and bytes of numbered pictures; "" for neither.
 std::string sha256_of_video(const fs::path& video, SharedInputs& inputs);
@@ -80,11 +78,11 @@ class MotionSource {
   Measured at(std::size_t k) const;
   // The frame nearest to a time; only where all are known ahead and the clip has a frame.
   Measured nearest(double time_s) const;
-  // Stores the measured motion for the next run, after the last frame.
+  // Stores what next() has measured for the next run, after the last frame. A pass stores its own.
   void store() const;
   bool is_from_cache() const { return from_cache_; }
   // The motion of every frame; empty where it is not known ahead.
-  const std::vector<motion::FrameMotion>& all() const { return all_; }
+  std::vector<motion::FrameMotion> all() && { return std::move(all_); }
   bool has_gyro() const { return !gyro_.empty(); }
   // How the gyroscope agrees with the motion of every frame; empty where it does not.
   const std::optional<gyro::GyroFit>& gyro_fit() const { return gyro_fit_; }
@@ -97,7 +95,6 @@ class MotionSource {
   void measure(const MotionPass& pass);
   void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
-  bool is_to_be_stored() const { return cache_.keeps() && !from_cache_; }
 
   motion::Estimator estimator(int width, int height) const;
 
@@ -116,7 +113,7 @@ class MotionSource {
   lens::ImageSize size_;
   motion::ReachGuard guard_;  // of motion against the first frame
   std::optional<motion::Estimator> estimator_;
-  std::string against_first_;  // packed for the cache; empty unless is_to_be_stored()
+  std::string against_first_;  // what next() has measured, packed for the cache
   std::vector<motion::FrameMotion> all_;
 };
 
