@@ -75,6 +75,18 @@ class Items(unittest.TestCase):
     def setUp(self):
         self.stream = airtruth.Stream("training.toml", seed=7)
 
+    def test_masks_are_of_the_boxes(self):
+        self.assertNotIn("masks", airtruth.torch.Dataset(self.stream, 1)[0][1])
+        stream = airtruth.Stream(TRAINING.replace("[stream]", "[stream]\nmasks = true"), seed=7)
+        filled = 0
+        for _, target in airtruth.torch.Dataset(stream, 12, distractors=True):
+            self.assertEqual([target["masks"].shape, target["masks"].dtype], [(len(target["boxes"]), 64, 64), torch.uint8])
+            for mask, (x0, y0, x1, y1) in zip(target["masks"], target["boxes"]):
+                rows, columns = torch.nonzero(mask, as_tuple=True)
+                filled += len(rows)
+                self.assertTrue(bool((columns + 1 > x0).all() and (columns < x1).all() and (rows + 1 > y0).all() and (rows < y1).all()))
+        self.assertGreater(filled, 100)
+
     def test_an_item_is_its_sample(self):
         rgb, gray = airtruth.torch.Dataset(self.stream, 12, 5), airtruth.torch.Dataset(self.stream, 12, 5, channels="gray", dtype="float32")
         for k in range(12):

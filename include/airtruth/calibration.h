@@ -31,7 +31,7 @@ struct CalibrateOptions {
   // Exponent of the camera's tone curve, 1.2 to 3; 0: sRGB's curve.
   double gamma = 0;
   // A name of camera_profiles(), for what the clip does not show; "none": the clip's values alone;
-  // empty: the median over all.
+  // empty: the one that the first clip's tags and size tell, else the median over all.
   std::string profile;
   Warn warn;
   // calibrate() throws Interrupted once a stop is requested.

@@ -71,7 +71,8 @@ def calibrate(
     `lens`: a calibration as of Lens.from_file(), which sun, horizon and extinction need. `mask`: a picture that is black where the own
     aircraft is. `altitude_m`: height of the camera above the ground, for the extinction. `heading_deg`: where it looks in the first
     frame, from north, for the sun. `gamma`: exponent of the camera's tone curve, 1.2 to 3; 0: sRGB's curve. `profile`: a name of
-    camera_profiles() for what the clip does not show; "none": its values alone; empty: the median over all.
+    camera_profiles() for what the clip does not show; "none": its values alone; empty: the one that the first clip's tags and size tell, else the
+    median over all.
 
     What the clip does not show is no error; airtruth.Error for files that cannot be read, clips of several sizes and arguments out of
     their range. Ctrl-C ends the work within 2 s.

@@ -32,7 +32,7 @@ class Dataset(torch.utils.data.Dataset):  # type: ignore
     the visible objects with a covered box, cut at the picture's edges; `labels` (n, int64); `range_m` (n, float32), NaN for what is
     on the lens; `index` (int64): the sample's. `ignored` (k x 4, float32): boxes of the objects that are seen and count neither as
     an object nor as background: less than the share `min_visible` of the covered box lies in the picture, or there is none (then
-    the visible box).
+    the visible box). Of a stream with `masks`, `masks` (n x H x W, uint8): 1 where the object covers at least half of the pixel.
 
     `distractors`: False: birds, dirt and the like have no box: they are background; True: they have boxes, and the labels of their
     classes.
@@ -90,8 +90,9 @@ class Dataset(torch.utils.data.Dataset):  # type: ignore
 
     def _target(self, sample: Sample) -> Dict[str, torch.Tensor]:
         frame = sample.frames[-1]
-        taken, ignored, labels, ranges = [], [], [], []
-        for intruder, covered, visible in zip(frame.intruders, rows_of(frame.boxes()), rows_of(frame.boxes("visible"))):
+        taken, ignored, labels, ranges, places = [], [], [], [], []
+        boxes = zip(frame.intruders, rows_of(frame.boxes()), rows_of(frame.boxes("visible")))
+        for place, (intruder, covered, visible) in enumerate(boxes):
             is_object = self._distractors or intruder.object_class == "aircraft"
             if not is_object or intruder.state != "visible":
                 continue
@@ -102,13 +103,17 @@ class Dataset(torch.utils.data.Dataset):  # type: ignore
             taken.append(covered)
             labels.append(CLASSES.index(intruder.object_class) + 1)
             ranges.append(np.nan if intruder.range_m is None else intruder.range_m)
-        return {
+            places.append(place)
+        target = {
             "boxes": _corners(taken),
             "labels": torch.tensor(labels, dtype=torch.int64),
             "range_m": torch.tensor(ranges, dtype=torch.float32),
             "ignored": _corners(ignored),
             "index": torch.tensor(sample.index, dtype=torch.int64),
         }
+        if frame.masks is not None:
+            target["masks"] = torch.from_numpy((frame.masks[places] >= 128).astype(np.uint8))
+        return target
 
 
 def _share(intruder: Intruder, in_picture: np.ndarray[Any, Any]) -> float:

@@ -203,7 +203,7 @@ void add_calibrate(CLI::App& app, Context& context) {
       "--profile",
       arguments->profile,
       "Known camera, for what the clip does not show; none: the clip's values alone "
-      "[the median over all]");
+      "[the one that the video's tags and size tell, else the median over all]");
   command->add_flag_callback(
       "--list-profiles",
       [] { throw CLI::CallForVersion(profile_lines(), 0); },

@@ -48,7 +48,7 @@ void draw(const PreviewArguments& arguments, Context& context) {
   video::write_still(arguments.out, made.picture, Flush::kLater);
   std::string text = preview::table_text(made.rows);
   for (const std::string& line : made.approaches) text += line + "\n";
-  if (!made.attitude_words.empty()) text += made.attitude_words + "\n";
+  for (const std::string& note : made.notes) text += note + "\n";
   console.result(text + arguments.out);
 }
 

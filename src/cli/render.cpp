@@ -83,7 +83,7 @@ void render(const RenderArguments& arguments, Context& context) {
       .check();
   const pipeline::Summary summary =
       pipeline::render(scene, arguments.out, options_from(arguments, context));
-  if (!summary.attitude_words.empty()) context.console().result(summary.attitude_words);
+  for (const std::string& note : summary.notes) context.console().result(note);
   context.console().result(
       fmt::format("{}: {} frames, an intruder visible in {}, {:.1f} s ({:.1f} frames/s)",
                   summary.folder.string(),

@@ -379,6 +379,13 @@ class Session {
   std::int64_t every_ = 2;
 };
 
+// The named profile, else that of the camera that the file tells of, else what cameras have.
+CameraProfile profile_of(const std::string& name, const video::StreamInfo& info) {
+  if (!name.empty()) return camera_profile(name);
+  const CameraProfile* known = recognised_profile(info.width, info.height, info.tags);
+  return known != nullptr ? *known : usual_camera();
+}
+
 void check_ranges(const CameraOptions& options) {
   if (options.altitude_m && !(*options.altitude_m > 0 && std::isfinite(*options.altitude_m)))
     throw Error(
@@ -401,10 +408,10 @@ Calibration calibrate(const fs::path& video, const Options& options) {
 Calibration calibrate_camera(const std::vector<fs::path>& clips, const CameraOptions& options) {
   check_ranges(options);
   if (clips.empty()) throw Error("there is no clip; expected one video or more");
-  const CameraProfile profile =
-      options.profile.empty() ? usual_camera() : camera_profile(options.profile);
+  if (!options.profile.empty()) camera_profile(options.profile);  // its name is known
   check_joinable(clips, {});
   const video::StreamInfo info = video::Reader(clips[0], {.threads = 1}).info();
+  const CameraProfile profile = profile_of(options.profile, info);
   check_size(profile, info.width, info.height);
   std::optional<image::Mask> mask;
   if (!options.mask.empty()) mask = video::read_mask(options.mask, info.width, info.height);

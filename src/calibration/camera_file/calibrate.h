@@ -49,8 +49,9 @@ struct CameraOptions {
   fs::path mask;  // of the own aircraft; empty: none
   std::optional<double> altitude_m;
   double heading_deg = 0;
-  double gamma = 0;     // 0: sRGB's curve
-  std::string profile;  // camera_profile(); empty: usual_camera()
+  double gamma = 0;  // 0: sRGB's curve
+  // camera_profile(); empty: recognised_profile() of the first clip, else usual_camera()
+  std::string profile;
   Warn warn;
   std::stop_token stop;
   std::function<void(std::int64_t done, std::int64_t total)> progress;

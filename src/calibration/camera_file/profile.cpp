@@ -133,11 +133,15 @@ CameraProfile parse_camera_profile(std::string_view text, const std::string& nam
     text = end == text.npos ? std::string_view() : text.substr(end + 1);
     const Where where{name + ".csv", ++number};
     if (cells.empty() || cells[0].starts_with('#') || cells[0] == "key") continue;
+    if (cells[0] == "tag" && cells.size() == 3) {
+      profile.tags[cells[1]] = cells[2];
+      continue;
+    }
     const bool known =
         std::find(kProfileKeys.begin(), kProfileKeys.end(), cells[0]) != kProfileKeys.end();
     if (cells.size() != (known ? 4U : 2U))
       throw Error(fmt::format("has {} cells; expected key,value,error,clips or camera,WORDS, "
-                              "width,PX, height,PX, clips,NUMBER",
+                              "width,PX, height,PX, clips,NUMBER, tag,KEY,BEGINNING",
                               cells.size()),
                   where);
     if (cells[0] == "camera")
@@ -162,7 +166,7 @@ std::span<const CameraProfile> camera_profiles() {
 }
 
 const CameraProfile& camera_profile(const std::string& name, const Where& where) {
-  static const CameraProfile none{kNoProfile, "", 0, 0, 0, {}};
+  static const CameraProfile none{.name = kNoProfile};
   if (name == kNoProfile) return none;
   std::vector<std::string> names;
   for (const CameraProfile& profile : camera_profiles()) {
@@ -173,6 +177,21 @@ const CameraProfile& camera_profile(const std::string& name, const Where& where)
   if (const auto near = nearest_spelling(name, names)) message += "; did you mean '" + *near + "'?";
   message += " ('airtruth calibrate --list-profiles' lists them)";
   throw Error(message, where);
+}
+
+const CameraProfile* recognised_profile(int width,
+                                        int height,
+                                        const std::map<std::string, std::string>& tags) {
+  for (const CameraProfile& profile : camera_profiles()) {
+    const bool has_tags =
+        std::all_of(profile.tags.begin(), profile.tags.end(), [&](const auto& expected) {
+          const auto found = tags.find(expected.first);
+          return found != tags.end() && found->second.starts_with(expected.second);
+        });
+    if (has_tags && !profile.tags.empty() && profile.width == width && profile.height == height)
+      return &profile;
+  }
+  return nullptr;
 }
 
 CameraProfile usual_camera() {

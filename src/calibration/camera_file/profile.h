@@ -33,6 +33,8 @@ struct CameraProfile {
   int height = 0;
   // The number of measured clips.
   int clips = 0;
+  // The tags by which its files are known, and how their values begin; empty: by none.
+  std::map<std::string, std::string> tags;
   // Values and errors by the keys of quantities.h. An error is that of one further clip of
   // the camera, so it includes the differences between clips. The readout time is negative if the
   // sensor is read upwards.
@@ -51,6 +53,14 @@ inline constexpr const char* kNoProfile = "none";
 // The profile with the given name; for kNoProfile, one without values. Throws Error with the
 // nearest existing name if there is none.
 const CameraProfile& camera_profile(const std::string& name, const Where& where = {});
+
+// The profile of the camera whose files have this size and these tags (video::read_tags()); null
+// where none is known by them.
+//
+// Example: a clip of 854 x 480 px whose tag firmware is "HD5.02.02.00.00" is of gopro-karma.
+const CameraProfile* recognised_profile(int width,
+                                        int height,
+                                        const std::map<std::string, std::string>& tags);
 
 // The profile for an unknown camera: the medians of the optical values over the cameras of the
 // library, with the spread between cameras as errors.

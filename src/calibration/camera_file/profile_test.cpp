@@ -48,6 +48,20 @@ TEST(CameraProfile, IsReadAsItStands) {
             std::string::npos);
 }
 
+TEST(CameraProfile, OfACameraIsRecognisedBySizeAndAllTags) {
+  const std::map<std::string, std::string> tags = {
+      {"encoder", "GoPro AVC encoder"}, {"firmware", "HD5.02.02.00.00"}, {"other", ""}};
+  ASSERT_NE(recognised_profile(854, 480, tags), nullptr);
+  EXPECT_EQ(recognised_profile(854, 480, tags)->name, "gopro-karma");
+  EXPECT_EQ(recognised_profile(1920, 1080, tags), nullptr);
+  EXPECT_EQ(recognised_profile(854, 480, {{"encoder", "GoPro AVC encoder"}}), nullptr);
+  EXPECT_EQ(recognised_profile(
+                854, 480, {{"encoder", "GoPro AVC encoder"}, {"firmware", "HD6.01.01.00.00"}}),
+            nullptr);
+  // A profile without tags is never chosen by size alone.
+  EXPECT_EQ(recognised_profile(640, 480, {}), nullptr);
+}
+
 TEST(CameraProfile, TheLibraryHoldsWhatAProfileIsFor) {
   ASSERT_GE(camera_profiles().size(), 3u);
   for (const CameraProfile& profile : camera_profiles()) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
 #include <vector>
 
@@ -63,6 +64,16 @@ const AVInputFormat* container_of(const std::string& url, const fs::path& path) 
   return found;
 }
 
+void add_tags(const AVDictionary* tags, std::map<std::string, std::string>& result) {
+  const AVDictionaryEntry* entry = nullptr;
+  while ((entry = av_dict_get(tags, "", entry, AV_DICT_IGNORE_SUFFIX)) != nullptr) {
+    std::string key(entry->key);
+    std::transform(
+        key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });
+    result[key] = entry->value;
+  }
+}
+
 }  // namespace
 
 std::span<const char* const> readable_containers() { return kContainers; }
@@ -86,6 +97,15 @@ InputPtr open_media(const fs::path& path, Media media, const std::string& rate) 
   const int opened = avformat_open_input(&raw, url.c_str(), format, &settings.entries);
   if (opened < 0) throw Error("cannot be read as a video: " + reason(opened), {path.string()});
   return InputPtr(raw);
+}
+
+std::map<std::string, std::string> tags_of(const AVFormatContext& input) {
+  std::map<std::string, std::string> result;
+  add_tags(input.metadata, result);
+  for (unsigned i = 0; i < input.nb_streams; ++i)
+    if (input.streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO)
+      add_tags(input.streams[i]->metadata, result);
+  return result;
 }
 
 int find_streams(AVFormatContext& input) {

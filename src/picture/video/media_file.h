@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,6 +39,10 @@ enum class Media {
 // Opens a regular file. `rate` is the frame rate of numbered images, empty for libav's own. Throws
 // Error where the file cannot be read, or is no container of the list.
 InputPtr open_media(const std::filesystem::path& path, Media media, const std::string& rate = {});
+
+// The tags of the file and of its video stream, with keys in lower case; a stream's takes
+// precedence.
+std::map<std::string, std::string> tags_of(const AVFormatContext& input);
 
 // Looks at packets until the properties of all streams are known. Returns libav's error, or 0 or
 // more.

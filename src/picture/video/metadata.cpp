@@ -20,16 +20,6 @@ InputPtr opened_file(const std::filesystem::path& path) {
   return open_media(path, Media::kAny);
 }
 
-void add_tags(const AVDictionary* tags, std::map<std::string, std::string>& result) {
-  const AVDictionaryEntry* entry = nullptr;
-  while ((entry = av_dict_get(tags, "", entry, AV_DICT_IGNORE_SUFFIX)) != nullptr) {
-    std::string key(entry->key);
-    std::transform(
-        key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });
-    result[key] = entry->value;
-  }
-}
-
 // The index of the last stream of telemetry; -1: none.
 int telemetry_stream(const AVFormatContext& input) {
   int found = -1;
@@ -89,12 +79,7 @@ std::vector<TelemetryPacket> packets_of(const std::filesystem::path& path,
 std::map<std::string, std::string> read_tags(const std::filesystem::path& path) {
   const InputPtr input = opened_file(path);
   if (!input) return {};
-  std::map<std::string, std::string> result;
-  add_tags(input->metadata, result);
-  for (unsigned i = 0; i < input->nb_streams; ++i)
-    if (input->streams[i]->codecpar->codec_type == AVMEDIA_TYPE_VIDEO)
-      add_tags(input->streams[i]->metadata, result);
-  return result;
+  return tags_of(*input);
 }
 
 std::vector<TelemetryPacket> read_telemetry(const std::filesystem::path& path) {

@@ -226,6 +226,7 @@ void Reader::State::warn_of_fields(const AVStream& stream) const {
 
 void Reader::State::describe_stream(const AVStream& stream) {
   warn_of_fields(stream);
+  info.tags = tags_of(*input);
   info.time_base = rational(stream.time_base);
   const AVRational average =
       stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -73,6 +74,8 @@ struct StreamInfo {
   std::string codec;
   // Name of the pixel format, for example "yuv420p".
   std::string pixel_format;
+  // As read_tags() (metadata.h).
+  std::map<std::string, std::string> tags;
 };
 
 // What the reader delivers.

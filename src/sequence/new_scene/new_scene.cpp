@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "calibration/camera_file/profile.h"
 #include "camera/focal_length/lens_estimator.h"
 #include "camera/horizon/horizon.h"
 #include "camera/lens/calibration_file.h"
@@ -306,6 +307,18 @@ video::StreamInfo info_of(const fs::path& video, const NewSceneOptions& options)
       .info();
 }
 
+// The known cameras whose clips are of this size, each as a line to uncomment; none where the
+// file's tags tell which of them it is, since a scene takes that by itself.
+std::string profile_lines(const video::StreamInfo& info) {
+  if (camera_file::recognised_profile(info.width, info.height, info.tags) != nullptr) return "";
+  std::string lines;
+  for (const camera_file::CameraProfile& profile : camera_file::camera_profiles())
+    if (profile.width == info.width && profile.height == info.height)
+      lines += fmt::format(
+          "# profile = {:<29}  # if it is: {}\n", '"' + profile.name + '"', profile.camera);
+  return lines;
+}
+
 }  // namespace
 
 std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
@@ -335,7 +348,8 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       "{}\n"
       "# [realism]                              # blur, noise and haze as this camera has them\n"
       "# auto = true                            # measured from the clip, which takes a minute\n"
-      "# fallback = true                        # left out, with a warning, where it cannot be\n\n"
+      "# fallback = true                        # left out, with a warning, where it cannot be\n"
+      "{}\n"
       "[light]                                  # the sun, from north towards east and above the "
       "horizon\n"
       "sun_azimuth_deg = 180\nsun_elevation_deg = 45\n\n"
@@ -350,6 +364,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       lens.origin,
       lens.table,
       camera.table,
+      profile_lines(info),
       first_encounter(lens.lens, camera.camera, duration_s, shake_at));
 }
 

@@ -143,7 +143,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   maker.store_motion();
   warn_of_run(tally, resolved.scene, resolved.world, *resolved.background, options.warn);
   Summary summary = summary_of(tally, clocks, resolved.motion->is_from_cache());
-  summary.attitude_words = resolved.attitude_words;
+  summary.notes = resolved.notes;
   outputs->finish(resolved.scene,
                   input_files(scene, resolved.world, resolved.video_sha256, *resolved.inputs),
                   encounter_records(resolved.world, tally.first_seen, tally.last_time_s),

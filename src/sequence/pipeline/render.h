@@ -47,8 +47,8 @@ struct Summary {
   double seconds = 0;
   StageTimes stages;
   bool motion_from_cache = false;
-  // Where the camera's attitude was taken from (sequence/setup/level_camera.h); "": it was stated.
-  std::string attitude_words;
+  // As those of the resolved scene (sequence/pipeline/resolved_scene.h).
+  std::vector<std::string> notes;
 };
 
 // Writes <out>/<name>/ (docs/formats/output.md) whole or not at all: all files are written to a

@@ -448,8 +448,9 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
       "vertical_fov_deg = 75\n[motion]\nmodel = \"none\"\n[output]\nvideo = \"mkv\"\n" +
       crossing("a", "c172/news", 60);
   const Summary summary = render(scene::parse_scene(text, out_ / "s.toml"), out_, {});
-  EXPECT_THAT(summary.attitude_words,
-              testing::StartsWith("[camera] has no attitude_yaw_pitch_roll_deg: pitch "));
+  EXPECT_THAT(summary.notes,
+              testing::ElementsAre(
+                  testing::StartsWith("[camera] has no attitude_yaw_pitch_roll_deg: pitch ")));
   const replay::Finished finished = replay::open_finished(summary.folder);
   const YawPitchRoll found = finished.truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
   // A pixel is 0.37 degrees, and the visible horizon lies 0.4 degrees below level at 150 m.
@@ -464,7 +465,7 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
                                 out_ / "s.toml"),
              out_,
              {.overwrite = true});
-  EXPECT_EQ(stated.attitude_words, "");
+  EXPECT_THAT(stated.notes, testing::IsEmpty());
   EXPECT_EQ(replay::open_finished(stated.folder)
                 .truth.frames[0]
                 .camera_attitude_yaw_pitch_roll_deg.roll_deg,
@@ -503,7 +504,7 @@ TEST_F(Sequence, AHorizonThatStandsUpsideDownIsNone) {
     video::write_still(out_ / ("f" + std::to_string(k) + ".png"), turned);
   }
   const Summary summary = render_pictures(out_, crossing("a", "c172/news", 60));
-  EXPECT_THAT(summary.attitude_words, testing::HasSubstr("stands upside down"));
+  EXPECT_THAT(summary.notes, testing::Contains(testing::HasSubstr("stands upside down")));
   EXPECT_EQ(replay::open_finished(summary.folder)
                 .truth.frames[0]
                 .camera_attitude_yaw_pitch_roll_deg.roll_deg,
@@ -515,7 +516,7 @@ TEST_F(Sequence, WithoutAHorizonTheCameraIsLevelAndItIsSaid) {
   std::fill_n(grey.samples.get(), std::size_t{kWidth} * kHeight * 3, std::uint8_t{120});
   for (int k = 0; k < 3; ++k) video::write_still(out_ / ("f" + std::to_string(k) + ".png"), grey);
   const Summary summary = render_pictures(out_, crossing("a", "c172/news", 60));
-  EXPECT_THAT(summary.attitude_words, testing::HasSubstr("it is level, since "));
+  EXPECT_THAT(summary.notes, testing::Contains(testing::HasSubstr("it is level, since ")));
   const auto attitude =
       replay::open_finished(summary.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
   EXPECT_EQ(attitude.pitch_deg, 0);

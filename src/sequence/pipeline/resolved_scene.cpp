@@ -358,6 +358,9 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   fill_from_file(result.scene, file);
   result.to_measure = left_to_measure(result.scene);
   check_profile(scene.realism, info, !result.to_measure.empty());
+  if (!result.realism.profile && !result.to_measure.empty())
+    if (const auto* known = camera_file::recognised_profile(info.width, info.height, info.tags))
+      result.realism.profile = known->name;
   check_weather(result.scene, result.to_measure);
   if (!result.sun_is_known && file.sun_azimuth_deg && file.sun_elevation_deg) {
     result.scene.light.sun_azimuth_deg = *file.sun_azimuth_deg;
@@ -398,12 +401,19 @@ OpenedScene open_over(const video::StreamInfo& of_video,
   auto inputs = inputs_of(options);
   std::shared_ptr<const image::Mask> mask;
   if (opened.background.mask) mask = inputs->mask_of(*opened.background.mask, size);
+  std::vector<std::string> notes;
   const std::string attitude_words = setup::state_attitude(
       opened.camera,
       setup::lens_of(opened.lens, size),
       mask.get(),
       [&] { return open_background(scene, options); },
       options.stop);
+  if (!attitude_words.empty()) notes.push_back(attitude_words);
+  if (as_stated.realism.profile != scene.realism.profile)
+    notes.push_back(
+        fmt::format("camera: the video's tags are those of {}, whose profile is used; "
+                    "[realism] profile = \"none\" leaves it out",
+                    *as_stated.realism.profile));
   setup::World world = setup::load_world(opened, size, options.warn, options.stop, inputs.get());
   auto backdrop = insertion::open_backdrop(
       opened, world.lens, {.gpu = options.gpu, .software = options.software_gl});
@@ -426,7 +436,7 @@ OpenedScene open_over(const video::StreamInfo& of_video,
            std::move(inputs),
            std::move(world),
            std::move(backdrop),
-           attitude_words},
+           std::move(notes)},
           std::move(as_stated)};
 }
 
@@ -496,15 +506,15 @@ void measure_ahead(const scene::Scene& scene, const Options& options) {
       setup::sha256_of_video(scene.background.video, *inputs_of(options)),
       mask ? &*mask : nullptr,
       cache_of(options, "motion")};
-  const setup::MotionSource source(inputs,
-                                   {.for_all = true,
-                                    .open = [&] { return std::move(reader); },
-                                    .stop = options.stop,
-                                    .seen =
-                                        [&](std::int64_t done) {
-                                          if (options.progress) options.progress({done, total});
-                                        }});
-  source.store();
+  // The pass keeps what it measures.
+  setup::MotionSource(inputs,
+                      {.for_all = true,
+                       .open = [&] { return std::move(reader); },
+                       .stop = options.stop,
+                       .seen =
+                           [&](std::int64_t done) {
+                             if (options.progress) options.progress({done, total});
+                           }});
 }
 
 fs::path cache_folder(const Options& options, const char* kind) {

@@ -26,8 +26,9 @@ namespace airtruth::pipeline {
 // value "auto" are listed separately, so that all others can be checked before the clip is
 // measured.
 struct StatedScene {
-  scene::Scene scene;      // no [realism] and no "auto" left
-  scene::Realism realism;  // as the scene states it
+  scene::Scene scene;  // no [realism] and no "auto" left
+  // As the scene states it, with the profile by which the clip's camera is recognised.
+  scene::Realism realism;
   // Camera keys ("shutter.exposure_s") that must be measured on the clip.
   std::vector<std::string> to_measure;
   bool sun_is_known = false;  // stated in the scene or in the camera file
@@ -56,8 +57,9 @@ struct SceneInputs {
   std::shared_ptr<setup::SharedInputs> inputs;  // of the process, else of this run
   setup::World world;
   std::unique_ptr<backdrop::Backdrop> backdrop;  // of the chroma-key method
-  // Where the camera's attitude was taken from, for the user; "": the scene states it.
-  std::string attitude_words;
+  // For the user, a line each: from where the camera's attitude and profile were taken that the
+  // scene does not state.
+  std::vector<std::string> notes;
 };
 
 // A scene whose files are all opened and checked, before the clip is measured: faults of the user's

@@ -68,7 +68,7 @@ class Previewer {
     Preview result;
     const std::vector<double> times = whole_seconds(duration_s_);
     result.has_motion = motion_.has_value();
-    result.attitude_words = opened_.attitude_words;
+    result.notes = opened_.notes;
     result.rows =
         preview_rows(world(), parties_, times, [&](double time_s) { return moment(time_s); });
     result.approaches = approach_lines(world(), parties_, result.rows, duration_s_);

@@ -20,8 +20,8 @@ struct Preview {
   std::vector<PreviewRow> rows;
   // The closest approach of each intruder or flock in words, one line each.
   std::vector<std::string> approaches;
-  // Where the camera's attitude was taken from (sequence/setup/level_camera.h); "": it was stated.
-  std::string attitude_words;
+  // As those of the resolved scene (sequence/pipeline/resolved_scene.h).
+  std::vector<std::string> notes;
   // True where each moment has the camera's measured motion.
   bool has_motion = false;
 };
