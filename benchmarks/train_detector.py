@@ -240,7 +240,7 @@ class Targets:
 
 def loss_of(network, batch):
     pixels, targets = batch
-    logits, offset, size = network(torch.from_numpy(pixels))
+    logits, offset, size = network(torch.from_numpy(pixels).to(memory_format=torch.channels_last))  # a fifth faster on the CPU
     logits = logits[:, 0]
     heat = torch.from_numpy(np.stack([t.heat for t in targets]))
     weight = torch.from_numpy(np.stack([t.weight for t in targets]))
@@ -280,6 +280,11 @@ def given(options):
     return [[os.path.abspath(folder) for folder in options.sets], options.every, options.batch, options.seed]
 
 
+def done(options, step, spent):
+    """The share of the training that is done; 1 or more: all of it."""
+    return step / options.steps if options.steps else spent / options.minutes
+
+
 def save(network, optimiser, random, frames, options, spent, step):
     unfinished = checkpoint_of(options) + ".part"
     torch.save({"network": network.state_dict(), "optimiser": optimiser.state_dict(), "random": random.bit_generator.state,
@@ -302,8 +307,11 @@ def train(network, frames, options):
         print(f"goes on from {checkpoint_of(options)}: {before:.1f} min, step {step}", flush=True)
     begun, shown = time.process_time(), before
     network.train()
-    while (spent := before + (time.process_time() - begun) / 60 / options.threads) < options.minutes:
-        share = spent / options.minutes
+    while True:
+        spent = before + (time.process_time() - begun) / 60 / options.threads
+        share = done(options, step, spent)
+        if share >= 1:
+            break
         for group in optimiser.param_groups:  # a short rise, then half a cosine
             group["lr"] = 2e-3 * min(1, (step + 1) / 50) * (0.5 + 0.5 * math.cos(math.pi * share))
         loss = loss_of(network, batch_of(frames, random, options.batch))
@@ -346,6 +354,7 @@ def main():
     parser.add_argument("sets", nargs="+", metavar="SET", help="folders of `airtruth dataset build`, or one catalogue with a table [stream]")
     parser.add_argument("-o", "--output", required=True, help="the ONNX file; a .json is written beside it, and until then every half minute of training a .checkpoint, from which the same command goes on")
     parser.add_argument("--minutes", type=float, default=12, help="processor time to train for, on each thread (default 12)")
+    parser.add_argument("--steps", type=int, help="train for so many steps instead, whatever they take")
     parser.add_argument("--every", type=int, default=2, help="take every n-th frame (default 2): neighbours are alike")
     parser.add_argument("--batch", type=int, default=24, help="crops in a step (default 24)")
     parser.add_argument("--threads", type=int, default=1)
@@ -364,7 +373,7 @@ def main():
         frames = Frames()
         for folder in options.sets:
             frames.add_set(folder, options.every)
-    network = Network()
+    network = Network().to(memory_format=torch.channels_last)
     print(f"{frames.words()}, {sum(p.numel() for p in network.parameters())} parameters", flush=True)
     step = train(network, frames, options)
     write(network, options.output)

@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the same network is trained on, one training after another, and what each then finds.
+
+Network and loop are those of benchmarks/train_detector.py. Every training sees the same number of frames with aircraft, the same frames of birds
+and multirotors without one, the same steps and the same seed.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import time
+import warnings
+
+import airtruth
+import cv2
+import numpy as np
+import torch
+import train_detector
+from torch.nn import functional
+
+import catalogue
+from sets import Refused
+from splits import split_of
+
+REALISM = {"auto": True, "fallback": True}
+TENTH = 10
+REPEATED = 5      # how often a real frame beside composites is drawn for one of theirs
+PASTE_GAIN = (0.5, 1.5)   # of a pasted aircraft's brightness
+PASTE_TRIES = 20
+LEAST_SCORE = 0.02
+MOST_DETECTIONS = 30  # of a frame
+NMS_OVERLAP = 0.3
+THREADS = 1  # the same sums on every machine
+
+
+class Material:
+    """The real clips and backgrounds that trainings are made of, read once."""
+
+    def __init__(self, real, options):
+        self.real, self.options, self.split = real, options, split_of(real)
+        if not self.split.train:
+            raise Refused(f"{real.name} has no clips to train on; there is a split of ground-real alone")
+        self.train = [clip for clip in real.clips if clip.name in self.split.train]
+        self.background_clips = [clip for clip in real.clips if clip.name in self.split.backgrounds]
+        if not self.train or not self.background_clips:
+            raise Refused(f"{real.name}: the folder holds none of the clips that are trained on, or none without an aircraft")
+        self.negatives = None
+
+    def drawn(self, clips, count):
+        """(grey, frame) of so many frames, evenly over the clips and over each."""
+        each = [count // len(clips) + (k < count % len(clips)) for k in range(len(clips))]
+        for clip, some in zip(clips, each):
+            wanted = [frame for frame in clip.frames if frame.objects]
+            some = min(some, len(wanted))
+            chosen = [wanted[k * len(wanted) // some] for k in range(some)]
+            yield from zip((grey.copy() for grey in clip.grey(chosen)), chosen)
+
+    def with_aircraft(self, count):
+        for grey, frame in self.drawn(self.train, count):
+            boxes = np.array([one.box for one in frame.objects], np.float32).reshape(-1, 4)
+            large = boxes[:, 2:].max(axis=1) > train_detector.MOST_PX if len(boxes) else np.zeros(0, bool)
+            yield grey, boxes[~large], np.concatenate([boxes[large], frame.ignored.astype(np.float32)])
+
+    def without(self):
+        """Frames of birds and multirotors, which are background."""
+        if self.negatives is None:
+            self.negatives = [grey for grey, _ in self.drawn(self.background_clips, self.options.negatives)]
+        return self.negatives
+
+    def realism(self):
+        """Of the backgrounds: what a clip does not show is the set's camera's, where airtruth knows that."""
+        with airtruth.VideoReader(self.background_clips[0].video) as video:
+            size = video.info.width, video.info.height
+        known = any((one.name, (one.width, one.height)) == (self.real.source.camera, size) for one in airtruth.camera_profiles())
+        return {**REALISM, **({"profile": self.real.source.camera} if known else {})}
+
+    def stream(self, realism, seed, masks=False):
+        if self.options.catalogue:
+            if not realism:
+                raise Refused("a catalogue states its realism itself; matte and cut-and-paste need the one of this command")
+            return airtruth.Stream(self.options.catalogue, seed=seed, threads=1)
+        text = catalogue.of_clips([(clip.name, os.path.abspath(clip.video)) for clip in self.background_clips], self.realism() if realism else None)
+        text["stream"]["masks"] = masks
+        return airtruth.Stream(text, seed=seed, threads=1)
+
+
+def add(frames, grey, boxes, ignored, times=1):
+    for _ in range(times):
+        frames.pictures.append(grey)
+        frames.boxes.append(boxes)
+        frames.ignored.append(ignored)
+
+
+def samples(stream, count):
+    """(sample's last frame, boxes, ignored) of the first so many."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what a clip does not show is left out, as the page of realism says
+        for index in range(count):
+            frame = stream[index].frames[-1]
+            boxes, ignored = train_detector.boxes_of([vars(intruder) for intruder in frame.intruders])
+            yield frame, boxes, ignored
+
+
+def real(material, frames, seed):
+    for one in material.with_aircraft(material.options.frames):
+        add(frames, *one)
+
+
+def composites(material, frames, seed):
+    for frame, boxes, ignored in samples(material.stream(True, seed), material.options.frames):
+        add(frames, frame.gray.copy(), boxes, ignored)
+
+
+def matte(material, frames, seed):
+    for frame, boxes, ignored in samples(material.stream(False, seed), material.options.frames):
+        add(frames, frame.gray.copy(), boxes, ignored)
+
+
+def cut_and_paste(material, frames, seed):
+    """Rendered aircraft cut from one picture and pasted into another anywhere, hard at the edges, at any brightness (Dwibedi, Misra and Hebert
+    2017, without blending): neither light, nor sharpness, nor place is matched."""
+    dice = np.random.default_rng(seed)
+    below = material.without()
+    for frame, boxes, _ in samples(material.stream(False, seed, masks=True), material.options.frames):
+        picture = below[dice.integers(len(below))].copy()
+        pasted = []
+        mask = frame.masks.max(axis=0) > 127 if len(frame.masks) else None
+        for box in boxes.astype(int):
+            x, y, width, height = box
+            patch, shape = frame.gray[y:y + height, x:x + width].astype(np.float32), mask[y:y + height, x:x + width]
+            if dice.random() < 0.5:
+                patch, shape = patch[:, ::-1], shape[:, ::-1]
+            height, width = patch.shape
+            if height >= picture.shape[0] or width >= picture.shape[1]:
+                continue
+            place = [int(dice.integers(picture.shape[axis] - size)) for axis, size in enumerate((height, width))]
+            under = picture[place[0]:place[0] + height, place[1]:place[1] + width]
+            under[shape] = np.clip(patch * dice.uniform(*PASTE_GAIN), 0, 255)[shape]
+            pasted.append((place[1], place[0], width, height))
+        add(frames, picture, np.array(pasted, np.float32).reshape(-1, 4), np.zeros((0, 4), np.float32))
+
+
+def mixed(material, frames, seed):
+    composites(material, frames, seed)
+    for one in material.with_aircraft(max(1, material.options.frames // TENTH)):
+        add(frames, *one, times=REPEATED)
+
+
+TRAININGS = {
+    "real": ("real clips of the camera", real),
+    "composites": ("composites from the stream", composites),
+    "matte": ("plain matte, without realism", matte),
+    "cut-and-paste": ("cut and paste, nothing matched", cut_and_paste),
+    "mixed": ("composites and a tenth of the real", mixed),
+}
+
+
+def options_of(folder, options, seed):
+    """What the loop of train_detector takes."""
+    return argparse.Namespace(output=str(folder / "network"), sets=[], every=1, batch=options.batch, seed=seed, minutes=options.minutes,
+                              steps=options.steps, threads=THREADS)
+
+
+def written(path, value):
+    unfinished = path.with_name(path.name + ".part")
+    unfinished.write_text(json.dumps(value) + "\n", encoding="utf-8")
+    os.replace(unfinished, path)
+
+
+def stated(options, seed):
+    """What a training that is there already must have been made with."""
+    return {"frames": options.frames, "negatives": options.negatives, "batch": options.batch, "steps": options.steps,
+            "minutes": None if options.steps else options.minutes, "seed": seed, "catalogue": str(options.catalogue or ""),
+            "train_on": options.train_on}
+
+
+def network_of(name, seed, material, options):
+    """The trained network; trained now unless it is there already."""
+    folder = pathlib.Path(options.out) / "trainings" / f"{name}-{seed}"
+    folder.mkdir(parents=True, exist_ok=True)
+    weights, record = folder / "network.pt", folder / "training.json"
+    torch.set_num_threads(THREADS)
+    torch.manual_seed(seed)
+    network = train_detector.Network().to(memory_format=torch.channels_last)
+    if record.exists():
+        known = json.loads(record.read_text(encoding="utf-8"))
+        if known["stated"] != stated(options, seed):
+            raise Refused(f"{folder} was trained otherwise ({known['stated']}); give another OUT or remove it")
+        network.load_state_dict(torch.load(weights))
+        network.eval()
+        return network
+    begun = time.process_time()
+    frames = train_detector.Frames()
+    TRAININGS[name][1](material, frames, seed)
+    for grey in material.without():
+        add(frames, grey, np.zeros((0, 4), np.float32), np.zeros((0, 4), np.float32))
+    made = time.process_time()
+    print(f"{name}, seed {seed}: {frames.words()}, made in {made - begun:.0f} s", flush=True)
+    loop = options_of(folder, options, seed)
+    steps = train_detector.train(network, frames, loop)
+    torch.save(network.state_dict(), str(weights) + ".part")
+    os.replace(str(weights) + ".part", weights)
+    written(record, {"stated": stated(options, seed), "words": frames.words(), "steps": steps, "made_s": made - begun,
+                     "trained_s": time.process_time() - made})
+    checkpoint = pathlib.Path(train_detector.checkpoint_of(loop))
+    checkpoint.unlink(missing_ok=True)
+    return network
+
+
+def kept(boxes, scores):
+    """Greedy suppression of what overlaps something of a higher score."""
+    chosen = []
+    for index in np.argsort(-scores, kind="stable"):
+        if not chosen or airtruth.evaluate.overlap(np.repeat(boxes[index][None], len(chosen), 0), boxes[chosen]).max() < NMS_OVERLAP:
+            chosen.append(index)
+        if len(chosen) == MOST_DETECTIONS:
+            break
+    return chosen
+
+
+def detections_in(network, grey):
+    """Boxes (n x 4) and scores of a picture, as docs/formats/detector-model.md reads the answer."""
+    multiple, stride = train_detector.MULTIPLE, train_detector.STRIDE
+    height, width = (-(-side // multiple) * multiple for side in grey.shape)
+    whole = cv2.copyMakeBorder(grey, 0, height - grey.shape[0], 0, width - grey.shape[1], cv2.BORDER_REPLICATE)
+    with torch.no_grad():
+        pixels = torch.from_numpy(whole.astype(np.float32) / 255)[None, None].to(memory_format=torch.channels_last)
+        logits, offset, size = network(pixels)
+        heat = torch.sigmoid(logits)
+        peaks = heat * (heat == functional.max_pool2d(heat, 3, 1, 1))
+        scores, cells = peaks.flatten().topk(min(4 * MOST_DETECTIONS, peaks.numel()))
+    scores, cells = (part[scores > LEAST_SCORE].numpy() for part in (scores, cells))
+    rows, columns = np.divmod(cells, heat.shape[3])
+    centre = (np.stack([columns, rows], 1) + offset[0][:, rows, columns].numpy().T) * stride
+    sides = np.exp(np.clip(size[0][:, rows, columns].numpy().T, 0, 7))
+    boxes = np.concatenate([centre - sides / 2, sides], axis=1).reshape(-1, 4).astype(float)
+    chosen = kept(boxes, scores)
+    return boxes[chosen], scores[chosen]
+
+
+def frames_tested(clip, every):
+    return clip.frames[::every]
+
+
+def detections_of(network, clips, options, path):
+    """{clip: [(boxes, scores) of each frame tested]}; detected now unless it is there already."""
+    if path.exists():
+        known = json.loads(path.read_text(encoding="utf-8"))
+        if known["every"] == options.every and set(known["clips"]) == {clip.name for clip in clips}:
+            return {name: [(np.array(b, float).reshape(-1, 4), np.array(s, float)) for b, s in frames] for name, frames in known["clips"].items()}
+    found = {}
+    for clip in clips:
+        found[clip.name] = [detections_in(network, grey) for grey in clip.grey(frames_tested(clip, options.every))]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    written(path, {"every": options.every, "clips": {name: [(np.round(b, 2).tolist(), np.round(s, 5).tolist()) for b, s in frames]
+                                                     for name, frames in found.items()}})
+    return detections_of(network, clips, options, path)
