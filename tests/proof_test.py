@@ -203,6 +203,12 @@ class Measures(unittest.TestCase):
             misses, alarms = measure.errors_at(row, answers, 1)
             self.assertEqual((len(misses), [what for _, _, what in alarms]), (0, [] if ignoring else ["bird"] * 2))
 
+    def test_what_false_alarms_are_is_told_and_can_be_written(self):
+        large = (numpy.array([[200.0, 200, 60, 50]]), numpy.array([0.9]))
+        found = {"real": [{("s", clip): [large, large] for clip in "abc"}]}
+        told = measure.alarms_of(self.row(True), found, None)
+        self.assertEqual(json.loads(json.dumps(told)), {"real": {"misses": 4, "false_alarms": 6, "by": {"background": 6}, "large": 6}})
+
     def test_draws_are_of_whole_clips(self):
         row = self.row(True)
         for _ in range(20):

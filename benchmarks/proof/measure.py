@@ -144,8 +144,8 @@ def measured_row(row, found, arguments):
     by_seed = {name: np.array([row.scores_of(one, places) for one in seeds]) for name, seeds in answers.items()}
     dice = np.random.default_rng(SEED)
     draws = {name: [] for name in answers}
-    # A single clip has no spread over clips.
-    for _ in range(arguments.draws if len(row.strata[0]) > 1 else 0):
+    # A single clip has no spread over clips, and parts are told without.
+    for _ in range(arguments.draws if len(row.strata[0]) > 1 and row.key["part"] == "all" else 0):
         chosen = row.drawn(dice)
         for name, seeds in answers.items():  # the same clips for all trainings: ratios are paired
             draws[name].append(np.mean([row.scores_of(one, chosen) for one in seeds], axis=0))
@@ -193,7 +193,7 @@ def alarms_of(row, found, arguments):
         by = {}
         for _, _, what in alarms:
             by[what] = by.get(what, 0) + 1
-        kinds[name] = {"misses": len(misses), "false_alarms": len(alarms), "by": by, "large": sum(max(box[2:]) > LARGE_PX for _, box, _ in alarms)}
+        kinds[name] = {"misses": len(misses), "false_alarms": len(alarms), "by": by, "large": int(sum(max(box[2:]) > LARGE_PX for _, box, _ in alarms))}
     return kinds
 
 
