@@ -8,6 +8,9 @@ The camera is not calibrated: a field of view of 12 degrees and a pitch of 15 de
 VIEW_DEG, PITCH_DEG = 12, 15
 SUN_AZIMUTH_DEG, SUN_ELEVATION_DEG = 150, 45
 SIZE_PX = (5, 90)
+# Degrees from the boresight. A camera that watches the sky has its ground in the lower third: most aircraft are above it.
+ELEVATION_IN_SKY_DEG, ELEVATION_ANYWHERE_DEG = (-1.5, 5.5), (-5, 5)
+SKY_OF_TEN = 9
 # Kind: samples of a hundred, and what flies it. Types made in code and types of flightgear-data-ai; none is chosen by a measured clip.
 MIX = {
     "airliner": (34, ["733/*", "738/*", "757/*", "A319/*", "A320/*", "A332/*", "CR7/*", "E90/*", "AT7/*"]),
@@ -34,7 +37,9 @@ def backgrounds_of(clips, realism):
 
 def of_clips(clips, realism):
     """A catalogue with a table [stream] as a dict, for airtruth.Stream. `realism`: the table of every background; None: the plain matte."""
-    rules = [{"name": kind + "-{index}", "count": count, "frame_count": 10, "aircraft": names, "size_px": list(SIZE_PX), "azimuth_deg": [-7, 7],
-              "elevation_deg": [-5, 5], "bank_deg": "type", "start": "random"} for kind, (count, names) in MIX.items()]
+    rules = [{"name": f"{kind}-{where}-{{index}}", "count": count * share, "frame_count": 10, "aircraft": names, "size_px": list(SIZE_PX),
+              "azimuth_deg": [-7, 7], "elevation_deg": list(elevation), "bank_deg": "type", "start": "random"}
+             for kind, (count, names) in MIX.items()
+             for where, share, elevation in (("sky", SKY_OF_TEN, ELEVATION_IN_SKY_DEG), ("anywhere", 10 - SKY_OF_TEN, ELEVATION_ANYWHERE_DEG))]
     return {"name": "proof", "seed": 1, "background": backgrounds_of(clips, realism), "random": rules,
             "stream": {"picture": "frame", "intruders": [1, 2], "reuse": 4, "memory_mb": 400}}

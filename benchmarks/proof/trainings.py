@@ -11,6 +11,7 @@ import os
 import pathlib
 import time
 import warnings
+import zlib
 
 import airtruth
 import cv2
@@ -168,11 +169,12 @@ def written(path, value):
     os.replace(unfinished, path)
 
 
-def stated(options, seed):
+def stated(name, options, seed):
     """What a training that is there already must have been made with."""
+    rules = f"{zlib.crc32(json.dumps(catalogue.of_clips([], None)).encode()):08x}"
     return {"frames": options.frames, "negatives": options.negatives, "batch": options.batch, "steps": options.steps,
-            "minutes": None if options.steps else options.minutes, "seed": seed, "catalogue": str(options.catalogue or ""),
-            "train_on": options.train_on}
+            "minutes": None if options.steps else options.minutes, "seed": seed, "train_on": options.train_on,
+            "catalogue": "" if name == "real" else str(options.catalogue or f"of this command, {rules}")}
 
 
 def network_of(name, seed, material, options):
@@ -185,7 +187,7 @@ def network_of(name, seed, material, options):
     network = train_detector.Network().to(memory_format=torch.channels_last)
     if record.exists():
         known = json.loads(record.read_text(encoding="utf-8"))
-        if known["stated"] != stated(options, seed):
+        if known["stated"] != stated(name, options, seed):
             raise Refused(f"{folder} was trained otherwise ({known['stated']}); give another OUT or remove it")
         network.load_state_dict(torch.load(weights))
         network.eval()
@@ -201,7 +203,7 @@ def network_of(name, seed, material, options):
     steps = train_detector.train(network, frames, loop)
     torch.save(network.state_dict(), str(weights) + ".part")
     os.replace(str(weights) + ".part", weights)
-    written(record, {"stated": stated(options, seed), "words": frames.words(), "steps": steps, "made_s": made - begun,
+    written(record, {"stated": stated(name, options, seed), "words": frames.words(), "steps": steps, "made_s": made - begun,
                      "trained_s": time.process_time() - made})
     checkpoint = pathlib.Path(train_detector.checkpoint_of(loop))
     checkpoint.unlink(missing_ok=True)
