@@ -2,7 +2,6 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "sequence/new_scene/new_scene.h"
 #include "studio/document/document.h"
 #include "studio/server/server.h"
@@ -21,8 +21,6 @@
 
 namespace airtruth::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct StudioArguments {
   std::string input;

@@ -15,8 +15,6 @@
 namespace airtruth::document {
 namespace {
 
-namespace fs = std::filesystem;
-
 History history_of(const fs::path& file, std::optional<std::string> begun) {
   if (!fs::exists(file) && begun) return {std::move(*begun), ""};
   std::string text = read_file(file, scene::kLargestToml);

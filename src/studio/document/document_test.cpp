@@ -15,8 +15,6 @@ namespace airtruth::document {
 namespace {
 
 using testing::HasSubstr;
-namespace fs = std::filesystem;
-
 const std::string kText =
     "[background]\nvideo = \"clip.mp4\"  # mine\n[lens]\nvertical_fov_deg = 60\n";
 

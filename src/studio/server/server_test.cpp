@@ -30,8 +30,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-namespace fs = std::filesystem;
-
 // A connection as anyone on the machine can make one, with bytes of any kind.
 class Socket {
  public:

@@ -15,6 +15,7 @@
 #include "calibration/camera_file/calibration.h"
 #include "calibration/camera_file/quantities.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
 #include "labels/annotation/truth.h"
 #include "sequence/pipeline/render.h"
@@ -33,7 +34,6 @@
 namespace airtruth::session {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using messages::Act;
 using messages::Request;

@@ -28,8 +28,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
-namespace fs = std::filesystem;
-
 const std::string kScene =
     "# mine\n[background]\nvideo = \"flight.mp4\"\n[lens]\nvertical_fov_deg = 60\n[camera]\n"
     "position_ned_m = [0, 0, -300]\nvelocity_ned_mps = [25, 0, 0]\n"
