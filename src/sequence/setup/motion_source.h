@@ -82,6 +82,7 @@ class MotionSource {
   void store() const;
   bool is_from_cache() const { return from_cache_; }
   // The motion of every frame; empty where it is not known ahead.
+  const std::vector<motion::FrameMotion>& all() const& { return all_; }
   std::vector<motion::FrameMotion> all() && { return std::move(all_); }
   bool has_gyro() const { return !gyro_.empty(); }
   // How the gyroscope agrees with the motion of every frame; empty where it does not.
