@@ -44,7 +44,7 @@ std::vector<TablePlace> tables_in(const Node& root, const std::string& text) {
 }  // namespace
 
 Document::Document(fs::path file, std::optional<std::string> begun, Warn warn)
-    : file_(std::move(file)),
+    : file_(fs::is_symlink(file) ? fs::canonical(file) : std::move(file)),
       warn_(std::move(warn)),
       journal_(file_),
       history_(history_of(file_, std::move(begun))),

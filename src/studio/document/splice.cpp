@@ -115,14 +115,14 @@ class Splicer {
   // The end of all that is written of a table under its own header.
   std::size_t own_end(const Node& node) const {
     std::size_t end = node.kind == Kind::kImpliedTable ? 0 : node.end;
-    for (const auto& [key, member] : node.members)
+    for (const Node& member : node.members)
       if (!member.has_header()) end = std::max(end, own_end(member));
     return end;
   }
   // The same with the tables in it.
   std::size_t full_end(const Node& node) const {
     std::size_t end = node.kind == Kind::kImpliedTable ? 0 : node.end;
-    for (const auto& [key, member] : node.members) end = std::max(end, full_end(member));
+    for (const Node& member : node.members) end = std::max(end, full_end(member));
     for (const Node& element : node.elements) end = std::max(end, full_end(element));
     return end;
   }
@@ -250,7 +250,7 @@ class Splicer {
                        "[" + header_names(path) + "]" + newline() + line + newline());
     if (table.kind == Kind::kImpliedTable) {
       // As its other keys are dotted.
-      const Node& last = table.members.back().second;
+      const Node& last = table.members.back();
       const std::size_t begin = line_begin(last.key_begin);
       return put_lines(end,
                        std::string(text_.substr(begin, last.key_begin - begin)) + line + newline());
@@ -262,7 +262,7 @@ class Splicer {
   }
   std::size_t last_key(const Node& table) const {
     std::size_t at = table.begin;
-    for (const auto& [key, member] : table.members)
+    for (const Node& member : table.members)
       if (!member.has_header()) at = std::max(at, member.key_begin);
     return at;
   }
@@ -271,7 +271,7 @@ class Splicer {
     const std::string put = key + " = " + toml_of(value);
     if (table.members.empty()) return cut(table.begin, table.end, "{ " + put + " }");
     std::size_t end = 0;
-    for (const auto& [name, member] : table.members) end = std::max(end, full_end(member));
+    for (const Node& member : table.members) end = std::max(end, full_end(member));
     cut(end, end, ", " + put);
   }
 
@@ -280,9 +280,9 @@ class Splicer {
   void remove(const Node& node, const Path& path) {
     if (path.size() == 0) refuse("is the whole file");
     if (node.kind == Kind::kImpliedTable) {
-      for (const auto& [key, member] : node.members) {
+      for (const Node& member : node.members) {
         Path inner = path;
-        inner.emplace_back(key);
+        inner.emplace_back(member.key);
         remove(member, inner);
       }
       return;
@@ -322,7 +322,7 @@ class Splicer {
         before = std::max(before, its_end);
     };
     for (const Node& one : parent.elements) look(one.begin, one.end);
-    for (const auto& [key, one] : parent.members) look(one.key_begin, full_end(one));
+    for (const Node& one : parent.members) look(one.key_begin, full_end(one));
     if (const std::size_t at = comma(node.end, next); at != std::string_view::npos) {
       const std::size_t end = text_.find_first_not_of(" \t", at + 1);
       return cut(begin, end == std::string_view::npos ? text_.size() : end);
@@ -355,7 +355,7 @@ class Splicer {
   void collect_blocks(const Node& node, std::vector<Cut>& blocks) const {
     if (node.kind == Kind::kHeaderTable)
       blocks.push_back({line_begin(node.begin), line_end(own_end(node)), ""});
-    for (const auto& [key, member] : node.members)
+    for (const Node& member : node.members)
       if (member.has_header() || member.kind == Kind::kImpliedTable) collect_blocks(member, blocks);
     for (const Node& element : node.elements) collect_blocks(element, blocks);
   }

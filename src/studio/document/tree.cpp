@@ -45,12 +45,12 @@ class Reader {
   Node table(const toml::table& table, Node::Kind kind) const {
     Node node = placed(table, kind);
     for (const auto& [key, value] : table) {
-      Node member = this->member(key, value);
-      member.key_begin = lines_.offset(key.source().begin);
-      node.members.emplace_back(std::string(key.str()), std::move(member));
+      node.members.push_back(member(key, value));
+      node.members.back().key = key.str();
+      node.members.back().key_begin = lines_.offset(key.source().begin);
     }
-    std::sort(node.members.begin(), node.members.end(), [](const auto& a, const auto& b) {
-      return a.second.key_begin < b.second.key_begin;
+    std::sort(node.members.begin(), node.members.end(), [](const Node& a, const Node& b) {
+      return a.key_begin < b.key_begin;
     });
     return node;
   }
@@ -125,10 +125,10 @@ nlohmann::json json_of(const toml::node& value) {
 
 }  // namespace
 
-const Node* Node::member(std::string_view key) const {
+const Node* Node::member(std::string_view name) const {
   const auto found = std::find_if(
-      members.begin(), members.end(), [&](const auto& one) { return one.first == key; });
-  return found == members.end() ? nullptr : &found->second;
+      members.begin(), members.end(), [&](const Node& one) { return one.key == name; });
+  return found == members.end() ? nullptr : &*found;
 }
 
 Tree tree_of(std::string_view text, const std::string& file) {

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -26,16 +25,17 @@ struct Node {
   // Of the value, or of the header with its brackets.
   std::size_t begin = 0;
   std::size_t end = 0;
-  // Of its key, whose last name alone counts: in `a.b = 1` that of `b`.
+  // Of a member of a table: the last name of its key, and where that begins: in `a.b = 1` the `b`.
+  std::string key;
   std::size_t key_begin = 0;
-  std::vector<std::pair<std::string, Node>> members;  // of a table, in the order of their keys
-  std::vector<Node> elements;                         // of an array
+  std::vector<Node> members;   // of a table, in the order of the text
+  std::vector<Node> elements;  // of an array
 
   bool is_table() const {
     return kind == Kind::kInlineTable || kind == Kind::kHeaderTable || kind == Kind::kImpliedTable;
   }
   bool has_header() const { return kind == Kind::kHeaderTable || kind == Kind::kTableArray; }
-  const Node* member(std::string_view key) const;
+  const Node* member(std::string_view name) const;
 };
 
 struct Tree {

@@ -38,6 +38,12 @@ std::size_t bytes_of(const image::Picture& picture) {
 
 }  // namespace
 
+std::string text_of(const scene::Background& background) {
+  scene::Scene scene;
+  scene.background = background;
+  return scene::toml_from_scene(scene);
+}
+
 Clip::Clip(const scene::Background& background, pipeline::Options options)
     : options_(std::move(options)) {
   scene_.background = background;
@@ -133,22 +139,23 @@ const insertion::Glance& Clip::glance(std::int64_t k, const image::ToneCurve& to
   return place->second;
 }
 
-std::string Clip::thumbnail(std::int64_t k, int width) {
-  if (const auto found = thumbnails_.find({k, width}); found != thumbnails_.end())
-    return found->second;
-  std::optional<video::Frame> read;
-  const auto known = places_.find(k);
-  if (known == places_.end()) {
-    if (!small_) small_.emplace(open(0));
-    read = small_->at(static_cast<double>(k) / rate_hz());
-    if (!read) throw Error(fmt::format("has no frame {}", k), {scene_.background.video.string()});
+std::string Thumbnails::at(const scene::Background& background, std::int64_t k, int width) {
+  const std::string clip = text_of(background);
+  if (!reader_ || clip != clip_) {
+    made_.clear();
+    scene::Scene scene;
+    scene.background = background;
+    reader_.emplace(pipeline::open_background(scene, options_));
+    clip_ = clip;
   }
-  const image::Picture& picture = read ? read->picture : known->second->second->picture;
-  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+  if (const auto found = made_.find({k, width}); found != made_.end()) return found->second;
+  const auto frame = reader_->at(static_cast<double>(k) / reader_->info().frame_rate.value());
+  if (!frame) throw Error(fmt::format("has no frame {}", k), {background.video.string()});
+  const image::Rgb8 rgb = image::rgb8_from_picture(frame->picture);
   const int height = std::max(
       1, static_cast<int>(std::lround(static_cast<double>(rgb.height) * width / rgb.width)));
-  if (thumbnails_.size() >= kMostThumbnails) thumbnails_.clear();
-  return thumbnails_[{k, width}] = jpeg_of(drawing::resized(rgb, width, height, cv::INTER_AREA));
+  if (made_.size() >= kMostThumbnails) made_.clear();
+  return made_[{k, width}] = jpeg_of(drawing::resized(rgb, width, height, cv::INTER_AREA));
 }
 
 }  // namespace airtruth::session

@@ -18,6 +18,9 @@
 
 namespace airtruth::session {
 
+// The text of a background: the same for two exactly where their clips are.
+std::string text_of(const scene::Background& background);
+
 // The frames of a scene's clip in any order, with the indices and times that a reader from the
 // clip's beginning gives them. Decoded frames are kept in bounded memory. Of one thread.
 class Clip {
@@ -38,9 +41,6 @@ class Clip {
   // The time of a frame that was read, and whether it begins a shot.
   double time_s(std::int64_t k) const { return seen_.at(k).time_s; }
   bool begins_shot(std::int64_t k) const { return seen_.at(k).begins_shot; }
-
-  // A small picture of about frame k, as JPEG.
-  std::string thumbnail(std::int64_t k, int width);
 
  private:
   struct Seen {
@@ -69,8 +69,21 @@ class Clip {
   std::map<std::int64_t, Seen> seen_;
   std::map<std::int64_t, insertion::Glance> glances_;
   image::ToneCurve tone_;
-  std::optional<video::Reader> small_;  // for thumbnails
-  std::map<std::pair<std::int64_t, int>, std::string> thumbnails_;
+};
+
+// Small pictures of a clip's frames, read beside it. Of one thread.
+class Thumbnails {
+ public:
+  explicit Thumbnails(pipeline::Options options) : options_(std::move(options)) {}
+
+  // Of about frame k, as JPEG. Throws Error where the clip cannot be read there.
+  std::string at(const scene::Background& background, std::int64_t k, int width);
+
+ private:
+  pipeline::Options options_;
+  std::string clip_;  // the background that `reader_` reads, as text
+  std::optional<video::Reader> reader_;
+  std::map<std::pair<std::int64_t, int>, std::string> made_;
 };
 
 }  // namespace airtruth::session

@@ -149,13 +149,15 @@ class Session::Impl {
       : document_(std::move(document)),
         options_(with_inputs(std::move(options))),
         ways_(std::move(ways)),
-        stage_(quiet(options_.pipeline)) {
+        stage_(quiet(options_.pipeline)),
+        thumbnails_(quiet(options_.pipeline)) {
     publish();
   }
   ~Impl() {
     stop_.request_stop();
     for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->cancel();
     worker_.end();
+    beside_.end();
     for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->stop();
   }
 
@@ -179,7 +181,7 @@ class Session::Impl {
 
   void thumbnail(std::int64_t frame, int width, Done done) {
     small(std::move(done), [this, frame, width]() -> std::optional<std::string> {
-      return stage_.clip(snapshot()->background).thumbnail(frame, width);
+      return thumbnails_.at(snapshot()->background, frame, width);
     });
   }
 
@@ -248,9 +250,9 @@ class Session::Impl {
       case Act::kFrame:
         return show(client, std::move(request));
       case Act::kPlan:
-        return on_worker(client, request.id, Urgency::kPlan, [this] { return plan(); });
+        return on_worker(worker_, client, request.id, [this] { return plan(); });
       case Act::kAircraft:
-        return on_worker(client, request.id, Urgency::kList, [this, word = request.search] {
+        return on_worker(beside_, client, request.id, [this, word = request.search] {
           return gallery_.groups(word);
         });
       case Act::kCalibrate:
@@ -292,16 +294,16 @@ class Session::Impl {
 
   // Answers with what `act` gives on the worker's thread.
   template <typename Do>
-  void on_worker(Client client, std::int64_t id, Urgency urgency, Do act) {
-    worker_.add({urgency,
-                 "",
-                 [this, client, id, act] {
-                   std::string text;
-                   try_to([&] { text = ok(id, act()); },
-                          [&](const std::string& line) { text = error(id, line); });
-                   reply(client, std::move(text));
-                 },
-                 [this, client, id] { reply(client, error(id, "too many requests wait")); }});
+  void on_worker(Worker& worker, Client client, std::int64_t id, Do act) {
+    worker.add({Urgency::kPlan,
+                "",
+                [this, client, id, act] {
+                  std::string text;
+                  try_to([&] { text = ok(id, act()); },
+                         [&](const std::string& line) { text = error(id, line); });
+                  reply(client, std::move(text));
+                },
+                [this, client, id] { reply(client, error(id, "too many requests wait")); }});
   }
   void reply(Client client, std::string text) {
     ways_.post([this, client, text = std::move(text)] { ways_.send(client, text); });
@@ -309,7 +311,7 @@ class Session::Impl {
 
   template <typename Do>
   void small(Done done, Do act) {
-    worker_.add({Urgency::kSmallPicture,
+    beside_.add({Urgency::kLater,
                  "",
                  [this, done, act] {
                    std::optional<std::string> jpeg;
@@ -381,7 +383,7 @@ class Session::Impl {
     Json boxes = Json::array();
     if (request.aircraft && problem.empty()) {
       made = stage_.picture(
-          request.frame, exact, [this] { return worker_.is_wanted_for(Urgency::kSmallPicture); });
+          request.frame, exact, [this] { return worker_.is_wanted_for(Urgency::kPlan); });
       if (!made) return again_later(client, request);
       boxes = boxes_of(stage_, made->moment, shot->tables);
     }
@@ -598,15 +600,18 @@ class Session::Impl {
   std::string camera_state_ = "stated";
   // Of the worker's thread.
   Stage stage_;
-  Gallery gallery_;
   Measured measured_;
   std::string motion_wanted_;
   std::string camera_wanted_;
   std::map<Client, Shown> shown_;
+  // Of the thread beside it, which pictures of the scene do not wait for.
+  Gallery gallery_;
+  Thumbnails thumbnails_;
   Job motion_job_;
   Job camera_job_;
   Job asked_job_;
   Worker worker_;
+  Worker beside_;
 };
 
 Session::Session(std::unique_ptr<document::Document> document, Options options, Ways ways)

@@ -23,12 +23,6 @@ constexpr std::int64_t kLightFrames = 240;
 constexpr std::int64_t kFollowed = 8;
 constexpr std::size_t kMostLights = 64;
 
-std::string clip_key_of(const scene::Background& background) {
-  scene::Scene part;
-  part.background = background;
-  return scene::toml_from_scene(part);
-}
-
 std::string attitude_key_of(const scene::Scene& scene) {
   return key_of(scene, [&](scene::Scene& part) {
     part.lens = scene.lens;
@@ -55,7 +49,7 @@ Stage::Stage(pipeline::Options options) : options_(std::move(options)) {
 Stage::~Stage() = default;
 
 Clip& Stage::clip(const scene::Background& background) {
-  const std::string key = clip_key_of(background);
+  const std::string key = text_of(background);
   if (!clip_ || key != clip_key_) {
     clip_.reset();
     clip_.emplace(background, options_);

@@ -15,7 +15,7 @@ namespace airtruth::session {
 class Worker {
  public:
   // What the page waits for, before what it would like to have.
-  enum class Urgency { kFrame, kPlan, kList, kSmallPicture, kLater };
+  enum class Urgency { kFrame, kPlan, kLater };
 
   Worker();
   ~Worker() { end(); }
