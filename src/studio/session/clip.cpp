@@ -21,8 +21,8 @@ namespace {
 constexpr std::size_t kMostBytes = std::size_t{400} << 20;
 // Farther ahead a new reader from the key frame before is faster: the usual distance of key frames.
 constexpr std::int64_t kReadOn = 100;
-// A step back is often one of several.
-constexpr std::int64_t kReadBefore = 12;
+// A step back is one of several. What lies before is decoded from the key frame on in any case.
+constexpr std::int64_t kReadBefore = 60;
 // Glances, each of some 20 kB, and thumbnails that are kept.
 constexpr std::size_t kMostGlances = 4000;
 constexpr std::size_t kMostThumbnails = 1000;
@@ -89,7 +89,8 @@ std::shared_ptr<const video::Frame> Clip::frame(std::int64_t k) {
 
 // A reader that begins in the middle does not know the cuts of its first frames.
 void Clip::seek(std::int64_t k) {
-  const std::int64_t wanted = k < next_ ? k - kReadBefore : k;
+  const bool steps_back = places_.count(k + 1) > 0;
+  const std::int64_t wanted = steps_back ? k - kReadBefore : k;
   const std::int64_t first = std::max<std::int64_t>(0, wanted - image::kCutNeighbours - 1);
   reader_.emplace(open(first));
   next_ = first;
