@@ -159,7 +159,7 @@ class Page:
         self.rest()
 
     def boxes(self):
-        return self.browser.run(f"{STORE}.boxes.boxes")
+        return self.browser.run(f"{STORE}.picture.boxes")
 
 
 def flight(airtruth, folder, frames=FRAMES, width=WIDTH, height=HEIGHT):

@@ -25,6 +25,9 @@ using Json = nlohmann::ordered_json;
 // Points of a drawn path, at most: one for every few pixels of the page.
 constexpr std::int64_t kMostPoints = 300;
 
+// Of a line over one frame.
+constexpr std::int64_t kMostLinePoints = 150;
+
 // Of numbers that are drawn: shorter, and as exact as a screen can show.
 double rounded(double value, double step) { return std::round(value / step) * step; }
 double hundredths(double value) { return rounded(value, 0.01); }
@@ -351,6 +354,39 @@ Json boxes_of(const Stage& stage,
               (moment.states[i]->position_in_world - moment.camera.position_in_world).norm())}});
   }
   return result;
+}
+
+Json lines_over(const Stage& stage,
+                std::int64_t frame,
+                const std::vector<document::TablePlace>& tables) {
+  const setup::World& world = stage.world();
+  const double time_s = stage.time_s(frame);
+  const auto camera = world.camera.at(time_s);
+  if (!camera) return Json::array();
+  const projection::Sight sight = setup::sight_of(
+      world.lens, world.shutter, world.camera, *camera, time_s, stage.shake_at(frame));
+  const std::int64_t count = stage.frame_count();
+  const std::int64_t step = std::max<std::int64_t>(1, (count + kMostLinePoints - 1) / kMostLinePoints);
+  Json lines = Json::array();
+  for (const preview::Party& party : preview::parties_of(stage.scene())) {
+    Json points = Json::array();
+    for (std::int64_t k = 0;; k = std::min(count - 1, k + step)) {
+      const auto own = world.camera.at(stage.time_s(k));
+      const auto other = world.actors[party.middle].path.at(stage.time_s(k));
+      if (own && other) {
+        const auto pixel = projection::pixel_from_world(
+            sight, camera->position_in_world + other->position_in_world - own->position_in_world);
+        points.push_back({k,
+                          pixel ? Json(rounded(pixel->x(), 0.1)) : Json(),
+                          pixel ? Json(rounded(pixel->y(), 0.1)) : Json()});
+      }
+      if (k >= count - 1) break;
+    }
+    lines.push_back(
+        {{"table", table_at(tables, stage.scene().intruders[party.middle].where.line)},
+         {"points", points}});
+  }
+  return lines;
 }
 
 }  // namespace airtruth::session

@@ -378,7 +378,7 @@ class Session::Impl {
     const auto shot = snapshot();
     Clip& clip = stage_.clip(shot->background);
     Json header = {{"id", request.id}, {"frame", request.frame}, {"revision", shot->revision}};
-    const std::string problem = request.aircraft ? set_up(*shot) : "";
+    const std::string problem = set_up(*shot);
     std::optional<Stage::Picture> made;
     Json boxes = Json::array();
     if (request.aircraft && problem.empty()) {
@@ -395,6 +395,8 @@ class Session::Impl {
     header["scale"] = request.scale;
     header["exact"] = made ? made->exact : false;
     header["boxes"] = boxes;
+    header["lines"] =
+        problem.empty() ? lines_over(stage_, request.frame, shot->tables) : Json::array();
     header["problem"] = problem.empty() ? Json() : Json(problem);
     send_picture(client, framed(header, jpeg));
     if (made && !made->exact && stage_.is_complete()) again_later(client, request);

@@ -94,6 +94,9 @@ export interface MeasuredValue {
   missing: string; // why there is no value
 }
 
+// frame, x, y; without a place where the lens has none
+export type LinePoint = [number, number | null, number | null];
+
 export interface PictureHeader {
   id: number;
   frame: number;
@@ -101,6 +104,8 @@ export interface PictureHeader {
   crop: BoxPx;
   scale: number;
   boxes: ExactBox[];
+  // The paths as the camera of this frame would see them at other times.
+  lines: { table: Path; points: LinePoint[] }[];
   problem: string | null; // why there is nothing in it but the clip
 }
 

@@ -5,7 +5,6 @@ import type { Clip, State, Table, Track } from './contract';
 import { type Edit, Edits } from './edits';
 import { type Flyer, flyersOf, momentsOf, nearer, newFlyer, toMoments, withMoment } from './flyers';
 import { acrossRelative, nedAt, seenAt, turned } from './geometry';
-import { bent, steadied, through } from './steady';
 import { Store } from './store';
 
 type Test = () => void | Promise<void>;
@@ -152,17 +151,6 @@ tests['Between the points of a track, and beyond its ends'] = () => {
   const plan = { frames: [0, 10], own: { ned: [] } } as never;
   same(nedAt(plan, [[0, 0, -100], [10, 20, -110]], 15), [15, 30, -115]);
   same(turned(-90), 270);
-};
-tests['A line without the shake: a parabola stays, a zigzag goes, and the place in the frame shown is on it'] = () => {
-  const parabola = steadied(track((k) => [k * k * 0.05, 3 * k]), 30);
-  near(parabola[75]![0], 75 * 75 * 0.05, 1e-6);
-  const zigzag = track((k) => [5 * k, 300 + (k % 2 ? 6 : -6)]);
-  const line = steadied(zigzag, 30);
-  near(line[75]![1], 300, 1);
-  near(through(zigzag, line, 75, 30)[75]![1], 306, 1e-6);
-  const dragged = bent(zigzag, line, [30, 75, 120], 1, [0, 50]);
-  same([30, 120].map((k) => dragged[k]![1] - line[k]![1]), [0, 0]);
-  near(dragged[75]![1] - line[75]![1], 50, 1e-9);
 };
 tests['What is new is in the clip, and at its pixel in the frame shown'] = () => {
   for (const frame of [0, 60, 149]) {

@@ -46,10 +46,6 @@ export class Pictures {
     this.shown = this.asked = null;
   }
 
-  // Of the frame that is on the canvas.
-  get frame(): number | null {
-    return this.shown?.frame ?? null;
-  }
 
   get isWhole(): boolean {
     return !this.asked && isMet(this.shown, this.wanted);
@@ -64,11 +60,13 @@ export class Pictures {
   // What changed of the frame shown by an edit that was sent just before: the revision that was drawn, or none.
   async change(frame: number): Promise<number | null> {
     const answer = await this.connection.request('frame', { frame, aircraft: true, crop: 'change', scale: 1 });
-    if (!isPicture(answer) || this.shown?.frame !== frame) return null;
+    if (!isPicture(answer)) return null;
+    const { crop, revision } = answer.header;
+    const isWhole = crop[2] >= this.canvas.width && crop[3] >= this.canvas.height;
+    if (this.shown?.frame !== frame && !isWhole) return null;
     await this.draw(answer);
-    if (this.shown?.frame !== frame) return null;
-    this.shown = { ...this.shown, revision: answer.header.revision };
-    return answer.header.revision;
+    this.shown = { frame, revision, aircraft: true, scale: isWhole ? 1 : this.shown?.scale ?? 1 };
+    return revision;
   }
 
   private async ask(): Promise<void> {

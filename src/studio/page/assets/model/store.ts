@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { AircraftGroup, Clip, ExactBox, MeasuredValue, Path, Plan, Rendered, State } from './contract';
+import type { AircraftGroup, Clip, MeasuredValue, Path, PictureHeader, Plan, Rendered, State } from './contract';
 
 // A line for the user; what is said twice is shown once.
 export interface Notice {
@@ -37,7 +37,7 @@ export interface Everything {
   state: State | null;
   plan: Plan | null;
   planProblem: string | null; // why there is no plan of the scene as it is
-  boxes: { frame: number; boxes: ExactBox[] } | null; // of the picture that is shown
+  picture: PictureHeader | null; // of the picture that is shown: its boxes and lines
   pending: number; // edits that the server has not answered
   keepsMine: boolean; // the change on disk was declined
   notices: Notice[];
@@ -74,7 +74,7 @@ const beginning: Everything = {
   state: null,
   plan: null,
   planProblem: null,
-  boxes: null,
+  picture: null,
   pending: 0,
   keepsMine: false,
   notices: [],

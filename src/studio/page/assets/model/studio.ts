@@ -193,7 +193,7 @@ export class Studio {
     const answer = this.connection.request<{ state: State }>('edit', { changes: edit.changes, merge: edit.merge });
     const { moved_ms } = edit;
     const { frame, showsAircraft } = this.store.now;
-    const isShown = moved_ms !== undefined && showsAircraft && frame === this.pictures.frame;
+    const isShown = moved_ms !== undefined && showsAircraft;
     const change = isShown ? this.pictures.change(frame).catch(() => null) : null;
     const { state } = await answer;
     if (change && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({ state });

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Clip, Path, Track } from '../model/contract';
+import type { LinePoint, Path } from '../model/contract';
 import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel } from '../model/flyers';
-import { type Point, round } from '../model/geometry';
-import { bent, steadied, through } from '../model/steady';
+import { type Point, mix, round } from '../model/geometry';
 import type { Studio } from '../model/studio';
 import { distance } from './overlay_layer';
 import { Keyed, attribute, s, text } from './part';
@@ -10,6 +9,12 @@ import { Keyed, attribute, s, text } from './part';
 const HANDLE_PX = 8;
 const PAUSE_MS = 500; // after which turning the wheel on is a new step of undo
 const FAR = 30000; // pixels beyond which a path is not drawn
+
+interface Line {
+  points: LinePoint[];
+  flyer: Flyer;
+  isSelected: boolean;
+}
 
 interface Held {
   moment: Moment;
@@ -23,10 +28,10 @@ interface Held {
 // The paths of all that flies, in the frame's coordinates, and the moments of the selected one as handles.
 export class PathLayer {
   readonly element = s('g', { class: 'paths' });
-  private tracks: Keyed<{ track: Track; flyer: Flyer; isSelected: boolean }, SVGGElement>;
+  private tracks: Keyed<Line, SVGGElement>;
   private handles: Keyed<{ moment: Moment; flyer: Flyer; index: number }, SVGGElement>;
-  private steady = new WeakMap<Track, (Point | null)[]>();
   private held: Held | null = null;
+  private isWheel = false;
   private wheelMerge = { name: '', at: -Infinity };
   private px = 1; // frame pixels of a screen pixel
 
@@ -39,12 +44,12 @@ export class PathLayer {
 
   update(px: number): void {
     this.px = px;
-    const { state, plan, clip, selected } = this.studio.store.now;
+    const { state, clip, selected } = this.studio.store.now;
     if (!state || !clip) return;
     const flyers = flyersOf(state.scene);
     this.tracks.show(flyers.flatMap((flyer) => {
-      const track = trackOf(plan, flyer.path);
-      return track && flyer.statement !== 'lens' ? [{ key: JSON.stringify(flyer.path), item: { track, flyer, isSelected: isSame(selected, flyer.path) } }] : [];
+      const points = this.pointsOf(flyer.path);
+      return points.length ? [{ key: JSON.stringify(flyer.path), item: { points, flyer, isSelected: isSame(selected, flyer.path) } }] : [];
     }));
     const flyer = flyers.find((one) => isSame(one.path, selected));
     const moments = flyer?.statement === 'moments' ? momentsOf(flyer, clip) : [];
@@ -76,7 +81,9 @@ export class PathLayer {
       handle.setPointerCapture(event.pointerId);
       handle.focus();
       const at = this.pixelAt(event);
-      this.held = { moment, flyer, merge: this.studio.merge('drag'), offset: [moment.pixel[0] - at[0], moment.pixel[1] - at[1]], last: moment.pixel, isMoved: false };
+      // In another frame the camera looks elsewhere: then the handle comes to the pointer.
+      const isThere = moment.frame === this.studio.store.now.frame;
+      this.held = { moment, flyer, merge: this.studio.merge('drag'), offset: isThere ? [moment.pixel[0] - at[0], moment.pixel[1] - at[1]] : [0, 0], last: moment.pixel, isMoved: false };
       this.studio.store.put({ moment: index, playing: false });
       this.studio.show(moment.frame);
       this.studio.dragging(true);
@@ -107,8 +114,12 @@ export class PathLayer {
   // Whether the wheel turned above a handle, which then becomes nearer or farther.
   wheel(event: WheelEvent, factor: number): boolean {
     const handle = (event.target as Element).closest<SVGGElement>('.handle');
-    if (!handle) return false;
-    const index = Number(handle.dataset.index);
+    const { moment } = this.studio.store.now;
+    // The handle may have left the pointer, as another frame came with the first turn.
+    const isGoingOn = moment !== null && this.isWheel && event.timeStamp - this.wheelMerge.at < PAUSE_MS;
+    this.isWheel = isGoingOn || handle !== null;
+    if (!this.isWheel) return false;
+    const index = isGoingOn ? moment : Number(handle!.dataset.index);
     if (this.studio.store.now.moment !== index) this.studio.store.put({ moment: index });
     this.size(index, factor, event.timeStamp);
     return true;
@@ -172,30 +183,20 @@ export class PathLayer {
     return s('g', { 'data-path': key }, s('path', { class: 'under' }), s('path', { class: 'beyond' }), s('path', { class: 'line' }), s('path', { class: 'grip' }), s('path', { class: 'seconds' }));
   }
 
-  private renewTrack(element: SVGGElement, { track, flyer, isSelected }: { track: Track; flyer: Flyer; isSelected: boolean }): void {
+  private renewTrack(element: SVGGElement, { points, flyer, isSelected }: Line): void {
     attribute(element, 'class', `track colour-${flyer.colour}${isSelected ? ' selected' : ''}`);
-    const { clip, frame } = this.studio.store.now;
+    const { clip } = this.studio.store.now;
     if (!clip) return;
-    const line = this.dragged(flyer, track, clip, through(track, this.steadyOf(track, clip.rate_hz), frame, clip.rate_hz));
-    const all = pathData(track, line, () => true);
-    const seen = pathData(track, line, (visible) => visible);
+    const isIn = ([x, y]: Point) => x >= 0 && y >= 0 && x <= clip.width && y <= clip.height;
+    const all = pathData(points, () => true);
+    const seen = pathData(points, isIn);
     for (const [k, data] of [all, all, seen, all].entries()) attribute(element.children[k], 'd', data);
-    attribute(element.children[4], 'd', secondsOf(track, line, clip.rate_hz, 2.2 * this.px));
+    attribute(element.children[4], 'd', secondsOf(points, isIn, clip.rate_hz, 2.2 * this.px));
   }
 
-  private dragged(flyer: Flyer, track: Track, clip: Clip, line: (Point | null)[]): (Point | null)[] {
-    const { draft } = this.studio.store.now;
-    const index = draft ? track.handles.findIndex((one) => isSame(one.path, draft.path)) : -1;
-    if (!draft || index < 0) return line;
-    const [from, to] = [track.handles[index].pixel, draft.pixel];
-    const frames = momentsOf(flyer, clip).map((moment) => moment.frame);
-    return bent(track, line, frames, index, [to[0] - from[0], to[1] - from[1]]);
-  }
-
-  private steadyOf(track: Track, rate_hz: number): (Point | null)[] {
-    const known = this.steady.get(track) ?? steadied(track, rate_hz);
-    this.steady.set(track, known);
-    return known;
+  // As the camera of the picture that is shown would see it.
+  private pointsOf(path: Path): LinePoint[] {
+    return this.studio.store.now.picture?.lines.find((one) => isSame(one.table, path))?.points ?? [];
   }
 
   private makeHandle(): SVGGElement {
@@ -216,7 +217,8 @@ export class PathLayer {
 
   private renewHandle(element: SVGGElement, { moment, flyer, index }: { moment: Moment; flyer: Flyer; index: number }): void {
     const { draft, frame, moment: chosen, plan } = this.studio.store.now;
-    const [x, y] = draft && isSame(draft.path, moment.path) ? draft.pixel : moment.pixel;
+    const there = moment.frame === frame ? null : placeOn(this.pointsOf(flyer.path), moment.frame);
+    const [x, y] = draft && isSame(draft.path, moment.path) ? draft.pixel : there ?? moment.pixel;
     attribute(element, 'class', `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}`);
     attribute(element, 'data-index', index);
     const { px } = this;
@@ -232,31 +234,41 @@ export class PathLayer {
     text(label, `${round(moment.time_s, 2)} s`);
     const known = trackOf(plan, flyer.path)?.handles[index];
     const size = [known?.range_m && distance(known.range_m), known?.width_px && `${round(known.width_px, 1)} px wide`].filter(Boolean).join(', ');
-    attribute(element, 'aria-label', `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(x, 1)}, ${round(y, 1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
+    attribute(element, 'aria-label', `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(moment.pixel[0], 1)}, ${round(moment.pixel[1], 1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
   }
 }
 
-// The points of a track as a line that is broken where they are too far away or not as asked.
-function pathData(track: Track, line: (Point | null)[], isDrawn: (isVisible: boolean) => boolean): string {
+// A line that is broken where it has no place, is too far away, or is not as asked.
+function pathData(points: LinePoint[], isDrawn: (point: Point) => boolean): string {
   let data = '';
   let isDown = false;
-  line.forEach((point, k) => {
-    const isIn = point !== null && Math.abs(point[0]) < FAR && Math.abs(point[1]) < FAR && isDrawn(track.points[k][5]);
-    if (isIn) data += `${isDown ? 'L' : 'M'}${round(point[0], 1)},${round(point[1], 1)}`;
+  for (const [, x, y] of points) {
+    const isIn = x !== null && y !== null && Math.abs(x) < FAR && Math.abs(y) < FAR && isDrawn([x, y]);
+    if (isIn) data += `${isDown ? 'L' : 'M'}${x},${y}`;
     isDown = isIn;
-  });
+  }
   return data;
 }
 
+// Where a line is at a frame.
+function placeOn(points: LinePoint[], frame: number): Point | null {
+  const k = points.findIndex((point) => point[0] >= frame);
+  if (k < 0) return null;
+  const [a, b] = [points[Math.max(0, k - 1)], points[k]];
+  if (a[1] === null || a[2] === null || b[1] === null || b[2] === null || a[0] > frame) return null;
+  const share = b[0] > a[0] ? (frame - a[0]) / (b[0] - a[0]) : 0;
+  return [mix(a[1], b[1], share), mix(a[2], b[2], share)];
+}
+
 // A dot at every whole second in view.
-function secondsOf(track: Track, line: (Point | null)[], rate_hz: number, radius: number): string {
+function secondsOf(points: LinePoint[], isDrawn: (point: Point) => boolean, rate_hz: number, radius: number): string {
   let data = '';
   let last = -1;
-  line.forEach((point, k) => {
-    const second = Math.floor(track.points[k][0] / rate_hz + 1e-6);
-    if (point && second !== last && track.points[k][5])
-      data += `M${round(point[0] - radius, 2)},${round(point[1], 2)}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
+  for (const [frame, x, y] of points) {
+    const second = Math.floor(frame / rate_hz + 1e-6);
+    if (x !== null && y !== null && second !== last && isDrawn([x, y]))
+      data += `M${round(x - radius, 2)},${y}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
     last = second;
-  });
+  }
   return data;
 }

@@ -14,7 +14,7 @@ const PIXELS_FROM_SCALE = 3; // frame pixels are shown as squares from here on
 // The frame on a canvas, and above it drawings in the frame's own coordinates. The wheel zooms about the pointer, the background is
 // dragged, two fingers do both.
 export class PictureView extends Part {
-  protected readonly watches: Member[] = ['clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'boxes', 'showsBoxes', 'showsHorizon', 'showsMotion', 'connected'];
+  protected readonly watches: Member[] = ['clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'picture', 'showsBoxes', 'showsHorizon', 'showsMotion', 'connected'];
   private canvas = h('canvas', { role: 'img', 'aria-label': 'The frame with the aircraft in it' });
   private svg = s('svg', { class: 'over', role: 'group', 'aria-label': 'Paths over the frame' });
   private overlay = new OverlayLayer();
@@ -27,7 +27,7 @@ export class PictureView extends Part {
     this.append(this.canvas, this.svg);
     this.studio.pictures.onDrawn = (header) => {
       this.draw(header.crop);
-      this.studio.store.put({ boxes: header });
+      this.studio.store.put({ picture: header });
     };
     new ResizeObserver(() => this.resized()).observe(this);
     this.addEventListener('wheel', (event) => this.wheel(event), { passive: false });

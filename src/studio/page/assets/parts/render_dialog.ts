@@ -37,6 +37,9 @@ export class RenderDialog extends DialogPart {
     this.stage.addEventListener('pointerdown', (event) => this.swipeTo(event));
     this.rendered.addEventListener('timeupdate', () => this.follow());
     this.rendered.addEventListener('ended', () => this.follow());
+    // Numbered pictures are no video, and not every container is one that browsers play.
+    this.original.addEventListener('error', () => { this.original.hidden = true; });
+    this.rendered.addEventListener('error', () => { this.film.hidden = true; text(this.where, `The film is in ${this.shown?.folder ?? ''}; browsers play mp4 ([output] video), not this kind.`); });
     this.rendered.addEventListener('loadedmetadata', () => this.shape());
     this.rendered.addEventListener('seeked', () => this.showBoxes(this.rendered.currentTime));
     this.film.append(this.stage, h('div', { class: 'actions' }, this.play, this.time, this.showsBoxes.element));
@@ -68,6 +71,7 @@ export class RenderDialog extends DialogPart {
     const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     // A number of its own makes the browser ask again after another render.
     const address = (which: string) => `/film?token=${token}&which=${which}&of=${Date.now()}`;
+    this.original.hidden = false;
     this.original.src = address('original');
     this.rendered.src = address('rendered');
     this.partFilms();
