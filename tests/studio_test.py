@@ -460,10 +460,9 @@ def test_monkey(airtruth, browser, root, seconds):
     page.rest()
     expect("done again", page.state()["text"], text)
     grown = browser.memory()
-    errors = [error for error in browser.errors if "WebSocket" not in error]
-    expect("console", errors, [])
     print(f"monkey: {steps} steps in {seconds:.0f} s, {reloads} reloads, {undo} steps of undo; heap {heap >> 20} -> {grown[0] >> 20} MiB, "
           f"{nodes:.0f} -> {grown[1]:.0f} nodes, server {resident >> 20} -> {server.memory() >> 20} MiB")
+    expect("console", [error for error in browser.errors if "WebSocket" not in error], [])
     if grown[0] > heap + HEAP_GROWTH or server.memory() > resident + SERVER_GROWTH:
         raise AssertionError("memory grows")
     server.end()

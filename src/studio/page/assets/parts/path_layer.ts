@@ -78,11 +78,11 @@ export class PathLayer {
       const index = Number(handle.dataset.index);
       const moment = flyer && momentsOf(flyer, clip)[index];
       if (!flyer || !moment) return false;
-      handle.setPointerCapture(event.pointerId);
-      handle.focus();
       const at = this.pixelAt(event);
       // In another frame the camera looks elsewhere: then the handle comes to the pointer.
       const isThere = moment.frame === this.studio.store.now.frame;
+      handle.setPointerCapture(event.pointerId);
+      handle.focus();
       this.held = { moment, flyer, merge: this.studio.merge('drag'), offset: isThere ? [moment.pixel[0] - at[0], moment.pixel[1] - at[1]] : [0, 0], last: moment.pixel, isMoved: false };
       this.studio.store.put({ moment: index, playing: false });
       this.studio.show(moment.frame);

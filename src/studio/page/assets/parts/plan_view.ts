@@ -197,8 +197,11 @@ export class PlanView extends Part {
     if (!isSame(path, this.now.selected)) this.studio.select(path);
     if (!kind) return;
     if (kind === 'moment') {
+      // What is drawn may be older than the scene.
+      const moment = this.now.clip && momentsOf(flyer, this.now.clip)[index];
+      if (!moment) return;
       this.studio.store.put({ moment: index });
-      if (this.now.clip) this.studio.show(momentsOf(flyer, this.now.clip)[index].frame);
+      this.studio.show(moment.frame);
     }
     this.drag = { kind, flyer, index, merge: this.studio.merge(kind) };
     this.svg.setPointerCapture(event.pointerId);
