@@ -366,7 +366,8 @@ Json lines_over(const Stage& stage,
   const projection::Sight sight = setup::sight_of(
       world.lens, world.shutter, world.camera, *camera, time_s, stage.shake_at(frame));
   const std::int64_t count = stage.frame_count();
-  const std::int64_t step = std::max<std::int64_t>(1, (count + kMostLinePoints - 1) / kMostLinePoints);
+  const std::int64_t step =
+      std::max<std::int64_t>(1, (count + kMostLinePoints - 1) / kMostLinePoints);
   Json lines = Json::array();
   for (const preview::Party& party : preview::parties_of(stage.scene())) {
     Json points = Json::array();
@@ -382,9 +383,8 @@ Json lines_over(const Stage& stage,
       }
       if (k >= count - 1) break;
     }
-    lines.push_back(
-        {{"table", table_at(tables, stage.scene().intruders[party.middle].where.line)},
-         {"points", points}});
+    lines.push_back({{"table", table_at(tables, stage.scene().intruders[party.middle].where.line)},
+                     {"points", points}});
   }
   return lines;
 }

@@ -24,8 +24,8 @@ nlohmann::ordered_json boxes_of(const Stage& stage,
                                 const std::vector<document::TablePlace>& tables);
 
 // The paths over one frame: where each of them would be seen at other times, had the camera its
-// attitude of that frame. Without the camera's turns and shake between the frames they are the lines
-// that fly. {"table", "points": [[frame, x, y]]}, without a place where the lens has none.
+// attitude of that frame. Without the camera's turns and shake between the frames they are the
+// lines that fly. {"table", "points": [[frame, x, y]]}, without a place where the lens has none.
 nlohmann::ordered_json lines_over(const Stage& stage,
                                   std::int64_t frame,
                                   const std::vector<document::TablePlace>& tables);

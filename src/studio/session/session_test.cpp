@@ -184,6 +184,22 @@ TEST_F(OfASession, OfAChangeThePartThatChangedIsSent) {
             Json({10, 10, 51, 41}));
 }
 
+TEST_F(OfASession, TheLineOverAFrameGoesThroughThePlaceInThatFrame) {
+  wait_for_motion();
+  const Json points = ask("plan")["ok"]["tracks"][0]["points"];
+  ASSERT_EQ(points.size(), 24u);
+  for (const int k : {0, 7, 23})
+    for (const bool aircraft : {true, false}) {
+      const Json line = frame({{"frame", k}, {"aircraft", aircraft}}).header["lines"][0];
+      EXPECT_EQ(line["table"], Json({"intruder", 0}));
+      ASSERT_EQ(line["points"].size(), 24u);
+      const auto at = static_cast<std::size_t>(k);
+      EXPECT_EQ(line["points"][at][0], k);
+      EXPECT_NEAR(line["points"][at][1].get<double>(), points[at][1].get<double>(), 0.1);
+      EXPECT_NEAR(line["points"][at][2].get<double>(), points[at][2].get<double>(), 0.1);
+    }
+}
+
 TEST_F(OfASession, TheNewestFrameReplacesThoseThatWait) {
   frame({{"frame", 0}});
   std::vector<std::int64_t> ids;
