@@ -22,7 +22,7 @@ const KEYS: [string, string][] = [
   ['+ − on a handle', 'nearer or farther'],
   ['N', 'add aircraft, birds, drones'],
   ['1 2 3 4', 'flyers, light, camera, text'],
-  ['+ − F', 'zoom, and the whole frame'],
+  ['+ − F, W A S D', 'zoom, the whole frame, move the picture'],
   ['Ctrl+Z, Ctrl+Shift+Z', 'undo, redo'],
   ['Ctrl+S', 'save'],
   ['R', 'render'],

@@ -44,7 +44,7 @@ export class OverlayLayer {
       const count = tables.filter((one) => one === tables[k]).length;
       const [w, h] = [exact.box[2], exact.box[3]];
       const mark = trackOf(now.plan, exact.table)?.checks.length ? '⚠ ' : '';
-      const words = mark + (count > 1 ? `${flyer?.id ?? exact.id}  ${count} of them` : exact.id);
+      const words = mark + (count > 1 ? `${flyer?.id ?? exact.id}  ${count} in view` : exact.id);
       const label = !isFirst ? '' : isSelected ? `${words}  ${distance(exact.range_m)}${count > 1 ? '' : `  ${round(w, 1)} × ${round(h, 1)} px`}` : words;
       return { key: exact.id, item: { exact, colour: flyer?.colour ?? 0, isSelected, label } };
     }));

@@ -8,6 +8,7 @@ import { Part, attribute, h, s, ui } from './part';
 import { PathLayer } from './path_layer';
 
 const MOST_SCALE = 40;
+const PAN_SHARE = 0.1;
 const WHEEL_RATE = 0.0015;
 const PIXELS_FROM_SCALE = 3; // frame pixels are shown as squares from here on
 
@@ -58,6 +59,14 @@ export class PictureView extends Part {
     const box = this.getBoundingClientRect();
     const [px, py] = about ?? [box.width / 2, box.height / 2];
     this.studio.store.put({ look: { scale, x: look.x + px / look.scale - px / scale, y: look.y + py / look.scale - py / scale } });
+  }
+
+  // By a part of what is shown.
+  pan(right: number, down: number): void {
+    if (!this.now.clip) return;
+    const { x, y, scale } = this.look;
+    const step = (PAN_SHARE * Math.min(this.clientWidth, this.clientHeight)) / scale;
+    this.studio.store.put({ look: { scale, x: x + right * step, y: y + down * step } });
   }
 
   private get fitted(): Look {
