@@ -290,10 +290,10 @@ export class Studio {
 
   private async opened(): Promise<void> {
     try {
-      const { file, clip, state } = await this.connection.request<{ file: string; clip: Clip; state: State }>('open');
-      this.pictures.begin(clip);
+      const { file, clip, state } = await this.connection.request<{ file: string; clip: Clip | null; state: State }>('open');
+      if (clip) this.pictures.begin(clip);
       this.pictures.forget();
-      this.store.put({ connected: true, everConnected: true, file, clip, state, frame: clamp(this.store.now.frame, 0, clip.frames - 1) });
+      this.store.put({ connected: true, everConnected: true, file, clip, state, frame: clamp(this.store.now.frame, 0, (clip?.frames ?? 1) - 1) });
       if (this.store.now.selected && !flyerAt(state, this.store.now.selected)) this.store.put({ selected: null, moment: null });
       this.edits.resume();
       this.takeUnsent(file);
@@ -325,6 +325,8 @@ export class Studio {
     } else if (event.event === 'warning') {
       this.store.say('warning', event.line);
     } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
+      // A text that can be used at last has a clip.
+      if (!this.store.now.clip && !event.state.problem) void this.opened();
       const isNew = event.state.revision !== this.store.now.state?.revision || event.state.text !== this.store.now.state?.text;
       this.store.put({ state: event.state });
       if (isNew) this.settle();
