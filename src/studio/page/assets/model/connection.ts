@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Picture, ServerEvent } from './contract';
+import type {Picture, ServerEvent} from './contract';
 
 // The server could not do what was asked; the message is its line.
 export class Refused extends Error {}
@@ -22,7 +22,7 @@ export class Connection {
   // A finer picture than the one that was the answer.
   onPicture: (picture: Picture) => void = () => {};
 
-  private socket: WebSocket | null = null;
+  private socket: WebSocket|null = null;
   private waiting = new Map<number, Waiting>();
   private nextId = 1;
   private retryMs = FIRST_RETRY_MS;
@@ -49,8 +49,8 @@ export class Connection {
         reject(new Lost('no connection'));
         return;
       }
-      this.waiting.set(id, { resolve: resolve as (answer: unknown) => void, reject });
-      this.socket.send(JSON.stringify({ id, do: what, ...more }));
+      this.waiting.set(id, {resolve: resolve as (answer: unknown) => void, reject});
+      this.socket.send(JSON.stringify({id, do: what, ...more}));
     });
   }
 
@@ -64,15 +64,18 @@ export class Connection {
     this.retryMs = Math.min(LAST_RETRY_MS, this.retryMs * 1.5);
   }
 
-  private take(data: string | ArrayBuffer): void {
+  private take(data: string|ArrayBuffer): void {
     if (typeof data !== 'string') {
       const picture = pictureOf(data);
       if (!this.settle(picture.header.id, (one) => one.resolve(picture))) this.onPicture(picture);
       return;
     }
     const message = JSON.parse(data);
-    if (message.event) this.onEvent(message as ServerEvent);
-    else this.settle(message.id, (one) => ('error' in message ? one.reject(new Refused(message.error)) : one.resolve(message.ok)));
+    if (message.event)
+      this.onEvent(message as ServerEvent);
+    else
+      this.settle(
+          message.id, (one) => ('error' in message ? one.reject(new Refused(message.error)) : one.resolve(message.ok)));
   }
 
   private settle(id: number, how: (one: Waiting) => void): boolean {
@@ -87,5 +90,5 @@ export class Connection {
 function pictureOf(data: ArrayBuffer): Picture {
   const length = new DataView(data).getUint32(0, true);
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
-  return { header, jpeg: new Blob([new Uint8Array(data, 4 + length)], { type: 'image/jpeg' }) };
+  return {header, jpeg: new Blob([new Uint8Array(data, 4 + length)], {type: 'image/jpeg'})};
 }

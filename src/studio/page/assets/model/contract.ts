@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the server and the page say to each other (src/studio/server). Pixels are the frame's own, from its top-left corner; times are
-// seconds from the first frame that the scene uses; places are north-east-down in metres.
+// What the server and the page say to each other (src/studio/server). Pixels are the frame's own, from its top-left
+// corner; times are seconds from the first frame that the scene uses; places are north-east-down in metres.
 
-export type Path = (string | number)[];
-export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
-export type Table = { [key: string]: Json };
+export type Path = (string|number)[];
+export type Json = null|boolean|number|string|Json[]|{[key: string]: Json};
+export type Table = {
+  [key: string]: Json
+};
 
-export type Change = { set: Path; to: Json } | { remove: Path } | { insert: Path; at: number | null; table: Table };
+export type Change = {
+  set: Path; to: Json
+}|{remove: Path}|{
+  insert: Path;
+  at: number|null;
+  table: Table
+};
 
 export interface Clip {
   width: number;
@@ -21,7 +29,7 @@ export interface State {
   revision: number;
   text: string;
   scene: Table;
-  problem: string | null;
+  problem: string|null;
   saved: boolean;
   undo: number;
   redo: number;
@@ -32,8 +40,8 @@ export interface Handle {
   path: Path;
   frame: number;
   pixel: [number, number];
-  range_m: number | null;
-  width_px: number | null;
+  range_m: number|null;
+  width_px: number|null;
 }
 
 export interface Approach {
@@ -44,7 +52,8 @@ export interface Approach {
   distance_m: number;
 }
 
-// frame, x, y, range_m, width_px, visible; without a place where the lens has none, and without a width where there is no box
+// frame, x, y, range_m, width_px, visible; without a place where the lens has none, and without a width where there is
+// no box
 export type TrackPoint = [number, number | null, number | null, number, number | null, boolean];
 export type Ned = [number, number, number];
 
@@ -52,12 +61,12 @@ export interface Track {
   table: Path;
   id: string;
   points: TrackPoint[];
-  ned: (Ned | null)[];
+  ned: (Ned|null)[];
   handles: Handle[];
-  cpa: Approach | null;
+  cpa: Approach|null;
   checks: string[];
-  approach: string; // the command line's words
-  violations: { volume: string; begin_s: number; end_s: number }[];
+  approach: string;  // the command line's words
+  violations: {volume: string; begin_s: number; end_s: number}[];
 }
 
 export interface Volume {
@@ -69,7 +78,7 @@ export interface Volume {
 export interface Plan {
   revision: number;
   frames: number[];
-  own: { ned: Ned[]; heading_deg: number; attitude: string };
+  own: {ned: Ned[]; heading_deg: number; attitude: string};
   horizontal_fov_deg: number;
   tracks: Track[];
   horizon: [number, [number, number, number, number]][];
@@ -79,11 +88,11 @@ export interface Plan {
 
 export interface AircraftGroup {
   name: string;
-  kind: 'aircraft' | 'bird' | 'multirotor' | 'balloon';
-  type: string; // published
-  length_m: number | null;
-  span_m: number | null;
-  picture: string; // a name for /aircraft.jpg
+  kind: 'aircraft'|'bird'|'multirotor'|'balloon';
+  type: string;  // published
+  length_m: number|null;
+  span_m: number|null;
+  picture: string;  // a name for /aircraft.jpg
   liveries: string[];
 }
 
@@ -91,7 +100,7 @@ export interface MeasuredValue {
   key: string;
   value: Json;
   error: Json;
-  missing: string; // why there is no value
+  missing: string;  // why there is no value
 }
 
 // frame, x, y; without a place where the lens has none
@@ -105,8 +114,8 @@ export interface PictureHeader {
   scale: number;
   boxes: ExactBox[];
   // The paths as the camera of this frame would see them at other times.
-  lines: { table: Path; points: LinePoint[] }[];
-  problem: string | null; // why there is nothing in it but the clip
+  lines: {table: Path; points: LinePoint[]}[];
+  problem: string|null;  // why there is nothing in it but the clip
 }
 
 export type BoxPx = [number, number, number, number];
@@ -115,7 +124,13 @@ export type BoxPx = [number, number, number, number];
 export interface Rendered {
   folder: string;
   video: string;
-  boxes: [number, { id: string; box: BoxPx }[]][];
+  boxes: [
+    number,
+    {
+      id: string;
+      box: BoxPx
+    }[]
+  ][];
 }
 
 export interface ExactBox {
@@ -130,8 +145,21 @@ export interface Picture {
   jpeg: Blob;
 }
 
-export type ServerEvent =
-  | { event: 'state'; state: State }
-  | { event: 'progress'; of: string; done: number; total: number }
-  | { event: 'measured'; of: string }
-  | { event: 'warning'; line: string };
+export type ServerEvent =|{
+  event: 'state';
+  state: State
+}
+|{
+  event: 'progress';
+  of: string;
+  done: number;
+  total: number
+}
+|{
+  event: 'measured';
+  of: string
+}
+|{
+  event: 'warning';
+  line: string
+};

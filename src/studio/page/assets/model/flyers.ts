@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Approach, Change, Clip, Json, Path, Plan, State, Table, Track } from './contract';
-import { type Point, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt } from './geometry';
+import type {Approach, Change, Clip, Json, Path, Plan, State, Table, Track} from './contract';
+import {type Point, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt} from './geometry';
 
 // How a flyer's path is stated.
-export type Statement = 'moments' | 'approach' | 'waypoints' | 'file' | 'drift' | 'lens';
-export type Kind = 'aircraft' | 'bird' | 'multirotor' | 'balloon' | 'glint' | 'dirt' | 'insect';
+export type Statement = 'moments'|'approach'|'waypoints'|'file'|'drift'|'lens';
+export type Kind = 'aircraft'|'bird'|'multirotor'|'balloon'|'glint'|'dirt'|'insect';
 
 // An intruder or a distractor of the scene.
 export interface Flyer {
@@ -14,7 +14,7 @@ export interface Flyer {
   kind: Kind;
   title: string;
   statement: Statement;
-  colour: number; // of the seven of the palette
+  colour: number;  // of the seven of the palette
 }
 
 export interface Moment {
@@ -22,15 +22,16 @@ export interface Moment {
   frame: number;
   time_s: number;
   pixel: Point;
-  range_m: number | null;
-  width_px: number | null;
+  range_m: number|null;
+  width_px: number|null;
 }
 
 const PALETTE = 7;
-const tables = (value: Json | undefined): Table[] => (Array.isArray(value) ? (value as Table[]) : []);
-export const tableOf = (value: Json | undefined): Table => (value && typeof value === 'object' && !Array.isArray(value) ? value : {});
-export const numberOf = (value: Json | undefined): number | null => (typeof value === 'number' ? value : null);
-export const isSame = (a: Path | null, b: Path | null) => JSON.stringify(a) === JSON.stringify(b);
+const tables = (value: Json|undefined): Table[] => (Array.isArray(value) ? (value as Table[]) : []);
+export const tableOf = (value: Json|undefined): Table =>
+    (value && typeof value === 'object' && !Array.isArray(value) ? value : {});
+export const numberOf = (value: Json|undefined): number|null => (typeof value === 'number' ? value : null);
+export const isSame = (a: Path|null, b: Path|null) => JSON.stringify(a) === JSON.stringify(b);
 
 function statementOf(table: Table, kind: Kind): Statement {
   if (kind === 'glint' || kind === 'dirt' || kind === 'insect') return 'lens';
@@ -41,22 +42,23 @@ function statementOf(table: Table, kind: Kind): Statement {
 }
 
 export function flyersOf(scene: Table): Flyer[] {
-  const intruders = tables(scene.intruder).map((table, k) => ({ table, path: ['intruder', k] as Path, kind: 'aircraft' as Kind, k }));
+  const intruders =
+      tables(scene.intruder).map((table, k) => ({table, path: ['intruder', k] as Path, kind: 'aircraft' as Kind, k}));
   const counts = new Map<string, number>();
   const others = tables(scene.distractor).map((table, k) => {
     const kind = String(table.kind) as Kind;
     counts.set(kind, (counts.get(kind) ?? 0) + 1);
-    return { table, path: ['distractor', k] as Path, kind, k: counts.get(kind)! - 1 };
+    return {table, path: ['distractor', k] as Path, kind, k: counts.get(kind)! - 1};
   });
-  return [...intruders, ...others].map(({ table, path, kind, k }, place) => ({
-    path,
-    table,
-    kind,
-    id: String(table.id ?? `${kind === 'aircraft' ? 'intruder' : kind}-${k + 1}`),
-    title: titleOf(table, kind),
-    statement: statementOf(table, kind),
-    colour: place % PALETTE,
-  }));
+  return [...intruders, ...others].map(({table, path, kind, k}, place) => ({
+                                         path,
+                                         table,
+                                         kind,
+                                         id: String(table.id ?? `${kind === 'aircraft' ? 'intruder' : kind}-${k + 1}`),
+                                         title: titleOf(table, kind),
+                                         statement: statementOf(table, kind),
+                                         colour: place % PALETTE,
+                                       }));
 }
 
 function titleOf(table: Table, kind: Kind): string {
@@ -65,11 +67,11 @@ function titleOf(table: Table, kind: Kind): string {
   return count > 1 ? `${count} ${kind}s` : kind;
 }
 
-export function flyerAt(state: State | null, path: Path | null): Flyer | null {
+export function flyerAt(state: State|null, path: Path|null): Flyer|null {
   return state && path ? flyersOf(state.scene).find((one) => isSame(one.path, path)) ?? null : null;
 }
 
-export function trackOf(plan: Plan | null, path: Path | null): Track | null {
+export function trackOf(plan: Plan|null, path: Path|null): Track|null {
   return plan?.tracks.find((one) => isSame(one.table, path)) ?? null;
 }
 
@@ -81,7 +83,14 @@ export function momentsOf(flyer: Flyer, clip: Clip): Moment[] {
     const time_s = numberOf(seen.time_s) ?? 0;
     const pixel = Array.isArray(seen.pixel) ? (seen.pixel as Point) : ([0, 0] as Point);
     const path = [...flyer.path, 'seen', k];
-    return { path, time_s, frame: frameOf(time_s, clip), pixel, range_m: numberOf(seen.range_m), width_px: numberOf(seen.width_px) };
+    return {
+      path,
+      time_s,
+      frame: frameOf(time_s, clip),
+      pixel,
+      range_m: numberOf(seen.range_m),
+      width_px: numberOf(seen.width_px)
+    };
   });
 }
 
@@ -91,45 +100,60 @@ export const writtenRange = (range_m: number) => Number(clamp(range_m, 0.1, 1e6)
 export const writtenWidth = (width_px: number) => round(clamp(width_px, 0.1, 1e5), 1);
 
 // A moment made nearer by a factor, in the words that it is stated in.
-export function nearer(moment: Moment, factor: number): Change | null {
-  if (moment.width_px !== null) return { set: [...moment.path, 'width_px'], to: writtenWidth(moment.width_px * factor) };
-  if (moment.range_m !== null) return { set: [...moment.path, 'range_m'], to: writtenRange(moment.range_m / factor) };
+export function nearer(moment: Moment, factor: number): Change|null {
+  if (moment.width_px !== null) return {set: [...moment.path, 'width_px'], to: writtenWidth(moment.width_px * factor)};
+  if (moment.range_m !== null) return {set: [...moment.path, 'range_m'], to: writtenRange(moment.range_m / factor)};
   return null;
 }
 
-const seenTable = (time_s: number, pixel: Point, range_m: number): Table => ({ time_s, pixel: writtenPixel(pixel), range_m: writtenRange(range_m) });
+const seenTable = (time_s: number, pixel: Point, range_m: number): Table =>
+    ({time_s, pixel: writtenPixel(pixel), range_m: writtenRange(range_m)});
 
 // A moment at a frame: a new one in its place in time, or the one that is there moved.
-export function withMoment(flyer: Flyer, clip: Clip, frame: number, pixel: Point, range_m: number): { changes: Change[]; index: number } {
+export function withMoment(
+    flyer: Flyer, clip: Clip, frame: number, pixel: Point, range_m: number): {changes: Change[]; index: number} {
   const moments = momentsOf(flyer, clip);
   const there = moments.findIndex((one) => one.frame === frame);
-  if (there >= 0) return { changes: [{ set: [...moments[there].path, 'pixel'], to: writtenPixel(pixel) }], index: there };
+  if (there >= 0) return {changes: [{set: [...moments[there].path, 'pixel'], to: writtenPixel(pixel)}], index: there};
   const after = moments.findIndex((one) => one.frame > frame);
   const index = after < 0 ? moments.length : after;
-  return { changes: [{ insert: [...flyer.path, 'seen'], at: index, table: seenTable(timeOf(frame, clip), pixel, range_m) }], index };
+  return {
+    changes: [{insert: [...flyer.path, 'seen'], at: index, table: seenTable(timeOf(frame, clip), pixel, range_m)}],
+    index
+  };
 }
 
-const PATH_KEYS = ['encounter', 'seen', 'waypoints_ned_m', 'speed_mps', 'times_s', 'path_file', 'start_s', 'position_ned_m', 'velocity_ned_mps', 'offset_ned_m'];
-const removed = (flyer: Flyer): Change[] => PATH_KEYS.filter((key) => key in flyer.table).map((key) => ({ remove: [...flyer.path, key] }));
+const PATH_KEYS = [
+  'encounter', 'seen', 'waypoints_ned_m', 'speed_mps', 'times_s', 'path_file', 'start_s', 'position_ned_m',
+  'velocity_ned_mps', 'offset_ned_m'
+];
+const removed = (flyer: Flyer): Change[] =>
+    PATH_KEYS.filter((key) => key in flyer.table).map((key) => ({remove: [...flyer.path, key]}));
 
 // The same path by moments in the picture: where it is in view, three of them.
-export function toMoments(flyer: Flyer, track: Track, clip: Clip): Change[] | null {
-  const inClip = track.points.filter(isPlaced).filter((point) => point[0] >= 0 && point[0] < clip.frames && point[3] > 0);
+export function toMoments(flyer: Flyer, track: Track, clip: Clip): Change[]|null {
+  const inClip =
+      track.points.filter(isPlaced).filter((point) => point[0] >= 0 && point[0] < clip.frames && point[3] > 0);
   const seen = inClip.filter((point) => point[5]);
   const chosen = seen.length >= 2 ? seen : inClip;
   if (chosen.length < 2) return null;
   const places = chosen.length >= 3 ? [0, Math.floor((chosen.length - 1) / 2), chosen.length - 1] : [0, 1];
   const moments = places.map((k) => chosen[k]);
-  const inserts = moments.map((point, at): Change => ({ insert: [...flyer.path, 'seen'], at, table: seenTable(timeOf(point[0], clip), [point[1], point[2]], point[3]) }));
+  const inserts = moments.map((point, at): Change => ({
+                                insert: [...flyer.path, 'seen'],
+                                at,
+                                table: seenTable(timeOf(point[0], clip), [point[1], point[2]], point[3])
+                              }));
   return [...removed(flyer), ...inserts];
 }
 
 // The same path by its closest approach: its place and its velocity there.
-export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): Change[] | null {
+export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): Change[]|null {
   const cpa = track.cpa;
   if (!cpa) return null;
   const frame = clamp(cpa.time_s * clip.rate_hz, plan.frames[0], plan.frames[plan.frames.length - 1]);
-  const [own, other] = [velocityAt(plan, plan.own.ned, frame, clip.rate_hz), velocityAt(plan, track.ned, frame, clip.rate_hz)];
+  const [own, other] =
+      [velocityAt(plan, plan.own.ned, frame, clip.rate_hz), velocityAt(plan, track.ned, frame, clip.rate_hz)];
   if (!own || !other) return null;
   const course = round(turned(courseOf(other) - courseOf(own)), 1);
   const climb = round(-other[2], 1);
@@ -141,7 +165,7 @@ export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): 
     ['speed_mps', Math.max(0.1, round(speedOf(other), 1))],
     ...(climb ? ([['climb_mps', climb]] as [string, number][]) : []),
   ];
-  return [...removed(flyer), ...words.map(([key, to]): Change => ({ set: [...flyer.path, 'encounter', key], to }))];
+  return [...removed(flyer), ...words.map(([key, to]): Change => ({set: [...flyer.path, 'encounter', key], to}))];
 }
 
 // What the gallery offers.
@@ -156,8 +180,12 @@ export interface Choice {
 const NEW_SHARE = 0.05;
 const SMALL_SHARE = 0.025;
 const FLOCK_SHARE = 0.014;
-const NEAREST_SHARE = 0.5; // of its first range, for the second moment
-const CRUISE_MPS: Partial<Record<Kind, number>> = { bird: 12, multirotor: 8, balloon: 2 };
+const NEAREST_SHARE = 0.5;  // of its first range, for the second moment
+const CRUISE_MPS: Partial<Record<Kind, number>> = {
+  bird: 12,
+  multirotor: 8,
+  balloon: 2
+};
 const cruise = (choice: Choice) => CRUISE_MPS[choice.kind] ?? (choice.length_m > 20 ? 110 : 50);
 
 // Pixels of an object of 1 m at 1 m; a guess where a file states the lens.
@@ -171,7 +199,12 @@ export function focalOf(scene: Table, clip: Clip): number {
 // A flyer that crosses the picture, and the way of the own aircraft, and is at a pixel in the frame shown.
 export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point, own_mps: number): Table {
   const isFlock = choice.count !== undefined && choice.count > 1;
-  const width_px = Math.max(14, clip.width * (choice.kind === 'aircraft' ? NEW_SHARE : isFlock ? FLOCK_SHARE : SMALL_SHARE));
+  const width_px = Math.max(
+      14,
+      clip.width *
+          (choice.kind === 'aircraft' ? NEW_SHARE :
+               isFlock                ? FLOCK_SHARE :
+                                        SMALL_SHARE));
   const range_m = (choice.length_m * focalOf(scene, clip)) / width_px;
   const rate_px_s = (cruise(choice) * width_px) / choice.length_m;
   const span = clip.frames - 1;
@@ -182,16 +215,17 @@ export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number
   const pixelAt = (k: number): Point => [at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz, at[1]];
   const rangeAt = (k: number) => Math.max(range_m * NEAREST_SHARE, range_m - (own_mps * (k - first)) / clip.rate_hz);
   const seen = [first, first + way].map((k) => seenTable(timeOf(k, clip), pixelAt(k), rangeAt(k)));
-  if (choice.kind === 'aircraft') return { aircraft: choice.aircraft ?? '', seen };
-  const flock: Table = isFlock ? { count: choice.count!, spread_m: round(choice.length_m * 6, 0) } : {};
-  return { kind: choice.kind, ...flock, seen };
+  if (choice.kind === 'aircraft') return {aircraft: choice.aircraft ?? '', seen};
+  const flock: Table = isFlock ? {count: choice.count!, spread_m: round(choice.length_m * 6, 0)} : {};
+  return {kind: choice.kind, ...flock, seen};
 }
 
 // Beside the one it is copied from, and with no id of its own.
 export function copyOf(flyer: Flyer, clip: Clip): Table {
-  const { id: _, ...table } = structuredClone(flyer.table);
+  const {id: _, ...table} = structuredClone(flyer.table);
   const aside = Math.round(clip.height * 0.06);
-  for (const seen of tables(table.seen)) if (Array.isArray(seen.pixel)) seen.pixel = writtenPixel([Number(seen.pixel[0]), Number(seen.pixel[1]) + aside]);
+  for (const seen of tables(table.seen))
+    if (Array.isArray(seen.pixel)) seen.pixel = writtenPixel([Number(seen.pixel[0]), Number(seen.pixel[1]) + aside]);
   const encounter = tableOf(table.encounter);
   if ('encounter' in table) encounter.cpa_above_m = (numberOf(encounter.cpa_above_m) ?? 0) + 20;
   return table;
@@ -202,6 +236,7 @@ export function ownSpeed(plan: Plan, frame: number, clip: Clip): number {
   return own ? Math.hypot(own[0], own[1]) : 0;
 }
 
-export const describedApproach = (cpa: Approach) =>
-  `closest at ${round(cpa.time_s, 1)} s: ${round(cpa.distance_m, 0)} m, ${side(cpa.right_m, 'right', 'left')}, ${side(cpa.above_m, 'above', 'below')}`;
-const side = (value: number, positive: string, negative: string) => `${Math.abs(round(value, 0))} m ${value >= 0 ? positive : negative}`;
+export const describedApproach = (cpa: Approach) => `closest at ${round(cpa.time_s, 1)} s: ${
+    round(cpa.distance_m, 0)} m, ${side(cpa.right_m, 'right', 'left')}, ${side(cpa.above_m, 'above', 'below')}`;
+const side = (value: number, positive: string, negative: string) =>
+    `${Math.abs(round(value, 0))} m ${value >= 0 ? positive : negative}`;

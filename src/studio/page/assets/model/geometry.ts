@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Ned, Plan, Track, TrackPoint } from './contract';
+import type {Ned, Plan, Track, TrackPoint} from './contract';
 
 export type Point = [number, number];
 
@@ -18,21 +18,25 @@ export interface Seen {
   isVisible: boolean;
 }
 
-export const isPlaced = (point: TrackPoint): point is [number, number, number, number, number | null, boolean] => point[1] !== null && point[2] !== null;
-const seenOf = (point: TrackPoint): Seen | null =>
-  isPlaced(point) ? { pixel: [point[1], point[2]], range_m: point[3], width_px: point[4] ?? 0, isVisible: point[5] } : null;
+export const isPlaced = (point: TrackPoint): point is[number, number, number, number, number | null, boolean] =>
+    point[1] !== null && point[2] !== null;
+const seenOf = (point: TrackPoint): Seen|null => isPlaced(point) ?
+    {pixel: [point[1], point[2]], range_m: point[3], width_px: point[4] ?? 0, isVisible: point[5]} :
+    null;
 
-// Where a track is in a frame: its points in order of their frames, and what lies between two by straight lines. Beyond its ends
-// it is not there.
-export function seenAt(track: Track, frame: number): Seen | null {
-  const { points } = track;
+// Where a track is in a frame: its points in order of their frames, and what lies between two by straight lines. Beyond
+// its ends it is not there.
+export function seenAt(track: Track, frame: number): Seen|null {
+  const {points} = track;
   if (!points.length || frame < points[0][0] || frame > points[points.length - 1][0]) return null;
   let low = 0;
   let high = points.length - 1;
   while (high - low > 1) {
     const middle = (low + high) >> 1;
-    if (points[middle][0] <= frame) low = middle;
-    else high = middle;
+    if (points[middle][0] <= frame)
+      low = middle;
+    else
+      high = middle;
   }
   const [a, b] = [points[low], points[high]];
   const share = b[0] > a[0] ? (frame - a[0]) / (b[0] - a[0]) : 0;
@@ -40,22 +44,31 @@ export function seenAt(track: Track, frame: number): Seen | null {
   if (!from || !to) return share < 0.5 ? from : to;
   const between = (of: (seen: Seen) => number) => mix(of(from), of(to), share);
   const pixel: Point = [between((seen) => seen.pixel[0]), between((seen) => seen.pixel[1])];
-  return { pixel, range_m: between((seen) => seen.range_m), width_px: between((seen) => seen.width_px), isVisible: share < 0.5 ? from.isVisible : to.isVisible };
+  return {
+    pixel,
+    range_m: between((seen) => seen.range_m),
+    width_px: between((seen) => seen.width_px),
+    isVisible: share < 0.5 ? from.isVisible : to.isVisible
+  };
 }
 
 // The same, going on straight beyond the ends; none of a track without points.
-export function seenNear(track: Track, frame: number): Seen | null {
+export function seenNear(track: Track, frame: number): Seen|null {
   const inside = seenAt(track, frame);
   if (inside || !track.points.length) return inside;
   const isBefore = frame < track.points[0][0];
   return seenOf(isBefore ? track.points[0] : track.points[track.points.length - 1]);
 }
 
-const nedMix = (a: Ned, b: Ned, share: number): Ned => [mix(a[0], b[0], share), mix(a[1], b[1], share), mix(a[2], b[2], share)];
+const nedMix =
+    (a: Ned, b: Ned, share: number): Ned => [mix(a[0], b[0], share), mix(a[1], b[1], share), mix(a[2], b[2], share)];
 
 // A place among those at the plan's frames. Outside of them it goes on straight.
-export function nedAt(plan: Plan, ned: (Ned | null)[], frame: number): Ned | null {
-  const known = plan.frames.map((f, k) => ({ f, ned: ned[k] })).filter((one): one is { f: number; ned: Ned } => Boolean(one.ned));
+export function nedAt(plan: Plan, ned: (Ned|null)[], frame: number): Ned|null {
+  const known = plan.frames.map((f, k) => ({f, ned: ned[k]})).filter((one): one is {
+    f: number;
+    ned: Ned
+  } => Boolean(one.ned));
   if (!known.length) return null;
   if (known.length === 1) return known[0].ned;
   let k = known.findIndex((one) => one.f >= frame);
@@ -65,7 +78,7 @@ export function nedAt(plan: Plan, ned: (Ned | null)[], frame: number): Ned | nul
 }
 
 // Metres a second, north-east-down.
-export function velocityAt(plan: Plan, ned: (Ned | null)[], frame: number, rate_hz: number): Ned | null {
+export function velocityAt(plan: Plan, ned: (Ned|null)[], frame: number, rate_hz: number): Ned|null {
   const [a, b] = [nedAt(plan, ned, frame - 0.5), nedAt(plan, ned, frame + 0.5)];
   return a && b ? [(b[0] - a[0]) * rate_hz, (b[1] - a[1]) * rate_hz, (b[2] - a[2]) * rate_hz] : null;
 }
@@ -73,7 +86,8 @@ export function velocityAt(plan: Plan, ned: (Ned | null)[], frame: number, rate_
 export const courseOf = (velocity: Ned) => degrees(Math.atan2(velocity[1], velocity[0]));
 export const speedOf = (velocity: Ned) => Math.hypot(...velocity);
 
-// The horizontal direction in which a closest approach can lie, as [right, ahead] of the own course: across the relative velocity.
+// The horizontal direction in which a closest approach can lie, as [right, ahead] of the own course: across the
+// relative velocity.
 export function acrossRelative(own_mps: number, speed_mps: number, climb_mps: number, course_deg: number): Point {
   const ground = Math.sqrt(Math.max(0, speed_mps * speed_mps - climb_mps * climb_mps));
   const right = ground * Math.sin(radians(course_deg));

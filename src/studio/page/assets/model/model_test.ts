@@ -1,28 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's state without its elements. tests/studio_test.py bundles and runs it in a browser.
-import { Lost, Refused } from './connection';
-import type { Clip, State, Table, Track } from './contract';
-import { type Edit, Edits } from './edits';
-import { type Flyer, flyersOf, momentsOf, nearer, newFlyer, toMoments, withMoment } from './flyers';
-import { acrossRelative, nedAt, seenAt, turned } from './geometry';
-import { Store } from './store';
+import {Lost, Refused} from './connection';
+import type {Clip, State, Table, Track} from './contract';
+import {type Edit, Edits} from './edits';
+import {type Flyer, flyersOf, momentsOf, nearer, newFlyer, toMoments, withMoment} from './flyers';
+import {acrossRelative, nedAt, seenAt, turned} from './geometry';
+import {Store} from './store';
 
-type Test = () => void | Promise<void>;
+type Test = () => void|Promise<void>;
 const tests: Record<string, Test> = {};
 const turn = () => new Promise<void>((done) => setTimeout(done, 0));
 
 function same(got: unknown, wanted: unknown): void {
-  if (JSON.stringify(got) !== JSON.stringify(wanted)) throw new Error(`${JSON.stringify(got)}; expected ${JSON.stringify(wanted)}`);
+  if (JSON.stringify(got) !== JSON.stringify(wanted))
+    throw new Error(`${JSON.stringify(got)}; expected ${JSON.stringify(wanted)}`);
 }
 function near(got: number, wanted: number, tolerance: number): void {
   if (!(Math.abs(got - wanted) <= tolerance)) throw new Error(`${got}; expected ${wanted} within ${tolerance}`);
 }
 
-const CLIP: Clip = { width: 1280, height: 960, frames: 150, rate_hz: 30, first_frame: 0, duration_s: 5 };
-const flyer = (table: Table, key = 'intruder'): Flyer => flyersOf({ [key]: [table] })[0];
+const CLIP: Clip = {
+  width: 1280,
+  height: 960,
+  frames: 150,
+  rate_hz: 30,
+  first_frame: 0,
+  duration_s: 5
+};
+const flyer = (table: Table, key = 'intruder'): Flyer => flyersOf({[key]: [table]})[0];
 const track = (pixel: (frame: number) => [number, number], frames = 150): Track => ({
-  table: ['intruder', 0], id: 'a', handles: [], cpa: null, checks: [], approach: '', violations: [], ned: [],
-  points: Array.from({ length: frames }, (_, k) => [k, ...pixel(k), 500, 40, true]),
+  table: ['intruder', 0],
+  id: 'a',
+  handles: [],
+  cpa: null,
+  checks: [],
+  approach: '',
+  violations: [],
+  ned: [],
+  points: Array.from({length: frames}, (_, k) => [k, ...pixel(k), 500, 40, true]),
 });
 
 // A server that answers when it is told to.
@@ -32,29 +47,39 @@ class Server {
   states: number[] = [];
   refusals: string[] = [];
   pending = 0;
-  private answers: { resolve: (state: State) => void; reject: (error: Error) => void }[] = [];
+  private answers: {resolve: (state: State) => void; reject: (error: Error) => void}[] = [];
   edits = new Edits({
-    send: (edit) => { this.sent.push(edit); return new Promise((resolve, reject) => this.answers.push({ resolve, reject })); },
+    send: (edit) => {
+      this.sent.push(edit);
+      return new Promise((resolve, reject) => this.answers.push({resolve, reject}));
+    },
     text: () => this.text,
-    done: (state) => { this.text = state.text; this.states.push(state.revision); },
+    done:
+        (state) => {
+          this.text = state.text;
+          this.states.push(state.revision);
+        },
     refused: (line) => this.refusals.push(line),
-    pending: (count) => { this.pending = count; },
+    pending:
+        (count) => {
+          this.pending = count;
+        },
   });
 
   async answer(): Promise<void> {
     const revision = this.states.length + 1;
-    this.answers.shift()!.resolve({ revision, text: `text ${revision}` } as State);
+    this.answers.shift()!.resolve({revision, text: `text ${revision}`} as State);
     await turn();
   }
   async fail(error: Error): Promise<void> {
     this.answers.shift()!.reject(error);
     await turn();
   }
-  set(to: number, merge: string | null = null): void {
-    this.edits.add({ changes: [{ set: ['seed'], to }], merge });
+  set(to: number, merge: string|null = null): void {
+    this.edits.add({changes: [{set: ['seed'], to}], merge});
   }
   insert(): void {
-    this.edits.add({ changes: [{ insert: ['intruder'], at: null, table: {} }], merge: null });
+    this.edits.add({changes: [{insert: ['intruder'], at: null, table: {}}], merge: null});
   }
   values(): unknown[] {
     return this.sent.map((edit) => ('to' in edit.changes[0] ? edit.changes[0].to : 'insert'));
@@ -132,9 +157,9 @@ tests['Listeners are told once of all that changed'] = async () => {
   const store = new Store();
   const told: string[][] = [];
   store.listen((changed) => told.push([...changed].sort()));
-  store.put({ frame: 3 });
-  store.put({ frame: 4, playing: true });
-  store.put({ frame: 4 });
+  store.put({frame: 3});
+  store.put({frame: 4, playing: true});
+  store.put({frame: 4});
   await turn();
   same(told, [['frame', 'playing']]);
 };
@@ -148,36 +173,57 @@ tests['Between the points of a track, and beyond its ends'] = () => {
   const one = track((k) => [10 * k, 100], 11);
   near(seenAt(one, 4.5)!.pixel[0], 45, 1e-9);
   same(seenAt(one, 11), null);
-  const plan = { frames: [0, 10], own: { ned: [] } } as never;
+  const plan = {frames: [0, 10], own: {ned: []}} as never;
   same(nedAt(plan, [[0, 0, -100], [10, 20, -110]], 15), [15, 30, -115]);
   same(turned(-90), 270);
 };
 tests['What is new is in the clip, and at its pixel in the frame shown'] = () => {
   for (const frame of [0, 60, 149]) {
-    const table = newFlyer({ kind: 'aircraft', aircraft: '738/738-ANA', length_m: 39.5 }, { lens: { vertical_fov_deg: 60 } }, CLIP, frame, [300, 200], 25);
+    const table = newFlyer(
+        {kind: 'aircraft', aircraft: '738/738-ANA', length_m: 39.5}, {lens: {vertical_fov_deg: 60}}, CLIP, frame,
+        [300, 200], 25);
     same(Object.keys(table), ['aircraft', 'seen']);
     const moments = momentsOf(flyer(table), CLIP);
-    same([moments.length, moments.every((one) => one.frame >= 0 && one.frame < 150), moments[1].frame > moments[0].frame], [2, true, true]);
+    same(
+        [
+          moments.length, moments.every((one) => one.frame >= 0 && one.frame < 150), moments[1].frame > moments[0].frame
+        ],
+        [2, true, true]);
     const share = (frame - moments[0].frame) / (moments[1].frame - moments[0].frame);
     near(moments[0].pixel[0] + share * (moments[1].pixel[0] - moments[0].pixel[0]), 300, 0.2);
   }
 };
 tests['A moment stands in its place in time, or moves the one that is there'] = () => {
-  const one = flyer({ aircraft: 'a', seen: [{ time_s: 0, pixel: [1, 1], range_m: 100 }, { time_s: 2, pixel: [2, 2], width_px: 30 }] });
-  same(withMoment(one, CLIP, 30, [5, 5], 120), { changes: [{ insert: ['intruder', 0, 'seen'], at: 1, table: { time_s: 1, pixel: [5, 5], range_m: 120 } }], index: 1 });
-  same(withMoment(one, CLIP, 60, [5.04, 5], 120).changes, [{ set: ['intruder', 0, 'seen', 1, 'pixel'], to: [5, 5] }]);
+  const one = flyer(
+      {aircraft: 'a', seen: [{time_s: 0, pixel: [1, 1], range_m: 100}, {time_s: 2, pixel: [2, 2], width_px: 30}]});
+  same(
+      withMoment(one, CLIP, 30, [5, 5], 120),
+      {changes: [{insert: ['intruder', 0, 'seen'], at: 1, table: {time_s: 1, pixel: [5, 5], range_m: 120}}], index: 1});
+  same(withMoment(one, CLIP, 60, [5.04, 5], 120).changes, [{set: ['intruder', 0, 'seen', 1, 'pixel'], to: [5, 5]}]);
   const moments = momentsOf(one, CLIP);
-  same(moments.map((moment) => nearer(moment, 2)), [{ set: ['intruder', 0, 'seen', 0, 'range_m'], to: 50 }, { set: ['intruder', 0, 'seen', 1, 'width_px'], to: 60 }]);
+  same(
+      moments.map((moment) => nearer(moment, 2)),
+      [{set: ['intruder', 0, 'seen', 0, 'range_m'], to: 50}, {set: ['intruder', 0, 'seen', 1, 'width_px'], to: 60}]);
 };
 tests['Another statement takes the place of the first'] = () => {
-  const one = flyer({ aircraft: 'a', encounter: { cpa_time_s: 1 }, start_s: 1 });
+  const one = flyer({aircraft: 'a', encounter: {cpa_time_s: 1}, start_s: 1});
   const changes = toMoments(one, track((k) => [k, k]), CLIP)!;
-  same(changes.filter((change) => 'remove' in change), [{ remove: ['intruder', 0, 'encounter'] }, { remove: ['intruder', 0, 'start_s'] }]);
-  same(changes.flatMap((change) => ('insert' in change ? [[change.at, change.table.time_s]] : [])), [[0, 0], [1, 2.467], [2, 4.967]]);
+  same(
+      changes.filter((change) => 'remove' in change),
+      [{remove: ['intruder', 0, 'encounter']}, {remove: ['intruder', 0, 'start_s']}]);
+  same(
+      changes.flatMap((change) => ('insert' in change ? [[change.at, change.table.time_s]] : [])),
+      [[0, 0], [1, 2.467], [2, 4.967]]);
 };
 tests['Flyers have names, kinds and statements'] = () => {
-  const all = flyersOf({ intruder: [{ aircraft: 'x', encounter: {} }, { id: 'me', aircraft: 'y', path_file: 'p' }], distractor: [{ kind: 'bird', count: 4, seen: [] }, { kind: 'dirt' }] });
-  same(all.map((one) => [one.id, one.kind, one.statement, one.title]), [['intruder-1', 'aircraft', 'approach', 'x'], ['me', 'aircraft', 'file', 'y'], ['bird-1', 'bird', 'moments', '4 birds'], ['dirt-1', 'dirt', 'lens', 'dirt']]);
+  const all = flyersOf({
+    intruder: [{aircraft: 'x', encounter: {}}, {id: 'me', aircraft: 'y', path_file: 'p'}],
+    distractor: [{kind: 'bird', count: 4, seen: []}, {kind: 'dirt'}]
+  });
+  same(all.map((one) => [one.id, one.kind, one.statement, one.title]), [
+    ['intruder-1', 'aircraft', 'approach', 'x'], ['me', 'aircraft', 'file', 'y'],
+    ['bird-1', 'bird', 'moments', '4 birds'], ['dirt-1', 'dirt', 'lens', 'dirt']
+  ]);
 };
 
 async function run(): Promise<string[]> {
@@ -191,4 +237,4 @@ async function run(): Promise<string[]> {
   }
   return faults.length ? faults : [`${Object.keys(tests).length} good`];
 }
-Object.assign(window, { modelTest: run() });
+Object.assign(window, {modelTest: run()});

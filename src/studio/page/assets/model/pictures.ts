@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import { Lost, type Connection } from './connection';
-import type { Clip, Picture, PictureHeader } from './contract';
+import {Lost, type Connection} from './connection';
+import type {Clip, Picture, PictureHeader} from './contract';
 
 // What is to be seen in the picture.
 export interface Wanted {
@@ -11,27 +11,30 @@ export interface Wanted {
 }
 
 // Whether what is shown is what is wanted, or newer.
-const isMet = (shown: Wanted | null, wanted: Wanted | null) =>
-  Boolean(shown && wanted && shown.frame === wanted.frame && shown.aircraft === wanted.aircraft && shown.scale === wanted.scale && shown.revision >= wanted.revision);
-const isSameWanted = (a: Wanted | null, b: Wanted | null) => JSON.stringify(a) === JSON.stringify(b);
-const isPicture = (answer: unknown): answer is Picture => typeof answer === 'object' && answer !== null && 'jpeg' in answer;
+const isMet = (shown: Wanted|null, wanted: Wanted|null) => Boolean(
+    shown && wanted && shown.frame === wanted.frame && shown.aircraft === wanted.aircraft &&
+    shown.scale === wanted.scale && shown.revision >= wanted.revision);
+const isSameWanted = (a: Wanted|null, b: Wanted|null) => JSON.stringify(a) === JSON.stringify(b);
+const isPicture = (answer: unknown): answer is Picture =>
+    typeof answer === 'object' && answer !== null && 'jpeg' in answer;
 
-// The frame that is shown, on a canvas of the clip's size: asked for whole when things rest, and by what changed of it while something
-// is dragged.
+// The frame that is shown, on a canvas of the clip's size: asked for whole when things rest, and by what changed of it
+// while something is dragged.
 export class Pictures {
   readonly canvas = document.createElement('canvas');
   onDrawn: (header: PictureHeader) => void = () => {};
   onRefused: (line: string) => void = () => {};
 
-  private shown: Wanted | null = null;
-  private wanted: Wanted | null = null;
-  private asked: Wanted | null = null;
+  private shown: Wanted|null = null;
+  private wanted: Wanted|null = null;
+  private asked: Wanted|null = null;
   private drawing: Promise<void> = Promise.resolve();
 
   constructor(private connection: Connection) {
     connection.onPicture = (picture) => {
-      const { frame, revision } = picture.header;
-      if (this.shown?.aircraft && this.shown.frame === frame && this.shown.revision === revision) void this.draw(picture);
+      const {frame, revision} = picture.header;
+      if (this.shown?.aircraft && this.shown.frame === frame && this.shown.revision === revision)
+        void this.draw(picture);
     };
   }
 
@@ -58,14 +61,14 @@ export class Pictures {
   }
 
   // What changed of the frame shown by an edit that was sent just before: the revision that was drawn, or none.
-  async change(frame: number): Promise<number | null> {
-    const answer = await this.connection.request('frame', { frame, aircraft: true, crop: 'change', scale: 1 });
+  async change(frame: number): Promise<number|null> {
+    const answer = await this.connection.request('frame', {frame, aircraft: true, crop: 'change', scale: 1});
     if (!isPicture(answer)) return null;
-    const { crop, revision } = answer.header;
+    const {crop, revision} = answer.header;
     const isWhole = crop[2] >= this.canvas.width && crop[3] >= this.canvas.height;
     if (this.shown?.frame !== frame && !isWhole) return null;
     await this.draw(answer);
-    this.shown = { frame, revision, aircraft: true, scale: isWhole ? 1 : this.shown?.scale ?? 1 };
+    this.shown = {frame, revision, aircraft: true, scale: isWhole ? 1 : this.shown?.scale ?? 1};
     return revision;
   }
 
@@ -74,15 +77,17 @@ export class Pictures {
     const asked = this.wanted;
     this.asked = asked;
     try {
-      const answer = await this.connection.request('frame', { frame: asked.frame, aircraft: asked.aircraft, crop: null, scale: asked.scale });
+      const answer = await this.connection.request(
+          'frame', {frame: asked.frame, aircraft: asked.aircraft, crop: null, scale: asked.scale});
       if (isPicture(answer)) {
         await this.draw(answer);
         // What is newer than the wish is as good.
-        if (this.asked === asked) this.shown = { ...asked, revision: Math.max(asked.revision, answer.header.revision) };
+        if (this.asked === asked) this.shown = {...asked, revision: Math.max(asked.revision, answer.header.revision)};
       }
       if (this.asked !== asked) return;
       this.asked = null;
-      if (!isPicture(answer) && isSameWanted(asked, this.wanted)) return; // another request took its place, and asks again when it is done
+      if (!isPicture(answer) && isSameWanted(asked, this.wanted))
+        return;  // another request took its place, and asks again when it is done
     } catch (error) {
       if (this.asked === asked) this.asked = null;
       if (error instanceof Lost) return;

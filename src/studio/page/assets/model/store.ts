@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { AircraftGroup, Clip, MeasuredValue, Path, PictureHeader, Plan, Rendered, State } from './contract';
+import type {AircraftGroup, Clip, MeasuredValue, Path, PictureHeader, Plan, Rendered, State} from './contract';
 
 // A line for the user; what is said twice is shown once.
 export interface Notice {
-  kind: 'error' | 'warning' | 'info';
+  kind: 'error'|'warning'|'info';
   line: string;
 }
 
@@ -13,14 +13,15 @@ export interface Progress {
   total: number;
 }
 
-// The part of the frame that is shown: its pixel at the stage's top-left corner, and screen pixels a frame pixel. None: all of it.
+// The part of the frame that is shown: its pixel at the stage's top-left corner, and screen pixels a frame pixel. None:
+// all of it.
 export interface Look {
   x: number;
   y: number;
   scale: number;
 }
 
-export type Tab = 'flyers' | 'light' | 'camera' | 'text';
+export type Tab = 'flyers'|'light'|'camera'|'text';
 
 // A handle that is dragged stands where the pointer is, whatever the server has answered so far.
 export interface Draft {
@@ -33,35 +34,35 @@ export interface Everything {
   connected: boolean;
   everConnected: boolean;
   file: string;
-  clip: Clip | null;
-  state: State | null;
-  plan: Plan | null;
-  planProblem: string | null; // why there is no plan of the scene as it is
-  picture: PictureHeader | null; // of the picture that is shown: its boxes and lines
-  pending: number; // edits that the server has not answered
-  keepsMine: boolean; // the change on disk was declined
+  clip: Clip|null;
+  state: State|null;
+  plan: Plan|null;
+  planProblem: string|null;     // why there is no plan of the scene as it is
+  picture: PictureHeader|null;  // of the picture that is shown: its boxes and lines
+  pending: number;              // edits that the server has not answered
+  keepsMine: boolean;           // the change on disk was declined
   notices: Notice[];
-  progress: Progress | null;
-  busy: 'render' | 'calibrate' | null;
-  measured: MeasuredValue[] | null;
-  film: Rendered | null;
-  groups: AircraftGroup[] | null;
+  progress: Progress|null;
+  busy: 'render'|'calibrate'|null;
+  measured: MeasuredValue[]|null;
+  film: Rendered|null;
+  groups: AircraftGroup[]|null;
   // view settings
   frame: number;
   playing: boolean;
   speed: number;
-  selected: Path | null;
-  moment: number | null;
-  draft: Draft | null;
-  look: Look | null;
+  selected: Path|null;
+  moment: number|null;
+  draft: Draft|null;
+  look: Look|null;
   tab: Tab;
   showsAircraft: boolean;
   showsBoxes: boolean;
   showsHorizon: boolean;
   showsMotion: boolean;
-  dialog: 'gallery' | 'render' | 'help' | null;
-  addsAt: [number, number] | null; // where the gallery's choice is put
-  replaces: Path | null; // the flyer whose aircraft the gallery changes
+  dialog: 'gallery'|'render'|'help'|null;
+  addsAt: [number, number]|null;  // where the gallery's choice is put
+  replaces: Path|null;            // the flyer whose aircraft the gallery changes
 }
 
 export type Member = keyof Everything;
@@ -101,7 +102,8 @@ const beginning: Everything = {
 };
 
 // What a reload of the page keeps.
-const KEPT: Member[] = ['frame', 'selected', 'moment', 'tab', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'speed'];
+const KEPT: Member[] =
+    ['frame', 'selected', 'moment', 'tab', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'speed'];
 const KEY = 'airtruth-studio-view';
 
 type Listener = (changed: Set<Member>) => void;
@@ -113,8 +115,8 @@ export class Store {
   private changed = new Set<Member>();
   private isTold = true;
 
-  constructor(private kept: Storage | null = null) {
-    this.values = { ...beginning, ...this.remembered() };
+  constructor(private kept: Storage|null = null) {
+    this.values = {...beginning, ...this.remembered()};
     this.now = this.values;
   }
 
@@ -137,11 +139,11 @@ export class Store {
 
   say(kind: Notice['kind'], line: string): void {
     const others = this.values.notices.filter((notice) => notice.line !== line);
-    this.put({ notices: [...others, { kind, line }].slice(-4) });
+    this.put({notices: [...others, {kind, line}].slice(-4)});
   }
 
   unsay(line: string): void {
-    this.put({ notices: this.values.notices.filter((notice) => notice.line !== line) });
+    this.put({notices: this.values.notices.filter((notice) => notice.line !== line)});
   }
 
   private tell(): void {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-import { Connection, Lost, Refused } from './connection';
-import type { AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State } from './contract';
-import { type Edit, Edits, type Unsent } from './edits';
-import { type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment } from './flyers';
-import { type Point, clamp, seenNear } from './geometry';
-import { Pictures } from './pictures';
-import type { Store } from './store';
+import {Connection, Lost, Refused} from './connection';
+import type {AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State} from './contract';
+import {type Edit, Edits, type Unsent} from './edits';
+import {type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
+import {type Point, clamp, seenNear} from './geometry';
+import {Pictures} from './pictures';
+import type {Store} from './store';
 
 const KEPT_LATENCIES = 500;
 const REST_MS = 100;
@@ -22,8 +22,8 @@ export class Studio {
   readonly pictures: Pictures;
   readonly edits: Edits;
   private merges = 0;
-  private wholes = 0; // undos and the like under way
-  private rest: ReturnType<typeof setTimeout> | undefined;
+  private wholes = 0;  // undos and the like under way
+  private rest: ReturnType<typeof setTimeout>|undefined;
   private planAsked = false;
   private planStale = false;
   private isDragged = false;
@@ -34,8 +34,11 @@ export class Studio {
       send: (edit) => this.send(edit),
       text: () => store.now.state?.text ?? '',
       done: (state) => this.took(state),
-      refused: (line) => { store.say('error', line); this.settle(); },
-      pending: (pending) => store.put({ pending }),
+      refused: (line) => {
+        store.say('error', line);
+        this.settle();
+      },
+      pending: (pending) => store.put({pending}),
     });
     this.pictures.onRefused = (line) => store.say('error', line);
     connection.onOpen = () => void this.opened();
@@ -53,12 +56,15 @@ export class Studio {
   // For a page that ends: what the server has not answered is kept for the next one.
   end(): void {
     const unsent = this.edits.unsent();
-    if (unsent.length) this.kept.setItem(UNSENT_KEY, JSON.stringify({ file: this.store.now.file, unsent }));
-    else this.kept.removeItem(UNSENT_KEY);
+    if (unsent.length)
+      this.kept.setItem(UNSENT_KEY, JSON.stringify({file: this.store.now.file, unsent}));
+    else
+      this.kept.removeItem(UNSENT_KEY);
   }
 
   get isIdle(): boolean {
-    return this.wholes === 0 && this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole && this.rest === undefined;
+    return this.wholes === 0 && this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole &&
+        this.rest === undefined;
   }
 
   // A name for edits that are one step of undo.
@@ -67,8 +73,8 @@ export class Studio {
   }
 
   // An edit. Of a drag, which states when the hand moved, what it changes in the frame is drawn at once.
-  edit(changes: Change[], merge: string | null = null, moved_ms?: number): void {
-    const edit: ShownEdit = { changes, merge, moved_ms };
+  edit(changes: Change[], merge: string|null = null, moved_ms?: number): void {
+    const edit: ShownEdit = {changes, merge, moved_ms};
     this.edits.add(edit);
   }
 
@@ -78,101 +84,115 @@ export class Studio {
     if (!isDragged) this.settle();
   }
 
-  async undo(): Promise<void> { await this.whole('undo'); }
-  async redo(): Promise<void> { await this.whole('redo'); }
-  async save(): Promise<void> { if (await this.whole('save')) this.store.say('info', `Saved ${this.store.now.file}`); }
-  async reload(): Promise<void> { await this.whole('reload'); }
+  async undo(): Promise<void> {
+    await this.whole('undo');
+  }
+  async redo(): Promise<void> {
+    await this.whole('redo');
+  }
+  async save(): Promise<void> {
+    if (await this.whole('save')) this.store.say('info', `Saved ${this.store.now.file}`);
+  }
+  async reload(): Promise<void> {
+    await this.whole('reload');
+  }
 
-  select(selected: Path | null, moment: number | null = null): void {
-    this.store.put({ selected, moment });
-    if (selected && this.store.now.tab === 'text') this.store.put({ tab: 'flyers' });
+  select(selected: Path|null, moment: number|null = null): void {
+    this.store.put({selected, moment});
+    if (selected && this.store.now.tab === 'text') this.store.put({tab: 'flyers'});
   }
 
   show(frame: number): void {
-    const { clip } = this.store.now;
-    if (clip) this.store.put({ frame: clamp(Math.round(frame), 0, clip.frames - 1) });
+    const {clip} = this.store.now;
+    if (clip) this.store.put({frame: clamp(Math.round(frame), 0, clip.frames - 1)});
   }
 
-  add(choice: Choice, at: Point | null = null): void {
-    const { state, clip, plan, frame } = this.store.now;
+  add(choice: Choice, at: Point|null = null): void {
+    const {state, clip, plan, frame} = this.store.now;
     if (!state || !clip) return;
     const key = choice.kind === 'aircraft' ? 'intruder' : 'distractor';
     const list = state.scene[key];
     const count = Array.isArray(list) ? list.length : 0;
     const place = at ?? [clip.width * 0.3, clip.height * (0.3 + 0.08 * (flyersOf(state.scene).length % 5))];
-    this.edit([{ insert: [key], at: null, table: newFlyer(choice, state.scene, clip, frame, place as Point, plan ? ownSpeed(plan, frame, clip) : 0) }]);
-    this.store.put({ selected: [key, count], moment: null, tab: 'flyers' });
+    this.edit([{
+      insert: [key],
+      at: null,
+      table: newFlyer(choice, state.scene, clip, frame, place as Point, plan ? ownSpeed(plan, frame, clip) : 0)
+    }]);
+    this.store.put({selected: [key, count], moment: null, tab: 'flyers'});
   }
 
   duplicate(path: Path): void {
-    const { state, clip } = this.store.now;
+    const {state, clip} = this.store.now;
     const flyer = flyerAt(state, path);
     if (!flyer || !clip || !state) return;
     const count = (state.scene[String(path[0])] as unknown[]).length;
-    this.edit([{ insert: [path[0]], at: null, table: copyOf(flyer, clip) }]);
-    this.store.put({ selected: [path[0], count], moment: null });
+    this.edit([{insert: [path[0]], at: null, table: copyOf(flyer, clip)}]);
+    this.store.put({selected: [path[0], count], moment: null});
   }
 
   remove(path: Path): void {
-    this.edit([{ remove: path }]);
-    this.store.put({ selected: null, moment: null });
+    this.edit([{remove: path}]);
+    this.store.put({selected: null, moment: null});
   }
 
   // A moment of the selected path at the frame shown: at a pixel, or where the path is then.
-  addMoment(at: Point | null = null): void {
-    const { state, clip, plan, frame, selected } = this.store.now;
+  addMoment(at: Point|null = null): void {
+    const {state, clip, plan, frame, selected} = this.store.now;
     const flyer = flyerAt(state, selected);
     const track = trackOf(plan, selected);
     if (!flyer || !clip || !track || flyer.statement !== 'moments') return;
     const seen = seenNear(track, frame);
     if (!seen) return;
-    const { changes, index } = withMoment(flyer, clip, frame, at ?? seen.pixel, seen.range_m);
+    const {changes, index} = withMoment(flyer, clip, frame, at ?? seen.pixel, seen.range_m);
     this.edit(changes);
-    this.store.put({ moment: index });
+    this.store.put({moment: index});
   }
 
   removeMoment(): void {
-    const { state, clip, selected, moment } = this.store.now;
+    const {state, clip, selected, moment} = this.store.now;
     const flyer = flyerAt(state, selected);
     if (!flyer || !clip || moment === null) return;
     const moments = momentsOf(flyer, clip);
     if (moment >= moments.length) return;
     if (moments.length <= 2) {
-      this.store.say('info', 'A path has at least two moments. Delete the flyer with its button, or add a moment first.');
+      this.store.say(
+          'info', 'A path has at least two moments. Delete the flyer with its button, or add a moment first.');
       return;
     }
-    this.edit([{ remove: moments[moment].path }]);
-    this.store.put({ moment: null });
+    this.edit([{remove: moments[moment].path}]);
+    this.store.put({moment: null});
   }
 
   // To the next or the last moment of the selected path.
-  goToMoment(step: 1 | -1): void {
-    const { state, clip, selected, frame } = this.store.now;
+  goToMoment(step: 1|- 1): void {
+    const {state, clip, selected, frame} = this.store.now;
     const flyer = flyerAt(state, selected);
     if (!flyer || !clip) return;
     const moments = momentsOf(flyer, clip);
-    const next = step > 0 ? moments.findIndex((one) => one.frame > frame) : moments.length - 1 - [...moments].reverse().findIndex((one) => one.frame < frame);
+    const next = step > 0 ? moments.findIndex((one) => one.frame > frame) :
+                            moments.length - 1 - [...moments].reverse().findIndex((one) => one.frame < frame);
     if (next < 0 || next >= moments.length) return;
-    this.store.put({ moment: next });
+    this.store.put({moment: next});
     this.show(moments[next].frame);
   }
 
   async search(text: string): Promise<AircraftGroup[]> {
-    const { groups } = await this.connection.request<{ groups: AircraftGroup[] }>('aircraft', { search: text });
+    const {groups} = await this.connection.request<{groups: AircraftGroup[]}>('aircraft', {search: text});
     return groups;
   }
 
   calibrate(): Promise<void> {
     return this.long('calibrate', async () => {
-      const { values } = await this.connection.request<{ values: MeasuredValue[] }>('calibrate');
-      this.store.put({ measured: values });
+      const {values} = await this.connection.request<{values: MeasuredValue[]}>('calibrate');
+      this.store.put({measured: values});
     });
   }
 
   render(): Promise<void> {
     return this.long('render', async () => {
       if (!this.store.now.state?.saved && !(await this.whole('save'))) return;
-      this.store.put({ film: await this.connection.request<Rendered>('render') });
+      this.store.put({film: await this.connection.request<Rendered>('render')});
     });
   }
 
@@ -182,21 +202,21 @@ export class Studio {
 
   // The whole frame that is to be seen now.
   refresh(): void {
-    const { clip, state, frame, showsAircraft, look, playing } = this.store.now;
+    const {clip, state, frame, showsAircraft, look, playing} = this.store.now;
     if (!clip || !state || !this.store.now.connected) return;
     const shownScale = (look?.scale ?? 0.5) * window.devicePixelRatio;
     const scale = clip.width > 1920 && shownScale <= 0.5 && (playing || !this.edits.isIdle) ? 0.5 : 1;
-    this.pictures.want({ frame, revision: state.revision, aircraft: showsAircraft && !state.problem, scale });
+    this.pictures.want({frame, revision: state.revision, aircraft: showsAircraft && !state.problem, scale});
   }
 
   private async send(edit: ShownEdit): Promise<State> {
-    const answer = this.connection.request<{ state: State }>('edit', { changes: edit.changes, merge: edit.merge });
-    const { moved_ms } = edit;
-    const { frame, showsAircraft } = this.store.now;
+    const answer = this.connection.request<{state: State}>('edit', {changes: edit.changes, merge: edit.merge});
+    const {moved_ms} = edit;
+    const {frame, showsAircraft} = this.store.now;
     const isShown = moved_ms !== undefined && showsAircraft;
     const change = isShown ? this.pictures.change(frame).catch(() => null) : null;
-    const { state } = await answer;
-    if (change && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({ state });
+    const {state} = await answer;
+    if (change && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({state});
     const drawn = await change;
     if (isShown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - moved_ms);
     return state;
@@ -208,13 +228,17 @@ export class Studio {
   }
 
   private took(state: State): void {
-    const { selected } = this.store.now;
-    this.store.put({ state, ...(state.changed_on_disk ? {} : { keepsMine: false }), ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? { selected: null, moment: null } : {}) });
+    const {selected} = this.store.now;
+    this.store.put({
+      state,
+      ...(state.changed_on_disk ? {} : {keepsMine: false}),
+      ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? {selected: null, moment: null} : {})
+    });
     this.settle();
   }
 
-  // After an edit: the paths, and the whole frame where its part was not enough, when the hand rests; both take longer than a
-  // picture of a drag may.
+  // After an edit: the paths, and the whole frame where its part was not enough, when the hand rests; both take longer
+  // than a picture of a drag may.
   private settle(): void {
     clearTimeout(this.rest);
     const isSoon = this.edits.isIdle && !this.isDragged;
@@ -235,18 +259,18 @@ export class Studio {
         this.planStale = false;
         const plan = await this.connection.request<Plan>('plan');
         const isDone = !this.isDragged && this.edits.isIdle && !this.planStale;
-        this.store.put({ plan, planProblem: null, ...(isDone ? { draft: null } : {}) });
+        this.store.put({plan, planProblem: null, ...(isDone ? {draft: null} : {})});
       }
     } catch (error) {
       this.planStale = false;
-      if (error instanceof Refused) this.store.put({ planProblem: error.message });
+      if (error instanceof Refused) this.store.put({planProblem: error.message});
     } finally {
       this.planAsked = false;
     }
   }
 
   // What is done to the whole text, after all edits; whether it was.
-  private async whole(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<boolean> {
+  private async whole(what: 'undo'|'redo'|'save'|'reload'): Promise<boolean> {
     this.wholes += 1;
     try {
       await this.edits.whenIdle();
@@ -256,12 +280,12 @@ export class Studio {
     }
   }
 
-  private async ask(what: 'undo' | 'redo' | 'save' | 'reload'): Promise<boolean> {
-    const { state: before } = this.store.now;
+  private async ask(what: 'undo'|'redo'|'save'|'reload'): Promise<boolean> {
+    const {state: before} = this.store.now;
     if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
     try {
       const isAnswered = what === 'save' && before?.changed_on_disk && !isOffered(before, this.store.now.keepsMine);
-      const { state } = await this.connection.request<{ state: State }>(what, isAnswered ? { replace: true } : {});
+      const {state} = await this.connection.request<{state: State}>(what, isAnswered ? {replace: true} : {});
       this.took(state);
       return true;
     } catch (error) {
@@ -270,31 +294,42 @@ export class Studio {
     }
   }
 
-  private async long(what: 'render' | 'calibrate', work: () => Promise<void>): Promise<void> {
+  private async long(what: 'render'|'calibrate', work: () => Promise<void>): Promise<void> {
     if (this.store.now.busy) return;
     await this.edits.whenIdle();
-    this.store.put({ busy: what, progress: { of: what, done: 0, total: 0 } });
+    this.store.put({busy: what, progress: {of: what, done: 0, total: 0}});
     try {
       await work();
     } catch (error) {
       this.failed(error);
     } finally {
-      this.store.put({ busy: null, progress: null });
+      this.store.put({busy: null, progress: null});
     }
   }
 
   private failed(error: unknown): void {
-    if (error instanceof Refused) this.store.say('error', error.message);
-    else if (!(error instanceof Lost)) throw error;
+    if (error instanceof Refused)
+      this.store.say('error', error.message);
+    else if (!(error instanceof Lost))
+      throw error;
   }
 
   private async opened(): Promise<void> {
     try {
-      const { file, clip, state } = await this.connection.request<{ file: string; clip: Clip | null; state: State }>('open');
+      const {file, clip, state} =
+          await this.connection.request<{file: string; clip: Clip | null; state: State}>('open');
       if (clip) this.pictures.begin(clip);
       this.pictures.forget();
-      this.store.put({ connected: true, everConnected: true, file, clip, state, frame: clamp(this.store.now.frame, 0, (clip?.frames ?? 1) - 1) });
-      if (this.store.now.selected && !flyerAt(state, this.store.now.selected)) this.store.put({ selected: null, moment: null });
+      this.store.put({
+        connected: true,
+        everConnected: true,
+        file,
+        clip,
+        state,
+        frame: clamp(this.store.now.frame, 0, (clip?.frames ?? 1) - 1)
+      });
+      if (this.store.now.selected && !flyerAt(state, this.store.now.selected))
+        this.store.put({selected: null, moment: null});
       this.edits.resume();
       this.takeUnsent(file);
       this.settle();
@@ -304,7 +339,11 @@ export class Studio {
   }
 
   private takeUnsent(file: string): void {
-    const kept = JSON.parse(this.kept.getItem(UNSENT_KEY) ?? 'null') as { file: string; unsent: Unsent[] } | null;
+    const kept = JSON.parse(this.kept.getItem(UNSENT_KEY) ?? 'null') as {
+      file: string;
+      unsent: Unsent[]
+    }
+    |null;
     this.kept.removeItem(UNSENT_KEY);
     if (kept?.file === file) this.edits.restore(kept.unsent);
   }
@@ -312,14 +351,14 @@ export class Studio {
   private lost(): void {
     this.edits.stop();
     this.pictures.forget();
-    this.store.put({ connected: false, playing: false });
+    this.store.put({connected: false, playing: false});
   }
 
   private heard(event: ServerEvent): void {
     if (event.event === 'progress') {
-      this.store.put({ progress: event });
+      this.store.put({progress: event});
     } else if (event.event === 'measured') {
-      this.store.put({ progress: this.store.now.busy ? this.store.now.progress : null });
+      this.store.put({progress: this.store.now.busy ? this.store.now.progress : null});
       this.pictures.forget();
       this.settle();
     } else if (event.event === 'warning') {
@@ -327,12 +366,13 @@ export class Studio {
     } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
       // A text that can be used at last has a clip.
       if (!this.store.now.clip && !event.state.problem) void this.opened();
-      const isNew = event.state.revision !== this.store.now.state?.revision || event.state.text !== this.store.now.state?.text;
-      this.store.put({ state: event.state });
+      const isNew =
+          event.state.revision !== this.store.now.state?.revision || event.state.text !== this.store.now.state?.text;
+      this.store.put({state: event.state});
       if (isNew) this.settle();
     }
   }
 }
 
 // Whether a state tells of a change on disk that the user has not answered.
-export const isOffered = (state: State | null, keepsMine: boolean) => Boolean(state?.changed_on_disk && !keepsMine);
+export const isOffered = (state: State|null, keepsMine: boolean) => Boolean(state?.changed_on_disk && !keepsMine);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Change, Json, Table } from '../model/contract';
-import { numberOf, tableOf } from '../model/flyers';
-import type { Member } from '../model/store';
-import { NumberField } from './fields';
-import { Part, h, text } from './part';
+import type {Change, Json, Table} from '../model/contract';
+import {numberOf, tableOf} from '../model/flyers';
+import type {Member} from '../model/store';
+import {NumberField} from './fields';
+import {Part, h, text} from './part';
 
 interface Row {
   field: NumberField;
@@ -11,49 +11,93 @@ interface Row {
 }
 
 const ANGLES = ['Yaw', 'Pitch', 'Roll'];
-const numbers = (value: Json | undefined, usual: number[]): number[] => (Array.isArray(value) && value.length === usual.length ? value.map(Number) : usual);
+const numbers = (value: Json|undefined, usual: number[]): number[] =>
+    (Array.isArray(value) && value.length === usual.length ? value.map(Number) : usual);
 
-// The lens and the attitude of the camera; the horizon that follows from them is drawn over the frame while this is shown.
+// The lens and the attitude of the camera; the horizon that follows from them is drawn over the frame while this is
+// shown.
 export class CameraPanel extends Part {
   protected readonly watches: Member[] = ['state', 'tab'];
   private rows: Row[] = [];
-  private origin = h('p', { class: 'hint' });
-  private forget = h('button', { onclick: () => this.studio.edit([{ remove: ['camera', 'attitude_yaw_pitch_roll_deg'] }]) }, 'Measure attitude from the horizon');
+  private origin = h('p', {class: 'hint'});
+  private forget =
+      h('button', {onclick: () => this.studio.edit([{remove: ['camera', 'attitude_yaw_pitch_roll_deg']}])},
+        'Measure attitude from the horizon');
 
   protected build(): void {
-    const lens = this.row({ label: 'Vertical view', unit: '°', step: 0.5, min: 0.01, max: 359 }, (scene) => numberOf(tableOf(scene.lens).vertical_fov_deg), (value) => [{ set: ['lens', 'vertical_fov_deg'], to: value }]);
-    const angles = ANGLES.map((label, k) => this.row({ label, unit: '°', step: 0.1, min: k === 1 ? -90 : -360, max: k === 1 ? 90 : 360, placeholder: 'measured' },
-      (scene) => { const attitude = tableOf(scene.camera).attitude_yaw_pitch_roll_deg; return Array.isArray(attitude) ? Number(attitude[k]) : null; },
-      (value, scene) => [{ set: ['camera', 'attitude_yaw_pitch_roll_deg'], to: numbers(tableOf(scene.camera).attitude_yaw_pitch_roll_deg, [0, 0, 0]).map((old, i) => (i === k ? value : old)) }]));
-    const height = this.row({ label: 'Height', unit: 'm', step: 1 }, (scene) => -numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150])[2],
-      (value, scene) => [{ set: ['camera', 'position_ned_m'], to: numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150]).map((old, i) => (i === 2 ? -value : old)) }]);
-    const velocity = ['North', 'East', 'Down'].map((label, k) => this.row({ label, unit: 'm/s', step: 1 }, (scene) => numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0])[k],
-      (value, scene) => [{ set: ['camera', 'velocity_ned_mps'], to: numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0]).map((old, i) => (i === k ? value : old)) }]));
-    this.append(h('h2', {}, 'Lens'), h('div', { class: 'grid' }, lens), this.origin, h('h2', {}, 'Attitude in the first frame'), h('div', { class: 'grid three' }, ...angles),
-      h('p', { class: 'hint' }, 'The line over the frame is where lens and attitude put the horizon.'), h('div', { class: 'actions' }, this.forget),
-      h('h2', {}, 'Own flight'), h('div', { class: 'grid' }, height), h('div', { class: 'grid three' }, ...velocity));
+    const lens = this.row(
+        {label: 'Vertical view', unit: '°', step: 0.5, min: 0.01, max: 359},
+        (scene) => numberOf(tableOf(scene.lens).vertical_fov_deg),
+        (value) => [{set: ['lens', 'vertical_fov_deg'], to: value}]);
+    const angles = ANGLES.map(
+        (label, k) => this.row(
+            {label, unit: '°', step: 0.1, min: k === 1 ? -90 : -360, max: k === 1 ? 90 : 360, placeholder: 'measured'},
+            (scene) => {
+              const attitude = tableOf(scene.camera).attitude_yaw_pitch_roll_deg;
+              return Array.isArray(attitude) ? Number(attitude[k]) : null;
+            },
+            (value, scene) => [{
+              set: ['camera', 'attitude_yaw_pitch_roll_deg'],
+              to: numbers(tableOf(scene.camera).attitude_yaw_pitch_roll_deg, [0, 0, 0])
+                      .map((old, i) => (i === k ? value : old))
+            }]));
+    const height = this.row(
+        {label: 'Height', unit: 'm', step: 1},
+        (scene) => -numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150])[2],
+        (value, scene) => [{
+          set: ['camera', 'position_ned_m'],
+          to: numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150]).map((old, i) => (i === 2 ? -value : old))
+        }]);
+    const velocity = ['North', 'East', 'Down'].map(
+        (label, k) => this.row(
+            {label, unit: 'm/s', step: 1}, (scene) => numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0])[k],
+            (value, scene) => [{
+              set: ['camera', 'velocity_ned_mps'],
+              to: numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0]).map((old, i) => (i === k ? value : old))
+            }]));
+    this.append(
+        h('h2', {}, 'Lens'), h('div', {class: 'grid'}, lens), this.origin, h('h2', {}, 'Attitude in the first frame'),
+        h('div', {class: 'grid three'}, ...angles),
+        h('p', {class: 'hint'}, 'The line over the frame is where lens and attitude put the horizon.'),
+        h('div', {class: 'actions'}, this.forget), h('h2', {}, 'Own flight'), h('div', {class: 'grid'}, height),
+        h('div', {class: 'grid three'}, ...velocity));
   }
 
   protected update(changed: Set<Member>): void {
-    const { state, tab } = this.now;
-    if (changed.has('tab') && tab === 'camera') this.studio.store.put({ showsHorizon: true });
+    const {state, tab} = this.now;
+    if (changed.has('tab') && tab === 'camera') this.studio.store.put({showsHorizon: true});
     if (!state) return;
-    const { scene } = state;
-    for (const { field, value } of this.rows) field.show(value(scene));
+    const {scene} = state;
+    for (const {field, value} of this.rows) field.show(value(scene));
     const lens = tableOf(scene.lens);
     const hasFov = 'vertical_fov_deg' in lens;
-    text(this.origin, 'file' in lens ? `The lens is that of ${String(lens.file)}.` : Array.isArray(lens.focal_px) ? `Focal lengths ${lens.focal_px.join(', ')} px.` : '');
+    text(
+        this.origin,
+        'file' in lens ? `The lens is that of ${String(lens.file)}.` :
+            Array.isArray(lens.focal_px) ? `Focal lengths ${lens.focal_px.join(', ')} px.` :
+                                           '');
     this.rows[0].field.input.disabled = !hasFov;
     const camera = tableOf(scene.camera);
     const isFile = 'path_file' in camera;
-    this.rows.slice(1).forEach(({ field }) => { field.input.disabled = isFile; });
-    this.rows.slice(5).forEach(({ field }) => { field.input.disabled = isFile || 'log' in camera; });
+    this.rows.slice(1).forEach(({field}) => {
+      field.input.disabled = isFile;
+    });
+    this.rows.slice(5).forEach(({field}) => {
+      field.input.disabled = isFile || 'log' in camera;
+    });
     this.forget.hidden = !('attitude_yaw_pitch_roll_deg' in camera);
   }
 
-  private row(options: { label: string; unit: string; step: number; min?: number; max?: number; placeholder?: string }, value: (scene: Table) => number | null, changes: (value: number, scene: Table) => Change[]): HTMLElement {
-    const field = new NumberField({ ...options, taken: (taken) => { if (this.now.state) this.studio.edit(changes(taken, this.now.state.scene)); } });
-    this.rows.push({ field, value });
+  private row(
+      options: {label: string; unit: string; step: number; min?: number; max?: number; placeholder?: string},
+      value: (scene: Table) => number | null, changes: (value: number, scene: Table) => Change[]): HTMLElement {
+    const field = new NumberField({
+      ...options,
+      taken: (taken) => {
+        if (this.now.state) this.studio.edit(changes(taken, this.now.state.scene));
+      }
+    });
+    this.rows.push({field, value});
     return field.element;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Everything, Member } from '../model/store';
-import { Part, h } from './part';
+import type {Everything, Member} from '../model/store';
+import {Part, h} from './part';
 
 // A dialog of the browser's own, open while the store says so: it keeps the focus, and Escape closes it.
 export abstract class DialogPart extends Part {
@@ -13,15 +13,19 @@ export abstract class DialogPart extends Part {
   protected closed(): void {}
 
   protected build(): void {
-    const close = h('button', { class: 'close', 'aria-label': 'Close', title: 'Close (Escape)', onclick: () => this.dialog.close() }, '×');
+    const close =
+        h('button',
+          {class: 'close', 'aria-label': 'Close', title: 'Close (Escape)', onclick: () => this.dialog.close()}, '×');
     this.dialog.setAttribute('aria-label', this.title_);
     this.dialog.append(h('header', {}, h('h2', {}, this.title_), close), ...this.fill());
     this.dialog.addEventListener('close', () => {
       this.closed();
-      if (this.now.dialog === this.name) this.studio.store.put({ dialog: null });
+      if (this.now.dialog === this.name) this.studio.store.put({dialog: null});
     });
     // A click beside it closes it.
-    this.dialog.addEventListener('pointerdown', (event) => { if (event.target === this.dialog) this.dialog.close(); });
+    this.dialog.addEventListener('pointerdown', (event) => {
+      if (event.target === this.dialog) this.dialog.close();
+    });
     this.append(this.dialog);
   }
 

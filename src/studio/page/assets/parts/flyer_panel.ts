@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Change, Json, Path } from '../model/contract';
-import { type Flyer, type Moment, describedApproach, flyerAt, momentsOf, numberOf, tableOf, timeOf, toApproach, toMoments, trackOf, writtenRange, writtenWidth } from '../model/flyers';
-import type { Member } from '../model/store';
-import { NumberField, type NumberOptions, choiceField } from './fields';
-import { Part, attribute, h, text } from './part';
+import type {Change, Json, Path} from '../model/contract';
+import {type Flyer, type Moment, describedApproach, flyerAt, momentsOf, numberOf, tableOf, timeOf, toApproach, toMoments, trackOf, writtenRange, writtenWidth} from '../model/flyers';
+import type {Member} from '../model/store';
+import {NumberField, type NumberOptions, choiceField} from './fields';
+import {Part, attribute, h, text} from './part';
 
 interface KeyOptions extends Omit<NumberOptions, 'taken'> {
   key: string[];
-  default: number | null;
+  default: number|null;
 }
 
 const ENCOUNTER: KeyOptions[] = [
-  { key: ['encounter', 'cpa_time_s'], label: 'Closest at', unit: 's', step: 0.1, default: null },
-  { key: ['encounter', 'cpa_right_m'], label: 'Right', unit: 'm', step: 1, default: 0 },
-  { key: ['encounter', 'cpa_above_m'], label: 'Above', unit: 'm', step: 1, default: 0 },
-  { key: ['encounter', 'cpa_ahead_m'], label: 'Ahead', unit: 'm', step: 1, default: null, placeholder: 'follows' },
-  { key: ['encounter', 'course_deg'], label: 'Course', unit: '°', step: 1, min: -360, max: 360, default: null },
-  { key: ['encounter', 'speed_mps'], label: 'Speed', unit: 'm/s', step: 1, min: 0.001, default: null },
-  { key: ['encounter', 'climb_mps'], label: 'Climb', unit: 'm/s', step: 0.5, default: 0 },
-  { key: ['encounter', 'turn_rate_dps'], label: 'Turn rate', unit: '°/s', step: 0.5, min: -90, max: 90, default: 0 },
+  {key: ['encounter', 'cpa_time_s'], label: 'Closest at', unit: 's', step: 0.1, default: null},
+  {key: ['encounter', 'cpa_right_m'], label: 'Right', unit: 'm', step: 1, default: 0},
+  {key: ['encounter', 'cpa_above_m'], label: 'Above', unit: 'm', step: 1, default: 0},
+  {key: ['encounter', 'cpa_ahead_m'], label: 'Ahead', unit: 'm', step: 1, default: null, placeholder: 'follows'},
+  {key: ['encounter', 'course_deg'], label: 'Course', unit: '°', step: 1, min: -360, max: 360, default: null},
+  {key: ['encounter', 'speed_mps'], label: 'Speed', unit: 'm/s', step: 1, min: 0.001, default: null},
+  {key: ['encounter', 'climb_mps'], label: 'Climb', unit: 'm/s', step: 0.5, default: 0},
+  {key: ['encounter', 'turn_rate_dps'], label: 'Turn rate', unit: '°/s', step: 0.5, min: -90, max: 90, default: 0},
 ];
 const FLOCK: KeyOptions[] = [
-  { key: ['size_m'], label: 'Size', unit: 'm', step: 0.05, min: 0.05, max: 20, default: null, placeholder: 'usual' },
-  { key: ['count'], label: 'Birds', unit: '', step: 1, min: 1, max: 200, default: 1 },
-  { key: ['spread_m'], label: 'Flock radius', unit: 'm', step: 1, min: 0, max: 10000, default: null },
+  {key: ['size_m'], label: 'Size', unit: 'm', step: 0.05, min: 0.05, max: 20, default: null, placeholder: 'usual'},
+  {key: ['count'], label: 'Birds', unit: '', step: 1, min: 1, max: 200, default: 1},
+  {key: ['spread_m'], label: 'Flock radius', unit: 'm', step: 1, min: 0, max: 10000, default: null},
 ];
 const PATHS: Record<Flyer['statement'], string> = {
   moments: 'By moments in the picture',
@@ -38,22 +38,23 @@ const PATHS: Record<Flyer['statement'], string> = {
 export class FlyerPanel extends Part {
   protected readonly watches: Member[] = ['state', 'plan', 'selected', 'moment', 'clip'];
   private built = '';
-  private fields: { options: KeyOptions; field: NumberField }[] = [];
+  private fields: {options: KeyOptions; field: NumberField}[] = [];
   private rows: MomentRow[] = [];
-  private portrait = h('img', { alt: '', width: 56, height: 56 });
-  private seenAs = h('p', { class: 'hint' });
+  private portrait = h('img', {alt: '', width: 56, height: 56});
+  private seenAs = h('p', {class: 'hint'});
 
   protected build(): void {}
 
   protected update(): void {
     const flyer = flyerAt(this.now.state, this.now.selected);
-    const { clip, plan } = this.now;
+    const {clip, plan} = this.now;
     if (!flyer || !clip) return;
     const moments = momentsOf(flyer, clip);
-    const shape = JSON.stringify([flyer.path, flyer.kind, flyer.statement, moments.map((one) => one.width_px !== null)]);
+    const shape =
+        JSON.stringify([flyer.path, flyer.kind, flyer.statement, moments.map((one) => one.width_px !== null)]);
     if (shape !== this.built) this.shape(flyer, moments);
     this.built = shape;
-    for (const { options, field } of this.fields) field.show(valueAt(flyer.table, options.key) ?? options.default);
+    for (const {options, field} of this.fields) field.show(valueAt(flyer.table, options.key) ?? options.default);
     moments.forEach((moment, k) => this.rows[k].show(moment, this.now.moment === k));
     const track = trackOf(plan, flyer.path);
     text(this.seenAs, track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '');
@@ -63,7 +64,8 @@ export class FlyerPanel extends Part {
     const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     // What cannot be loaded, a model file and what is on the lens have no picture.
     this.portrait.hidden = !track || flyer.statement === 'lens' || /\.\w+$/.test(name);
-    if (!this.portrait.hidden) attribute(this.portrait, 'src', `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`);
+    if (!this.portrait.hidden)
+      attribute(this.portrait, 'src', `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`);
   }
 
   private shape(flyer: Flyer, moments: Moment[]): void {
@@ -71,38 +73,47 @@ export class FlyerPanel extends Part {
     this.rows = moments.map((_, k) => new MomentRow(this, k));
     const path = flyer.path;
     const isNatural = flyer.kind === 'bird' || flyer.kind === 'multirotor' || flyer.kind === 'balloon';
-    const keys = isNatural ? FLOCK.filter(({ key }) => flyer.kind === 'bird' || key[0] === 'size_m') : [];
+    const keys = isNatural ? FLOCK.filter(({key}) => flyer.kind === 'bird' || key[0] === 'size_m') : [];
     this.replaceChildren(
-      h('div', { class: 'what' }, this.portrait, h('span', { class: 'title' }),
-        flyer.kind === 'aircraft' && h('button', { onclick: () => this.studio.store.put({ dialog: 'gallery', replaces: path, addsAt: null }) }, 'Change …')),
-      ...(keys.length ? [h('div', { class: 'grid' }, ...keys.map((one) => this.keyField(one)))] : []),
-      h('h3', {}, PATHS[flyer.statement]),
-      ...this.statement(flyer),
-      this.seenAs,
-      h('div', { class: 'actions' },
-        h('button', { onclick: () => this.studio.duplicate(path) }, 'Duplicate'),
-        h('button', { class: 'danger', onclick: () => this.studio.remove(path) }, 'Delete'),
-      ),
+        h('div', {class: 'what'}, this.portrait, h('span', {class: 'title'}),
+          flyer.kind === 'aircraft' &&
+              h('button', {onclick: () => this.studio.store.put({dialog: 'gallery', replaces: path, addsAt: null})},
+                'Change …')),
+        ...(keys.length ? [h('div', {class: 'grid'}, ...keys.map((one) => this.keyField(one)))] : []),
+        h('h3', {}, PATHS[flyer.statement]),
+        ...this.statement(flyer),
+        this.seenAs,
+        h(
+            'div',
+            {class: 'actions'},
+            h('button', {onclick: () => this.studio.duplicate(path)}, 'Duplicate'),
+            h('button', {class: 'danger', onclick: () => this.studio.remove(path)}, 'Delete'),
+            ),
     );
   }
 
   private statement(flyer: Flyer): Node[] {
     if (flyer.statement === 'moments') {
       return [
-        h('div', { class: 'moments', role: 'table', 'aria-label': 'Moments' }, MomentRow.head(), ...this.rows.map((row) => row.element)),
-        h('div', { class: 'actions' },
-          h('button', { title: 'At the frame shown (M)', onclick: () => this.studio.addMoment() }, 'Add a moment here'),
-          flyer.kind === 'aircraft' && h('button', { onclick: () => this.restate(toApproach) }, 'State by closest approach')),
+        h('div', {class: 'moments', role: 'table', 'aria-label': 'Moments'}, MomentRow.head(),
+          ...this.rows.map((row) => row.element)),
+        h('div', {class: 'actions'},
+          h('button', {title: 'At the frame shown (M)', onclick: () => this.studio.addMoment()}, 'Add a moment here'),
+          flyer.kind === 'aircraft' &&
+              h('button', {onclick: () => this.restate(toApproach)}, 'State by closest approach')),
       ];
     }
-    const turn = flyer.statement === 'lens' ? [] : [h('div', { class: 'actions' }, h('button', { onclick: () => this.restate(toMoments) }, 'State by moments in the picture'))];
+    const turn = flyer.statement === 'lens' ?
+        [] :
+        [h('div', {class: 'actions'},
+           h('button', {onclick: () => this.restate(toMoments)}, 'State by moments in the picture'))];
     if (flyer.statement !== 'approach') return turn;
-    return [h('div', { class: 'grid' }, ...ENCOUNTER.map((one) => this.keyField(one))), ...turn];
+    return [h('div', {class: 'grid'}, ...ENCOUNTER.map((one) => this.keyField(one))), ...turn];
   }
 
   private keyField(options: KeyOptions): HTMLElement {
-    const field = new NumberField({ ...options, taken: (value) => this.take(options, value) });
-    this.fields.push({ options, field });
+    const field = new NumberField({...options, taken: (value) => this.take(options, value)});
+    this.fields.push({options, field});
     return field.element;
   }
 
@@ -110,67 +121,78 @@ export class FlyerPanel extends Part {
     const flyer = flyerAt(this.now.state, this.now.selected);
     if (!flyer) return;
     const to = options.key[0] === 'count' ? Math.round(value) : value;
-    const changes: Change[] = [{ set: [...flyer.path, ...options.key], to }];
-    if (options.key[0] === 'count' && to > 1 && !('spread_m' in flyer.table)) changes.push({ set: [...flyer.path, 'spread_m'], to: 8 });
-    if (options.key[0] === 'count' && to === 1 && 'spread_m' in flyer.table) changes.push({ remove: [...flyer.path, 'spread_m'] });
+    const changes: Change[] = [{set: [...flyer.path, ...options.key], to}];
+    if (options.key[0] === 'count' && to > 1 && !('spread_m' in flyer.table))
+      changes.push({set: [...flyer.path, 'spread_m'], to: 8});
+    if (options.key[0] === 'count' && to === 1 && 'spread_m' in flyer.table)
+      changes.push({remove: [...flyer.path, 'spread_m']});
     // One of right and ahead follows from the other.
-    const other = { cpa_right_m: 'cpa_ahead_m', cpa_ahead_m: 'cpa_right_m' }[options.key[1]];
-    if (other && other in tableOf(flyer.table.encounter)) changes.unshift({ remove: [...flyer.path, 'encounter', other] });
+    const other = {cpa_right_m: 'cpa_ahead_m', cpa_ahead_m: 'cpa_right_m'}[options.key[1]];
+    if (other && other in tableOf(flyer.table.encounter))
+      changes.unshift({remove: [...flyer.path, 'encounter', other]});
     this.studio.edit(changes);
   }
 
-  private restate(how: typeof toApproach | typeof toMoments): void {
+  private restate(how: typeof toApproach|typeof toMoments): void {
     const flyer = flyerAt(this.now.state, this.now.selected);
-    const { clip, plan } = this.now;
+    const {clip, plan} = this.now;
     const track = flyer && trackOf(plan, flyer.path);
-    const changes = flyer && track && clip && plan ? (how === toMoments ? toMoments(flyer, track, clip) : toApproach(flyer, track, plan, clip)) : null;
-    if (changes) this.studio.edit(changes);
-    else this.studio.store.say('info', 'This path cannot be stated so: it is not in the clip.');
+    const changes = flyer && track && clip && plan ?
+        (how === toMoments ? toMoments(flyer, track, clip) : toApproach(flyer, track, plan, clip)) :
+        null;
+    if (changes)
+      this.studio.edit(changes);
+    else
+      this.studio.store.say('info', 'This path cannot be stated so: it is not in the clip.');
   }
 
   // Edits of a row, called by it.
   set(path: Path, to: Json): void {
-    this.studio.edit([{ set: path, to }]);
+    this.studio.edit([{set: path, to}]);
   }
 
   // A moment's size, in the other words.
-  sizeIn(index: number, key: 'range_m' | 'width_px'): void {
+  sizeIn(index: number, key: 'range_m'|'width_px'): void {
     const flyer = flyerAt(this.now.state, this.now.selected);
-    const { clip, plan } = this.now;
+    const {clip, plan} = this.now;
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
     const handle = flyer && trackOf(plan, flyer.path)?.handles[index];
     const known = handle?.[key];
     if (!moment || !known) return;
     const other = key === 'range_m' ? 'width_px' : 'range_m';
-    this.studio.edit([{ remove: [...moment.path, other] }, { set: [...moment.path, key], to: key === 'range_m' ? writtenRange(known) : writtenWidth(known) }]);
+    this.studio.edit([
+      {remove: [...moment.path, other]},
+      {set: [...moment.path, key], to: key === 'range_m' ? writtenRange(known) : writtenWidth(known)}
+    ]);
   }
 
   choose(index: number): void {
     const flyer = flyerAt(this.now.state, this.now.selected);
-    const { clip } = this.now;
+    const {clip} = this.now;
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
     if (!moment) return;
-    this.studio.store.put({ moment: index });
+    this.studio.store.put({moment: index});
     this.studio.show(moment.frame);
   }
 
-  moment(index: number): Moment | null {
+  moment(index: number): Moment|null {
     const flyer = flyerAt(this.now.state, this.now.selected);
     return (flyer && this.now.clip && momentsOf(flyer, this.now.clip)[index]) || null;
   }
 
   frameTime(time_s: number): number {
-    const { clip } = this.now;
+    const {clip} = this.now;
     return clip ? timeOf(Math.round(time_s * clip.rate_hz), clip) : time_s;
   }
 
   removeRow(index: number): void {
-    this.studio.store.put({ moment: index });
+    this.studio.store.put({moment: index});
     this.studio.removeMoment();
   }
 }
 
-const valueAt = (table: Json, key: string[]): number | null => numberOf(key.reduce<Json | undefined>((at, name) => tableOf(at)[name], table));
+const valueAt = (table: Json, key: string[]): number|null =>
+    numberOf(key.reduce<Json|undefined>((at, name) => tableOf(at)[name], table));
 
 // A moment's numbers in one line of the table.
 class MomentRow {
@@ -179,22 +201,37 @@ class MomentRow {
   private x: NumberField;
   private y: NumberField;
   private size: NumberField;
-  private unit = choiceField('Size of the moment in', [['range_m', 'm'], ['width_px', 'px']], (key) => this.panel.sizeIn(this.index, key as 'range_m'));
+  private unit = choiceField(
+      'Size of the moment in', [['range_m', 'm'], ['width_px', 'px']],
+      (key) => this.panel.sizeIn(this.index, key as 'range_m'));
 
   static head(): HTMLElement {
-    return h('div', { class: 'row head', role: 'row' }, ...['time, s', 'x, px', 'y, px', 'range or width', ''].map((name) => h('span', { role: 'columnheader' }, name)));
+    return h(
+        'div', {class: 'row head', role: 'row'},
+        ...['time, s', 'x, px', 'y, px', 'range or width', ''].map((name) => h('span', {role: 'columnheader'}, name)));
   }
 
   constructor(private panel: FlyerPanel, private index: number) {
-    const field = (label: string, unit: string, step: number, taken: (value: number) => void) => new NumberField({ label: `${label} of moment ${index + 1}`, unit, step, isLabelHidden: true, taken });
+    const field = (label: string, unit: string, step: number, taken: (value: number) => void) =>
+        new NumberField({label: `${label} of moment ${index + 1}`, unit, step, isLabelHidden: true, taken});
     this.time = field('Time', 's', 0.1, (value) => this.set('time_s', this.panel.frameTime(value)));
     this.x = field('X', 'px', 0.1, (value) => this.setPixel(0, value));
     this.y = field('Y', 'px', 0.1, (value) => this.setPixel(1, value));
     this.size = field('Size', '', 0.1, (value) => this.set(this.unit.select.value, value));
-    for (const { element } of [this.time, this.x, this.y]) element.querySelector('.unit')?.remove();
-    const remove = h('button', { class: 'small', 'aria-label': `Remove moment ${index + 1}`, title: 'Remove this moment (Delete)', onclick: () => this.panel.removeRow(index) }, '×');
-    const size = h('span', { class: 'size' }, this.size.element, this.unit.select);
-    this.element = h('div', { class: 'row', role: 'row', onfocusin: () => this.panel.choose(index) }, ...[this.time.element, this.x.element, this.y.element, size, remove].map((one) => h('span', { role: 'cell' }, one)));
+    for (const {element} of [this.time, this.x, this.y]) element.querySelector('.unit')?.remove();
+    const remove =
+        h('button', {
+          class: 'small',
+          'aria-label': `Remove moment ${index + 1}`,
+          title: 'Remove this moment (Delete)',
+          onclick: () => this.panel.removeRow(index)
+        },
+          '×');
+    const size = h('span', {class: 'size'}, this.size.element, this.unit.select);
+    this.element =
+        h('div', {class: 'row', role: 'row', onfocusin: () => this.panel.choose(index)},
+          ...[this.time.element, this.x.element, this.y.element, size, remove].map(
+              (one) => h('span', {role: 'cell'}, one)));
   }
 
   show(moment: Moment, isChosen: boolean): void {
@@ -211,8 +248,9 @@ class MomentRow {
     if (moment) this.panel.set([...moment.path, key], to);
   }
 
-  private setPixel(axis: 0 | 1, value: number): void {
+  private setPixel(axis: 0|1, value: number): void {
     const moment = this.panel.moment(this.index);
-    if (moment) this.panel.set([...moment.path, 'pixel'], axis === 0 ? [value, moment.pixel[1]] : [moment.pixel[0], value]);
+    if (moment)
+      this.panel.set([...moment.path, 'pixel'], axis === 0 ? [value, moment.pixel[1]] : [moment.pixel[0], value]);
   }
 }

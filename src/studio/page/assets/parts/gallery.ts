@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { AircraftGroup, Path } from '../model/contract';
-import type { Choice } from '../model/flyers';
-import { round } from '../model/geometry';
-import type { Member } from '../model/store';
-import { DialogPart } from './dialog';
-import { h } from './part';
+import type {AircraftGroup, Path} from '../model/contract';
+import type {Choice} from '../model/flyers';
+import {round} from '../model/geometry';
+import type {Member} from '../model/store';
+import {DialogPart} from './dialog';
+import {h} from './part';
 
 const SEARCH_AFTER_MS = 150;
 const FLOCK = 8;
 const BIRD_M = 1.3;
-const NATURAL: { kind: Choice['kind']; words: string; length_m: number; count?: number }[] = [
-  { kind: 'bird', words: 'Bird flock', length_m: BIRD_M, count: FLOCK },
-  { kind: 'bird', words: 'Bird', length_m: BIRD_M },
-  { kind: 'multirotor', words: 'Multirotor', length_m: 0.4 },
-  { kind: 'balloon', words: 'Balloon', length_m: 0.3 },
+const NATURAL: {kind: Choice['kind']; words: string; length_m: number; count?: number}[] = [
+  {kind: 'bird', words: 'Bird flock', length_m: BIRD_M, count: FLOCK},
+  {kind: 'bird', words: 'Bird', length_m: BIRD_M},
+  {kind: 'multirotor', words: 'Multirotor', length_m: 0.4},
+  {kind: 'balloon', words: 'Balloon', length_m: 0.3},
 ];
 
 // What can be put into the picture: aircraft with pictures and sizes, by a search, and birds, multirotors and balloons.
@@ -21,19 +21,43 @@ export class Gallery extends DialogPart {
   protected readonly watches: Member[] = ['dialog', 'replaces'];
   protected readonly name = 'gallery';
   protected readonly title_ = 'What flies';
-  private input = h('input', { type: 'text', role: 'searchbox', placeholder: 'Search: a320, cessna, ryanair …', 'aria-label': 'Search aircraft', autocomplete: 'off', oninput: () => this.searchSoon() });
-  private count = h('output', { class: 'hint' });
-  private cards = h('div', { class: 'cards' });
-  private natural = h('div', { class: 'natural' });
-  private own: HTMLInputElement = h('input', { type: 'text', placeholder: 'Path of a model file, from the scene’s folder', 'aria-label': 'Path of a model file', autocomplete: 'off' });
-  private timer: ReturnType<typeof setTimeout> | undefined;
+  private input = h('input', {
+    type: 'text',
+    role: 'searchbox',
+    placeholder: 'Search: a320, cessna, ryanair …',
+    'aria-label': 'Search aircraft',
+    autocomplete: 'off',
+    oninput: () => this.searchSoon()
+  });
+  private count = h('output', {class: 'hint'});
+  private cards = h('div', {class: 'cards'});
+  private natural = h('div', {class: 'natural'});
+  private own: HTMLInputElement = h('input', {
+    type: 'text',
+    placeholder: 'Path of a model file, from the scene’s folder',
+    'aria-label': 'Path of a model file',
+    autocomplete: 'off'
+  });
+  private timer: ReturnType<typeof setTimeout>|undefined;
   private asked = 0;
 
   protected fill(): Node[] {
-    this.natural.append(...NATURAL.map(({ words, ...choice }) => h('button', { onclick: () => this.chosen(choice) }, words)));
-    const useOwn = () => { if (this.own.value.trim()) this.chosen({ kind: 'aircraft', aircraft: this.own.value.trim(), length_m: 10 }); };
-    return [h('div', { class: 'search' }, this.input, this.count), this.natural, this.cards,
-      h('form', { class: 'own-model', onsubmit: (event: Event) => { event.preventDefault(); useOwn(); } }, this.own, h('button', {}, 'Use this model'))];
+    this.natural.append(
+        ...NATURAL.map(({words, ...choice}) => h('button', {onclick: () => this.chosen(choice)}, words)));
+    const useOwn = () => {
+      if (this.own.value.trim()) this.chosen({kind: 'aircraft', aircraft: this.own.value.trim(), length_m: 10});
+    };
+    return [
+      h('div', {class: 'search'}, this.input, this.count), this.natural, this.cards,
+      h('form', {
+        class: 'own-model',
+        onsubmit: (event: Event) => {
+          event.preventDefault();
+          useOwn();
+        }
+      },
+        this.own, h('button', {}, 'Use this model'))
+    ];
   }
 
   protected override opened(): void {
@@ -60,7 +84,8 @@ export class Gallery extends DialogPart {
       const all = await this.studio.search(this.input.value.trim());
       if (asked !== this.asked) return;
       const groups = all.filter((group) => group.kind === 'aircraft');
-      this.count.textContent = `${groups.length} ${groups.length === 1 ? 'type' : 'types'}, ${groups.reduce((sum, group) => sum + Math.max(1, group.liveries.length), 0)} liveries`;
+      this.count.textContent = `${groups.length} ${groups.length === 1 ? 'type' : 'types'}, ${
+          groups.reduce((sum, group) => sum + Math.max(1, group.liveries.length), 0)} liveries`;
       this.cards.replaceChildren(...groups.map((group) => this.card(group)));
       this.cards.scrollTop = 0;
     } catch (error) {
@@ -72,20 +97,37 @@ export class Gallery extends DialogPart {
     const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     const names = group.liveries.length ? group.liveries : [group.name];
     const addressOf = (name: string) => `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`;
-    const picture = h('img', { alt: '', loading: 'lazy', width: 150, height: 150, src: addressOf(group.picture) });
-    const livery: HTMLSelectElement = h('select', { 'aria-label': `Livery of ${group.name}`, onchange: () => { picture.src = addressOf(livery.value); } }, ...names.map((name) => h('option', { value: name }, shortName(name))));
-    const choose = () => this.chosen({ kind: 'aircraft', aircraft: livery.value, length_m: group.length_m ?? 12 });
-    const size = group.length_m ? `${round(group.length_m, 1)} m long${group.span_m ? `, span ${round(group.span_m, 1)} m` : ''}` : 'size not published';
-    return h('article', { class: 'card' },
-      h('button', { class: 'choose', onclick: choose, 'aria-label': `${this.now.replaces ? 'Use' : 'Add'} ${group.type || group.name}` }, picture, h('strong', {}, group.type || group.name), h('span', { class: 'hint' }, size)),
-      names.length > 1 ? livery : null);
+    const picture = h('img', {alt: '', loading: 'lazy', width: 150, height: 150, src: addressOf(group.picture)});
+    const livery: HTMLSelectElement =
+        h('select', {
+          'aria-label': `Livery of ${group.name}`,
+          onchange: () => {
+            picture.src = addressOf(livery.value);
+          }
+        },
+          ...names.map((name) => h('option', {value: name}, shortName(name))));
+    const choose = () => this.chosen({kind: 'aircraft', aircraft: livery.value, length_m: group.length_m ?? 12});
+    const size = group.length_m ?
+        `${round(group.length_m, 1)} m long${group.span_m ? `, span ${round(group.span_m, 1)} m` : ''}` :
+                                                            'size not published';
+    return h(
+        'article', {class: 'card'},
+        h('button', {
+          class: 'choose',
+          onclick: choose,
+          'aria-label': `${this.now.replaces ? 'Use' : 'Add'} ${group.type || group.name}`
+        },
+          picture, h('strong', {}, group.type || group.name), h('span', {class: 'hint'}, size)),
+        names.length > 1 ? livery : null);
   }
 
   private chosen(choice: Choice): void {
-    const { replaces, addsAt } = this.now;
-    this.studio.store.put({ dialog: null, replaces: null, addsAt: null });
-    if (replaces) this.studio.edit([{ set: [...(replaces as Path), 'aircraft'], to: choice.aircraft ?? '' }]);
-    else this.studio.add(choice, addsAt);
+    const {replaces, addsAt} = this.now;
+    this.studio.store.put({dialog: null, replaces: null, addsAt: null});
+    if (replaces)
+      this.studio.edit([{set: [...(replaces as Path), 'aircraft'], to: choice.aircraft ?? ''}]);
+    else
+      this.studio.add(choice, addsAt);
   }
 }
 

@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Change, Clip, Ned, Plan, Track } from '../model/contract';
-import { type Flyer, flyersOf, isSame, momentsOf, numberOf, tableOf, trackOf } from '../model/flyers';
-import { clamp, nedAt, round } from '../model/geometry';
-import type { Member } from '../model/store';
-import { Part, attribute, h, renewed, s, ui } from './part';
-import { diamond, niceStep } from './plan_view';
+import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
+import {type Flyer, flyersOf, isSame, momentsOf, numberOf, tableOf, trackOf} from '../model/flyers';
+import {clamp, nedAt, round} from '../model/geometry';
+import type {Member} from '../model/store';
+import {Part, attribute, h, renewed, s, ui} from './part';
+import {diamond, niceStep} from './plan_view';
 
 // Around the plot, where text is 16 px.
-const MARGINS = { left: 56, right: 12, top: 10, bottom: 24 };
+const MARGINS = {
+  left: 56,
+  right: 12,
+  top: 10,
+  bottom: 24
+};
 const LEAST_M = 40;
-const MOST_ABOVE_M = 1500; // from the own height, of what the view has room for
+const MOST_ABOVE_M = 1500;  // from the own height, of what the view has room for
 
-type Drag = { kind: 'approach' | 'moment' | 'time'; flyer: Flyer | null; index: number; merge: string };
+type Drag = {
+  kind: 'approach'|'moment'|'time'; flyer: Flyer | null; index: number; merge: string
+};
 
-// Heights over time: own path, the others, the ground, volumes about the own height. Closest approaches are dragged in time and
-// height, moments in time.
+// Heights over time: own path, the others, the ground, volumes about the own height. Closest approaches are dragged in
+// time and height, moments in time.
 export class HeightView extends Part {
   protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
-  private svg = s('svg', { role: 'group', 'aria-label': 'Height over time' });
-  private drag: Drag | null = null;
+  private svg = s('svg', {role: 'group', 'aria-label': 'Height over time'});
+  private drag: Drag|null = null;
   private low_m = 0;
   private high_m = 100;
   private px = 1;
@@ -32,7 +39,7 @@ export class HeightView extends Part {
   }
 
   protected update(): void {
-    const { plan, state, clip, frame } = this.now;
+    const {plan, state, clip, frame} = this.now;
     const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
     if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
     attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
@@ -42,20 +49,30 @@ export class HeightView extends Part {
     const x = this.x(frame / clip.rate_hz);
     renewed(this.svg, [
       this.axes(clip, width, height),
-      ...(own ? plan.volumes.filter((one) => one.vertical_m > 0).map((one) => this.volume(plan, one.vertical_m, one.name)) : []),
-      s('polyline', { class: 'own', points: this.points(plan, plan.own.ned) }),
-      s('line', { class: 'cursor', x1: x, x2: x, y1: this.top, y2: height - this.bottom }),
+      ...(own ? plan.volumes.filter((one) => one.vertical_m > 0)
+                    .map((one) => this.volume(plan, one.vertical_m, one.name)) :
+                []),
+      s('polyline', {class: 'own', points: this.points(plan, plan.own.ned)}),
+      s('line', {class: 'cursor', x1: x, x2: x, y1: this.top, y2: height - this.bottom}),
       ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip)),
     ]);
   }
 
-  private get left(): number { return MARGINS.left * this.px; }
-  private get right(): number { return MARGINS.right * this.px; }
-  private get top(): number { return MARGINS.top * this.px; }
-  private get bottom(): number { return MARGINS.bottom * this.px; }
+  private get left(): number {
+    return MARGINS.left * this.px;
+  }
+  private get right(): number {
+    return MARGINS.right * this.px;
+  }
+  private get top(): number {
+    return MARGINS.top * this.px;
+  }
+  private get bottom(): number {
+    return MARGINS.bottom * this.px;
+  }
 
   private get end_s(): number {
-    const { clip } = this.now;
+    const {clip} = this.now;
     return clip ? Math.max(0.1, (clip.frames - 1) / clip.rate_hz) : 1;
   }
 
@@ -64,7 +81,8 @@ export class HeightView extends Part {
   }
 
   private y(height_m: number): number {
-    return this.top + ((this.high_m - height_m) / (this.high_m - this.low_m)) * (this.svg.clientHeight - this.top - this.bottom);
+    return this.top +
+        ((this.high_m - height_m) / (this.high_m - this.low_m)) * (this.svg.clientHeight - this.top - this.bottom);
   }
 
   private timeAt(event: PointerEvent): number {
@@ -74,50 +92,86 @@ export class HeightView extends Part {
 
   private heightAt(event: PointerEvent): number {
     const box = this.svg.getBoundingClientRect();
-    return this.high_m - ((event.clientY - box.top - this.top) / (box.height - this.top - this.bottom)) * (this.high_m - this.low_m);
+    return this.high_m -
+        ((event.clientY - box.top - this.top) / (box.height - this.top - this.bottom)) * (this.high_m - this.low_m);
   }
 
   private frameAll(plan: Plan): void {
     const own = plan.own.ned.map((ned) => -ned[2]);
     const middle = own[0] ?? 0;
-    const others = plan.tracks.flatMap((track) => track.ned.flatMap((ned) => (ned && Math.abs(-ned[2] - middle) < MOST_ABOVE_M ? [-ned[2]] : [])));
+    const others = plan.tracks.flatMap(
+        (track) => track.ned.flatMap((ned) => (ned && Math.abs(-ned[2] - middle) < MOST_ABOVE_M ? [-ned[2]] : [])));
     const [low, high] = [Math.min(...own, ...others), Math.max(...own, ...others)];
     const room = Math.max(LEAST_M, high - low) * 0.15;
     [this.low_m, this.high_m] = [Math.min(low, high - LEAST_M) - room, Math.max(high, low + LEAST_M) + room];
   }
 
-  private points(plan: Plan, ned: (Ned | null)[], above_m = 0): string {
+  private points(plan: Plan, ned: (Ned|null)[], above_m = 0): string {
     const rate_hz = this.now.clip!.rate_hz;
-    return plan.frames.flatMap((frame, k) => (ned[k] ? [`${round(this.x(frame / rate_hz), 1)},${round(this.y(-ned[k]![2] + above_m), 1)}`] : [])).join(' ');
+    return plan.frames
+        .flatMap(
+            (frame, k) =>
+                (ned[k] ? [`${round(this.x(frame / rate_hz), 1)},${round(this.y(-ned[k]![2] + above_m), 1)}`] : []))
+        .join(' ');
   }
 
   private axes(clip: Clip, width: number, height: number): SVGGElement {
-    const group = s('g', { class: 'grid' });
-    const metres = niceStep((this.high_m - this.low_m) / Math.max(2, (height - this.top - this.bottom) / (36 * this.px)));
+    const group = s('g', {class: 'grid'});
+    const metres =
+        niceStep((this.high_m - this.low_m) / Math.max(2, (height - this.top - this.bottom) / (36 * this.px)));
     for (let m = Math.ceil(this.low_m / metres) * metres; m <= this.high_m; m += metres)
-      group.append(s('line', { x1: this.left, x2: width - this.right, y1: this.y(m), y2: this.y(m) }), s('text', { class: 'end', x: this.left - 5 * this.px, y: this.y(m) + 4 * this.px }, `${round(m, 1)} m`));
+      group.append(
+          s('line', {x1: this.left, x2: width - this.right, y1: this.y(m), y2: this.y(m)}),
+          s('text', {class: 'end', x: this.left - 5 * this.px, y: this.y(m) + 4 * this.px}, `${round(m, 1)} m`));
     const seconds = niceStep(this.end_s / Math.max(2, (width - this.left - this.right) / (90 * this.px)));
     for (let t = 0; t <= this.end_s + 1e-6; t += seconds) {
-      group.append(s('line', { x1: this.x(t), x2: this.x(t), y1: this.top, y2: height - this.bottom }), s('text', { class: this.x(t) > width - 30 * this.px ? 'end' : 'middle', x: Math.min(this.x(t), width - 3), y: height - 8 * this.px }, `${round(t, 2)} s`));
+      group.append(
+          s('line', {x1: this.x(t), x2: this.x(t), y1: this.top, y2: height - this.bottom}),
+          s('text', {
+            class: this.x(t) > width - 30 * this.px ? 'end' : 'middle',
+            x: Math.min(this.x(t), width - 3),
+            y: height - 8 * this.px
+          },
+            `${round(t, 2)} s`));
     }
-    if (this.low_m < 0) group.append(s('rect', { class: 'earth', x: this.left, width: Math.max(0, width - this.left - this.right), y: this.y(0), height: Math.max(0, height - this.bottom - this.y(0)) }, s('title', {}, 'Below the ground')));
+    if (this.low_m < 0)
+      group.append(
+          s('rect', {
+            class: 'earth',
+            x: this.left,
+            width: Math.max(0, width - this.left - this.right),
+            y: this.y(0),
+            height: Math.max(0, height - this.bottom - this.y(0))
+          },
+            s('title', {}, 'Below the ground')));
     attribute(group, 'data-rate', clip.rate_hz);
     return group;
   }
 
   private volume(plan: Plan, vertical_m: number, name: string): SVGGElement {
-    return s('g', { class: 'volume' }, ...[1, -1].map((sign) => s('polyline', { points: this.points(plan, plan.own.ned, sign * vertical_m) }, s('title', {}, `${name}: ${round(vertical_m, 0)} m`))));
+    return s(
+        'g', {class: 'volume'},
+        ...[1, -1].map(
+            (sign) =>
+                s('polyline', {points: this.points(plan, plan.own.ned, sign * vertical_m)},
+                  s('title', {}, `${name}: ${round(vertical_m, 0)} m`))));
   }
 
   private flyer(flyer: Flyer, plan: Plan, clip: Clip): SVGElement[] {
     const track = trackOf(plan, flyer.path);
     if (!track) return [];
     const isSelected = isSame(flyer.path, this.now.selected);
-    const group = s('g', { class: `flyer colour-${flyer.colour}${isSelected ? ' selected' : ''}`, 'data-path': JSON.stringify(flyer.path) });
+    const group = s('g', {
+      class: `flyer colour-${flyer.colour}${isSelected ? ' selected' : ''}`,
+      'data-path': JSON.stringify(flyer.path)
+    });
     const points = this.points(plan, track.ned);
-    group.append(s('polyline', { class: 'line', points }), s('polyline', { class: 'grip', points }));
+    group.append(s('polyline', {class: 'line', points}), s('polyline', {class: 'grip', points}));
     const now = nedAt(plan, track.ned, this.now.frame);
-    if (now) group.append(s('circle', { class: 'place', cx: this.x(this.now.frame / clip.rate_hz), cy: this.y(-now[2]), r: 4.5 * this.px }));
+    if (now)
+      group.append(
+          s('circle',
+            {class: 'place', cx: this.x(this.now.frame / clip.rate_hz), cy: this.y(-now[2]), r: 4.5 * this.px}));
     if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
     return [group];
   }
@@ -128,11 +182,20 @@ export class HeightView extends Part {
     if (!own) return [];
     const [x, y, oy] = [this.x(track.cpa.time_s), this.y(-own[2] + track.cpa.above_m), this.y(-own[2])];
     const isHandle = flyer.statement === 'approach';
-    const label = `Closest approach of ${flyer.id}: ${round(track.cpa.time_s, 1)} s, ${round(track.cpa.above_m, 0)} m above`;
+    const label =
+        `Closest approach of ${flyer.id}: ${round(track.cpa.time_s, 1)} s, ${round(track.cpa.above_m, 0)} m above`;
     return [
-      s('line', { class: 'miss', x1: x, x2: x, y1: oy, y2: y }),
-      s('path', { class: `diamond${isHandle ? ' grab' : ''}`, d: diamond(x, y, 7 * this.px), tabindex: isHandle ? 0 : null, role: 'button', 'aria-label': `${label}. Arrow keys move it.`, 'data-drag': isHandle ? 'approach' : null,
-        onkeydown: ((event: KeyboardEvent) => this.key(event, flyer)) as EventListener }, s('title', {}, label)),
+      s('line', {class: 'miss', x1: x, x2: x, y1: oy, y2: y}),
+      s('path', {
+        class: `diamond${isHandle ? ' grab' : ''}`,
+        d: diamond(x, y, 7 * this.px),
+        tabindex: isHandle ? 0 : null,
+        role: 'button',
+        'aria-label': `${label}. Arrow keys move it.`,
+        'data-drag': isHandle ? 'approach' : null,
+        onkeydown: ((event: KeyboardEvent) => this.key(event, flyer)) as EventListener
+      },
+        s('title', {}, label)),
     ];
   }
 
@@ -141,7 +204,17 @@ export class HeightView extends Part {
       const place = nedAt(plan, track.ned, moment.frame);
       if (!place) return [];
       const [x, y] = [this.x(moment.time_s), this.y(-place[2])];
-      return [s('rect', { class: `moment grab${this.now.moment === index ? ' chosen' : ''}`, x: x - 5 * this.px, y: y - 5 * this.px, width: 10 * this.px, height: 10 * this.px, 'data-drag': 'moment', 'data-index': index }, s('title', {}, `${round(moment.time_s, 2)} s: drag for its time`))];
+      return [s(
+          'rect', {
+            class: `moment grab${this.now.moment === index ? ' chosen' : ''}`,
+            x: x - 5 * this.px,
+            y: y - 5 * this.px,
+            width: 10 * this.px,
+            height: 10 * this.px,
+            'data-drag': 'moment',
+            'data-index': index
+          },
+          s('title', {}, `${round(moment.time_s, 2)} s: drag for its time`))];
     });
   }
 
@@ -154,15 +227,17 @@ export class HeightView extends Part {
     if (flyer && !isSame(path, this.now.selected)) this.studio.select(path);
     const kind = (target.dataset.drag as Drag['kind'] | undefined) ?? 'time';
     const index = Number(target.dataset.index ?? 0);
-    if (kind === 'moment') this.studio.store.put({ moment: index });
-    this.drag = { kind, flyer, index, merge: this.studio.merge(kind) };
+    if (kind === 'moment') this.studio.store.put({moment: index});
+    this.drag = {kind, flyer, index, merge: this.studio.merge(kind)};
     this.svg.setPointerCapture(event.pointerId);
-    if (kind !== 'time') this.studio.dragging(true);
-    else if (!group) this.studio.show(this.timeAt(event) * this.now.clip!.rate_hz);
+    if (kind !== 'time')
+      this.studio.dragging(true);
+    else if (!group)
+      this.studio.show(this.timeAt(event) * this.now.clip!.rate_hz);
   }
 
   private move(event: PointerEvent): void {
-    const { drag } = this;
+    const {drag} = this;
     if (!drag || !this.now.clip) return;
     if (drag.kind === 'time') {
       this.studio.show(this.timeAt(event) * this.now.clip.rate_hz);
@@ -177,8 +252,8 @@ export class HeightView extends Part {
     this.drag = null;
   }
 
-  private changesOf({ kind, flyer, index }: Drag, event: PointerEvent): Change[] {
-    const { plan, clip } = this.now;
+  private changesOf({kind, flyer, index}: Drag, event: PointerEvent): Change[] {
+    const {plan, clip} = this.now;
     if (!plan || !clip || !flyer) return [];
     const time_s = clamp(this.timeAt(event), 0, this.end_s);
     if (kind === 'moment') {
@@ -187,21 +262,28 @@ export class HeightView extends Part {
       const [low, high] = [moments[index - 1]?.frame ?? -1, moments[index + 1]?.frame ?? clip.frames];
       const frame = clamp(Math.round(time_s * clip.rate_hz), low + 1, high - 1);
       this.studio.show(frame);
-      return [{ set: [...moments[index].path, 'time_s'], to: round(frame / clip.rate_hz, 3) }];
+      return [{set: [...moments[index].path, 'time_s'], to: round(frame / clip.rate_hz, 3)}];
     }
     const own = nedAt(plan, plan.own.ned, time_s * clip.rate_hz);
     const key = (name: string) => [...flyer.path, 'encounter', name];
-    const above: Change[] = own ? [{ set: key('cpa_above_m'), to: round(this.heightAt(event) + own[2], 1) }] : [];
-    return [{ set: key('cpa_time_s'), to: round(time_s, 2) }, ...above];
+    const above: Change[] = own ? [{set: key('cpa_above_m'), to: round(this.heightAt(event) + own[2], 1)}] : [];
+    return [{set: key('cpa_time_s'), to: round(time_s, 2)}, ...above];
   }
 
   private key(event: KeyboardEvent, flyer: Flyer): void {
-    const keys: Record<string, [string, number]> = { ArrowLeft: ['cpa_time_s', -0.1], ArrowRight: ['cpa_time_s', 0.1], ArrowUp: ['cpa_above_m', 1], ArrowDown: ['cpa_above_m', -1] };
+    const keys: Record<string, [string, number]> = {
+      ArrowLeft: ['cpa_time_s', -0.1],
+      ArrowRight: ['cpa_time_s', 0.1],
+      ArrowUp: ['cpa_above_m', 1],
+      ArrowDown: ['cpa_above_m', -1]
+    };
     const one = keys[event.key];
     if (!one || event.ctrlKey) return;
     event.preventDefault();
     event.stopPropagation();
     const value = numberOf(tableOf(flyer.table.encounter)[one[0]]) ?? 0;
-    this.studio.edit([{ set: [...flyer.path, 'encounter', one[0]], to: round(value + one[1] * (event.shiftKey ? 10 : 1), 2) }], 'approach-keys');
+    this.studio.edit(
+        [{set: [...flyer.path, 'encounter', one[0]], to: round(value + one[1] * (event.shiftKey ? 10 : 1), 2)}],
+        'approach-keys');
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Member } from '../model/store';
-import { DialogPart } from './dialog';
-import { h } from './part';
+import type {Member} from '../model/store';
+import {DialogPart} from './dialog';
+import {h} from './part';
 
 const GESTURES: [string, string][] = [
   ['drag a handle', 'the aircraft is at that pixel at that time'],
@@ -36,7 +36,8 @@ export class HelpDialog extends DialogPart {
   protected readonly title_ = 'Gestures and keys';
 
   protected fill(): Node[] {
-    const table = (rows: [string, string][]) => h('table', {}, ...rows.map(([what, does]) => h('tr', {}, h('th', { scope: 'row' }, what), h('td', {}, does))));
-    return [h('div', { class: 'help' }, table(GESTURES), table(KEYS))];
+    const table = (rows: [string, string][]) =>
+        h('table', {}, ...rows.map(([what, does]) => h('tr', {}, h('th', {scope: 'row'}, what), h('td', {}, does))));
+    return [h('div', {class: 'help'}, table(GESTURES), table(KEYS))];
   }
 }

@@ -1,41 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Member, Notice } from '../model/store';
-import { isOffered } from '../model/studio';
-import { Keyed, Part, attribute, h, text } from './part';
+import type {Member, Notice} from '../model/store';
+import {isOffered} from '../model/studio';
+import {Keyed, Part, attribute, h, text} from './part';
 
 const INFO_MS = 5000;
 
-// Lines for the user: no connection, a text that cannot be used, a change on disk with its two answers, and what the server says.
+// Lines for the user: no connection, a text that cannot be used, a change on disk with its two answers, and what the
+// server says.
 export class NoticeBar extends Part {
-  protected readonly watches: Member[] = ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'keepsMine', 'busy', 'progress'];
-  private lost = h('p', { class: 'notice error' }, 'No connection to airtruth studio. What you do is kept and sent when it is back. If it was started again, open the address that it prints.');
-  private problem = h('p', { class: 'notice error' });
-  private progress = h('p', { class: 'notice info' });
-  private disk = h('p', { class: 'notice warning' });
+  protected readonly watches: Member[] =
+      ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'keepsMine', 'busy', 'progress'];
+  private lost = h(
+      'p', {class: 'notice error'},
+      'No connection to airtruth studio. What you do is kept and sent when it is back. If it was started again, open the address that it prints.');
+  private problem = h('p', {class: 'notice error'});
+  private progress = h('p', {class: 'notice info'});
+  private disk = h('p', {class: 'notice warning'});
   private list = h('div', {});
-  private notices = new Keyed<Notice, HTMLElement>(this.list, (notice) => this.make(notice), (element, notice) => attribute(element, 'class', `notice ${notice.kind}`));
+  private notices = new Keyed<Notice, HTMLElement>(
+      this.list, (notice) => this.make(notice),
+      (element, notice) => attribute(element, 'class', `notice ${notice.kind}`));
 
   protected build(): void {
     this.setAttribute('role', 'status');
-    this.disk.append(h('span', {}, 'The file was changed by another program.'), h('button', { onclick: () => void this.studio.reload() }, 'Take the file'), h('button', { onclick: () => this.studio.store.put({ keepsMine: true }) }, 'Keep mine'));
+    this.disk.append(
+        h('span', {}, 'The file was changed by another program.'),
+        h('button', {onclick: () => void this.studio.reload()}, 'Take the file'),
+        h('button', {onclick: () => this.studio.store.put({keepsMine: true})}, 'Keep mine'));
     this.append(this.lost, this.problem, this.disk, this.progress, this.list);
   }
 
   protected update(): void {
-    const { connected, everConnected, state, planProblem, keepsMine, notices, busy, progress } = this.now;
+    const {connected, everConnected, state, planProblem, keepsMine, notices, busy, progress} = this.now;
     this.lost.hidden = connected || !everConnected;
     const problem = state?.problem ?? planProblem;
     this.problem.hidden = !problem;
     text(this.problem, problem ?? '');
     this.disk.hidden = !isOffered(state, keepsMine);
-    const isMeasured = progress !== null && busy !== 'render' && (progress.total === 0 || progress.done < progress.total);
+    const isMeasured =
+        progress !== null && busy !== 'render' && (progress.total === 0 || progress.done < progress.total);
     this.progress.hidden = !isMeasured;
-    text(this.progress, isMeasured ? `Measuring ${progress!.of === 'motion' ? 'the motion of the clip' : 'the camera'}${progress!.total ? `: ${progress!.done} of ${progress!.total}` : ' …'}` : '');
-    this.notices.show(notices.map((notice) => ({ key: notice.line, item: notice })));
+    text(
+        this.progress,
+        isMeasured ? `Measuring ${progress!.of === 'motion' ? 'the motion of the clip' : 'the camera'}${
+                         progress!.total ? `: ${progress!.done} of ${progress!.total}` : ' …'}` :
+                     '');
+    this.notices.show(notices.map((notice) => ({key: notice.line, item: notice})));
   }
 
   private make(notice: Notice): HTMLElement {
     if (notice.kind === 'info') setTimeout(() => this.studio.store.unsay(notice.line), INFO_MS);
-    return h('p', {}, h('span', {}, notice.line), h('button', { class: 'small', 'aria-label': 'Dismiss', onclick: () => this.studio.store.unsay(notice.line) }, '×'));
+    return h(
+        'p', {}, h('span', {}, notice.line),
+        h('button', {class: 'small', 'aria-label': 'Dismiss', onclick: () => this.studio.store.unsay(notice.line)},
+          '×'));
   }
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { ExactBox } from '../model/contract';
-import { flyersOf, isSame, trackOf } from '../model/flyers';
-import { nedAt, round } from '../model/geometry';
-import type { Everything } from '../model/store';
-import { Keyed, attribute, s, text } from './part';
+import type {ExactBox} from '../model/contract';
+import {flyersOf, isSame, trackOf} from '../model/flyers';
+import {nedAt, round} from '../model/geometry';
+import type {Everything} from '../model/store';
+import {Keyed, attribute, s, text} from './part';
 
 const MOTION_FRAMES = 30;
 
@@ -16,23 +16,24 @@ interface Box {
 
 // What is measured or follows, drawn over the frame: boxes with range and size, the horizon, and how it moved lately.
 export class OverlayLayer {
-  readonly element = s('g', { class: 'overlay' });
-  private horizon = s('line', { class: 'horizon' });
-  private motion = s('g', { class: 'motion' });
-  private px = 1; // frame pixels of a screen pixel
+  readonly element = s('g', {class: 'overlay'});
+  private horizon = s('line', {class: 'horizon'});
+  private motion = s('g', {class: 'motion'});
+  private px = 1;  // frame pixels of a screen pixel
   private boxes: Keyed<Box, SVGGElement>;
 
   constructor() {
     const boxes = s('g');
     this.element.append(this.motion, this.horizon, boxes);
-    this.boxes = new Keyed<Box, SVGGElement>(boxes, () => s('g', {}, s('path'), s('text')), (element, box) => this.renew(element, box));
+    this.boxes = new Keyed<Box, SVGGElement>(
+        boxes, () => s('g', {}, s('path'), s('text')), (element, box) => this.renew(element, box));
   }
 
   update(now: Readonly<Everything>, px: number): void {
     this.px = px;
     this.showHorizon(now);
     this.showMotion(now);
-    const { picture, state, frame, showsBoxes } = now;
+    const {picture, state, frame, showsBoxes} = now;
     const flyers = state ? flyersOf(state.scene) : [];
     const shown = showsBoxes && picture?.frame === frame ? picture.boxes : [];
     const tables = shown.map((one) => JSON.stringify(one.table));
@@ -45,15 +46,19 @@ export class OverlayLayer {
       const [w, h] = [exact.box[2], exact.box[3]];
       const mark = trackOf(now.plan, exact.table)?.checks.length ? '⚠ ' : '';
       const words = mark + (count > 1 ? `${flyer?.id ?? exact.id}  ${count} in view` : exact.id);
-      const label = !isFirst ? '' : isSelected ? `${words}  ${distance(exact.range_m)}${count > 1 ? '' : `  ${round(w, 1)} × ${round(h, 1)} px`}` : words;
-      return { key: exact.id, item: { exact, colour: flyer?.colour ?? 0, isSelected, label } };
+      const label = !isFirst ?
+          '' :
+          isSelected ?
+          `${words}  ${distance(exact.range_m)}${count > 1 ? '' : `  ${round(w, 1)} × ${round(h, 1)} px`}` :
+          words;
+      return {key: exact.id, item: {exact, colour: flyer?.colour ?? 0, isSelected, label}};
     }));
   }
 
-  private renew(element: SVGGElement, { exact, colour, isSelected, label: words }: Box): void {
+  private renew(element: SVGGElement, {exact, colour, isSelected, label: words}: Box): void {
     attribute(element, 'class', `box colour-${colour}${isSelected ? ' selected' : ''}`);
     const [path, label] = [element.children[0], element.children[1]];
-    const { px } = this;
+    const {px} = this;
     const [x, y, w, h] = exact.box;
     const [x0, y0, x1, y1] = [x - 3 * px, y - 3 * px, x + w + 3 * px, y + h + 3 * px];
     const arm = Math.min(12 * px, (x1 - x0) / 3, (y1 - y0) / 3);
@@ -65,31 +70,36 @@ export class OverlayLayer {
     text(label, words);
   }
 
-  private showHorizon({ plan, frame, showsHorizon }: Readonly<Everything>): void {
+  private showHorizon({plan, frame, showsHorizon}: Readonly<Everything>): void {
     const line = showsHorizon && plan ? nearest(plan.horizon, frame) : null;
     this.horizon.toggleAttribute('hidden', !line);
-    if (line) for (const [k, name] of ['x1', 'y1', 'x2', 'y2'].entries()) attribute(this.horizon, name, line[k]);
+    if (line)
+      for (const [k, name] of ['x1', 'y1', 'x2', 'y2'].entries()) attribute(this.horizon, name, line[k]);
   }
 
   // The horizon of the frames just before, fading: how the own aircraft turned. And the own speed in words.
-  private showMotion({ plan, clip, frame, showsMotion }: Readonly<Everything>): void {
+  private showMotion({plan, clip, frame, showsMotion}: Readonly<Everything>): void {
     this.motion.replaceChildren();
     if (!showsMotion || !plan || !clip) return;
     const lines = plan.horizon.filter(([k]) => k <= frame && k > frame - MOTION_FRAMES);
-    lines.forEach(([, [x1, y1, x2, y2]], k) => this.motion.append(s('line', { x1, y1, x2, y2, opacity: round(0.1 + (0.5 * k) / Math.max(1, lines.length), 2) })));
+    lines.forEach(
+        ([, [x1, y1, x2, y2]], k) => this.motion.append(
+            s('line', {x1, y1, x2, y2, opacity: round(0.1 + (0.5 * k) / Math.max(1, lines.length), 2)})));
     const [a, b] = [nedAt(plan, plan.own.ned, frame), nedAt(plan, plan.own.ned, frame + 1)];
     if (!a || !b) return;
-    const { px } = this;
+    const {px} = this;
     const speed_mps = Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * clip.rate_hz;
-    const label = s('text', { x: 10 * px, y: clip.height - 10 * px, 'font-size': 13 * px });
+    const label = s('text', {x: 10 * px, y: clip.height - 10 * px, 'font-size': 13 * px});
     label.textContent = `own speed ${round(speed_mps, 1)} m/s, height ${round(-a[2], 0)} m`;
     this.motion.append(label);
   }
 }
 
-export const distance = (range_m: number) => (range_m < 9950 ? `${range_m < 100 ? round(range_m, 1) : Math.round(range_m)} m` : `${round(range_m / 1000, 1)} km`);
+export const distance = (range_m: number) => (
+    range_m < 9950 ? `${range_m < 100 ? round(range_m, 1) : Math.round(range_m)} m` : `${round(range_m / 1000, 1)} km`);
 
-function nearest<Value>(all: [number, Value][], frame: number): Value | null {
-  const best = all.reduce<[number, Value] | null>((found, one) => (!found || Math.abs(one[0] - frame) < Math.abs(found[0] - frame) ? one : found), null);
+function nearest<Value>(all: [number, Value][], frame: number): Value|null {
+  const best = all.reduce<[number, Value]|null>(
+      (found, one) => (!found || Math.abs(one[0] - frame) < Math.abs(found[0] - frame) ? one : found), null);
   return best ? best[1] : null;
 }

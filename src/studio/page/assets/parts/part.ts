@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Everything, Member } from '../model/store';
-import type { Studio } from '../model/studio';
+import type {Everything, Member} from '../model/store';
+import type {Studio} from '../model/studio';
 
-let theStudio: Studio | null = null;
+let theStudio: Studio|null = null;
 
 export function provide(studio: Studio): void {
   theStudio = studio;
 }
 
-// A part of the page: an element that is built once, and brought up to date when a member of the store that it watches changes.
+// A part of the page: an element that is built once, and brought up to date when a member of the store that it watches
+// changes.
 export abstract class Part extends HTMLElement {
   protected abstract readonly watches: Member[];
   protected readonly studio = theStudio!;
-  private unlisten: (() => void) | null = null;
+  private unlisten: (() => void)|null = null;
   private isBuilt = false;
 
   protected abstract build(): void;
@@ -39,21 +40,25 @@ export abstract class Part extends HTMLElement {
 // Screen pixels of what is drawn as large as text: 1 where text is 16 px.
 export const ui = (): number => parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
 
-type Child = Node | string | null | undefined | false;
-type Attributes = Record<string, string | number | boolean | null | undefined | EventListener>;
+type Child = Node|string|null|undefined|false;
+type Attributes = Record<string, string|number|boolean|null|undefined|EventListener>;
 
 function dress(element: Element, attributes: Attributes): void {
   for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === 'function') element.addEventListener(name.slice(2), value);
-    else if (value === true) element.setAttribute(name, '');
-    else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, String(value));
+    if (typeof value === 'function')
+      element.addEventListener(name.slice(2), value);
+    else if (value === true)
+      element.setAttribute(name, '');
+    else if (value !== false && value !== null && value !== undefined)
+      element.setAttribute(name, String(value));
   }
 }
 
-const isChild = (child: Child): child is Node | string => child !== null && child !== undefined && child !== false;
+const isChild = (child: Child): child is Node|string => child !== null && child !== undefined && child !== false;
 
 // An element with attributes, listeners (onclick and so on) and children.
-export function h<Name extends keyof HTMLElementTagNameMap>(name: Name, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[Name] {
+export function h<Name extends keyof HTMLElementTagNameMap>(
+    name: Name, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[Name] {
   const element = document.createElement(name);
   dress(element, attributes);
   element.append(...children.filter(isChild));
@@ -61,7 +66,8 @@ export function h<Name extends keyof HTMLElementTagNameMap>(name: Name, attribut
 }
 
 // The same of SVG.
-export function s<Name extends keyof SVGElementTagNameMap>(name: Name, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[Name] {
+export function s<Name extends keyof SVGElementTagNameMap>(
+    name: Name, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[Name] {
   const element = document.createElementNS('http://www.w3.org/2000/svg', name);
   dress(element, attributes);
   element.append(...children.filter(isChild));
@@ -69,7 +75,7 @@ export function s<Name extends keyof SVGElementTagNameMap>(name: Name, attribute
 }
 
 // Sets what differs, so that nothing is laid out anew without need.
-export function attribute(element: Element, name: string, value: string | number): void {
+export function attribute(element: Element, name: string, value: string|number): void {
   const text = String(value);
   if (element.getAttribute(name) !== text) element.setAttribute(name, text);
 }
@@ -89,30 +95,32 @@ export function renewed(parent: Element, children: Node[]): void {
 export class Keyed<Item, Of extends Element> {
   private elements = new Map<string, Of>();
 
-  constructor(private parent: Element, private make: (item: Item, key: string) => Of, private renew: (element: Of, item: Item) => void) {}
+  constructor(
+      private parent: Element, private make: (item: Item, key: string) => Of,
+      private renew: (element: Of, item: Item) => void) {}
 
-  show(items: { key: string; item: Item }[]): void {
-    const keys = new Set(items.map(({ key }) => key));
+  show(items: {key: string; item: Item}[]): void {
+    const keys = new Set(items.map(({key}) => key));
     for (const [key, element] of this.elements) {
       if (keys.has(key)) continue;
       element.remove();
       this.elements.delete(key);
     }
-    let before: Element | null = null;
-    for (const { key, item } of items) {
+    let before: Element|null = null;
+    for (const {key, item} of items) {
       let element = this.elements.get(key);
       if (!element) {
         element = this.make(item, key);
         this.elements.set(key, element);
       }
-      const expected: Element | null = before ? before.nextElementSibling : this.parent.firstElementChild;
+      const expected: Element|null = before ? before.nextElementSibling : this.parent.firstElementChild;
       if (expected !== element) this.parent.insertBefore(element, expected);
       this.renew(element, item);
       before = element;
     }
   }
 
-  get(key: string): Of | undefined {
+  get(key: string): Of|undefined {
     return this.elements.get(key);
   }
 }

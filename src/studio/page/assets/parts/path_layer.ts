@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { LinePoint, Path } from '../model/contract';
-import { type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel } from '../model/flyers';
-import { type Point, mix, round } from '../model/geometry';
-import type { Studio } from '../model/studio';
-import { distance } from './overlay_layer';
-import { Keyed, attribute, s, text } from './part';
+import type {LinePoint, Path} from '../model/contract';
+import {type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel} from '../model/flyers';
+import {type Point, mix, round} from '../model/geometry';
+import type {Studio} from '../model/studio';
+import {distance} from './overlay_layer';
+import {Keyed, attribute, s, text} from './part';
 
 const HANDLE_PX = 8;
-const PAUSE_MS = 500; // after which turning the wheel on is a new step of undo
-const FAR = 30000; // pixels beyond which a path is not drawn
+const PAUSE_MS = 500;  // after which turning the wheel on is a new step of undo
+const FAR = 30000;     // pixels beyond which a path is not drawn
 
 interface Line {
   points: LinePoint[];
@@ -27,13 +27,13 @@ interface Held {
 
 // The paths of all that flies, in the frame's coordinates, and the moments of the selected one as handles.
 export class PathLayer {
-  readonly element = s('g', { class: 'paths' });
+  readonly element = s('g', {class: 'paths'});
   private tracks: Keyed<Line, SVGGElement>;
-  private handles: Keyed<{ moment: Moment; flyer: Flyer; index: number }, SVGGElement>;
-  private held: Held | null = null;
+  private handles: Keyed<{moment: Moment; flyer: Flyer; index: number}, SVGGElement>;
+  private held: Held|null = null;
   private isWheel = false;
-  private wheelMerge = { name: '', at: -Infinity };
-  private px = 1; // frame pixels of a screen pixel
+  private wheelMerge = {name: '', at: -Infinity};
+  private px = 1;  // frame pixels of a screen pixel
 
   constructor(private studio: Studio, private pixelAt: (event: PointerEvent) => Point) {
     const [lines, handles] = [s('g'), s('g')];
@@ -44,27 +44,30 @@ export class PathLayer {
 
   update(px: number): void {
     this.px = px;
-    const { state, clip, selected } = this.studio.store.now;
+    const {state, clip, selected} = this.studio.store.now;
     if (!state || !clip) return;
     const flyers = flyersOf(state.scene);
     this.tracks.show(flyers.flatMap((flyer) => {
       const points = this.pointsOf(flyer.path);
-      return points.length ? [{ key: JSON.stringify(flyer.path), item: { points, flyer, isSelected: isSame(selected, flyer.path) } }] : [];
+      return points.length ?
+          [{key: JSON.stringify(flyer.path), item: {points, flyer, isSelected: isSame(selected, flyer.path)}}] :
+          [];
     }));
     const flyer = flyers.find((one) => isSame(one.path, selected));
     const moments = flyer?.statement === 'moments' ? momentsOf(flyer, clip) : [];
-    this.handles.show(moments.map((moment, index) => ({ key: `${JSON.stringify(selected)}${index}`, item: { moment, flyer: flyer!, index } })));
+    this.handles.show(moments.map(
+        (moment, index) => ({key: `${JSON.stringify(selected)}${index}`, item: {moment, flyer: flyer!, index}})));
   }
 
-  isOf(target: EventTarget | null): boolean {
+  isOf(target: EventTarget|null): boolean {
     return target instanceof Element && target.closest('.track, .handle') !== null;
   }
 
-  isHandle(target: EventTarget | null): boolean {
+  isHandle(target: EventTarget|null): boolean {
     return target instanceof Element && target.closest('.handle') !== null;
   }
 
-  pathOf(target: EventTarget | null): Path | null {
+  pathOf(target: EventTarget|null): Path|null {
     const track = target instanceof Element ? target.closest<SVGElement>('.track') : null;
     return track ? JSON.parse(track.dataset.path!) : null;
   }
@@ -72,7 +75,7 @@ export class PathLayer {
   // A press on a handle holds it and shows its time; one on a path selects it.
   down(event: PointerEvent): boolean {
     const handle = (event.target as Element).closest<SVGGElement>('.handle');
-    const { state, clip, selected } = this.studio.store.now;
+    const {state, clip, selected} = this.studio.store.now;
     if (handle && state && clip) {
       const flyer = flyerAt(state, selected);
       const index = Number(handle.dataset.index);
@@ -83,8 +86,15 @@ export class PathLayer {
       const isThere = moment.frame === this.studio.store.now.frame;
       handle.setPointerCapture(event.pointerId);
       handle.focus();
-      this.held = { moment, flyer, merge: this.studio.merge('drag'), offset: isThere ? [moment.pixel[0] - at[0], moment.pixel[1] - at[1]] : [0, 0], last: moment.pixel, isMoved: false };
-      this.studio.store.put({ moment: index, playing: false });
+      this.held = {
+        moment,
+        flyer,
+        merge: this.studio.merge('drag'),
+        offset: isThere ? [moment.pixel[0] - at[0], moment.pixel[1] - at[1]] : [0, 0],
+        last: moment.pixel,
+        isMoved: false
+      };
+      this.studio.store.put({moment: index, playing: false});
       this.studio.show(moment.frame);
       this.studio.dragging(true);
       return true;
@@ -95,7 +105,7 @@ export class PathLayer {
   }
 
   move(event: PointerEvent): boolean {
-    const { held } = this;
+    const {held} = this;
     if (!held) return false;
     const at = this.pixelAt(event);
     this.moveTo(held, [at[0] + held.offset[0], at[1] + held.offset[1]], event.timeStamp);
@@ -103,7 +113,7 @@ export class PathLayer {
   }
 
   up(event: PointerEvent): boolean {
-    const { held } = this;
+    const {held} = this;
     if (!held) return false;
     if (event.type === 'pointerup' && held.isMoved) this.move(event);
     this.held = null;
@@ -114,26 +124,26 @@ export class PathLayer {
   // Whether the wheel turned above a handle, which then becomes nearer or farther.
   wheel(event: WheelEvent, factor: number): boolean {
     const handle = (event.target as Element).closest<SVGGElement>('.handle');
-    const { moment } = this.studio.store.now;
+    const {moment} = this.studio.store.now;
     // The handle may have left the pointer, as another frame came with the first turn.
     const isGoingOn = moment !== null && this.isWheel && event.timeStamp - this.wheelMerge.at < PAUSE_MS;
     this.isWheel = isGoingOn || handle !== null;
     if (!this.isWheel) return false;
     const index = isGoingOn ? moment : Number(handle!.dataset.index);
-    if (this.studio.store.now.moment !== index) this.studio.store.put({ moment: index });
+    if (this.studio.store.now.moment !== index) this.studio.store.put({moment: index});
     this.size(index, factor, event.timeStamp);
     return true;
   }
 
   pinch(factor: number): boolean {
     if (!this.held) return false;
-    const { moment } = this.studio.store.now;
+    const {moment} = this.studio.store.now;
     if (moment !== null) this.size(moment, factor, performance.now());
     return true;
   }
 
   private size(index: number, factor: number, moved_ms: number): void {
-    const { state, clip, selected } = this.studio.store.now;
+    const {state, clip, selected} = this.studio.store.now;
     const flyer = flyerAt(state, selected);
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
     if (!moment) return;
@@ -150,14 +160,15 @@ export class PathLayer {
     if (to[0] === held.last[0] && to[1] === held.last[1]) return;
     held.last = to;
     held.isMoved = true;
-    this.studio.store.put({ draft: { path: held.moment.path, pixel: to } });
-    this.studio.edit([{ set: [...held.moment.path, 'pixel'], to }], held.merge, moved_ms);
+    this.studio.store.put({draft: {path: held.moment.path, pixel: to}});
+    this.studio.edit([{set: [...held.moment.path, 'pixel'], to}], held.merge, moved_ms);
   }
 
   private key(event: KeyboardEvent, index: number): void {
     const step = event.shiftKey ? 10 : 1;
-    const moves: Record<string, Point> = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step] };
-    const { state, clip, selected, draft } = this.studio.store.now;
+    const moves: Record<string, Point> =
+        {ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step]};
+    const {state, clip, selected, draft} = this.studio.store.now;
     const flyer = flyerAt(state, selected);
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
     if (!flyer || !moment || event.ctrlKey || event.altKey || event.metaKey) return;
@@ -167,7 +178,9 @@ export class PathLayer {
       this.wheelMerge.at = event.timeStamp;
       const from = draft && isSame(draft.path, moment.path) ? draft.pixel : moment.pixel;
       this.studio.show(moment.frame);
-      this.moveTo({ moment, flyer, offset: [0, 0], merge: this.wheelMerge.name, last: from, isMoved: false }, [from[0] + by[0], from[1] + by[1]], event.timeStamp);
+      this.moveTo(
+          {moment, flyer, offset: [0, 0], merge: this.wheelMerge.name, last: from, isMoved: false},
+          [from[0] + by[0], from[1] + by[1]], event.timeStamp);
     } else if (event.key === '+' || event.key === '=') {
       this.size(index, 1.05, event.timeStamp);
     } else if (event.key === '-') {
@@ -180,12 +193,14 @@ export class PathLayer {
   }
 
   private makeTrack(key: string): SVGGElement {
-    return s('g', { 'data-path': key }, s('path', { class: 'under' }), s('path', { class: 'beyond' }), s('path', { class: 'line' }), s('path', { class: 'grip' }), s('path', { class: 'seconds' }));
+    return s(
+        'g', {'data-path': key}, s('path', {class: 'under'}), s('path', {class: 'beyond'}), s('path', {class: 'line'}),
+        s('path', {class: 'grip'}), s('path', {class: 'seconds'}));
   }
 
-  private renewTrack(element: SVGGElement, { points, flyer, isSelected }: Line): void {
+  private renewTrack(element: SVGGElement, {points, flyer, isSelected}: Line): void {
     attribute(element, 'class', `track colour-${flyer.colour}${isSelected ? ' selected' : ''}`);
-    const { clip } = this.studio.store.now;
+    const {clip} = this.studio.store.now;
     if (!clip) return;
     const isIn = ([x, y]: Point) => x >= 0 && y >= 0 && x <= clip.width && y <= clip.height;
     const all = pathData(points, () => true);
@@ -200,28 +215,36 @@ export class PathLayer {
   }
 
   private makeHandle(): SVGGElement {
-    const handle: SVGGElement = s('g', { tabindex: 0, role: 'button', onkeydown: ((event: KeyboardEvent) => this.key(event, Number(handle.dataset.index))) as EventListener,
-      onfocus: () => this.focused(Number(handle.dataset.index)) },
-      s('circle', { class: 'reach' }), s('circle', { class: 'ring' }), s('circle', { class: 'dot' }), s('text'));
+    const handle: SVGGElement =
+        s('g', {
+          tabindex: 0,
+          role: 'button',
+          onkeydown: ((event: KeyboardEvent) => this.key(event, Number(handle.dataset.index))) as EventListener,
+          onfocus: () => this.focused(Number(handle.dataset.index))
+        },
+          s('circle', {class: 'reach'}), s('circle', {class: 'ring'}), s('circle', {class: 'dot'}), s('text'));
     return handle;
   }
 
   private focused(index: number): void {
     if (this.held || this.studio.store.now.moment === index) return;
-    const { state, clip, selected } = this.studio.store.now;
+    const {state, clip, selected} = this.studio.store.now;
     const flyer = flyerAt(state, selected);
     const moment = flyer && clip && momentsOf(flyer, clip)[index];
-    this.studio.store.put({ moment: index });
+    this.studio.store.put({moment: index});
     if (moment) this.studio.show(moment.frame);
   }
 
-  private renewHandle(element: SVGGElement, { moment, flyer, index }: { moment: Moment; flyer: Flyer; index: number }): void {
-    const { draft, frame, moment: chosen, plan } = this.studio.store.now;
+  private renewHandle(element: SVGGElement, {moment, flyer, index}: {moment: Moment; flyer: Flyer; index: number}):
+      void {
+    const {draft, frame, moment: chosen, plan} = this.studio.store.now;
     const there = moment.frame === frame ? null : placeOn(this.pointsOf(flyer.path), moment.frame);
     const [x, y] = draft && isSame(draft.path, moment.path) ? draft.pixel : there ?? moment.pixel;
-    attribute(element, 'class', `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}`);
+    attribute(
+        element, 'class',
+        `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}`);
     attribute(element, 'data-index', index);
-    const { px } = this;
+    const {px} = this;
     for (const [k, radius] of [16, HANDLE_PX, 2.5].entries()) {
       attribute(element.children[k], 'cx', x);
       attribute(element.children[k], 'cy', y);
@@ -233,8 +256,15 @@ export class PathLayer {
     attribute(label, 'font-size', 12 * px);
     text(label, `${round(moment.time_s, 2)} s`);
     const known = trackOf(plan, flyer.path)?.handles[index];
-    const size = [known?.range_m && distance(known.range_m), known?.width_px && `${round(known.width_px, 1)} px wide`].filter(Boolean).join(', ');
-    attribute(element, 'aria-label', `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(moment.pixel[0], 1)}, ${round(moment.pixel[1], 1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
+    const size = [
+      known?.range_m && distance(known.range_m), known?.width_px && `${round(known.width_px, 1)} px wide`
+    ].filter(Boolean).join(', ');
+    attribute(
+        element, 'aria-label',
+        `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(moment.pixel[0], 1)}, ${
+            round(
+                moment.pixel[1],
+                1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
   }
 }
 
@@ -251,7 +281,7 @@ function pathData(points: LinePoint[], isDrawn: (point: Point) => boolean): stri
 }
 
 // Where a line is at a frame.
-function placeOn(points: LinePoint[], frame: number): Point | null {
+function placeOn(points: LinePoint[], frame: number): Point|null {
   const k = points.findIndex((point) => point[0] >= frame);
   if (k < 0) return null;
   const [a, b] = [points[Math.max(0, k - 1)], points[k]];
@@ -267,7 +297,8 @@ function secondsOf(points: LinePoint[], isDrawn: (point: Point) => boolean, rate
   for (const [frame, x, y] of points) {
     const second = Math.floor(frame / rate_hz + 1e-6);
     if (x !== null && y !== null && second !== last && isDrawn([x, y]))
-      data += `M${round(x - radius, 2)},${y}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`;
+      data += `M${round(x - radius, 2)},${y}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${
+          - 2 * radius},0`;
     last = second;
   }
   return data;

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { BoxPx } from '../model/contract';
-import { frameOf } from '../model/flyers';
-import { type Point, clamp } from '../model/geometry';
-import type { Look, Member } from '../model/store';
-import { OverlayLayer } from './overlay_layer';
-import { Part, attribute, h, s, ui } from './part';
-import { PathLayer } from './path_layer';
+import type {BoxPx} from '../model/contract';
+import {frameOf} from '../model/flyers';
+import {type Point, clamp} from '../model/geometry';
+import type {Look, Member} from '../model/store';
+import {OverlayLayer} from './overlay_layer';
+import {Part, attribute, h, s, ui} from './part';
+import {PathLayer} from './path_layer';
 
 const MOST_SCALE = 40;
 const PAN_SHARE = 0.1;
 const WHEEL_RATE = 0.0015;
-const PIXELS_FROM_SCALE = 3; // frame pixels are shown as squares from here on
+const PIXELS_FROM_SCALE = 3;  // frame pixels are shown as squares from here on
 
-// The frame on a canvas, and above it drawings in the frame's own coordinates. The wheel zooms about the pointer, the background is
-// dragged, two fingers do both.
+// The frame on a canvas, and above it drawings in the frame's own coordinates. The wheel zooms about the pointer, the
+// background is dragged, two fingers do both.
 export class PictureView extends Part {
-  protected readonly watches: Member[] = ['clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'picture', 'showsBoxes', 'showsHorizon', 'showsMotion', 'connected'];
-  private canvas = h('canvas', { role: 'img', 'aria-label': 'The frame with the aircraft in it' });
-  private svg = s('svg', { class: 'over', role: 'group', 'aria-label': 'Paths over the frame' });
+  protected readonly watches: Member[] = [
+    'clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'picture', 'showsBoxes', 'showsHorizon',
+    'showsMotion', 'connected'
+  ];
+  private canvas = h('canvas', {role: 'img', 'aria-label': 'The frame with the aircraft in it'});
+  private svg = s('svg', {class: 'over', role: 'group', 'aria-label': 'Paths over the frame'});
   private overlay = new OverlayLayer();
   private paths = new PathLayer(this.studio, (event) => this.pixelAt(event));
   private pointers = new Map<number, Point>();
@@ -28,10 +31,10 @@ export class PictureView extends Part {
     this.append(this.canvas, this.svg);
     this.studio.pictures.onDrawn = (header) => {
       this.draw(header.crop);
-      this.studio.store.put({ picture: header });
+      this.studio.store.put({picture: header});
     };
     new ResizeObserver(() => this.resized()).observe(this);
-    this.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
+    this.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     this.addEventListener('pointerdown', (event) => this.down(event));
     this.addEventListener('pointermove', (event) => this.move(event));
     for (const end of ['pointerup', 'pointercancel'] as const) this.addEventListener(end, (event) => this.up(event));
@@ -48,32 +51,33 @@ export class PictureView extends Part {
 
   // All of the frame, in the middle.
   fit(): void {
-    this.studio.store.put({ look: null });
+    this.studio.store.put({look: null});
   }
 
   zoom(factor: number, about?: Point): void {
-    const { clip } = this.now;
+    const {clip} = this.now;
     if (!clip) return;
-    const { look } = this;
+    const {look} = this;
     const scale = clamp(look.scale * factor, this.fitted.scale * 0.5, MOST_SCALE);
     const box = this.getBoundingClientRect();
     const [px, py] = about ?? [box.width / 2, box.height / 2];
-    this.studio.store.put({ look: { scale, x: look.x + px / look.scale - px / scale, y: look.y + py / look.scale - py / scale } });
+    this.studio.store.put(
+        {look: {scale, x: look.x + px / look.scale - px / scale, y: look.y + py / look.scale - py / scale}});
   }
 
   // By a part of what is shown.
   pan(right: number, down: number): void {
     if (!this.now.clip) return;
-    const { x, y, scale } = this.look;
+    const {x, y, scale} = this.look;
     const step = (PAN_SHARE * Math.min(this.clientWidth, this.clientHeight)) / scale;
-    this.studio.store.put({ look: { scale, x: x + right * step, y: y + down * step } });
+    this.studio.store.put({look: {scale, x: x + right * step, y: y + down * step}});
   }
 
   private get fitted(): Look {
-    const { clip } = this.now;
-    if (!clip || !this.clientWidth || !this.clientHeight) return { x: 0, y: 0, scale: 1 };
+    const {clip} = this.now;
+    if (!clip || !this.clientWidth || !this.clientHeight) return {x: 0, y: 0, scale: 1};
     const scale = Math.min(this.clientWidth / clip.width, this.clientHeight / clip.height);
-    return { scale, x: (clip.width - this.clientWidth / scale) / 2, y: (clip.height - this.clientHeight / scale) / 2 };
+    return {scale, x: (clip.width - this.clientWidth / scale) / 2, y: (clip.height - this.clientHeight / scale) / 2};
   }
 
   private get look(): Look {
@@ -84,31 +88,36 @@ export class PictureView extends Part {
     return this.look.scale;
   }
 
-  private pixelAt(event: { clientX: number; clientY: number }): Point {
+  private pixelAt(event: {clientX: number; clientY: number}): Point {
     const box = this.getBoundingClientRect();
-    return [this.look.x + (event.clientX - box.left) / this.scale, this.look.y + (event.clientY - box.top) / this.scale];
+    return [
+      this.look.x + (event.clientX - box.left) / this.scale, this.look.y + (event.clientY - box.top) / this.scale
+    ];
   }
 
   private resized(): void {
     const ratio = window.devicePixelRatio;
-    [this.canvas.width, this.canvas.height] = [Math.max(1, Math.round(this.clientWidth * ratio)), Math.max(1, Math.round(this.clientHeight * ratio))];
+    [this.canvas.width, this.canvas.height] =
+        [Math.max(1, Math.round(this.clientWidth * ratio)), Math.max(1, Math.round(this.clientHeight * ratio))];
     this.draw();
     this.update(new Set());
   }
 
   private place(): void {
-    const { x, y, scale } = this.look;
-    attribute(this.svg, 'viewBox', `${x} ${y} ${Math.max(1, this.clientWidth) / scale} ${Math.max(1, this.clientHeight) / scale}`);
+    const {x, y, scale} = this.look;
+    attribute(
+        this.svg, 'viewBox',
+        `${x} ${y} ${Math.max(1, this.clientWidth) / scale} ${Math.max(1, this.clientHeight) / scale}`);
   }
 
   // The frame, or what changed of it.
   private draw(part?: BoxPx): void {
     const context = this.canvas.getContext('2d')!;
-    const { x, y, scale } = this.look;
+    const {x, y, scale} = this.look;
     const on = scale * window.devicePixelRatio;
     context.setTransform(1, 0, 0, 1, 0, 0);
     if (!part) context.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    const { clip } = this.now;
+    const {clip} = this.now;
     if (!clip) return;
     context.setTransform(on, 0, 0, on, -x * on, -y * on);
     context.imageSmoothingEnabled = on < PIXELS_FROM_SCALE;
@@ -148,8 +157,8 @@ export class PictureView extends Part {
     const [dx, dy] = [after[0] - before[0], after[1] - before[1]];
     if (!dx && !dy) return;
     this.dragged = true;
-    const { x, y, scale } = this.look;
-    this.studio.store.put({ look: { scale, x: x - dx / scale, y: y - dy / scale } });
+    const {x, y, scale} = this.look;
+    this.studio.store.put({look: {scale, x: x - dx / scale, y: y - dy / scale}});
   }
 
   private pinch(before: Point, after: Point, other: Point): void {
@@ -163,16 +172,19 @@ export class PictureView extends Part {
   private up(event: PointerEvent): void {
     if (!this.pointers.delete(event.pointerId)) return;
     const wasPath = this.paths.up(event);
-    if (!wasPath && !this.dragged && !this.paths.isOf(event.target) && event.type === 'pointerup') this.studio.store.put({ moment: null });
+    if (!wasPath && !this.dragged && !this.paths.isOf(event.target) && event.type === 'pointerup')
+      this.studio.store.put({moment: null});
   }
 
   private doubleClick(event: MouseEvent): void {
-    const { clip, state, selected, frame } = this.now;
+    const {clip, state, selected, frame} = this.now;
     if (!clip || !state || this.paths.isHandle(event.target)) return;
     const pixel = this.pixelAt(event);
     const onPath = this.paths.pathOf(event.target);
     if (onPath) this.studio.select(onPath);
-    if (onPath || selected) this.studio.addMoment(onPath ? null : pixel);
-    else this.studio.store.put({ dialog: 'gallery', addsAt: pixel, frame: frameOf(frame / clip.rate_hz, clip) });
+    if (onPath || selected)
+      this.studio.addMoment(onPath ? null : pixel);
+    else
+      this.studio.store.put({dialog: 'gallery', addsAt: pixel, frame: frameOf(frame / clip.rate_hz, clip)});
   }
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Change, Clip, Ned, Plan, Table, Track } from '../model/contract';
-import { type Flyer, flyersOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth } from '../model/flyers';
-import { type Point, acrossRelative, courseOf, degrees, nedAt, radians, round, turned, velocityAt } from '../model/geometry';
-import type { Member } from '../model/store';
-import { Part, attribute, h, renewed, s, ui } from './part';
+import type {Change, Clip, Ned, Plan, Table, Track} from '../model/contract';
+import {type Flyer, flyersOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth} from '../model/flyers';
+import {type Point, acrossRelative, courseOf, degrees, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
+import type {Member} from '../model/store';
+import {Part, attribute, h, renewed, s, ui} from './part';
 
 const MARGIN_PX = 26;
-const MOST_M = 20000; // from the own path, of what the view has room for
+const MOST_M = 20000;  // from the own path, of what the view has room for
 const LEAST_M = 60;
-const LEAST_ACROSS = 0.2; // below which the place across follows from `cpa_ahead_m`, not from `cpa_right_m`
+const LEAST_ACROSS = 0.2;  // below which the place across follows from `cpa_ahead_m`, not from `cpa_right_m`
 const ARROW_PX = 46;
 
 // From north-east metres to the view's: right and up, the own course at the beginning upwards.
@@ -17,18 +17,20 @@ interface Ground {
   ahead: number;
 }
 
-type Drag = { kind: 'approach' | 'course' | 'moment'; flyer: Flyer; index: number; merge: string };
+type Drag = {
+  kind: 'approach'|'course'|'moment'; flyer: Flyer; index: number; merge: string
+};
 
-// From above, the own course upwards: paths, the field of view, well-clear volumes, closest approaches. Closest approaches, courses
-// and the ranges of moments are dragged.
+// From above, the own course upwards: paths, the field of view, well-clear volumes, closest approaches. Closest
+// approaches, courses and the ranges of moments are dragged.
 export class PlanView extends Part {
   protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
-  private svg = s('svg', { role: 'group', 'aria-label': 'Plan view, own course up' });
-  private drag: Drag | null = null;
+  private svg = s('svg', {role: 'group', 'aria-label': 'Plan view, own course up'});
+  private drag: Drag|null = null;
   private course_deg = 0;
   private origin: Ned = [0, 0, 0];
-  private middle: Ground = { right: 0, ahead: 0 };
-  private scale = 1; // screen pixels a metre
+  private middle: Ground = {right: 0, ahead: 0};
+  private scale = 1;  // screen pixels a metre
   private px = 1;
 
   protected build(): void {
@@ -40,7 +42,7 @@ export class PlanView extends Part {
   }
 
   protected update(): void {
-    const { plan, state, clip, frame } = this.now;
+    const {plan, state, clip, frame} = this.now;
     const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
     if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
     this.px = ui();
@@ -50,64 +52,77 @@ export class PlanView extends Part {
     renewed(this.svg, [
       this.grid(width, height),
       ...(own ? [this.fieldOfView(plan, own), ...this.volumes(plan, own)] : []),
-      s('polyline', { class: 'own', points: this.points(plan.own.ned) }),
+      s('polyline', {class: 'own', points: this.points(plan.own.ned)}),
       ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
       ...(own ? [this.ownMark(plan, clip, own)] : []),
     ]);
   }
 
-  private get ownVelocity(): Ned | null {
-    const { plan, clip } = this.now;
+  private get ownVelocity(): Ned|null {
+    const {plan, clip} = this.now;
     return plan && clip ? velocityAt(plan, plan.own.ned, 0, clip.rate_hz) : null;
   }
 
   private ground([n, e]: Ned): Ground {
     const [dn, de] = [n - this.origin[0], e - this.origin[1]];
     const [c, si] = [Math.cos(radians(this.course_deg)), Math.sin(radians(this.course_deg))];
-    return { right: de * c - dn * si, ahead: dn * c + de * si };
+    return {right: de * c - dn * si, ahead: dn * c + de * si};
   }
 
   private at(ned: Ned): Point {
     return this.screen(this.ground(ned));
   }
 
-  private screen({ right, ahead }: Ground): Point {
-    return [this.svg.clientWidth / 2 + (right - this.middle.right) * this.scale, this.svg.clientHeight / 2 - (ahead - this.middle.ahead) * this.scale];
+  private screen({right, ahead}: Ground): Point {
+    return [
+      this.svg.clientWidth / 2 + (right - this.middle.right) * this.scale,
+      this.svg.clientHeight / 2 - (ahead - this.middle.ahead) * this.scale
+    ];
   }
 
   private groundAt(event: PointerEvent): Ground {
     const box = this.svg.getBoundingClientRect();
-    return { right: (event.clientX - box.left - box.width / 2) / this.scale + this.middle.right, ahead: -(event.clientY - box.top - box.height / 2) / this.scale + this.middle.ahead };
+    return {
+      right: (event.clientX - box.left - box.width / 2) / this.scale + this.middle.right,
+      ahead: -(event.clientY - box.top - box.height / 2) / this.scale + this.middle.ahead
+    };
   }
 
   // The view holds the own path and, of the others, what is not too far away.
   private frameAll(plan: Plan, clip: Clip, width: number, height: number): void {
     this.origin = plan.own.ned[0] ?? [0, 0, 0];
     const velocity = this.ownVelocity;
-    this.course_deg = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : plan.own.heading_deg;
+    this.course_deg =
+        velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : plan.own.heading_deg;
     const others = plan.tracks.flatMap((track) => [...track.ned, approachOf(plan, track, clip)?.place ?? null]);
-    const near = others.filter((ned): ned is Ned => ned !== null && Math.hypot(ned[0] - this.origin[0], ned[1] - this.origin[1]) < MOST_M);
+    const near = others.filter(
+        (ned): ned is Ned => ned !== null && Math.hypot(ned[0] - this.origin[0], ned[1] - this.origin[1]) < MOST_M);
     const all = [...plan.own.ned, ...near].map((ned) => this.ground(ned));
     const [rights, aheads] = [all.map((one) => one.right), all.map((one) => one.ahead)];
-    const [left, right, low, high] = [Math.min(...rights), Math.max(...rights), Math.min(...aheads), Math.max(...aheads)];
-    this.middle = { right: (left + right) / 2, ahead: (low + high) / 2 };
+    const [left, right, low, high] =
+        [Math.min(...rights), Math.max(...rights), Math.min(...aheads), Math.max(...aheads)];
+    this.middle = {right: (left + right) / 2, ahead: (low + high) / 2};
     const room = [Math.max(40, width - 2 * MARGIN_PX * this.px), Math.max(40, height - 2 * MARGIN_PX * this.px)];
     this.scale = Math.min(room[0] / Math.max(LEAST_M, right - left), room[1] / Math.max(LEAST_M, high - low));
   }
 
-  private points(ned: (Ned | null)[]): string {
-    return ned.filter((one): one is Ned => one !== null).map((one) => this.at(one).map((v) => round(v, 1)).join()).join(' ');
+  private points(ned: (Ned|null)[]): string {
+    return ned.filter((one): one is Ned => one !== null)
+        .map((one) => this.at(one).map((v) => round(v, 1)).join())
+        .join(' ');
   }
 
   // Lines at whole steps of metres, and how long a step is.
   private grid(width: number, height: number): SVGGElement {
     const step_m = niceStep((90 * this.px) / this.scale);
-    const group = s('g', { class: 'grid' });
-    const [x0, y0] = this.screen({ right: 0, ahead: 0 });
+    const group = s('g', {class: 'grid'});
+    const [x0, y0] = this.screen({right: 0, ahead: 0});
     const step = step_m * this.scale;
-    for (let x = x0 % step; x < width; x += step) group.append(s('line', { x1: x, x2: x, y1: 0, y2: height }));
-    for (let y = y0 % step; y < height; y += step) group.append(s('line', { x1: 0, x2: width, y1: y, y2: y }));
-    group.append(s('path', { class: 'scale', d: `M8,${height - 12 * this.px}v${6 * this.px}h${round(step, 1)}v${-6 * this.px}` }), s('text', { x: 12, y: height - 16 * this.px }, step_m >= 1000 ? `${step_m / 1000} km` : `${step_m} m`));
+    for (let x = x0 % step; x < width; x += step) group.append(s('line', {x1: x, x2: x, y1: 0, y2: height}));
+    for (let y = y0 % step; y < height; y += step) group.append(s('line', {x1: 0, x2: width, y1: y, y2: y}));
+    group.append(
+        s('path', {class: 'scale', d: `M8,${height - 12 * this.px}v${6 * this.px}h${round(step, 1)}v${- 6 * this.px}`}),
+        s('text', {x: 12, y: height - 16 * this.px}, step_m >= 1000 ? `${step_m / 1000} km` : `${step_m} m`));
     return group;
   }
 
@@ -119,34 +134,49 @@ export class PlanView extends Part {
       const angle = radians(plan.own.heading_deg - this.course_deg) + sign * half;
       return `${round(x + far * Math.sin(angle), 1)},${round(y - far * Math.cos(angle), 1)}`;
     };
-    return s('path', { class: 'view', d: `M${round(x, 1)},${round(y, 1)}L${edge(-1)}L${edge(1)}Z` });
+    return s('path', {class: 'view', d: `M${round(x, 1)},${round(y, 1)}L${edge(-1)}L${edge(1)}Z`});
   }
 
   private volumes(plan: Plan, own: Ned): SVGElement[] {
     const [cx, cy] = this.at(own);
-    return plan.volumes.filter((volume) => volume.horizontal_m > 0).map((volume) =>
-      s('g', { class: 'volume' }, s('circle', { cx, cy, r: volume.horizontal_m * this.scale }, s('title', {}, `${volume.name}: ${round(volume.horizontal_m, 0)} m`)),
-        s('text', { class: 'middle', x: cx, y: cy - volume.horizontal_m * this.scale - 4 * this.px }, volume.name)));
+    return plan.volumes.filter((volume) => volume.horizontal_m > 0)
+        .map(
+            (volume) =>
+                s('g', {class: 'volume'},
+                  s('circle', {cx, cy, r: volume.horizontal_m * this.scale},
+                    s('title', {}, `${volume.name}: ${round(volume.horizontal_m, 0)} m`)),
+                  s('text', {class: 'middle', x: cx, y: cy - volume.horizontal_m * this.scale - 4 * this.px},
+                    volume.name)));
   }
 
   private ownMark(plan: Plan, clip: Clip, own: Ned): SVGGElement {
     const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
     const angle = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) - this.course_deg : 0;
     const [x, y] = this.at(own);
-    return s('g', { class: 'own-mark', transform: `translate(${round(x, 1)} ${round(y, 1)}) rotate(${round(angle, 1)}) scale(${this.px})` }, s('path', { d: 'M0,-9L6,7L0,3L-6,7Z' }, s('title', {}, 'The own aircraft')));
+    return s(
+        'g', {
+          class: 'own-mark',
+          transform: `translate(${round(x, 1)} ${round(y, 1)}) rotate(${round(angle, 1)}) scale(${this.px})`
+        },
+        s('path', {d: 'M0,-9L6,7L0,3L-6,7Z'}, s('title', {}, 'The own aircraft')));
   }
 
-  private flyer(flyer: Flyer, plan: Plan, clip: Clip, own: Ned | null): SVGElement[] {
+  private flyer(flyer: Flyer, plan: Plan, clip: Clip, own: Ned|null): SVGElement[] {
     const track = trackOf(plan, flyer.path);
     if (!track) return [];
     const isSelected = isSame(flyer.path, this.now.selected);
-    const group = s('g', { class: `flyer colour-${flyer.colour}${isSelected ? ' selected' : ''}`, 'data-path': JSON.stringify(flyer.path) });
-    group.append(s('polyline', { class: 'line', points: this.points(track.ned) }), s('polyline', { class: 'grip', points: this.points(track.ned) }));
+    const group = s('g', {
+      class: `flyer colour-${flyer.colour}${isSelected ? ' selected' : ''}`,
+      'data-path': JSON.stringify(flyer.path)
+    });
+    group.append(
+        s('polyline', {class: 'line', points: this.points(track.ned)}),
+        s('polyline', {class: 'grip', points: this.points(track.ned)}));
     const now = nedAt(plan, track.ned, this.now.frame);
     if (now && own) {
       const [[x, y], [ox, oy]] = [this.at(now), this.at(own)];
-      if (isSelected) group.append(s('line', { class: 'sight', x1: ox, y1: oy, x2: x, y2: y }));
-      group.append(s('circle', { class: 'place', cx: x, cy: y, r: 4.5 * this.px }, s('title', {}, flyer.id)));
+      if (isSelected) group.append(s('line', {class: 'sight', x1: ox, y1: oy, x2: x, y2: y}));
+      group.append(s('circle', {class: 'place', cx: x, cy: y, r: 4.5 * this.px}, s('title', {}, flyer.id)));
     }
     if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
     return [group];
@@ -157,21 +187,41 @@ export class PlanView extends Part {
     if (!cpa) return [];
     const [[x, y], [ox, oy]] = [this.at(cpa.place), this.at(cpa.own)];
     const isHandle = flyer.statement === 'approach';
-    const label = `Closest approach of ${flyer.id}: ${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`;
+    const label =
+        `Closest approach of ${flyer.id}: ${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`;
     const parts: SVGElement[] = [
-      s('line', { class: 'miss', x1: ox, y1: oy, x2: x, y2: y }),
-      s('path', { class: `diamond${isHandle ? ' grab' : ''}`, d: diamond(x, y, 7 * this.px), tabindex: isHandle ? 0 : null, role: 'button', 'aria-label': `${label}. Arrow keys move it.`,
-        'data-drag': isHandle ? 'approach' : null, onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'approach')) as EventListener }, s('title', {}, label)),
-      s('text', { x: x + 10 * this.px, y: y + 4 * this.px }, `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`),
+      s('line', {class: 'miss', x1: ox, y1: oy, x2: x, y2: y}),
+      s('path', {
+        class: `diamond${isHandle ? ' grab' : ''}`,
+        d: diamond(x, y, 7 * this.px),
+        tabindex: isHandle ? 0 : null,
+        role: 'button',
+        'aria-label': `${label}. Arrow keys move it.`,
+        'data-drag': isHandle ? 'approach' : null,
+        onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'approach')) as EventListener
+      },
+        s('title', {}, label)),
+      s('text', {x: x + 10 * this.px, y: y + 4 * this.px},
+        `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`),
     ];
     if (!isHandle) return parts;
     const course = numberOf(tableOf(flyer.table.encounter).course_deg) ?? 0;
     const angle = radians(course + cpa.ownCourse_deg - this.course_deg);
     const [tx, ty] = [x + ARROW_PX * this.px * Math.sin(angle), y - ARROW_PX * this.px * Math.cos(angle)];
     parts.push(
-      s('line', { class: 'course', x1: x, y1: y, x2: tx, y2: ty }),
-      s('circle', { class: 'turn grab', cx: tx, cy: ty, r: 6 * this.px, tabindex: 0, role: 'button', 'data-drag': 'course', 'aria-label': `Course of ${flyer.id}: ${round(course, 0)} degrees from the own course. Arrow keys turn it.`,
-        onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'course')) as EventListener }, s('title', {}, `Course ${round(course, 0)}° from the own course`)));
+        s('line', {class: 'course', x1: x, y1: y, x2: tx, y2: ty}),
+        s('circle', {
+          class: 'turn grab',
+          cx: tx,
+          cy: ty,
+          r: 6 * this.px,
+          tabindex: 0,
+          role: 'button',
+          'data-drag': 'course',
+          'aria-label': `Course of ${flyer.id}: ${round(course, 0)} degrees from the own course. Arrow keys turn it.`,
+          onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'course')) as EventListener
+        },
+          s('title', {}, `Course ${round(course, 0)}° from the own course`)));
     return parts;
   }
 
@@ -181,7 +231,17 @@ export class PlanView extends Part {
       if (!place) return [];
       const [x, y] = this.at(place);
       const isChosen = this.now.moment === index;
-      return [s('rect', { class: `moment grab${isChosen ? ' chosen' : ''}`, x: x - 5 * this.px, y: y - 5 * this.px, width: 10 * this.px, height: 10 * this.px, 'data-drag': 'moment', 'data-index': index }, s('title', {}, `${round(moment.time_s, 2)} s: drag for its range`))];
+      return [s(
+          'rect', {
+            class: `moment grab${isChosen ? ' chosen' : ''}`,
+            x: x - 5 * this.px,
+            y: y - 5 * this.px,
+            width: 10 * this.px,
+            height: 10 * this.px,
+            'data-drag': 'moment',
+            'data-index': index
+          },
+          s('title', {}, `${round(moment.time_s, 2)} s: drag for its range`))];
     });
   }
 
@@ -200,16 +260,16 @@ export class PlanView extends Part {
       // What is drawn may be older than the scene.
       const moment = this.now.clip && momentsOf(flyer, this.now.clip)[index];
       if (!moment) return;
-      this.studio.store.put({ moment: index });
+      this.studio.store.put({moment: index});
       this.studio.show(moment.frame);
     }
-    this.drag = { kind, flyer, index, merge: this.studio.merge(kind) };
+    this.drag = {kind, flyer, index, merge: this.studio.merge(kind)};
     this.svg.setPointerCapture(event.pointerId);
     this.studio.dragging(true);
   }
 
   private move(event: PointerEvent): void {
-    const { drag } = this;
+    const {drag} = this;
     if (!drag) return;
     const changes = this.changesOf(drag, this.groundAt(event));
     if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
@@ -221,8 +281,8 @@ export class PlanView extends Part {
     this.studio.dragging(false);
   }
 
-  private changesOf({ kind, flyer, index }: Drag, to: Ground): Change[] {
-    const { plan, clip } = this.now;
+  private changesOf({kind, flyer, index}: Drag, to: Ground): Change[] {
+    const {plan, clip} = this.now;
     const track = trackOf(plan, flyer.path);
     if (!plan || !clip || !track) return [];
     if (kind === 'moment') return this.rangeChange(flyer, index, track, plan, clip, to);
@@ -231,7 +291,11 @@ export class PlanView extends Part {
     const from = this.ground(kind === 'course' ? cpa.place : cpa.own);
     const [right, ahead] = [to.right - from.right, to.ahead - from.ahead];
     const key = (name: string) => [...flyer.path, 'encounter', name];
-    if (kind === 'course') return [{ set: key('course_deg'), to: round(turned(degrees(Math.atan2(right, ahead)) + this.course_deg - cpa.ownCourse_deg), 0) }];
+    if (kind === 'course')
+      return [{
+        set: key('course_deg'),
+        to: round(turned(degrees(Math.atan2(right, ahead)) + this.course_deg - cpa.ownCourse_deg), 0)
+      }];
     const turn = radians(cpa.ownCourse_deg - this.course_deg);
     const across = acrossOf(flyer.table, ownSpeed(plan, cpa.frame, clip));
     const own = [right * Math.cos(turn) - ahead * Math.sin(turn), ahead * Math.cos(turn) + right * Math.sin(turn)];
@@ -242,7 +306,8 @@ export class PlanView extends Part {
   private rangeChange(flyer: Flyer, index: number, track: Track, plan: Plan, clip: Clip, to: Ground): Change[] {
     const moment = momentsOf(flyer, clip)[index];
     const handle = track.handles[index];
-    const [own, place] = [moment && nedAt(plan, plan.own.ned, moment.frame), moment && nedAt(plan, track.ned, moment.frame)];
+    const [own, place] =
+        [moment && nedAt(plan, plan.own.ned, moment.frame), moment && nedAt(plan, track.ned, moment.frame)];
     if (!moment || !handle?.range_m || !own || !place) return [];
     const [from, there] = [this.ground(own), this.ground(place)];
     const sight: Point = [there.right - from.right, there.ahead - from.ahead];
@@ -250,24 +315,29 @@ export class PlanView extends Part {
     if (length < 1e-3) return [];
     const along = ((to.right - from.right) * sight[0] + (to.ahead - from.ahead) * sight[1]) / length;
     const range_m = Math.max(5, (handle.range_m * along) / length);
-    if (moment.width_px !== null && handle.width_px !== null) return [{ set: [...moment.path, 'width_px'], to: writtenWidth((handle.width_px * handle.range_m) / range_m) }];
-    return [{ set: [...moment.path, 'range_m'], to: writtenRange(range_m) }];
+    if (moment.width_px !== null && handle.width_px !== null)
+      return [{set: [...moment.path, 'width_px'], to: writtenWidth((handle.width_px * handle.range_m) / range_m)}];
+    return [{set: [...moment.path, 'range_m'], to: writtenRange(range_m)}];
   }
 
-  private key(event: KeyboardEvent, flyer: Flyer, kind: 'approach' | 'course'): void {
-    const sign = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
-    const { plan, clip } = this.now;
+  private key(event: KeyboardEvent, flyer: Flyer, kind: 'approach'|'course'): void {
+    const sign = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[event.key];
+    const {plan, clip} = this.now;
     if (!sign || !plan || !clip || event.ctrlKey) return;
     event.preventDefault();
     event.stopPropagation();
     const step = sign * (event.shiftKey ? 10 : 1);
     const encounter = tableOf(flyer.table.encounter);
     if (kind === 'course') {
-      this.studio.edit([{ set: [...flyer.path, 'encounter', 'course_deg'], to: turned((numberOf(encounter.course_deg) ?? 0) + step) }], 'course-keys');
+      this.studio.edit(
+          [{set: [...flyer.path, 'encounter', 'course_deg'], to: turned((numberOf(encounter.course_deg) ?? 0) + step)}],
+          'course-keys');
       return;
     }
     const key = 'cpa_ahead_m' in encounter && !('cpa_right_m' in encounter) ? 'cpa_ahead_m' : 'cpa_right_m';
-    this.studio.edit([{ set: [...flyer.path, 'encounter', key], to: round((numberOf(encounter[key]) ?? 0) + step, 1) }], 'approach-keys');
+    this.studio.edit(
+        [{set: [...flyer.path, 'encounter', key], to: round((numberOf(encounter[key]) ?? 0) + step, 1)}],
+        'approach-keys');
   }
 }
 
@@ -281,12 +351,13 @@ function acrossOf(table: Table, own_mps: number): Point {
 function setAcross(flyer: Flyer, across: Point, along_m: number): Change[] {
   const isRight = Math.abs(across[0]) >= LEAST_ACROSS;
   const [key, other] = isRight ? ['cpa_right_m', 'cpa_ahead_m'] : ['cpa_ahead_m', 'cpa_right_m'];
-  const set: Change = { set: [...flyer.path, 'encounter', key], to: round(along_m * across[isRight ? 0 : 1], 1) };
-  return other in tableOf(flyer.table.encounter) ? [{ remove: [...flyer.path, 'encounter', other] }, set] : [set];
+  const set: Change = {set: [...flyer.path, 'encounter', key], to: round(along_m * across[isRight ? 0 : 1], 1)};
+  return other in tableOf(flyer.table.encounter) ? [{remove: [...flyer.path, 'encounter', other]}, set] : [set];
 }
 
 // Where the two are at their closest approach.
-function approachOf(plan: Plan, track: Track, clip: Clip): { own: Ned; place: Ned; ownCourse_deg: number; frame: number } | null {
+function approachOf(plan: Plan, track: Track, clip: Clip): {own: Ned; place: Ned; ownCourse_deg: number; frame: number}|
+    null {
   if (!track.cpa) return null;
   const frame = track.cpa.time_s * clip.rate_hz;
   const own = nedAt(plan, plan.own.ned, frame);
@@ -294,8 +365,13 @@ function approachOf(plan: Plan, track: Track, clip: Clip): { own: Ned; place: Ne
   if (!own || !velocity) return null;
   const ownCourse_deg = Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : 0;
   const [c, si] = [Math.cos(radians(ownCourse_deg)), Math.sin(radians(ownCourse_deg))];
-  const { right_m, ahead_m, above_m } = track.cpa;
-  return { own, place: [own[0] + ahead_m * c - right_m * si, own[1] + ahead_m * si + right_m * c, own[2] - above_m], ownCourse_deg, frame };
+  const {right_m, ahead_m, above_m} = track.cpa;
+  return {
+    own,
+    place: [own[0] + ahead_m * c - right_m * si, own[1] + ahead_m * si + right_m * c, own[2] - above_m],
+    ownCourse_deg,
+    frame
+  };
 }
 
 export const diamond = (x: number, y: number, r: number) => `M${x},${y - r}L${x + r},${y}L${x},${y + r}L${x - r},${y}Z`;

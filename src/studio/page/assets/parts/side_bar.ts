@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Member, Tab } from '../model/store';
-import { CameraPanel } from './camera_panel';
-import { FlyerList } from './flyer_list';
-import { LightPanel } from './light_panel';
-import { Part, attribute, h } from './part';
-import { TextPanel } from './text_panel';
+import type {Member, Tab} from '../model/store';
+import {CameraPanel} from './camera_panel';
+import {FlyerList} from './flyer_list';
+import {LightPanel} from './light_panel';
+import {Part, attribute, h} from './part';
+import {TextPanel} from './text_panel';
 
 const TABS: [Tab, string][] = [['flyers', 'Flyers'], ['light', 'Light'], ['camera', 'Camera'], ['text', 'Text']];
 
@@ -15,10 +15,20 @@ export class SideBar extends Part {
   private panels: HTMLElement[] = [];
 
   protected build(): void {
-    this.tabs = TABS.map(([tab, words], k) => h('button', { role: 'tab', id: `tab-${tab}`, 'aria-controls': `panel-${tab}`, title: `${words} (${k + 1})`, onclick: () => this.studio.store.put({ tab }) }, words));
+    this.tabs = TABS.map(
+        ([tab, words], k) =>
+            h('button', {
+              role: 'tab',
+              id: `tab-${tab}`,
+              'aria-controls': `panel-${tab}`,
+              title: `${words} (${k + 1})`,
+              onclick: () => this.studio.store.put({tab})
+            },
+              words));
     const parts = [new FlyerList(), new LightPanel(), new CameraPanel(), new TextPanel()];
-    this.panels = TABS.map(([tab], k) => h('section', { role: 'tabpanel', id: `panel-${tab}`, 'aria-labelledby': `tab-${tab}` }, parts[k]));
-    this.append(h('div', { role: 'tablist', 'aria-label': 'Panels' }, ...this.tabs), ...this.panels);
+    this.panels = TABS.map(
+        ([tab], k) => h('section', {role: 'tabpanel', id: `panel-${tab}`, 'aria-labelledby': `tab-${tab}`}, parts[k]));
+    this.append(h('div', {role: 'tablist', 'aria-label': 'Panels'}, ...this.tabs), ...this.panels);
   }
 
   protected update(): void {

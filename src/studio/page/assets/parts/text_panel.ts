@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Member } from '../model/store';
-import { Part, h } from './part';
+import type {Member} from '../model/store';
+import {Part, h} from './part';
 
 const WORDS = /^(\s*\[\[?[^\]]*\]\]?)|^(\s*[\w.-]+)(?=\s*=)/;
 
@@ -11,12 +11,17 @@ export class TextPanel extends Part {
   private shown = '';
 
   protected build(): void {
-    const copy = h('button', { onclick: () => void navigator.clipboard?.writeText(this.now.state?.text ?? '').catch(() => undefined) }, 'Copy');
-    this.append(h('div', { class: 'actions' }, copy), h('pre', { tabindex: 0, 'aria-label': 'The scene file, read only' }, this.code));
+    const copy =
+        h('button',
+          {onclick: () => void navigator.clipboard?.writeText(this.now.state?.text ?? '').catch(() => undefined)},
+          'Copy');
+    this.append(
+        h('div', {class: 'actions'}, copy),
+        h('pre', {tabindex: 0, 'aria-label': 'The scene file, read only'}, this.code));
   }
 
   protected update(): void {
-    const { state, tab } = this.now;
+    const {state, tab} = this.now;
     if (tab !== 'text' || !state || state.text === this.shown) return;
     this.shown = state.text;
     this.code.replaceChildren(...state.text.split('\n').flatMap((line) => [...coloured(line), '\n']));
@@ -24,12 +29,14 @@ export class TextPanel extends Part {
 }
 
 // A table's name, a key and a comment each as a span.
-function coloured(line: string): (Node | string)[] {
+function coloured(line: string): (Node|string)[] {
   const comment = commentAt(line);
   const words = line.slice(0, comment);
   const found = WORDS.exec(words);
-  const parts = found ? [h('span', { class: found[1] !== undefined ? 'table' : 'key' }, found[0]), words.slice(found[0].length)] : [words];
-  return comment < line.length ? [...parts, h('span', { class: 'comment' }, line.slice(comment))] : parts;
+  const parts = found ?
+      [h('span', {class: found[1] !== undefined ? 'table' : 'key'}, found[0]), words.slice(found[0].length)] :
+      [words];
+  return comment < line.length ? [...parts, h('span', {class: 'comment'}, line.slice(comment))] : parts;
 }
 
 // Where the comment of a line begins: at a # that is in no string.
@@ -37,10 +44,14 @@ function commentAt(line: string): number {
   let quote = '';
   for (let k = 0; k < line.length; ++k) {
     const c = line[k];
-    if (quote === '"' && c === '\\') ++k;
-    else if (quote) quote = c === quote ? '' : quote;
-    else if (c === '"' || c === "'") quote = c;
-    else if (c === '#') return k;
+    if (quote === '"' && c === '\\')
+      ++k;
+    else if (quote)
+      quote = c === quote ? '' : quote;
+    else if (c === '"' || c === '\'')
+      quote = c;
+    else if (c === '#')
+      return k;
   }
   return line.length;
 }

@@ -1,31 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Member } from '../model/store';
-import { tick } from './fields';
-import { Part, attribute, h, text } from './part';
-import type { PictureView } from './picture_view';
+import type {Member} from '../model/store';
+import {tick} from './fields';
+import {Part, attribute, h, text} from './part';
+import type {PictureView} from './picture_view';
 
 // The file and whether it is saved, undo and redo, what is laid over the picture, and rendering.
 export class ToolBar extends Part {
-  protected readonly watches: Member[] = ['file', 'state', 'pending', 'connected', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'busy', 'progress', 'keepsMine'];
-  private file = h('span', { class: 'file' });
-  private saved = h('span', { class: 'saved', role: 'status' });
-  private undo = h('button', { title: 'Undo (Ctrl+Z)', onclick: () => void this.studio.undo() }, 'Undo');
-  private redo = h('button', { title: 'Redo (Ctrl+Shift+Z)', onclick: () => void this.studio.redo() }, 'Redo');
-  private save = h('button', { title: 'Save the scene file (Ctrl+S)', onclick: () => void this.studio.save() }, 'Save');
-  private render = h('button', { class: 'main', title: 'Render (R)', onclick: () => this.studio.store.put({ dialog: 'render' }) }, 'Render …');
-  private ticks = ([['showsAircraft', 'Aircraft'], ['showsBoxes', 'Boxes'], ['showsHorizon', 'Horizon'], ['showsMotion', 'Motion']] as const).map(([key, words]) => ({ key, ...tick(words, (isOn) => this.studio.store.put({ [key]: isOn })) }));
+  protected readonly watches: Member[] = [
+    'file', 'state', 'pending', 'connected', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'busy',
+    'progress', 'keepsMine'
+  ];
+  private file = h('span', {class: 'file'});
+  private saved = h('span', {class: 'saved', role: 'status'});
+  private undo = h('button', {title: 'Undo (Ctrl+Z)', onclick: () => void this.studio.undo()}, 'Undo');
+  private redo = h('button', {title: 'Redo (Ctrl+Shift+Z)', onclick: () => void this.studio.redo()}, 'Redo');
+  private save = h('button', {title: 'Save the scene file (Ctrl+S)', onclick: () => void this.studio.save()}, 'Save');
+  private render =
+      h('button', {class: 'main', title: 'Render (R)', onclick: () => this.studio.store.put({dialog: 'render'})},
+        'Render …');
+  private ticks =
+      ([
+        ['showsAircraft', 'Aircraft'], ['showsBoxes', 'Boxes'], ['showsHorizon', 'Horizon'], ['showsMotion', 'Motion']
+      ] as const)
+          .map(([key, words]) => ({key, ...tick(words, (isOn) => this.studio.store.put({[key]: isOn}))}));
 
   protected build(): void {
     const picture = () => document.querySelector<PictureView>('studio-picture')!;
-    const zoom = [h('button', { 'aria-label': 'Zoom out', title: 'Zoom out (-)', onclick: () => picture().zoom(1 / 1.25) }, '−'), h('button', { title: 'Show the whole frame (F)', onclick: () => picture().fit() }, 'Fit'),
-      h('button', { 'aria-label': 'Zoom in', title: 'Zoom in (+)', onclick: () => picture().zoom(1.25) }, '+')];
-    this.append(h('h1', {}, 'airtruth studio'), this.file, this.saved, h('span', { class: 'group' }, this.undo, this.redo, this.save),
-      h('fieldset', { class: 'group', 'aria-label': 'Shown over the picture' }, ...this.ticks.map((one) => one.element)), h('span', { class: 'group' }, ...zoom), h('span', { class: 'space' }), this.render,
-      h('button', { 'aria-label': 'Help', title: 'Keys and gestures (?)', onclick: () => this.studio.store.put({ dialog: 'help' }) }, '?'));
+    const zoom = [
+      h('button', {'aria-label': 'Zoom out', title: 'Zoom out (-)', onclick: () => picture().zoom(1 / 1.25)}, '−'),
+      h('button', {title: 'Show the whole frame (F)', onclick: () => picture().fit()}, 'Fit'),
+      h('button', {'aria-label': 'Zoom in', title: 'Zoom in (+)', onclick: () => picture().zoom(1.25)}, '+')
+    ];
+    this.append(
+        h('h1', {}, 'airtruth studio'), this.file, this.saved,
+        h('span', {class: 'group'}, this.undo, this.redo, this.save),
+        h('fieldset', {class: 'group', 'aria-label': 'Shown over the picture'},
+          ...this.ticks.map((one) => one.element)),
+        h('span', {class: 'group'}, ...zoom), h('span', {class: 'space'}), this.render,
+        h('button', {
+          'aria-label': 'Help',
+          title: 'Keys and gestures (?)',
+          onclick: () => this.studio.store.put({dialog: 'help'})
+        },
+          '?'));
   }
 
   protected update(): void {
-    const { state, file, pending, connected, busy, progress } = this.now;
+    const {state, file, pending, connected, busy, progress} = this.now;
     const name = file.split('/').pop() ?? '';
     text(this.file, name);
     attribute(this.file, 'title', file);
@@ -35,7 +56,10 @@ export class ToolBar extends Part {
     this.undo.disabled = !state?.undo;
     this.redo.disabled = !state?.redo;
     this.save.disabled = !state || (state.saved && !state.changed_on_disk);
-    for (const { key, input } of this.ticks) input.checked = this.now[key];
-    text(this.render, busy === 'render' && progress?.total ? `Rendering ${Math.round((100 * progress.done) / progress.total)} %` : 'Render …');
+    for (const {key, input} of this.ticks) input.checked = this.now[key];
+    text(
+        this.render,
+        busy === 'render' && progress?.total ? `Rendering ${Math.round((100 * progress.done) / progress.total)} %` :
+                                               'Render …');
   }
 }
