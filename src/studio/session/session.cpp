@@ -12,17 +12,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "calibration/camera_file/calibration.h"
-#include "calibration/camera_file/quantities.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
-#include "labels/annotation/truth.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
 #include "studio/messages/request.h"
+#include "studio/session/answers.h"
 #include "studio/session/gallery.h"
 #include "studio/session/job.h"
 #include "studio/session/jpeg.h"
@@ -41,13 +39,6 @@ using Urgency = Worker::Urgency;
 
 // Around what is drawn: the reach of lens and sharpening, and the blocks of a JPEG.
 constexpr int kMarginPx = 24;
-
-std::string ok(std::int64_t id, const Json& result) {
-  return Json{{"id", id}, {"ok", result}}.dump();
-}
-std::string error(std::int64_t id, const std::string& line) {
-  return Json{{"id", id}, {"error", line}}.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 // Runs `act`, and hands the line of its fault to `fail`.
 template <typename Do, typename Fail>
@@ -72,15 +63,6 @@ struct Snapshot {
   std::vector<document::TablePlace> tables;
 };
 
-// 4 bytes with the length of the header, the header, the JPEG.
-std::string framed(const Json& header, const std::string& jpeg) {
-  const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
-  const auto size = static_cast<std::uint32_t>(text.size());
-  std::string bytes;
-  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((size >> shift) & 0xFFU);
-  return bytes + text + jpeg;
-}
-
 PixelBox even(PixelBox box, int width, int height) {
   const int x = std::max(0, box.x) & ~1;
   const int y = std::max(0, box.y) & ~1;
@@ -93,44 +75,6 @@ PixelBox even(PixelBox box, int width, int height) {
 PixelBox within(const PixelBox& box, const PixelBox& whole) {
   return intersection(box, whole)
       .value_or(PixelBox{0, 0, std::min(2, whole.width), std::min(2, whole.height)});
-}
-
-Json values_of(const camera_file::Calibration& found) {
-  Json values = Json::array();
-  for (const camera_file::QuantityKey& key : camera_file::kQuantityKeys) {
-    const camera_file::Quantity& quantity = found.quantities.*key.member;
-    Json value, spread;
-    if (quantity.values.size() == 1) {
-      value = quantity.values[0].value;
-      spread = quantity.values[0].sigma;
-    } else if (!quantity.values.empty()) {
-      for (const auto& one : quantity.values) {
-        value.push_back(one.value);
-        spread.push_back(one.sigma);
-      }
-    }
-    values.push_back({{"key", key.name},
-                      {"value", value},
-                      {"error", spread},
-                      {"missing", quantity.missing},
-                      {"note", quantity.note}});
-  }
-  return values;
-}
-
-// [[frame, [{"id", "box"}]]]
-Json boxes_of_film(const fs::path& truth_file) {
-  Json frames = Json::array();
-  for (const annotation::Frame& frame : annotation::read_truth(truth_file).frames) {
-    Json boxes = Json::array();
-    for (const annotation::Intruder& intruder : frame.intruders)
-      if (intruder.state == annotation::State::kVisible && intruder.exact_box_px) {
-        const Box& box = *intruder.exact_box_px;
-        boxes.push_back({{"id", intruder.id}, {"box", {box.x, box.y, box.width, box.height}}});
-      }
-    if (!boxes.empty()) frames.push_back({frame.frame, boxes});
-  }
-  return frames;
 }
 
 // Aircraft and hashes are kept for all that the session does.
@@ -228,9 +172,7 @@ class Session::Impl {
     state["camera"] = camera_state_;
     return state;
   }
-  void tell(const Json& event) {
-    ways_.send_all(event.dump(-1, ' ', false, Json::error_handler_t::replace));
-  }
+  void tell(const Json& event) { ways_.send_all(text_of(event)); }
   void tell_state() { tell({{"event", "state"}, {"state", state()}}); }
 
   void answer(Client client, Request request) {

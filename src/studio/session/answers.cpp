@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "studio/session/answers.h"
+
+#include "calibration/camera_file/quantities.h"
+#include "labels/annotation/truth.h"
+
+namespace airtruth::session {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string ok(std::int64_t id, const Json& result) {
+  return text_of({{"id", id}, {"ok", result}});
+}
+
+std::string error(std::int64_t id, const std::string& line) {
+  return text_of({{"id", id}, {"error", line}});
+}
+
+std::string framed(const Json& header, const std::string& jpeg) {
+  const std::string text = text_of(header);
+  const auto size = static_cast<std::uint32_t>(text.size());
+  std::string bytes;
+  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((size >> shift) & 0xFFU);
+  return bytes + text + jpeg;
+}
+
+Json values_of(const camera_file::Calibration& found) {
+  Json values = Json::array();
+  for (const camera_file::QuantityKey& key : camera_file::kQuantityKeys) {
+    const camera_file::Quantity& quantity = found.quantities.*key.member;
+    Json value, spread;
+    if (quantity.values.size() == 1) {
+      value = quantity.values[0].value;
+      spread = quantity.values[0].sigma;
+    } else if (!quantity.values.empty()) {
+      for (const auto& one : quantity.values) {
+        value.push_back(one.value);
+        spread.push_back(one.sigma);
+      }
+    }
+    values.push_back({{"key", key.name},
+                      {"value", value},
+                      {"error", spread},
+                      {"missing", quantity.missing},
+                      {"note", quantity.note}});
+  }
+  return values;
+}
+
+Json boxes_of_film(const std::filesystem::path& truth) {
+  Json frames = Json::array();
+  for (const annotation::Frame& frame : annotation::read_truth(truth).frames) {
+    Json boxes = Json::array();
+    for (const annotation::Intruder& intruder : frame.intruders)
+      if (intruder.state == annotation::State::kVisible && intruder.exact_box_px) {
+        const Box& box = *intruder.exact_box_px;
+        boxes.push_back({{"id", intruder.id}, {"box", {box.x, box.y, box.width, box.height}}});
+      }
+    if (!boxes.empty()) frames.push_back({frame.frame, boxes});
+  }
+  return frames;
+}
+
+}  // namespace airtruth::session
