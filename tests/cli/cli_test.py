@@ -262,6 +262,24 @@ class Render(Case):
         self.assertEqual(os.listdir(self.out), [])
 
 
+class Studio(Case):
+    def test_an_interrupt_ends_it_and_leaves_the_folder_as_it_was(self):
+        file = write("studio.toml", scene())
+        before = sorted(os.listdir(ROOT))
+        program = subprocess.Popen([AIRTRUTH, "studio", file], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertRegex(program.stdout.readline(), r"^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32}$")
+        program.send_signal(signal.SIGINT)
+        _, errors = program.communicate(timeout=120)
+        self.assertEqual((program.returncode, len(errors.splitlines())), (130, 1), errors)
+        self.assertEqual(sorted(os.listdir(ROOT)), before)
+
+    def test_a_scene_or_video_that_is_not_there(self):
+        for missing in ("none.toml", "none.mp4"):
+            refused = run("studio", path(missing))
+            self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
+            self.assertIn(missing, refused.stderr)
+
+
 class Track(Case):
     def track(self, *arguments, source="flight.mkv"):
         return run("track", source, "-t", "am3", "--out", path(self.out, "results"), *arguments)

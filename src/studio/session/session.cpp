@@ -99,9 +99,10 @@ class Session::Impl {
   }
   ~Impl() {
     stop_.request_stop();
-    for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->cancel();
+    // The worker begins jobs, so it ends before them.
     worker_.end();
     beside_.end();
+    for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->cancel();
     for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->stop();
   }
 
