@@ -228,7 +228,11 @@ export class Studio {
   }
 
   private took(state: State): void {
-    const {selected} = this.store.now;
+    const {selected, notices} = this.store.now;
+    // What was refused before is past.
+    const isPast = (kind: string) => kind === 'error';
+    if (notices.some((notice) => isPast(notice.kind)))
+      this.store.put({notices: notices.filter((notice) => !isPast(notice.kind))});
     this.store.put({
       state,
       ...(state.changed_on_disk ? {} : {keepsMine: false}),
