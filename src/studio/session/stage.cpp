@@ -119,7 +119,6 @@ void Stage::open(const scene::Scene& scene, const Measured& measured) {
   if (light_key != light_key_) last_light_.clear();
   light_key_ = light_key;
   estimator_.reset();
-  light_frame_ = -1;
   maker_ = std::make_unique<pipeline::FrameMaker>(pipeline::resolved_by_truth(std::move(opened)),
                                                   options_.stop);
 }
@@ -156,31 +155,31 @@ std::optional<Stage::Lit> Stage::light(std::int64_t frame,
                                        const setup::Moment& moment,
                                        bool exact,
                                        const std::function<bool()>& leave) {
-  const auto begin = [&] {
+  const auto begin = [&](std::int64_t first) {
     estimator_.emplace(scene().light, tone_, maker_->resolved().mask.get());
-    light_is_exact_ = false;
+    light_first_ = first;
+    light_frame_ = first - 1;
   };
-  if (!estimator_) begin();
+  if (!estimator_) begin(frame);
   if (!estimator_->reads_pictures()) return Lit{next_light(frame, moment), true};
-  const bool follows = light_is_exact_ && frame > light_frame_ && frame <= light_frame_ + kFollowed;
+  const auto is_exact = [&] { return light_first_ == 0 || frame - light_first_ >= kLightFrames; };
+  const std::int64_t ahead = frame - light_frame_;
+  const bool follows =
+      ahead > 0 && (exact ? is_exact() && ahead <= kLightFrames : ahead <= kFollowed);
   if (!follows && !exact) {
     if (const auto last = last_light_.find(frame); last != last_light_.end())
       return Lit{last->second, false};
-    begin();
-    return Lit{next_light(frame, moment), frame == 0};
+    begin(frame);
+  } else if (!follows) {
+    begin(std::max<std::int64_t>(0, frame - kLightFrames));
   }
-  if (!follows) {
-    begin();
-    light_frame_ = std::max<std::int64_t>(0, frame - kLightFrames) - 1;
-  }
-  light_is_exact_ = false;
   for (std::int64_t k = light_frame_ + 1; k < frame; ++k) {
     if (leave && leave()) return std::nullopt;
     if (!clip_->has_glance(k)) clip_->frame(k);
     next_light(k, this->moment(k));
   }
-  const Lit lit{next_light(frame, moment), true};
-  light_is_exact_ = true;
+  const Lit lit{next_light(frame, moment), is_exact()};
+  if (!lit.exact) return lit;
   if (last_light_.size() >= kMostLights) last_light_.clear();
   last_light_[frame] = lit.ambient;
   return lit;

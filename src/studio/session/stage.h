@@ -65,9 +65,9 @@ class Stage {
     const image::Picture& picture() const { return plain ? plain->picture : made; }
   };
   // Frame k with the scene's aircraft in it. The light in a frame follows from the frames before
-  // it as well. Unless `exact`, those need not be read, and the light is that of this frame, or the
-  // one that was found last for it. `leave`: true where the work is to be left; the result is then
-  // empty.
+  // it as well. Unless `exact`, those need not be read, and the light is the one that was found
+  // last for it, or that of this frame and of those that were asked for just before it. `leave`:
+  // true where the work is to be left; the result is then empty.
   std::optional<Picture> picture(std::int64_t frame,
                                  bool exact,
                                  const std::function<bool()>& leave = {});
@@ -102,10 +102,10 @@ class Stage {
   std::vector<std::vector<scene::Seen>> seen_;  // by intruder
   std::vector<std::string> warnings_;
   image::ToneCurve tone_;
-  // The light estimated from frame to frame, up to light_frame_.
+  // The light estimated from frame to frame, from light_first_ up to light_frame_.
   std::optional<insertion::AmbientEstimator> estimator_;
+  std::int64_t light_first_ = 0;
   std::int64_t light_frame_ = -1;
-  bool light_is_exact_ = false;
   // The last exact light of a frame, of this or of an earlier scene under the same light.
   std::string light_key_;
   std::map<std::int64_t, insertion::Ambient> last_light_;

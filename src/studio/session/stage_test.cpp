@@ -131,6 +131,24 @@ TEST_F(OverAFlight, SoAreTheyWhereTheSceneIsEditedInBetween) {
   EXPECT_TRUE(image::identical(stage.picture(20, true)->picture(), frames.next()->frame.picture));
 }
 
+TEST_F(OverAFlight, PlayedFromTheBeginningEachFrameIsExactAtOnce) {
+  const scene::Scene scene = scene_of(kSeen);
+  Stage stage(options());
+  stage.set(1, scene, measured_of(scene, options()));
+  pipeline::FrameByFrame frames(scene, options());
+  for (int k = 0; k < 20; ++k) {
+    const auto picture = stage.picture(k, false);
+    EXPECT_TRUE(picture->exact);
+    EXPECT_TRUE(image::identical(picture->picture(), frames.next()->frame.picture)) << k;
+  }
+  EXPECT_FALSE(stage.picture(30, false)->exact);
+  EXPECT_FALSE(stage.picture(31, false)->exact);
+  int left = 0;
+  EXPECT_FALSE(stage.picture(32, true, [&left] { return ++left > 3; }));
+  EXPECT_TRUE(stage.picture(32, true)->exact);
+  EXPECT_TRUE(stage.picture(33, false)->exact);
+}
+
 TEST_F(OverAFlight, WithoutItsMotionTheCameraStandsAtItsNominalPose) {
   Stage stage(options());
   stage.set(1, scene_of(kSeen), {});
