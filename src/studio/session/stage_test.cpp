@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studio/session/stage.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -129,6 +130,30 @@ TEST_F(OverAFlight, SoAreTheyWhereTheSceneIsEditedInBetween) {
   pipeline::FrameByFrame frames(after, options());
   for (int k = 0; k < 20; ++k) frames.next();
   EXPECT_TRUE(image::identical(stage.picture(20, true)->picture(), frames.next()->frame.picture));
+}
+
+// The light begins 240 frames before, where that of a run has begun with the clip.
+TEST_F(OverAFlight, SoAreTheyDeepInARealClip) {
+  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
+  const scene::Scene scene = scene::parse_scene(
+      "[background]\nvideo = \"" + std::string(shared) +
+          "/footage/fixed-wing/cumulus_a4.mp4\"\n[lens]\nvertical_fov_deg = 52\n[camera]\n"
+          "attitude_yaw_pitch_roll_deg = [0, -3, 0]\nvelocity_ned_mps = [20, 0, 0]\n" +
+          kAircraft +
+          "[[intruder.seen]]\ntime_s = 0\npixel = [200, 150]\nrange_m = 300\n"
+          "[[intruder.seen]]\ntime_s = 12\npixel = [400, 200]\nrange_m = 200\n",
+      *folder_ / "scene.toml");
+  constexpr int kFrame = 300;
+  pipeline::Options how = options();
+  how.threads = 0;
+  pipeline::FrameByFrame frames(scene, how);
+  for (int k = 0; k < kFrame; ++k) frames.next();
+  Stage stage(options());
+  stage.set(1, scene, measured_of(scene, options()));
+  const auto picture = stage.picture(kFrame, true);
+  EXPECT_FALSE(picture->plain);
+  EXPECT_TRUE(image::identical(picture->picture(), frames.next()->frame.picture));
 }
 
 TEST_F(OverAFlight, PlayedFromTheBeginningEachFrameIsExactAtOnce) {
