@@ -26,7 +26,7 @@ IDLE = "window.airtruthStudio && airtruthStudio.isIdle() && airtruthStudio.studi
 STORE = "airtruthStudio.studio.store.now"
 BESIDE_PX = 1  # of where a handle stood, in the rendered video
 HEAP_GROWTH = 24 << 20
-SERVER_GROWTH = 300 << 20
+SERVER_GROWTH = 600 << 20  # aircraft stay open, of 512 MiB at most
 
 # What the layout has to say in one state of the page.
 LOOK = r"""(() => {
