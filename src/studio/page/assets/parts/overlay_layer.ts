@@ -33,9 +33,9 @@ export class OverlayLayer {
     this.px = px;
     this.showHorizon(now);
     this.showMotion(now);
-    const {picture, state, frame, showsBoxes} = now;
+    const {picture, state, showsBoxes} = now;
     const flyers = state ? flyersOf(state.scene) : [];
-    const shown = showsBoxes && picture?.frame === frame ? picture.boxes : [];
+    const shown = showsBoxes ? picture?.boxes ?? [] : [];
     const tables = shown.map((one) => JSON.stringify(one.table));
     this.boxes.show(shown.map((exact, k) => {
       const flyer = flyers.find((one) => isSame(one.path, exact.table));
