@@ -2,7 +2,7 @@
 #include "studio/session/session.h"
 
 #include <algorithm>
-#include <atomic>
+#include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -349,12 +349,14 @@ class Session::Impl {
     ways_.post([this, client, bytes = std::move(bytes)] { ways_.send_binary(client, bytes); });
   }
 
-  // The exact picture follows when there is nothing else to do.
+  // The exact picture follows when there is nothing else to do, and the hand rests.
   void again_later(Client client, const Request& request) {
+    constexpr auto kRest = std::chrono::milliseconds(150);
     worker_.add({Urgency::kLater,
                  fmt::format("exact {}", client),
                  [this, client, request] { draw(client, request, true); },
-                 {}});
+                 {},
+                 std::chrono::steady_clock::now() + kRest});
   }
 
   // The part of a picture that is sent; keeps what the page has then.

@@ -46,15 +46,29 @@ bool Worker::is_wanted_for(Urgency urgency) const {
          });
 }
 
+std::list<Worker::Task>::iterator Worker::next() {
+  const auto now = std::chrono::steady_clock::now();
+  auto first = waiting_.end();
+  for (auto it = waiting_.begin(); it != waiting_.end(); ++it)
+    if (it->due <= now && (first == waiting_.end() || it->urgency < first->urgency)) first = it;
+  return first;
+}
+
 void Worker::run() {
   std::unique_lock lock(mutex_);
-  for (;;) {
-    changed_.wait(lock, [this] { return over_ || !waiting_.empty(); });
-    if (over_) return;
-    const auto first =
-        std::min_element(waiting_.begin(), waiting_.end(), [](const Task& a, const Task& b) {
-          return a.urgency < b.urgency;
-        });
+  while (!over_) {
+    const auto first = next();
+    if (first == waiting_.end()) {
+      const auto soonest =
+          std::min_element(waiting_.begin(), waiting_.end(), [](const Task& a, const Task& b) {
+            return a.due < b.due;
+          });
+      if (soonest == waiting_.end())
+        changed_.wait(lock);
+      else
+        changed_.wait_until(lock, std::chrono::steady_clock::time_point(soonest->due));
+      continue;
+    }
     const Task task = std::move(*first);
     waiting_.erase(first);
     lock.unlock();

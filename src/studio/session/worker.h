@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -28,6 +29,8 @@ class Worker {
     std::string name;
     std::function<void()> run;      // does not throw
     std::function<void()> dropped;  // in its place, where it is replaced or there are too many
+    // It begins no sooner.
+    std::chrono::steady_clock::time_point due{};
   };
   void add(Task task);
   // Drops what has not begun, waits for what has, and takes no more.
@@ -41,6 +44,8 @@ class Worker {
   static constexpr std::size_t kMostWaiting = 256;
 
   void run();
+  // The most urgent of those that are due; the end where there is none.
+  std::list<Task>::iterator next();
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
