@@ -32,8 +32,8 @@ void take_message(std::string_view text) {
 void take_change(std::string_view text) {
   const std::size_t end = text.find('\0');
   if (end == std::string_view::npos) return;
-  const std::string message = "{\"id\":1,\"do\":\"edit\",\"changes\":[" +
-                              std::string(text.substr(end + 1)) + "]}";
+  const std::string message =
+      "{\"id\":1,\"do\":\"edit\",\"changes\":[" + std::string(text.substr(end + 1)) + "]}";
   for (const document::Change& change : messages::request_from(message).changes)
     document::changed(text.substr(0, end), change, "/fuzz/scene.toml");
 }

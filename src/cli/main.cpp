@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <airtruth/version.h>
 #include <CLI/CLI.hpp>
+#include <airtruth/version.h>
 #include <malloc.h>
 
 #include "cli/commands.h"
