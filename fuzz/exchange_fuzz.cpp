@@ -16,6 +16,7 @@
 namespace {
 
 using namespace airtruth::exchange;
+namespace fs = std::filesystem;
 
 struct Case {
   Format format;
