@@ -304,9 +304,10 @@ ClipMotion clip_motion(const fs::path& video, const ClipMotionOptions& options) 
                              if (options.progress)
                                options.progress(done, result.info.frame_count_estimate);
                            }});
+  const bool has_gyro = source.has_gyro();
   result.gyro = source.gyro_fit();
   result.frames = std::move(source).all();
-  warn_of(result, source.has_gyro(), options.warn);
+  warn_of(result, has_gyro, options.warn);
   return result;
 }
 
