@@ -137,7 +137,7 @@ class Page:
         count = self.browser.run("document.querySelectorAll('.handle').length")
         self.browser.type(search)
         self.browser.wait("[...document.querySelectorAll('.card')].length > 0 && document.querySelector('.search output').textContent !== ''")
-        time.sleep(0.6)  # what is typed is searched for a moment later
+        time.sleep(1.5)  # what is typed is searched for a moment later, on a loaded machine later still
         self.browser.click_on(".card .choose", k)
         self.browser.wait(f"document.querySelectorAll('.handle').length === 2 || {count} === 2")
         self.rest()
