@@ -17,6 +17,8 @@ import json
 import os
 import sys
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
 NEEDS = "expected /usr/bin/python3 with Debian's python3-sklearn and python3-opencv"
 try:
     import cv2
@@ -24,6 +26,7 @@ try:
 
     import clips as comparisons
     import sheet
+    from arguments import whole
     from clips import Refused
 except ImportError as missing:
     sys.exit(f"judge: {missing}; {NEEDS}")
@@ -77,16 +80,6 @@ def make_sheet(arguments):
 def score(arguments):
     right, total, low, high = sheet.score(arguments.answers, arguments.key, Refused)
     print(f"{right}/{total} right: {right / total:.3f} ({low:.3f} to {high:.3f}); 0.5 is chance")
-
-
-def whole(least):
-    def read(text):
-        value = int(text)
-        if value < least:
-            raise argparse.ArgumentTypeError(f"{text} is below {least}")
-        return value
-    read.__name__ = "whole number"
-    return read
 
 
 def main():

@@ -24,6 +24,7 @@ try:
     import sets
     import splits
     import trainings
+    from arguments import whole
     from sets import Refused
 except ImportError as missing:
     sys.exit(f"proof: {missing}; {NEEDS}")
@@ -78,16 +79,6 @@ def run(arguments):
         page.write_pictures(images, found, reals, arguments)
     (pathlib.Path(arguments.out) / f"{part}.md").write_text(text, encoding="utf-8")
     print(text, end="")
-
-
-def whole(least):
-    def read(text):
-        value = int(text)
-        if value < least:
-            raise argparse.ArgumentTypeError(f"{text} is below {least}")
-        return value
-    read.__name__ = "whole number"
-    return read
 
 
 def main():

@@ -492,29 +492,31 @@ ResolvedScene resolved_by_truth(OpenedScene opened) {
   return {std::move(static_cast<SceneInputs&>(opened)), std::move(opened.stated.scene), "", {}};
 }
 
-void measure_ahead(const scene::Scene& scene, const Options& options) {
-  if (scene.motion.model == scene::MotionModel::kNone) return;
+setup::MotionSource motion_ahead(const scene::Scene& scene, const Options& options) {
   video::Reader reader = open_background(scene, options);
-  const video::StreamInfo info = reader.info();
-  const auto mask = insertion::read_mask(scene, size_of(info));
-  const lens::Lens lens = setup::lens_of(scene.lens, size_of(info));
-  const std::int64_t total = scene.background.frame_count.value_or(info.frame_count_estimate);
+  const video::StreamInfo info = used_stream(reader.info(), scene.background);
+  const scene::Scene plain = stated(scene, reader.info()).scene;
+  const auto mask = insertion::read_mask(plain, size_of(info));
+  const lens::Lens lens = setup::lens_of(plain.lens, size_of(info));
   const setup::MotionInputs inputs{
-      scene,
+      plain,
       lens,
-      false,
+      !setup::shutter_of(plain.camera_model).is_instant(),
       setup::sha256_of_video(scene.background.video, *inputs_of(options)),
       mask ? &*mask : nullptr,
       cache_of(options, "motion")};
-  // The pass keeps what it measures.
-  setup::MotionSource(inputs,
-                      {.for_all = true,
-                       .open = [&] { return std::move(reader); },
-                       .stop = options.stop,
-                       .seen =
-                           [&](std::int64_t done) {
-                             if (options.progress) options.progress({done, total});
-                           }});
+  return {inputs,
+          {.for_all = true,
+           .open = [&] { return std::move(reader); },
+           .stop = options.stop,
+           .seen =
+               [&](std::int64_t done) {
+                 if (options.progress) options.progress({done, info.frame_count_estimate});
+               }}};
+}
+
+void measure_ahead(const scene::Scene& scene, const Options& options) {
+  if (scene.motion.model != scene::MotionModel::kNone) motion_ahead(scene, options);
 }
 
 fs::path cache_folder(const Options& options, const char* kind) {

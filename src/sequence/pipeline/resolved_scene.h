@@ -114,8 +114,11 @@ setup::MotionInputs motion_inputs(const OpenedScene& opened,
 // background, or the one that will be made.
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info);
 
-// Measures the motion of the scene's background and stores it in the cache, unless the cache holds
-// it already.
+// The motion of every frame of the scene's background: from the cache, else by a pass over the clip
+// that keeps it there. Errors as of stated(), and Interrupted after options.stop.
+setup::MotionSource motion_ahead(const scene::Scene& scene, const Options& options);
+
+// The same for a later run alone. Does nothing where the scene measures no motion.
 void measure_ahead(const scene::Scene& scene, const Options& options);
 
 // True where the scene asks for camera values that neither the scene nor its camera file states.

@@ -20,9 +20,8 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "scene/synthetic/flight.h"
-#include "sequence/demo/virtual_flight.h"
 #include "studio/server/token.h"
+#include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::server {
@@ -83,12 +82,7 @@ class OfAServer : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test_support::TemporaryFolder();
-    synthetic::FlightOptions flight;
-    flight.width = 160;
-    flight.height = 120;
-    flight.frame_count = 4;
-    flight.own_aircraft = false;
-    demo::write_flight(synthetic::Flight(flight), *folder_ / "flight.mp4", {});
+    test_support::write_flight(*folder_ / "flight.mp4", 160, 120, 4);
     write_file(*folder_ / "secret.txt", "the secret");
   }
   static void TearDownTestSuite() { delete folder_; }

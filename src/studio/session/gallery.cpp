@@ -8,6 +8,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "aircraft/fleet/scale.h"
 #include "foundation/base/error.h"
+#include "foundation/base/names.h"
 #include "scene/scene/distractor.h"
 #include "sequence/demo/aircraft_sheet.h"
 #include "sequence/setup/from_scene.h"
@@ -21,15 +22,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostPictures = 2000;  // of some 5 kB
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : static_cast<char>(c);
-  });
-  return text;
-}
-
 bool contains(const std::string& text, const std::string& lower_word) {
-  return lower(text).find(lower_word) != std::string::npos;
+  return lower_case(text).find(lower_word) != std::string::npos;
 }
 
 // In the air; what is on the lens has no shape of its own.
@@ -59,7 +53,7 @@ scene::Intruder distractor_of(scene::DistractorKind kind) {
 }  // namespace
 
 Json Gallery::groups(const std::string& word) {
-  const std::string wanted = lower(word);
+  const std::string wanted = lower_case(word);
   std::vector<std::pair<std::string, std::vector<std::string>>> types;
   for (const fleet::Entry& entry : fleet::list_aircraft()) {
     const std::string type = entry.name.substr(0, entry.name.find('/'));

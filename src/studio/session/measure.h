@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <set>
 #include <string>
 
 #include "scene/scene/scene.h"
-#include "sequence/pipeline/options.h"
 #include "sequence/setup/motion_source.h"
 
 // What can be measured only in a pass over the clip, and what it depends on.
@@ -36,13 +33,5 @@ std::string key_of(const scene::Scene& scene, const Take& take) {
 // Text that is the same for two scenes exactly where the measurement is.
 std::string motion_key(const scene::Scene& scene);
 std::string calibration_key(const scene::Scene& scene);
-
-// Measures the camera's motion in the scene's clip, or takes it from the cache, and keeps it there.
-// `progress` is called after each frame. `options` has its `shared` inputs. Throws Error for faults
-// of the scene, and Interrupted after options.stop.
-std::shared_ptr<const setup::MotionSource> motion_of(
-    const scene::Scene& scene,
-    const pipeline::Options& options,
-    const std::function<void(std::int64_t done, std::int64_t total)>& progress);
 
 }  // namespace airtruth::session

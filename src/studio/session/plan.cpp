@@ -108,24 +108,22 @@ std::optional<std::array<double, 4>> horizon_in(const setup::Moment& moment) {
 // The sentences of the command line that are about each table, by the table's line.
 std::map<int, std::vector<std::string>> checks_of(const Stage& stage) {
   std::map<int, std::vector<std::string>> checks;
+  std::map<std::string, int> line_of_place;
   const scene::Scene& scene = stage.scene();
   for (std::size_t i = 0; i < scene.intruders.size(); ++i) {
-    std::vector<std::string>& lines = checks[scene.intruders[i].where.line];
+    const Where& where = scene.intruders[i].where;
+    line_of_place[to_string(where) + ": "] = where.line;
+    std::vector<std::string>& lines = checks[where.line];
+    if (!lines.empty()) continue;  // of another bird of the flock
     const std::string words = setup::words_beyond_limits(
         scene.intruders[i].aircraft, stage.world().actors[i].path, 0, stage.duration_s());
-    if (!words.empty() && lines.empty()) lines.push_back(words);
+    if (!words.empty()) lines.push_back(words);
   }
-  for (const scene::Intruder& intruder : scene.intruders) {
-    std::vector<std::string>& lines = checks[intruder.where.line];
-    setup::warn_below_ground(
-        scene, stage.world(), stage.duration_s(), [&](const std::string& line) {
-          // "scene.toml:12:1: intruder 'a' is ..."
-          const std::string place = to_string(intruder.where) + ": ";
-          if (!line.starts_with(place)) return;
-          const std::string words = line.substr(place.size());
-          if (std::find(lines.begin(), lines.end(), words) == lines.end()) lines.push_back(words);
-        });
-  }
+  setup::warn_below_ground(scene, stage.world(), stage.duration_s(), [&](const std::string& said) {
+    // "scene.toml:12:1: intruder 'a' is ..."
+    for (const auto& [place, line] : line_of_place)
+      if (said.starts_with(place)) checks[line].push_back(said.substr(place.size()));
+  });
   return checks;
 }
 
@@ -263,7 +261,7 @@ class Planner {
       const auto frame =
           static_cast<std::int64_t>(std::llround(seen[i].time_s * stage_.clip_rate_hz()));
       const setup::Moment moment =
-          setup::moment_at(stage_.world(), frame, stage_.time_s(frame), stage_.shake_at(frame));
+          setup::moment_at(alone, frame, stage_.time_s(frame), stage_.shake_at(frame));
       Json path = table;
       path.push_back("seen");
       path.push_back(i);

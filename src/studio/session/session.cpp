@@ -403,9 +403,8 @@ class Session::Impl {
       options.threads = 1;
       try_to(
           [&] {
-            motion = motion_of(scene, options, [this](std::int64_t done, std::int64_t total) {
-              tell_progress("motion", done, total);
-            });
+            motion =
+                std::make_shared<const setup::MotionSource>(pipeline::motion_ahead(scene, options));
           },
           [&](const std::string& line) { problem = line; });
       if (stop.stop_requested()) return;

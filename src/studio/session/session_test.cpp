@@ -16,11 +16,10 @@
 
 #include "foundation/base/files.h"
 #include "scene/scene/scene.h"
-#include "scene/synthetic/flight.h"
-#include "sequence/demo/virtual_flight.h"
 #include "sequence/pipeline/frame_by_frame.h"
 #include "sequence/pipeline/render.h"
 #include "studio/session/jpeg.h"
+#include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::session {
@@ -46,13 +45,7 @@ class OfASession : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test_support::TemporaryFolder();
-    synthetic::FlightOptions flight;
-    flight.seed = 5;
-    flight.width = 320;
-    flight.height = 240;
-    flight.frame_count = 24;
-    flight.own_aircraft = false;
-    demo::write_flight(synthetic::Flight(flight), *folder_ / "flight.mp4", {});
+    test_support::write_flight(*folder_ / "flight.mp4", 320, 240, 24);
   }
   static void TearDownTestSuite() { delete folder_; }
 

@@ -9,12 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
-#include "scene/synthetic/flight.h"
-#include "sequence/demo/virtual_flight.h"
 #include "sequence/pipeline/frame_by_frame.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/shared_inputs.h"
 #include "studio/session/plan.h"
+#include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::session {
@@ -26,13 +25,7 @@ class OverAFlight : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test_support::TemporaryFolder();
-    synthetic::FlightOptions flight;
-    flight.seed = 5;
-    flight.width = 320;
-    flight.height = 240;
-    flight.frame_count = kFrames;
-    flight.own_aircraft = false;
-    demo::write_flight(synthetic::Flight(flight), *folder_ / "flight.mp4", {});
+    test_support::write_flight(*folder_ / "flight.mp4", 320, 240, kFrames);
   }
   static void TearDownTestSuite() { delete folder_; }
 
@@ -52,7 +45,8 @@ class OverAFlight : public testing::Test {
   }
   static Measured measured_of(const scene::Scene& scene, const pipeline::Options& options) {
     Measured measured;
-    measured.motion = motion_of(scene, options, [](std::int64_t, std::int64_t) {});
+    measured.motion =
+        std::make_shared<const setup::MotionSource>(pipeline::motion_ahead(scene, options));
     measured.motion_key = motion_key(scene);
     return measured;
   }
@@ -234,6 +228,21 @@ TEST_F(OverAFlight, ThePlanPassesTheHandles) {
   EXPECT_NEAR(track["handles"][0]["range_m"].get<double>(), 150, 0.1);
   EXPECT_NEAR(track["points"][36][4].get<double>(), 30, 0.5);
   EXPECT_FALSE(plan["horizon"].empty());
+}
+
+TEST_F(OverAFlight, HandlesHaveTheRangeOfTheirOwnAircraft) {
+  const scene::Scene scene =
+      scene_of(kSeen + "[[intruder]]\nid = \"b\"\naircraft = \"c172/news\"\n" +
+               "[[intruder.seen]]\ntime_s = 0.1\npixel = [200, 60]\nrange_m = 400\n"
+               "[[intruder.seen]]\ntime_s = 1.2\npixel = [120, 90]\nrange_m = 380\n");
+  Stage stage(options());
+  stage.set(1, scene, measured_of(scene, options()));
+  const auto plan = plan_of(stage,
+                            {{"intruder", 0, scene.intruders[0].where.line},
+                             {"intruder", 1, scene.intruders[1].where.line}});
+  EXPECT_NEAR(plan["tracks"][0]["handles"][0]["range_m"].get<double>(), 150, 0.1);
+  EXPECT_NEAR(plan["tracks"][1]["handles"][0]["range_m"].get<double>(), 400, 0.1);
+  EXPECT_NEAR(plan["tracks"][1]["handles"][1]["range_m"].get<double>(), 380, 0.1);
 }
 
 TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {

@@ -2,9 +2,8 @@
 import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
 import {type Flyer, flyersOf, isSame, momentsOf, numberOf, tableOf, trackOf} from '../model/flyers';
 import {clamp, nedAt, round} from '../model/geometry';
-import type {Member} from '../model/store';
-import {Part, attribute, h, renewed, s, ui} from './part';
-import {diamond, niceStep} from './plan_view';
+import {attribute, renewed, s, ui} from './part';
+import {SideView, niceStep} from './side_view';
 
 // Around the plot, where text is 16 px.
 const MARGINS = {
@@ -22,20 +21,12 @@ type Drag = {
 
 // Heights over time: own path, the others, the ground, volumes about the own height. Closest approaches are dragged in
 // time and height, moments in time.
-export class HeightView extends Part {
-  protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
-  private svg = s('svg', {role: 'group', 'aria-label': 'Height over time'});
-  private drag: Drag|null = null;
+export class HeightView extends SideView<Drag> {
   private low_m = 0;
   private high_m = 100;
-  private px = 1;
 
-  protected build(): void {
-    this.append(h('h2', {}, 'Height over time'), this.svg);
-    new ResizeObserver(() => this.update()).observe(this.svg);
-    this.svg.addEventListener('pointerdown', (event) => this.down(event));
-    this.svg.addEventListener('pointermove', (event) => this.move(event));
-    for (const end of ['pointerup', 'pointercancel'] as const) this.svg.addEventListener(end, () => this.up());
+  constructor() {
+    super('Height over time', 'Height over time');
   }
 
   protected update(): void {
@@ -160,11 +151,7 @@ export class HeightView extends Part {
   private flyer(flyer: Flyer, plan: Plan, clip: Clip): SVGElement[] {
     const track = trackOf(plan, flyer.path);
     if (!track) return [];
-    const isSelected = isSame(flyer.path, this.now.selected);
-    const group = s('g', {
-      class: `flyer colour-${flyer.colour}${isSelected ? ' selected' : ''}`,
-      'data-path': JSON.stringify(flyer.path)
-    });
+    const group = this.group(flyer);
     const points = this.points(plan, track.ned);
     group.append(s('polyline', {class: 'line', points}), s('polyline', {class: 'grip', points}));
     const now = nedAt(plan, track.ned, this.now.frame);
@@ -172,7 +159,8 @@ export class HeightView extends Part {
       group.append(
           s('circle',
             {class: 'place', cx: this.x(this.now.frame / clip.rate_hz), cy: this.y(-now[2]), r: 4.5 * this.px}));
-    if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
+    if (isSame(flyer.path, this.now.selected))
+      group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
     return [group];
   }
 
@@ -181,21 +169,11 @@ export class HeightView extends Part {
     const own = nedAt(plan, plan.own.ned, track.cpa.time_s * clip.rate_hz);
     if (!own) return [];
     const [x, y, oy] = [this.x(track.cpa.time_s), this.y(-own[2] + track.cpa.above_m), this.y(-own[2])];
-    const isHandle = flyer.statement === 'approach';
     const label =
         `Closest approach of ${flyer.id}: ${round(track.cpa.time_s, 1)} s, ${round(track.cpa.above_m, 0)} m above`;
     return [
       s('line', {class: 'miss', x1: x, x2: x, y1: oy, y2: y}),
-      s('path', {
-        class: `diamond${isHandle ? ' grab' : ''}`,
-        d: diamond(x, y, 7 * this.px),
-        tabindex: isHandle ? 0 : null,
-        role: 'button',
-        'aria-label': `${label}. Arrow keys move it.`,
-        'data-drag': isHandle ? 'approach' : null,
-        onkeydown: ((event: KeyboardEvent) => this.key(event, flyer)) as EventListener
-      },
-        s('title', {}, label)),
+      this.diamond(flyer, x, y, label, (event) => this.key(event, flyer)),
     ];
   }
 
@@ -203,22 +181,11 @@ export class HeightView extends Part {
     return momentsOf(flyer, clip).flatMap((moment, index) => {
       const place = nedAt(plan, track.ned, moment.frame);
       if (!place) return [];
-      const [x, y] = [this.x(moment.time_s), this.y(-place[2])];
-      return [s(
-          'rect', {
-            class: `moment grab${this.now.moment === index ? ' chosen' : ''}`,
-            x: x - 5 * this.px,
-            y: y - 5 * this.px,
-            width: 10 * this.px,
-            height: 10 * this.px,
-            'data-drag': 'moment',
-            'data-index': index
-          },
-          s('title', {}, `${round(moment.time_s, 2)} s: drag for its time`))];
+      return [this.square(index, moment.time_s, this.x(moment.time_s), this.y(-place[2]), 'its time')];
     });
   }
 
-  private down(event: PointerEvent): void {
+  protected down(event: PointerEvent): void {
     if (event.button !== 0 || !this.now.state) return;
     const target = event.target as SVGElement;
     const group = target.closest<SVGElement>('.flyer');
@@ -236,7 +203,7 @@ export class HeightView extends Part {
       this.studio.show(this.timeAt(event) * this.now.clip!.rate_hz);
   }
 
-  private move(event: PointerEvent): void {
+  protected move(event: PointerEvent): void {
     const {drag} = this;
     if (!drag || !this.now.clip) return;
     if (drag.kind === 'time') {
@@ -247,7 +214,7 @@ export class HeightView extends Part {
     if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
   }
 
-  private up(): void {
+  protected up(): void {
     if (this.drag && this.drag.kind !== 'time') this.studio.dragging(false);
     this.drag = null;
   }

@@ -2,8 +2,8 @@
 import type {Change, Clip, Ned, Plan, Table, Track} from '../model/contract';
 import {type Flyer, flyersOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth} from '../model/flyers';
 import {type Point, acrossRelative, courseOf, degrees, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
-import type {Member} from '../model/store';
-import {Part, attribute, h, renewed, s, ui} from './part';
+import {attribute, renewed, s, ui} from './part';
+import {SideView, niceStep} from './side_view';
 
 const MARGIN_PX = 26;
 const MOST_M = 20000;  // from the own path, of what the view has room for
@@ -23,22 +23,14 @@ type Drag = {
 
 // From above, the own course upwards: paths, the field of view, well-clear volumes, closest approaches. Closest
 // approaches, courses and the ranges of moments are dragged.
-export class PlanView extends Part {
-  protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
-  private svg = s('svg', {role: 'group', 'aria-label': 'Plan view, own course up'});
-  private drag: Drag|null = null;
+export class PlanView extends SideView<Drag> {
   private course_deg = 0;
   private origin: Ned = [0, 0, 0];
   private middle: Ground = {right: 0, ahead: 0};
   private scale = 1;  // screen pixels a metre
-  private px = 1;
 
-  protected build(): void {
-    this.append(h('h2', {}, 'From above'), this.svg);
-    new ResizeObserver(() => this.update()).observe(this.svg);
-    this.svg.addEventListener('pointerdown', (event) => this.down(event));
-    this.svg.addEventListener('pointermove', (event) => this.move(event));
-    for (const end of ['pointerup', 'pointercancel'] as const) this.svg.addEventListener(end, () => this.up());
+  constructor() {
+    super('From above', 'Plan view, own course up');
   }
 
   protected update(): void {
@@ -165,10 +157,7 @@ export class PlanView extends Part {
     const track = trackOf(plan, flyer.path);
     if (!track) return [];
     const isSelected = isSame(flyer.path, this.now.selected);
-    const group = s('g', {
-      class: `flyer colour-${flyer.colour}${isSelected ? ' selected' : ''}`,
-      'data-path': JSON.stringify(flyer.path)
-    });
+    const group = this.group(flyer);
     group.append(
         s('polyline', {class: 'line', points: this.points(track.ned)}),
         s('polyline', {class: 'grip', points: this.points(track.ned)}));
@@ -186,25 +175,15 @@ export class PlanView extends Part {
     const cpa = approachOf(plan, track, clip);
     if (!cpa) return [];
     const [[x, y], [ox, oy]] = [this.at(cpa.place), this.at(cpa.own)];
-    const isHandle = flyer.statement === 'approach';
     const label =
         `Closest approach of ${flyer.id}: ${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`;
     const parts: SVGElement[] = [
       s('line', {class: 'miss', x1: ox, y1: oy, x2: x, y2: y}),
-      s('path', {
-        class: `diamond${isHandle ? ' grab' : ''}`,
-        d: diamond(x, y, 7 * this.px),
-        tabindex: isHandle ? 0 : null,
-        role: 'button',
-        'aria-label': `${label}. Arrow keys move it.`,
-        'data-drag': isHandle ? 'approach' : null,
-        onkeydown: ((event: KeyboardEvent) => this.key(event, flyer, 'approach')) as EventListener
-      },
-        s('title', {}, label)),
+      this.diamond(flyer, x, y, label, (event) => this.key(event, flyer, 'approach')),
       s('text', {x: x + 10 * this.px, y: y + 4 * this.px},
         `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`),
     ];
-    if (!isHandle) return parts;
+    if (flyer.statement !== 'approach') return parts;
     const course = numberOf(tableOf(flyer.table.encounter).course_deg) ?? 0;
     const angle = radians(course + cpa.ownCourse_deg - this.course_deg);
     const [tx, ty] = [x + ARROW_PX * this.px * Math.sin(angle), y - ARROW_PX * this.px * Math.cos(angle)];
@@ -230,22 +209,11 @@ export class PlanView extends Part {
       const place = nedAt(plan, track.ned, moment.frame);
       if (!place) return [];
       const [x, y] = this.at(place);
-      const isChosen = this.now.moment === index;
-      return [s(
-          'rect', {
-            class: `moment grab${isChosen ? ' chosen' : ''}`,
-            x: x - 5 * this.px,
-            y: y - 5 * this.px,
-            width: 10 * this.px,
-            height: 10 * this.px,
-            'data-drag': 'moment',
-            'data-index': index
-          },
-          s('title', {}, `${round(moment.time_s, 2)} s: drag for its range`))];
+      return [this.square(index, moment.time_s, x, y, 'its range')];
     });
   }
 
-  private down(event: PointerEvent): void {
+  protected down(event: PointerEvent): void {
     const target = event.target as SVGElement;
     const group = target.closest<SVGElement>('.flyer');
     if (!group || event.button !== 0) return;
@@ -268,14 +236,14 @@ export class PlanView extends Part {
     this.studio.dragging(true);
   }
 
-  private move(event: PointerEvent): void {
+  protected move(event: PointerEvent): void {
     const {drag} = this;
     if (!drag) return;
     const changes = this.changesOf(drag, this.groundAt(event));
     if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
   }
 
-  private up(): void {
+  protected up(): void {
     if (!this.drag) return;
     this.drag = null;
     this.studio.dragging(false);
@@ -372,12 +340,4 @@ function approachOf(plan: Plan, track: Track, clip: Clip): {own: Ned; place: Ned
     ownCourse_deg,
     frame
   };
-}
-
-export const diamond = (x: number, y: number, r: number) => `M${x},${y - r}L${x + r},${y}L${x},${y + r}L${x - r},${y}Z`;
-
-// 1, 2 or 5 times a power of ten, at least as much as given.
-export function niceStep(least: number): number {
-  const power = 10 ** Math.floor(Math.log10(least));
-  return ([1, 2, 5, 10].find((k) => k * power >= least) ?? 10) * power;
 }

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+import {type Flyer, isSame} from '../model/flyers';
+import {round} from '../model/geometry';
+import type {Member} from '../model/store';
+import {Part, h, s} from './part';
+
+// A view of the plan beside the picture, whose handles are dragged.
+export abstract class SideView<Drag> extends Part {
+  protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
+  protected readonly svg = s('svg', {role: 'group'});
+  protected drag: Drag|null = null;
+  protected px = 1;  // ui()
+
+  constructor(private heading: string, label: string) {
+    super();
+    this.svg.setAttribute('aria-label', label);
+  }
+
+  protected abstract down(event: PointerEvent): void;
+  protected abstract move(event: PointerEvent): void;
+  protected abstract up(): void;
+
+  protected build(): void {
+    this.append(h('h2', {}, this.heading), this.svg);
+    new ResizeObserver(() => this.update()).observe(this.svg);
+    this.svg.addEventListener('pointerdown', (event) => this.down(event));
+    this.svg.addEventListener('pointermove', (event) => this.move(event));
+    for (const end of ['pointerup', 'pointercancel'] as const) this.svg.addEventListener(end, () => this.up());
+  }
+
+  protected abstract update(): void;
+
+  protected group(flyer: Flyer): SVGGElement {
+    return s('g', {
+      class: `flyer colour-${flyer.colour}${isSame(flyer.path, this.now.selected) ? ' selected' : ''}`,
+      'data-path': JSON.stringify(flyer.path)
+    });
+  }
+
+  // The closest approach; a handle where the path is stated by it.
+  protected diamond(flyer: Flyer, x: number, y: number, label: string, key: (event: KeyboardEvent) => void):
+      SVGPathElement {
+    const isHandle = flyer.statement === 'approach';
+    const r = 7 * this.px;
+    return s(
+        'path', {
+          class: `diamond${isHandle ? ' grab' : ''}`,
+          d: `M${x},${y - r}L${x + r},${y}L${x},${y + r}L${x - r},${y}Z`,
+          tabindex: isHandle ? 0 : null,
+          role: 'button',
+          'aria-label': `${label}. Arrow keys move it.`,
+          'data-drag': isHandle ? 'approach' : null,
+          onkeydown: key as EventListener
+        },
+        s('title', {}, label));
+  }
+
+  // The handle of a moment. `what` it is dragged for: "its time".
+  protected square(index: number, time_s: number, x: number, y: number, what: string): SVGRectElement {
+    return s(
+        'rect', {
+          class: `moment grab${this.now.moment === index ? ' chosen' : ''}`,
+          x: x - 5 * this.px,
+          y: y - 5 * this.px,
+          width: 10 * this.px,
+          height: 10 * this.px,
+          'data-drag': 'moment',
+          'data-index': index
+        },
+        s('title', {}, `${round(time_s, 2)} s: drag for ${what}`));
+  }
+}
+
+// 1, 2 or 5 times a power of ten, at least as much as given.
+export function niceStep(least: number): number {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return ([1, 2, 5, 10].find((k) => k * power >= least) ?? 10) * power;
+}
