@@ -136,8 +136,8 @@ class Page:
         self.browser.wait("document.querySelector('studio-gallery dialog[open]')")
         count = self.browser.run("document.querySelectorAll('.handle').length")
         self.browser.type(search)
-        self.browser.wait("[...document.querySelectorAll('.card')].length > 0 && document.querySelector('.search output').textContent !== ''")
-        time.sleep(1.5)  # what is typed is searched for a moment later, on a loaded machine later still
+        # What is typed is searched for a moment later; a card's first livery is of the type's folder.
+        self.browser.wait(f"document.querySelectorAll('.card')[{k}]?.querySelector('select')?.value.includes({json.dumps(search)})")
         self.browser.click_on(".card .choose", k)
         self.browser.wait(f"document.querySelectorAll('.handle').length === 2 || {count} === 2")
         self.rest()
