@@ -31,6 +31,12 @@ inline std::optional<PixelBox> intersection(const PixelBox& a, const PixelBox& b
   return PixelBox{x, y, width, height};
 }
 
+// The box with `margin_px` more on each side.
+inline PixelBox wider(const PixelBox& box, int margin_px) {
+  return {
+      box.x - margin_px, box.y - margin_px, box.width + 2 * margin_px, box.height + 2 * margin_px};
+}
+
 inline PixelBox bounds(const PixelBox& a, const PixelBox& b) {
   const int x = std::min(a.x, b.x);
   const int y = std::min(a.y, b.y);

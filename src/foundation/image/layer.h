@@ -18,6 +18,35 @@ struct LayerPixel {
   float alpha = 0;  // 0..1
 };
 
+// The share of each pixel of a frame that one thing covers, 0..1.
+struct Coverage {
+  // The pixels that it may cover; width == 0: none. It covers nothing outside them.
+  PixelBox box{};
+  // box.height rows of box.width.
+  std::vector<float> alpha;
+
+  Coverage() = default;
+  explicit Coverage(const PixelBox& of, float everywhere = 0)
+      : box(of),
+        alpha(static_cast<std::size_t>(of.width) * static_cast<std::size_t>(of.height),
+              everywhere) {}
+
+  bool empty() const { return alpha.empty(); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - box.y) * static_cast<std::size_t>(box.width) +
+           static_cast<std::size_t>(x - box.x);
+  }
+  float at(int x, int y) const { return box.contains(x, y) ? alpha[index(x, y)] : 0; }
+};
+
+// Calls visit(x, y, alpha) for each pixel of the coverage's box, row by row.
+template <typename Coverage, typename Visit>
+void each_pixel(Coverage& coverage, const Visit& visit) {
+  std::size_t i = 0;
+  for (int y = coverage.box.y; y < coverage.box.bottom(); ++y)
+    for (int x = coverage.box.x; x < coverage.box.right(); ++x) visit(x, y, coverage.alpha[i++]);
+}
+
 struct Layer {
   // The position in the frame; width == 0 means an empty layer.
   PixelBox patch{};
@@ -26,10 +55,9 @@ struct Layer {
   // The alpha-weighted mean distance from the camera; +inf where alpha is 0.
   std::vector<float> depth_m;
 
-  // coverage[i][pixel] is the coverage by intruder i (in the scene's order) after occlusion by
-  // nearer intruders; alpha is the sum over the intruders. An intruder that covers nothing in the
-  // patch has an empty vector.
-  std::vector<std::vector<float>> coverage;
+  // By intruder, in the scene's order, after occlusion by nearer intruders, within the patch. A
+  // pixel's alpha is the sum over the intruders.
+  std::vector<Coverage> coverage;
 
   // The areas below have one entry per intruder, in pixels. They are areas of the silhouette before
   // any point spread, so that a difference between two of them is due to occlusion alone.

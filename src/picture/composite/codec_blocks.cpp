@@ -10,15 +10,13 @@ namespace {
 // Side of a macroblock of H.264.
 constexpr int kMacroblockPx = 16;
 
-std::optional<PixelBox> bounds_of(const image::Layer& layer, const std::vector<float>& coverage) {
+std::optional<PixelBox> bounds_of(const image::Coverage& coverage) {
   std::optional<PixelBox> found;
-  if (coverage.empty()) return found;
-  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
-    for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
-      if (!(coverage[layer.index(x, y)] > 0)) continue;
-      const PixelBox pixel{x, y, 1, 1};
-      found = found ? bounds(*found, pixel) : pixel;
-    }
+  each_pixel(coverage, [&](int x, int y, float share) {
+    if (!(share > 0)) return;
+    const PixelBox pixel{x, y, 1, 1};
+    found = found ? bounds(*found, pixel) : pixel;
+  });
   return found;
 }
 
@@ -56,14 +54,10 @@ std::vector<CodedWindow> coded_windows(const image::Picture& background,
                                        int halo_px) {
   std::vector<PixelBox> boxes;
   const int reach = halo_px + kCodecBlockPx;
-  for (const std::vector<float>& coverage : layer.coverage) {
-    const auto around = bounds_of(layer, coverage);
+  for (const image::Coverage& coverage : layer.coverage) {
+    const auto around = bounds_of(coverage);
     if (!around) continue;
-    const auto window = in_macroblocks({around->x - reach,
-                                        around->y - reach,
-                                        around->width + 2 * reach,
-                                        around->height + 2 * reach},
-                                       background);
+    const auto window = in_macroblocks(wider(*around, reach), background);
     if (window) add_merged(boxes, *window);
   }
   std::vector<CodedWindow> windows;

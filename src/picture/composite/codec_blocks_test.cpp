@@ -28,11 +28,11 @@ image::Layer black_box(const PixelBox& solid, int margin_px) {
                  solid.width + 2 * margin_px,
                  solid.height + 2 * margin_px};
   layer.pixels.resize(static_cast<std::size_t>(layer.patch.width * layer.patch.height));
-  layer.coverage.assign(1, std::vector<float>(layer.pixels.size(), 0.0F));
+  layer.coverage.assign(1, image::Coverage(layer.patch));
   for (int y = solid.y; y < solid.bottom(); ++y)
     for (int x = solid.x; x < solid.right(); ++x) {
       layer.pixels[layer.index(x, y)].alpha = 1;
-      layer.coverage[0][layer.index(x, y)] = 1;
+      layer.coverage[0].alpha[layer.index(x, y)] = 1;
     }
   return layer;
 }
@@ -51,14 +51,13 @@ TEST(CodedWindows, AreWholeMacroblocksWithinTheFrame) {
 
 TEST(CodedWindows, OfIntrudersFarApartAreTwoAndOfNearOnesOne) {
   image::Layer layer = black_box({20, 20, 60, 40}, 8);
-  const auto size = layer.pixels.size();
-  layer.coverage.assign(2, std::vector<float>(size, 0.0F));
-  layer.coverage[0][layer.index(20, 20)] = 1;
-  layer.coverage[1][layer.index(79, 59)] = 1;
+  layer.coverage.assign(2, image::Coverage(layer.patch));
+  layer.coverage[0].alpha[layer.index(20, 20)] = 1;
+  layer.coverage[1].alpha[layer.index(79, 59)] = 1;
   const image::Picture sky = grainy_sky(image::Chroma::k444);
   EXPECT_EQ(coded_windows(sky, layer, 0).size(), 2u);
-  layer.coverage[1][layer.index(40, 40)] = 1;
-  layer.coverage[0][layer.index(30, 30)] = 1;
+  layer.coverage[1].alpha[layer.index(40, 40)] = 1;
+  layer.coverage[0].alpha[layer.index(30, 30)] = 1;
   EXPECT_EQ(coded_windows(sky, layer, 8).size(), 1u);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace airtruth::composite {
 namespace {
@@ -29,9 +30,11 @@ std::vector<float> shares_past(const std::vector<const Occluder*>& before, const
 // Marks the pixels in which no intruder of the layer shows.
 void close(image::Layer& layer, Shares& shares) {
   layer.closed.assign(layer.pixels.size(), 1);
+  std::set<const std::vector<float>*> known;
   for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
     if (layer.coverage[a].empty()) continue;
     const std::vector<float>& shown = shares.past_all(a);
+    if (!known.insert(&shown).second) continue;
     for (std::size_t i = 0; i < layer.closed.size(); ++i)
       if (share_of(shown, i) > 0) layer.closed[i] = 0;
   }
@@ -46,11 +49,10 @@ std::uint8_t alpha_code(float coverage) {
 AlphaMask alpha_mask(const image::Layer& layer, std::size_t intruder) {
   AlphaMask mask;
   if (intruder >= layer.coverage.size() || layer.coverage[intruder].empty()) return mask;
-  const std::vector<float>& coverage = layer.coverage[intruder];
-  mask.patch = layer.patch;
-  mask.alpha.assign(coverage.size(), 0);
-  for (std::size_t i = 0; i < coverage.size(); ++i)
-    if (layer.is_open(i)) mask.alpha[i] = alpha_code(coverage[i]);
+  mask.patch = layer.coverage[intruder].box;
+  each_pixel(layer.coverage[intruder], [&](int x, int y, float share) {
+    mask.alpha.push_back(layer.is_open(layer.index(x, y)) ? alpha_code(share) : 0);
+  });
   if (!any_alpha(mask)) mask = {};
   return mask;
 }
@@ -104,12 +106,12 @@ void find_areas(image::Layer& layer, const Occlusion& occlusion) {
   const std::vector<float>& free = shares.past_own_aircraft();
   for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
     const std::vector<float>& clear = shares.past_all(a);
-    for (std::size_t i = 0; i < layer.coverage[a].size(); ++i) {
-      const double coverage = layer.coverage[a][i];
-      if (!(coverage > 0)) continue;
-      layer.area_free_px[a] -= (1 - share_of(free, i)) * coverage;
-      layer.area_clear_px[a] -= (1 - share_of(clear, i)) * coverage;
-    }
+    each_pixel(layer.coverage[a], [&](int x, int y, double share) {
+      if (!(share > 0)) return;
+      const std::size_t i = layer.index(x, y);
+      layer.area_free_px[a] -= (1 - share_of(free, i)) * share;
+      layer.area_clear_px[a] -= (1 - share_of(clear, i)) * share;
+    });
   }
 }
 
@@ -120,12 +122,12 @@ void hide(image::Layer& layer, const Occlusion& occlusion) {
   std::vector<float> before(layer.pixels.size(), 0), after(layer.pixels.size(), 0);
   for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
     const std::vector<float>& shown = shares.past_all(a);
-    for (std::size_t i = 0; i < layer.coverage[a].size(); ++i) {
-      float& coverage = layer.coverage[a][i];
-      before[i] += coverage;
-      if (layer.is_open(i)) coverage *= static_cast<float>(share_of(shown, i));
-      after[i] += coverage;
-    }
+    each_pixel(layer.coverage[a], [&](int x, int y, float& share) {
+      const std::size_t i = layer.index(x, y);
+      before[i] += share;
+      if (layer.is_open(i)) share *= static_cast<float>(share_of(shown, i));
+      after[i] += share;
+    });
   }
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (after[i] == before[i]) continue;

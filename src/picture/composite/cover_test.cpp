@@ -23,14 +23,14 @@ image::Layer rectangle(const Box& box) {
       static_cast<std::size_t>(layer.patch.width) * static_cast<std::size_t>(layer.patch.height);
   layer.pixels.resize(size);
   layer.depth_m.assign(size, 500);
-  layer.coverage.assign(1, std::vector<float>(size, 0.0F));
+  layer.coverage.assign(1, image::Coverage(layer.patch));
   for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
     for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
       const double across = std::min(box.right(), x + 1.0) - std::max(box.x, double(x));
       const double down = std::min(box.bottom(), y + 1.0) - std::max(box.y, double(y));
       const auto share = static_cast<float>(across * down);
       layer.pixels[layer.index(x, y)] = {0.2F * share, 0.2F * share, 0.2F * share, share};
-      layer.coverage[0][layer.index(x, y)] = share;
+      layer.coverage[0].alpha[layer.index(x, y)] = share;
     }
   layer.area_alone_in_frame_px = layer.area_alone_px = {box.area()};
   layer.area_seen_px = layer.area_free_px = layer.area_clear_px = {box.area()};
@@ -137,10 +137,10 @@ TEST(Cover, AnOccluderHidesWhatIsFartherInItsShare) {
   const auto cover = [](int x, int) { return static_cast<float>(std::clamp(x - 28, 0, 10)) / 10; };
   Occlusion occlusion{{{800, cover}}, {900, 700}};
   image::Layer both = rectangle({20, 30, 30, 10});
-  both.coverage.push_back(std::vector<float>(both.pixels.size(), 0));
+  both.coverage.push_back(image::Coverage(both.patch));
   const auto set = [&](int x, int y, float far, float near) {
     const std::size_t i = both.index(x, y);
-    both.coverage[0][i] = far, both.coverage[1][i] = near;
+    both.coverage[0].alpha[i] = far, both.coverage[1].alpha[i] = near;
     both.pixels[i] = {0.3F * (far + near), 0.2F * (far + near), 0.1F * (far + near), far + near};
   };
   for (int x = 20; x < 50; ++x)
@@ -159,10 +159,10 @@ TEST(Cover, AnOccluderHidesWhatIsFartherInItsShare) {
     for (int y = 30; y < 40; ++y) {
       const std::size_t i = both.index(x, y);
       const double shows = 1 - std::clamp((x - 28) / 10.0, 0.0, 1.0);
-      const double far = shows * before.coverage[0][i], near = before.coverage[1][i];
+      const double far = shows * before.coverage[0].alpha[i], near = before.coverage[1].alpha[i];
       clear_px += far;
-      EXPECT_NEAR(both.coverage[0][i], far, 1e-6) << x;
-      EXPECT_EQ(both.coverage[1][i], before.coverage[1][i]);
+      EXPECT_NEAR(both.coverage[0].alpha[i], far, 1e-6) << x;
+      EXPECT_EQ(both.coverage[1].alpha[i], before.coverage[1].alpha[i]);
       EXPECT_NEAR(both.pixels[i].alpha, far + near, 1e-6) << x;
       EXPECT_NEAR(both.pixels[i].red, 0.3 * (far + near), 1e-6) << x;
       if (x <= 28) {

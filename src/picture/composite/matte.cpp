@@ -90,7 +90,7 @@ class Matte {
   void soften(std::vector<float>& plane, const PixelBox& samples) const;
   bool move_chroma(int cx, int cy, const image::Ycc& change);
   void mark_block(int cx, int cy);
-  std::vector<std::uint8_t> with_halo(const std::vector<float>& coverage) const;
+  std::vector<std::uint8_t> reached_by(const image::Coverage& coverage, const PixelBox& box) const;
   void add_coverage(std::size_t intruder, Visible& visible) const;
 
   image::Picture& picture_;
@@ -386,48 +386,43 @@ void Matte::blend() {
   if (options_.coder != nullptr) pass_codec(windows);
 }
 
-// The pixels where the intruder can have changed samples: those that it covers, those that
+// The pixels of `box` where the intruder can have changed samples: those that it covers, those that
 // sharpening and chroma blur reach from there, and all others of a codec's blocks.
-std::vector<std::uint8_t> Matte::with_halo(const std::vector<float>& coverage) const {
+std::vector<std::uint8_t> Matte::reached_by(const image::Coverage& coverage,
+                                            const PixelBox& box) const {
   const int halo = options_.sensor.reach_px();
-  std::vector<std::uint8_t> reached(coverage.size(), 0);
-  const PixelBox& patch = layer_.patch;
-  for (int y = patch.y; y < patch.bottom(); ++y)
-    for (int x = patch.x; x < patch.right(); ++x) {
-      if (!(coverage[layer_.index(x, y)] > 0)) continue;
-      const int left = std::max(x - halo, patch.x);
-      const int right = std::min(x + halo, patch.right() - 1);
-      for (int v = std::max(y - halo, patch.y); v <= std::min(y + halo, patch.bottom() - 1); ++v)
-        std::fill_n(&reached[layer_.index(left, v)], right - left + 1, std::uint8_t{1});
-    }
-  return options_.coder == nullptr ? reached : in_marked_blocks(patch, reached);
+  const auto columns = static_cast<std::size_t>(box.width);
+  std::vector<std::uint8_t> reached(columns * static_cast<std::size_t>(box.height), 0);
+  each_pixel(coverage, [&](int x, int y, float alpha) {
+    if (!(alpha > 0)) return;
+    const PixelBox around = *intersection(wider({x, y, 1, 1}, halo), box);
+    for (int v = around.y; v < around.bottom(); ++v)
+      std::fill_n(&reached[static_cast<std::size_t>(v - box.y) * columns +
+                           static_cast<std::size_t>(around.x - box.x)],
+                  around.width,
+                  std::uint8_t{1});
+  });
+  return options_.coder == nullptr ? reached : in_marked_blocks(box, reached);
 }
 
 void Matte::add_coverage(std::size_t intruder, Visible& visible) const {
-  const std::vector<float>& coverage = layer_.coverage[intruder];
+  const image::Coverage& coverage = layer_.coverage[intruder];
   if (coverage.empty()) return;
-  const std::vector<std::uint8_t> own = with_halo(coverage);
-  int left = picture_.width, right = -1, top = picture_.height, bottom = -1;
   Pixel sum = Pixel::Zero();
-  for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
-    for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
-      const std::size_t i = layer_.index(x, y);
-      const auto here = static_cast<double>(coverage[i]);
-      if (free_[i]) {
-        visible.alpha_sum_px += here;
-        sum += here * Pixel(x + 0.5, y + 0.5);
-      }
-      if (!own[i] || !changed_[i]) continue;
-      ++visible.pixels;
-      left = std::min(left, x);
-      right = std::max(right, x);
-      top = std::min(top, y);
-      bottom = std::max(bottom, y);
-    }
-  }
+  each_pixel(coverage, [&](int x, int y, double alpha) {
+    if (free_[layer_.index(x, y)] == 0) return;
+    visible.alpha_sum_px += alpha;
+    sum += alpha * Pixel(x + 0.5, y + 0.5);
+  });
+  const int farthest_px = options_.sensor.reach_px() + (options_.coder ? kCodecBlockPx : 0);
+  const PixelBox box = *intersection(wider(coverage.box, farthest_px), layer_.patch);
+  const std::vector<std::uint8_t> reached = reached_by(coverage, box);
+  std::size_t i = 0;
+  for (int y = box.y; y < box.bottom(); ++y)
+    for (int x = box.x; x < box.right(); ++x)
+      if (reached[i++] != 0 && changed_[layer_.index(x, y)] != 0) visible.add(x, y);
   visible.covered = composite::covered(layer_, intruder);
   if (visible.alpha_sum_px > 0) visible.centroid = sum / visible.alpha_sum_px;
-  if (visible.pixels > 0) visible.box = PixelBox{left, top, right - left + 1, bottom - top + 1};
 }
 
 std::vector<Visible> Matte::visible() const {
@@ -445,8 +440,9 @@ void check_fits(const image::Picture& picture, const image::Layer& layer) {
   const std::size_t size =
       static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height);
   check(layer.pixels.size() == size, "a layer has a pixel for each of its patch");
-  for (const auto& coverage : layer.coverage)
-    check(coverage.empty() || coverage.size() == size, "coverage is of the patch's size");
+  for (const image::Coverage& coverage : layer.coverage)
+    check(coverage.empty() || intersection(coverage.box, patch) == coverage.box,
+          "coverage lies inside the patch");
   check(layer.closed.empty() || layer.closed.size() == size, "what is closed is of the patch");
 }
 

@@ -35,6 +35,12 @@ struct Visible {
   std::optional<PixelBox> box;
   // The number of those changed pixels.
   std::int64_t pixels = 0;
+  // Adds a changed pixel.
+  void add(int x, int y) {
+    const PixelBox pixel{x, y, 1, 1};
+    box = box ? bounds(*box, pixel) : pixel;
+    ++pixels;
+  }
   // Sum of the visible coverage, in pixels: after occluders and nearer intruders.
   double alpha_sum_px = 0;
   // Centroid of the visible coverage; empty where there is none.

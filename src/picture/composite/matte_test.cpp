@@ -50,7 +50,7 @@ Layer plain_layer(const PixelBox& patch, const image::LayerPixel& pixel) {
   const auto size = static_cast<std::size_t>(patch.width * patch.height);
   layer.pixels.assign(size, pixel);
   layer.depth_m.assign(size, 100);
-  layer.coverage.assign(1, std::vector<float>(size, pixel.alpha));
+  layer.coverage.assign(1, image::Coverage(layer.patch, pixel.alpha));
   return layer;
 }
 
@@ -205,7 +205,7 @@ TEST(Matte, SoftChromaCrossesAnEdgeAsAGaussianDoes) {
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kEdge; ++x) {
       layer.pixels[layer.index(x, y)] = {0.5f, 0.1f, 0.1f, 1};
-      layer.coverage[0][layer.index(x, y)] = 1;
+      layer.coverage[0].alpha[layer.index(x, y)] = 1;
     }
   MatteOptions options;
   options.sensor.chroma_spread_px = kSpreadPx;
@@ -238,7 +238,7 @@ TEST(Matte, SoftChromaKeepsOffTheOwnAircraft) {
   for (int y = 20; y < 40; ++y)
     for (int x = 10; x < 30; ++x) {
       layer.pixels[layer.index(x, y)] = {0.5f, 0.1f, 0.1f, 1};
-      layer.coverage[0][layer.index(x, y)] = 1;
+      layer.coverage[0].alpha[layer.index(x, y)] = 1;
     }
   hide(layer, {{own_aircraft(mask)}, {500}});
   MatteOptions options;
@@ -288,7 +288,8 @@ TEST(Matte, EmptyLayerAnswersForEveryIntruder) {
   EXPECT_EQ(composite_matte(picture, layer, {}).size(), 3u);
 }
 
-// Random blobs of two intruders: some pixels belong to both, many to none.
+// Random blobs of two intruders, the second in a part of the patch: some pixels belong to both,
+// many to none.
 Layer random_layer(int width, int height, std::mt19937& random) {
   const auto within = [&random](int size) {
     return static_cast<int>(random() % static_cast<unsigned>(size));
@@ -302,16 +303,18 @@ Layer random_layer(int width, int height, std::mt19937& random) {
   const auto size = static_cast<std::size_t>(layer.patch.width * layer.patch.height);
   layer.pixels.resize(size);
   layer.depth_m.assign(size, 50);
-  layer.coverage.assign(2, std::vector<float>(size, 0));
-  for (std::size_t i = 0; i < size; ++i) {
-    if (random() % 3 != 0) continue;
-    const float first = unit() * 0.5f;
-    const float second = random() % 2 == 0 ? unit() * 0.5f : 0.0f;
+  PixelBox part = layer.patch;
+  part.x += within(layer.patch.width), part.y += within(layer.patch.height);
+  part = *intersection(part, layer.patch);
+  layer.coverage = {image::Coverage(layer.patch), image::Coverage(part)};
+  each_pixel(layer.coverage[0], [&](int x, int y, float& first) {
+    if (random() % 3 != 0) return;
+    first = unit() * 0.5f;
+    const float second = part.contains(x, y) && random() % 2 == 0 ? unit() * 0.5f : 0.0f;
     const float alpha = first + second;
-    layer.coverage[0][i] = first;
-    layer.coverage[1][i] = second;
-    layer.pixels[i] = {unit() * alpha, unit() * alpha, unit() * alpha, alpha};
-  }
+    if (second > 0) layer.coverage[1].alpha[layer.coverage[1].index(x, y)] = second;
+    layer.pixels[layer.index(x, y)] = {unit() * alpha, unit() * alpha, unit() * alpha, alpha};
+  });
   return layer;
 }
 
@@ -359,7 +362,7 @@ void expect_tight(const Difference& difference,
   std::int64_t pixels = 0;
   for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
     for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
-      if (layer.coverage[intruder][layer.index(x, y)] <= 0 || !difference.of_pixel(x, y)) continue;
+      if (layer.coverage[intruder].at(x, y) <= 0 || !difference.of_pixel(x, y)) continue;
       ++pixels;
       const PixelBox pixel{x, y, 1, 1};
       box = box ? bounds(*box, pixel) : pixel;

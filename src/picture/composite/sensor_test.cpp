@@ -17,7 +17,7 @@ image::Layer square(int side, float alpha, float light, int at = 20) {
   const auto size = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   layer.pixels.assign(size, {light * alpha, light * alpha, light * alpha, alpha});
   layer.depth_m.assign(size, 2000.0F);
-  layer.coverage = {std::vector<float>(size, alpha)};
+  layer.coverage = {image::Coverage(layer.patch, alpha)};
   layer.area_alone_px = layer.area_alone_in_frame_px = {double(size)};
   return layer;
 }
@@ -48,8 +48,8 @@ TEST(Spread, KeepsLightAndCoverageAndCentre) {
       const std::size_t i = soft.index(x, y);
       light += double(soft.pixels[i].red);
       alpha += double(soft.pixels[i].alpha);
-      coverage += double(soft.coverage[0][i]);
-      x_sum += double(soft.coverage[0][i]) * (x + 0.5);
+      coverage += double(soft.coverage[0].at(x, y));
+      x_sum += double(soft.coverage[0].at(x, y)) * (x + 0.5);
     }
   EXPECT_NEAR(alpha, 25, 0.02);
   EXPECT_NEAR(light, 10, 0.01);

@@ -84,15 +84,6 @@ std::optional<PixelBox> pixels_in_frame(const image::Spot& spot, const Spots& al
                       {0, 0, all.frame_width, all.frame_height});
 }
 
-// Calls visit(x, y, alpha) for each pixel of the frame that the spot covers.
-template <typename Visit>
-void each_covered(const SpotCover& cover, const Visit& visit) {
-  std::size_t i = 0;
-  for (int y = cover.box.y; y < cover.box.bottom(); ++y)
-    for (int x = cover.box.x; x < cover.box.right(); ++x, ++i)
-      if (cover.alpha[i] > 0) visit(x, y, cover.alpha[i]);
-}
-
 // Areas of the spot's alpha, alone: in all, and within the frame.
 struct Areas {
   double all_px = 0;
@@ -120,9 +111,11 @@ void take_out_closed(image::Layer& layer) {
     if (layer.is_open(i)) continue;
     layer.pixels[i] = {};
     layer.depth_m[i] = std::numeric_limits<float>::infinity();
-    for (auto& coverage : layer.coverage)
-      if (!coverage.empty()) coverage[i] = 0;
   }
+  for (image::Coverage& coverage : layer.coverage)
+    each_pixel(coverage, [&](int x, int y, float& share) {
+      if (!layer.is_open(layer.index(x, y))) share = 0;
+    });
 }
 
 // The layer on a larger patch.
@@ -133,6 +126,7 @@ image::Layer on_patch(const image::Layer& layer, const PixelBox& patch, std::siz
       static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height);
   result.pixels.resize(size);
   result.depth_m.assign(size, std::numeric_limits<float>::infinity());
+  result.coverage = layer.coverage;
   result.coverage.resize(intruders);
   for (auto [to, from] : {std::pair(&result.area_alone_in_frame_px, &layer.area_alone_in_frame_px),
                           std::pair(&result.area_alone_px, &layer.area_alone_px),
@@ -143,44 +137,36 @@ image::Layer on_patch(const image::Layer& layer, const PixelBox& patch, std::siz
     to->resize(intruders, 0);
   }
   if (layer.empty()) return result;
-  for (std::size_t a = 0; a < layer.coverage.size(); ++a)
-    if (!layer.coverage[a].empty()) result.coverage[a].assign(size, 0);
   for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
     for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
       const std::size_t from = layer.index(x, y);
       const std::size_t to = result.index(x, y);
       result.pixels[to] = layer.pixels[from];
       result.depth_m[to] = layer.depth_m[from];
-      for (std::size_t a = 0; a < layer.coverage.size(); ++a)
-        if (!layer.coverage[a].empty()) result.coverage[a][to] = layer.coverage[a][from];
     }
   return result;
 }
 
 PixelBox patch_with(const image::Layer& layer,
                     const Spots& all,
-                    const std::vector<SpotCover>& covers,
+                    const std::vector<image::Coverage>& covers,
                     int margin_px) {
   std::optional<PixelBox> patch;
   if (!layer.empty()) patch = layer.patch;
-  for (const SpotCover& cover : covers) {
+  for (const image::Coverage& cover : covers) {
     if (cover.alpha.empty()) continue;
-    const PixelBox& box = cover.box;
-    const PixelBox wider = *intersection({box.x - margin_px,
-                                          box.y - margin_px,
-                                          box.width + 2 * margin_px,
-                                          box.height + 2 * margin_px},
-                                         {0, 0, all.frame_width, all.frame_height});
-    patch = patch ? bounds(*patch, wider) : wider;
+    const PixelBox box =
+        *intersection(wider(cover.box, margin_px), {0, 0, all.frame_width, all.frame_height});
+    patch = patch ? bounds(*patch, box) : box;
   }
   check(patch.has_value(), "a spot is in view");
   return *patch;
 }
 
-// Puts a spot over the layer, whose last intruder it is.
-void put_over(image::Layer& layer, const image::Spot& spot, const SpotCover& cover) {
-  layer.coverage.back().assign(layer.pixels.size(), 0);
-  each_covered(cover, [&](int x, int y, float own) {
+// Puts a spot over the layer, as its last intruder.
+void put_over(image::Layer& layer, const image::Spot& spot, const image::Coverage& cover) {
+  each_pixel(cover, [&](int x, int y, float own) {
+    if (!(own > 0)) return;
     const std::size_t i = layer.index(x, y);
     image::LayerPixel& under = layer.pixels[i];
     const float under_alpha = under.alpha;
@@ -191,10 +177,10 @@ void put_over(image::Layer& layer, const image::Spot& spot, const SpotCover& cov
     // The spot itself is at the distance 0.
     layer.depth_m[i] =
         under_alpha > 0 ? (1 - own) * under_alpha * layer.depth_m[i] / under.alpha : 0;
-    for (std::size_t a = 0; a + 1 < layer.coverage.size(); ++a)
-      if (!layer.coverage[a].empty()) layer.coverage[a][i] *= 1 - own;
-    layer.coverage.back()[i] = own;
+    for (image::Coverage& coverage : layer.coverage)
+      if (coverage.box.contains(x, y)) coverage.alpha[coverage.index(x, y)] *= 1 - own;
   });
+  layer.coverage.push_back(cover);
 }
 
 }  // namespace
@@ -227,66 +213,70 @@ double pixel_alpha(const image::Spot& spot,
   return sum / (side * side * times);
 }
 
-std::vector<SpotCover> covers_of(const Spots& all) {
-  std::vector<SpotCover> covers;
+std::vector<image::Coverage> covers_of(const Spots& all) {
+  std::vector<image::Coverage> covers;
   for (const auto& spot : all.spots) {
-    SpotCover& cover = covers.emplace_back();
+    image::Coverage& cover = covers.emplace_back();
     const auto box = spot ? pixels_in_frame(*spot, all) : std::nullopt;
     if (!box) continue;
-    cover.box = *box;
-    for (int y = box->y; y < box->bottom(); ++y)
-      for (int x = box->x; x < box->right(); ++x)
-        cover.alpha.push_back(static_cast<float>(
-            pixel_alpha(*spot, x, y, all.shutter, all.frame_width, all.frame_height)));
+    cover = image::Coverage(*box);
+    each_pixel(cover, [&](int x, int y, float& alpha) {
+      alpha = static_cast<float>(
+          pixel_alpha(*spot, x, y, all.shutter, all.frame_width, all.frame_height));
+    });
   }
   return covers;
 }
 
-bool are_out_of_view(const std::vector<SpotCover>& covers) {
-  return std::all_of(
-      covers.begin(), covers.end(), [](const SpotCover& cover) { return cover.alpha.empty(); });
+bool are_out_of_view(const std::vector<image::Coverage>& covers) {
+  return std::all_of(covers.begin(), covers.end(), [](const image::Coverage& cover) {
+    return cover.alpha.empty();
+  });
 }
 
 void hide_behind(image::Layer& layer,
-                 const std::vector<SpotCover>& covers,
+                 const std::vector<image::Coverage>& covers,
                  const Occlusion& occlusion) {
   if (layer.empty()) return;
   Shares shares(occlusion, layer.patch);
   std::vector<float> clear(layer.pixels.size(), 1.0F);
-  for (const SpotCover& cover : covers)
-    each_covered(cover, [&](int x, int y, float alpha) {
+  for (const image::Coverage& cover : covers)
+    each_pixel(cover, [&](int x, int y, float alpha) {
       if (layer.patch.contains(x, y)) clear[layer.index(x, y)] *= 1 - alpha;
     });
   for (std::size_t a = 0; a < layer.coverage.size(); ++a) {
     if (layer.coverage[a].empty()) continue;
     const auto& free = shares.past_own_aircraft();
     const auto& past_all = shares.past_all(a);
-    for (std::size_t i = 0; i < clear.size(); ++i) {
-      const double hidden = double(layer.coverage[a][i]) * (1 - double(clear[i]));
+    each_pixel(layer.coverage[a], [&](int x, int y, double share) {
+      const std::size_t i = layer.index(x, y);
+      const double hidden = share * (1 - double(clear[i]));
       layer.area_seen_px[a] -= hidden;
       layer.area_free_px[a] -= share_of(free, i) * hidden;
       layer.area_clear_px[a] -= share_of(past_all, i) * hidden;
-    }
+    });
   }
 }
 
 image::Layer with_spots(image::Layer layer,
                         std::size_t intruders,
                         const Spots& all,
-                        const std::vector<SpotCover>& covers,
+                        const std::vector<image::Coverage>& covers,
                         int margin_px) {
   take_out_closed(layer);
   image::Layer result = on_patch(layer, patch_with(layer, all, covers, margin_px), intruders);
   for (std::size_t k = 0; k < all.spots.size(); ++k) {
     const auto& spot = all.spots[k];
-    result.coverage.emplace_back();
     const Areas areas = spot ? areas_of(*spot, all) : Areas{};
     result.area_alone_px.push_back(areas.all_px);
     result.area_alone_in_frame_px.push_back(areas.in_frame_px);
     result.area_seen_px.push_back(areas.in_frame_px);
     result.area_free_px.push_back(areas.in_frame_px);
     result.area_clear_px.push_back(areas.in_frame_px);
-    if (spot) put_over(result, *spot, covers[k]);
+    if (spot)
+      put_over(result, *spot, covers[k]);
+    else
+      result.coverage.emplace_back();
   }
   return result;
 }

@@ -31,21 +31,15 @@ struct Spots {
   int frame_height = 0;
 };
 
-// The alpha of one spot over the pixels that it can touch in the frame: box.height rows of
-// box.width. Empty where it touches none.
-struct SpotCover {
-  PixelBox box{};
-  std::vector<float> alpha;
-};
-// One for each spot.
-std::vector<SpotCover> covers_of(const Spots& spots);
+// What each spot covers of the frame, by itself.
+std::vector<image::Coverage> covers_of(const Spots& spots);
 // True where no spot touches the frame.
-bool are_out_of_view(const std::vector<SpotCover>& covers);
+bool are_out_of_view(const std::vector<image::Coverage>& covers);
 
 // Takes what the spots hide from the layer's areas of seen, free and clear silhouettes. Call it
 // before the layer's point spread and after find_areas() (cover.h).
 void hide_behind(image::Layer& layer,
-                 const std::vector<SpotCover>& covers,
+                 const std::vector<image::Coverage>& covers,
                  const Occlusion& occlusion);
 
 // Puts the spots over a layer of `intruders` intruders: each becomes one more intruder of the
@@ -55,7 +49,7 @@ void hide_behind(image::Layer& layer,
 image::Layer with_spots(image::Layer layer,
                         std::size_t intruders,
                         const Spots& spots,
-                        const std::vector<SpotCover>& covers,
+                        const std::vector<image::Coverage>& covers,
                         int margin_px);
 
 }  // namespace airtruth::composite

@@ -68,7 +68,7 @@ TEST(Spots, AMovingSpotIsAStreakOfTheSameSum) {
   Spots all = in_frame(spot);
   const auto sum_and_most = [](const image::Layer& layer) {
     std::pair<double, double> result;
-    for (const float a : layer.coverage[0]) {
+    for (const float a : layer.coverage[0].alpha) {
       result.first += double(a);
       result.second = std::max(result.second, double(a));
     }
@@ -89,7 +89,7 @@ image::Layer grey_square() {
   layer.patch = {20, 10, 20, 20};
   layer.pixels.assign(400, {0.5F, 0.5F, 0.5F, 1});
   layer.depth_m.assign(400, 100);
-  layer.coverage = {std::vector<float>(400, 1)};
+  layer.coverage = {image::Coverage(layer.patch, 1)};
   for (auto* areas : {&layer.area_alone_in_frame_px,
                       &layer.area_alone_px,
                       &layer.area_seen_px,
@@ -112,8 +112,8 @@ TEST(Spots, ASpotHidesItsShareOfAnIntruder) {
   const std::size_t i = both.index(25, 15);
   EXPECT_NEAR(both.pixels[i].red, 0.25 * 0.1 + 0.75 * 0.5, 1e-6);
   EXPECT_NEAR(both.pixels[i].alpha, 1, 1e-6);
-  EXPECT_NEAR(both.coverage[0][i], 0.75, 1e-6);
-  EXPECT_NEAR(both.coverage[1][i], 0.25, 1e-6);
+  EXPECT_NEAR(both.coverage[0].at(25, 15), 0.75, 1e-6);
+  EXPECT_NEAR(both.coverage[1].at(25, 15), 0.25, 1e-6);
   EXPECT_NEAR(both.pixels[both.index(0, 0)].alpha, 0.25, 1e-6);
 }
 
@@ -134,9 +134,9 @@ TEST(Spots, TheOwnAircraftIsBehindTheLensAndBeforeTheIntruder) {
   hide(layer, occlusion);
   const image::Layer both = over(std::move(layer), 1, in_frame(spot));
   EXPECT_TRUE(both.closed.empty());
-  EXPECT_NEAR(both.coverage[0][both.index(25, 15)], 0.5, 1e-6);
-  EXPECT_EQ(both.coverage[0][both.index(35, 15)], 0);
-  EXPECT_NEAR(both.coverage[1][both.index(35, 15)], 0.5, 1e-6);
+  EXPECT_NEAR(both.coverage[0].at(25, 15), 0.5, 1e-6);
+  EXPECT_EQ(both.coverage[0].at(35, 15), 0);
+  EXPECT_NEAR(both.coverage[1].at(35, 15), 0.5, 1e-6);
 }
 
 TEST(Spots, OneOutsideTheFrameIsOutOfView) {

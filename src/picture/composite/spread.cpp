@@ -18,13 +18,16 @@ constexpr float kNothing = 1.0F / 4096;
 
 int reach_of(double sigma_px) { return static_cast<int>(std::ceil(kReach * sigma_px)); }
 
-// A plane of the layer, copied into the middle of a larger patch.
+// Values of the pixels of a box, copied into the middle of a larger box.
 template <typename Get>
-std::vector<float> placed(const image::Layer& layer, const image::Layer& target, const Get& get) {
-  std::vector<float> plane(target.pixels.size(), 0.0F);
-  for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
-    for (int x = layer.patch.x; x < layer.patch.right(); ++x)
-      plane[target.index(x, y)] = get(layer.index(x, y));
+std::vector<float> placed(const PixelBox& from, const PixelBox& to, const Get& get) {
+  const auto columns = static_cast<std::size_t>(to.width);
+  std::vector<float> plane(columns * static_cast<std::size_t>(to.height), 0.0F);
+  std::size_t i = 0;
+  for (int y = from.y; y < from.bottom(); ++y)
+    for (int x = from.x; x < from.right(); ++x)
+      plane[static_cast<std::size_t>(y - to.y) * columns + static_cast<std::size_t>(x - to.x)] =
+          get(i++);
   return plane;
 }
 
@@ -112,9 +115,7 @@ namespace {
 // A layer without pixels yet, whose patch is larger by `more` on each side, within the frame.
 image::Layer grown(const image::Layer& layer, int more, int frame_width, int frame_height) {
   image::Layer result;
-  const PixelBox& p = layer.patch;
-  result.patch = *intersection({p.x - more, p.y - more, p.width + 2 * more, p.height + 2 * more},
-                               {0, 0, frame_width, frame_height});
+  result.patch = *intersection(wider(layer.patch, more), {0, 0, frame_width, frame_height});
   result.pixels.resize(static_cast<std::size_t>(result.patch.width) *
                        static_cast<std::size_t>(result.patch.height));
   result.area_alone_in_frame_px = layer.area_alone_in_frame_px;
@@ -135,16 +136,17 @@ image::Layer spread(
   if (more == 0) return layer;
   image::Layer result = grown(layer, more, frame_width, frame_height);
   const std::vector<float> kernel = gaussian(sigma_px);
-  const auto through = [&](const auto& get) {
-    std::vector<float> plane = placed(layer, result, get);
-    blur(plane, result.patch.width, result.patch.height, kernel);
+  const auto through = [&](const PixelBox& from, const PixelBox& to, const auto& get) {
+    std::vector<float> plane = placed(from, to, get);
+    blur(plane, to.width, to.height, kernel);
     return plane;
   };
-  const auto alpha = through([&](std::size_t i) { return layer.pixels[i].alpha; });
-  const auto red = through([&](std::size_t i) { return layer.pixels[i].red; });
-  const auto green = through([&](std::size_t i) { return layer.pixels[i].green; });
-  const auto blue = through([&](std::size_t i) { return layer.pixels[i].blue; });
-  const auto depth = through([&](std::size_t i) {
+  const auto of_layer = [&](const auto& get) { return through(layer.patch, result.patch, get); };
+  const auto alpha = of_layer([&](std::size_t i) { return layer.pixels[i].alpha; });
+  const auto red = of_layer([&](std::size_t i) { return layer.pixels[i].red; });
+  const auto green = of_layer([&](std::size_t i) { return layer.pixels[i].green; });
+  const auto blue = of_layer([&](std::size_t i) { return layer.pixels[i].blue; });
+  const auto depth = of_layer([&](std::size_t i) {
     return layer.pixels[i].alpha > 0 ? layer.pixels[i].alpha * layer.depth_m[i] : 0.0F;
   });
   result.depth_m.assign(result.pixels.size(), std::numeric_limits<float>::infinity());
@@ -153,12 +155,15 @@ image::Layer spread(
     result.pixels[i] = {red[i], green[i], blue[i], std::min(1.0F, alpha[i])};
     result.depth_m[i] = depth[i] / alpha[i];
   }
-  for (const std::vector<float>& coverage : layer.coverage) {
-    result.coverage.emplace_back();
+  for (const image::Coverage& coverage : layer.coverage) {
+    image::Coverage& spread = result.coverage.emplace_back();
     if (coverage.empty()) continue;
-    result.coverage.back() = through([&](std::size_t i) { return coverage[i]; });
-    for (std::size_t i = 0; i < result.pixels.size(); ++i)
-      if (!(result.pixels[i].alpha > 0)) result.coverage.back()[i] = 0;
+    spread.box = *intersection(wider(coverage.box, reach), result.patch);
+    spread.alpha =
+        through(coverage.box, spread.box, [&](std::size_t i) { return coverage.alpha[i]; });
+    each_pixel(spread, [&](int x, int y, float& share) {
+      if (!(result.pixels[result.index(x, y)].alpha > 0)) share = 0;
+    });
   }
   return result;
 }

@@ -210,8 +210,8 @@ TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {
       render(view_through(lens), white(), {{&wall, {}, 0}, {&glass, {}, 0}}, {kAll, kAll});
   const std::size_t middle = layer.index(100, 100);
   EXPECT_NEAR(layer.pixels[middle].alpha, 1, 1e-6);
-  EXPECT_NEAR(layer.coverage[0][middle], 0.75, 1e-5);
-  EXPECT_NEAR(layer.coverage[1][middle], 0.25, 1e-5);
+  EXPECT_NEAR(layer.coverage[0].at(100, 100), 0.75, 1e-5);
+  EXPECT_NEAR(layer.coverage[1].at(100, 100), 0.25, 1e-5);
   EXPECT_NEAR(layer.pixels[middle].red, 0.25 * 0.7 + 0.75 * 0.7, 1e-3);
   // The area that the plate alone would cover.
   EXPECT_NEAR(layer.area_alone_px[0], 3600, 2);

@@ -25,7 +25,7 @@ image::Layer empty_layer(const PixelBox& patch, const std::vector<PlacedInstance
   layer.depth_m.assign(pixels, std::numeric_limits<float>::infinity());
   layer.coverage.resize(instances.size());
   for (std::size_t i = 0; i < instances.size(); ++i)
-    if (instances[i].pixels) layer.coverage[i].assign(pixels, 0.0f);
+    if (instances[i].pixels) layer.coverage[i] = image::Coverage(*instances[i].pixels);
   layer.area_alone_in_frame_px.assign(instances.size(), 0.0);
   layer.area_seen_px.assign(instances.size(), 0.0);
   return layer;
@@ -46,7 +46,10 @@ class Painter {
         rays_(rays),
         stop_(stop),
         layer_(layer),
-        alone_(layer.pixels.size() * instances.size(), 0.0) {}
+        alone_(instances.size()) {
+    for (std::size_t a = 0; a < alone_.size(); ++a)
+      alone_[a].assign(layer.coverage[a].alpha.size(), 0.0);
+  }
 
   void paint(const SampleCounts& counts) {
     if (counts.by_rays)
@@ -129,18 +132,19 @@ class Painter {
                         static_cast<float>(std::min(1.0, alpha))};
     layer_.depth_m[i] = static_cast<float>(distance_m / alpha);
     for (std::size_t a = 0; a < instances_.size(); ++a) {
-      if (layer_.coverage[a].empty()) continue;
-      layer_.coverage[a][i] = static_cast<float>(coverage[a]);
-      alone_[i * instances_.size() + a] = alone[a];
+      image::Coverage& of = layer_.coverage[a];
+      if (!of.box.contains(x, y)) continue;
+      of.alpha[of.index(x, y)] = static_cast<float>(coverage[a]);
+      alone_[a][of.index(x, y)] = alone[a];
     }
   }
 
   void add_areas() {
-    for (std::size_t a = 0; a < instances_.size(); ++a)
-      for (std::size_t i = 0; i < layer_.coverage[a].size(); ++i) {
-        layer_.area_seen_px[a] += static_cast<double>(layer_.coverage[a][i]);
-        layer_.area_alone_in_frame_px[a] += alone_[i * instances_.size() + a];
-      }
+    for (std::size_t a = 0; a < instances_.size(); ++a) {
+      for (const float share : layer_.coverage[a].alpha)
+        layer_.area_seen_px[a] += static_cast<double>(share);
+      for (const double share : alone_[a]) layer_.area_alone_in_frame_px[a] += share;
+    }
   }
 
   const View& view_;
@@ -149,8 +153,8 @@ class Painter {
   const PixelRays& rays_;
   const std::stop_token& stop_;
   image::Layer& layer_;
-  // Index: pixel * instances + instance.
-  std::vector<double> alone_;
+  // By instance: as layer_.coverage, without occlusion.
+  std::vector<std::vector<double>> alone_;
 };
 
 }  // namespace

@@ -166,10 +166,13 @@ void Visibility::begin_row(int y, int x0, int x1) {
     const bool moves = by_row && span.to_u > span.from_u;
     const ScreenBounds bounds =
         moves ? bounds_between(triangle, span.from_u, span.to_u) : triangle.over_all;
-    if (bounds.top > row + 1 || bounds.bottom < row) continue;
+    const PixelBox& pixels = *instances_[triangle.instance].pixels;
+    if (bounds.top > row + 1 || bounds.bottom < row || y < pixels.y || y >= pixels.bottom())
+      continue;
     const auto column = [&](float x) {
       return static_cast<int>(
-          std::clamp(x - static_cast<float>(x0), 0.0f, static_cast<float>(width)));
+                 std::clamp(x, static_cast<float>(pixels.x), static_cast<float>(pixels.right()))) -
+             x0;
     };
     const int from = column(std::floor(bounds.left));
     const int to = column(std::ceil(bounds.right));

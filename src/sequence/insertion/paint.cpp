@@ -96,12 +96,6 @@ bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
          a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
 }
 
-void add_pixel(composite::Visible& visible, int x, int y) {
-  const PixelBox pixel{x, y, 1, 1};
-  visible.box = visible.box ? bounds(*visible.box, pixel) : pixel;
-  ++visible.pixels;
-}
-
 // The changed pixels, divided among the intruders by their geometry.
 std::vector<composite::Visible> changed(const image::Picture& before,
                                         const image::Picture& after,
@@ -119,12 +113,13 @@ std::vector<composite::Visible> changed(const image::Picture& before,
         std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
     for (int y = std::max(0, static_cast<int>(box.y - kLanczosReachPx)); y < y1; ++y) {
       for (int x = std::max(0, static_cast<int>(box.x - kLanczosReachPx)); x < x1; ++x)
-        if (differs(before, after, x, y)) add_pixel(visible[i], x, y);
+        if (differs(before, after, x, y)) visible[i].add(x, y);
     }
     if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
     visible[i].covered = composite::covered(layer, i);
-    for (std::size_t k = 0; k < layer.coverage[i].size(); ++k)
-      if (layer.is_open(k)) visible[i].alpha_sum_px += layer.coverage[i][k];
+    each_pixel(layer.coverage[i], [&](int x, int y, float share) {
+      if (layer.is_open(layer.index(x, y))) visible[i].alpha_sum_px += share;
+    });
   }
   return visible;
 }
@@ -220,7 +215,7 @@ image::Layer render_layer(const scene::Scene& scene,
   }
   const lens::ImageSize size = world.lens.size();
   const composite::Spots on_lens{moment.spots, moment.sight.shutter, size.width, size.height};
-  const std::vector<composite::SpotCover> covers = composite::covers_of(on_lens);
+  const std::vector<image::Coverage> covers = composite::covers_of(on_lens);
   const bool has_spots = !composite::are_out_of_view(covers);
   if (!any && !has_spots) return {};
   image::Layer layer;

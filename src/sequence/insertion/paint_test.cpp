@@ -149,7 +149,7 @@ std::vector<double> coverage_of_rows(const shade::Model& model,
   std::vector<double> rows(kSize.height, 0);
   for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
     for (int x = layer.patch.x; x < layer.patch.right(); ++x)
-      rows[static_cast<std::size_t>(y)] += double(layer.coverage[0][layer.index(x, y)]);
+      rows[static_cast<std::size_t>(y)] += double(layer.coverage[0].at(x, y));
   return rows;
 }
 

@@ -368,11 +368,7 @@ class Session::Impl {
     std::optional<PixelBox> drawn;
     if (made)
       if (const auto box = setup::search_bounds(made->moment))
-        drawn = intersection({box->x - kMarginPx,
-                              box->y - kMarginPx,
-                              box->width + 2 * kMarginPx,
-                              box->height + 2 * kMarginPx},
-                             whole);
+        drawn = intersection(wider(*box, kMarginPx), whole);
     if (made && !made->moment.spots.empty()) drawn = whole;
     Shown& shown = shown_[client];
     const Shown before = std::exchange(shown, {request.frame, drawn});
