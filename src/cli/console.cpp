@@ -116,6 +116,9 @@ void Console::error(const std::string& message) { log("error", message); }
 void Console::interrupted() {
   if (!interrupt_reported.exchange(true)) error(kInterruptedWords);
 }
+void Console::ended(const std::string& words) {
+  if (!interrupt_reported.exchange(true)) result(words);
+}
 
 void Console::result(const std::string& message) {
   end_progress();

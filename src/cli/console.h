@@ -31,6 +31,8 @@ class Console {
   void error(const std::string& message);
   // Reports that the run was interrupted, once for the whole process.
   void interrupted();
+  // The same in words of the command's own, for one that a user ends so; nothing when quiet.
+  void ended(const std::string& words);
   // Reports what the run made; prints nothing when quiet.
   void result(const std::string& message);
   // Writes the text unchanged to standard output. Throws Error where the write fails, except where

@@ -54,7 +54,9 @@ std::unique_ptr<document::Document> document_of(const StudioArguments& arguments
   } else if (file != arguments.input) {
     console.warning(fmt::format("{} is there and is opened", file.string()));
   }
-  return std::make_unique<document::Document>(file, std::move(begun), console.warn());
+  auto document = std::make_unique<document::Document>(file, std::move(begun), console.warn());
+  if (!document->scene()) console.warning(document->problem());
+  return document;
 }
 
 // Begins the user's browser, which is not waited for. It takes no signal mask of ours, and says
@@ -100,6 +102,7 @@ void studio(const StudioArguments& arguments, Context& context) {
   console.print(server.address() + "\n");
   if (arguments.open) open_in_browser(server.address(), console);
   server.run(session, context.stop);
+  console.ended("ended; steps that are not saved are kept for the next start");
   throw Interrupted();
 }
 

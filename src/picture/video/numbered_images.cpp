@@ -96,7 +96,9 @@ NumberedImages in_list(const fs::path& list) {
     const fs::path file = list.parent_path() / line;
     const Where where{list.string(), number};
     if (!picture_series::is_picture_file(file))
-      throw Error(fmt::format("is '{}'; expected the path of a picture", line.substr(0, 200)),
+      throw Error(fmt::format("is '{}'; expected the path of a picture, since a text file is read "
+                              "as a list of a clip's pictures",
+                              line.substr(0, 200)),
                   where);
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored))

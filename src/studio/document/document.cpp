@@ -74,6 +74,7 @@ void Document::take() {
   try {
     Tree tree = tree_of(text(), file_.string());
     tables_ = tables_in(tree.root, text());
+    notes_ = notes_of(tree.root, text());
     values_ = std::move(tree.values);
   } catch (const Error&) {
     values_ = nullptr;  // the page keeps what it had
@@ -130,10 +131,10 @@ void Document::redo() {
   take();
 }
 
-void Document::save(bool replace) {
+void Document::save() {
   look_at_disk();
-  if (changed_on_disk_ && !replace)
-    throw Error("was changed by another program; expected to reload it, or to save over it",
+  if (changed_on_disk_)
+    throw Error("was changed by another program; expected to take its text, or to keep yours",
                 {file_.string()});
   write_file(file_, text());
   history_.file_sha256 = sha256_of(text());
@@ -151,6 +152,12 @@ void Document::reload() {
   saved_ = true;
   changed_on_disk_ = false;
   journal_.remove();
+}
+
+void Document::keep() {
+  if (const std::optional<std::string> there = on_disk()) history_.file_sha256 = sha256_of(*there);
+  changed_on_disk_ = false;
+  record([&] { journal_.begin(history_); });
 }
 
 bool Document::look_at_disk() {
@@ -182,6 +189,7 @@ nlohmann::ordered_json Document::state() const {
       {"revision", revision_},
       {"text", text()},
       {"scene", values_},
+      {"notes", notes_},
       {"problem", problem_.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(problem_)},
       {"saved", saved_},
       {"undo", history_.undo_count()},

@@ -48,17 +48,19 @@ class Document {
   // Throw Error where there is nothing to take back or to repeat.
   void undo();
   void redo();
-  // Throws Error where the file was changed by others, unless `replace`.
-  void save(bool replace);
+  // Throws Error where the file was changed by others, and neither reload() nor keep() answered it.
+  void save();
   // Takes the file's text, as a step that can be taken back.
   void reload();
+  // Leaves what others made of the file aside: the next save replaces it.
+  void keep();
   // Looks at the file; true where the state is another than before: others changed the file, which
   // is taken where all was saved.
   bool look_at_disk();
   // Waits until the journal is on the disk.
   void flush() { journal_.flush(); }
 
-  // {"revision", "text", "scene", "problem", "saved", "undo", "redo", "changed_on_disk"}
+  // {"revision", "text", "scene", "notes", "problem", "saved", "undo", "redo", "changed_on_disk"}
   nlohmann::ordered_json state() const;
 
  private:
@@ -83,6 +85,7 @@ class Document {
   std::optional<scene::Scene> scene_;
   std::string problem_;
   nlohmann::ordered_json values_;
+  nlohmann::ordered_json notes_;
   std::vector<TablePlace> tables_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "studio/document/tree.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::document {
@@ -110,7 +111,7 @@ TEST_F(OfAFile, SavedTextNeedsNoJournal) {
   Document document = open();
   document.edit(fov(61), "");
   EXPECT_TRUE(fs::exists(journal()));
-  document.save(false);
+  document.save();
   EXPECT_FALSE(fs::exists(journal()));
   EXPECT_EQ(read_file(file()), with_fov("61"));
   document.undo();
@@ -135,7 +136,7 @@ TEST_F(OfAFile, AnotherEditorsChangeIsTakenWhereAllIsSavedElseSaid) {
   EXPECT_TRUE(document.look_at_disk());
   EXPECT_TRUE(document.state()["changed_on_disk"]);
   EXPECT_EQ(document.text(), kText);
-  EXPECT_THROW(document.save(false), Error);
+  EXPECT_THROW(document.save(), Error);
   EXPECT_EQ(read_file(file()), with_fov("31"));
   document.reload();
   EXPECT_EQ(document.text(), with_fov("31"));
@@ -148,8 +149,39 @@ TEST_F(OfAFile, AJournalOutlivesAChangeOfTheFile) {
   Document document = open();
   EXPECT_EQ(document.text(), with_fov("61"));
   EXPECT_TRUE(document.state()["changed_on_disk"]);
-  document.save(true);
+  EXPECT_THROW(document.save(), Error);
+  document.keep();
+  EXPECT_FALSE(document.state()["changed_on_disk"]);
+  // The answer holds for a later process, and so do the steps.
+  Document later = open();
+  EXPECT_FALSE(later.state()["changed_on_disk"]);
+  EXPECT_EQ(later.text(), with_fov("61"));
+  later.undo();
+  EXPECT_EQ(later.text(), kText);
+  later.redo();
+  later.save();
   EXPECT_EQ(read_file(file()), with_fov("61"));
+}
+
+TEST(Notes, AreTheCommentsAboveAndBehindAKeyOrAHeader) {
+  const std::string text =
+      "# of the file\n"
+      "\n"
+      "# A GUESS\n"
+      "#  of two lines.\n"
+      "[lens] # and behind\n"
+      "model = \"pinhole\"\n"
+      "\n"
+      "# above\n"
+      "vertical_fov_deg = 60\t#behind\n"
+      "[camera]\n"
+      "position_ned_m = [0, # north\n 0, -150] # 150 m high\n"
+      "[[intruder]]  # of no key\n"
+      "id = \"# none\"\n";
+  const nlohmann::ordered_json wanted = {{"lens", "A GUESS of two lines. and behind"},
+                                         {"lens.vertical_fov_deg", "above behind"},
+                                         {"camera.position_ned_m", "150 m high"}};
+  EXPECT_EQ(notes_of(tree_of(text, "s.toml").root, text), wanted);
 }
 
 TEST_F(OfAFile, ABegunSceneIsWrittenAtTheFirstSave) {
@@ -157,7 +189,7 @@ TEST_F(OfAFile, ABegunSceneIsWrittenAtTheFirstSave) {
   Document document(later, kText, {});
   EXPECT_FALSE(document.state()["saved"]);
   EXPECT_FALSE(fs::exists(later));
-  document.save(false);
+  document.save();
   EXPECT_EQ(read_file(later), kText);
   EXPECT_THROW(Document(folder_.path() / "none.toml", std::nullopt, {}), Error);
 }

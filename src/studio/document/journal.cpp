@@ -132,18 +132,17 @@ void Journal::undo(const History& history) { append("{\"undo\":1}\n", history); 
 void Journal::redo(const History& history) { append("{\"redo\":1}\n", history); }
 
 void Journal::append(const std::string& line, const History& history) {
-  if (file_ < 0 || bytes_ + line.size() > kMostBytes) return begin(history);
+  if (file_ < 0 || bytes_ + line.size() > kMostBytes) return write_anew(history, file_ < 0);
   write(line);
 }
 
-// The file as the history has it; of a long one the present text alone.
-void Journal::begin(const History& history) {
-  const bool is_long = file_ >= 0;
+// The file as the history has it, or with the present text alone.
+void Journal::write_anew(const History& history, bool with_steps) {
   std::string text =
-      Json{{"first", is_long ? history.text() : history.first}, {"file", history.file_sha256}}
+      Json{{"first", with_steps ? history.first : history.text()}, {"file", history.file_sha256}}
           .dump() +
       "\n";
-  if (!is_long) {
+  if (with_steps) {
     for (const Edit& edit : history.edits()) text += json_of_edit(edit).dump() + "\n";
     for (std::size_t i = 0; i < history.redo_count(); ++i) text += "{\"undo\":1}\n";
   }

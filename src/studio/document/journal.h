@@ -72,13 +72,15 @@ class Journal {
   void add(const Edit& edit, const History& history);
   void undo(const History& history);
   void redo(const History& history);
+  // Writes the file anew.
+  void begin(const History& history) { write_anew(history, true); }
   // Waits until all is on the disk.
   void flush();
   void remove();
 
  private:
   void append(const std::string& line, const History& history);
-  void begin(const History& history);
+  void write_anew(const History& history, bool with_steps);
   void write(const std::string& line);
 
   std::filesystem::path path_;

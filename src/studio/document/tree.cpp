@@ -5,8 +5,11 @@
 #include <cmath>
 #include <sstream>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include "foundation/base/text.h"
 #include "scene/scene/tables.h"
 
 namespace airtruth::document {
@@ -123,7 +126,54 @@ nlohmann::json json_of(const toml::node& value) {
   return words.str();
 }
 
+// A comment's words, without what opens it.
+std::string_view words_of_comment(std::string_view line) {
+  const std::size_t words = line.find_first_not_of("# \t");
+  return words == std::string_view::npos ? std::string_view{} : trimmed(line.substr(words));
+}
+
+std::string note_on(std::string_view text, std::size_t begin, std::size_t end) {
+  const auto line_at = [&](std::size_t at) {
+    return trimmed(text.substr(at, std::min(text.find('\n', at), text.size()) - at));
+  };
+  std::vector<std::string_view> parts;
+  std::size_t line = text.rfind('\n', begin);
+  while (line != std::string_view::npos && line > 0) {
+    const std::size_t above = text.rfind('\n', line - 1);
+    const std::string_view words = line_at(above == std::string_view::npos ? 0 : above + 1);
+    if (!words.starts_with('#')) break;
+    parts.insert(parts.begin(), words_of_comment(words));
+    line = above;
+  }
+  const std::string_view rest = line_at(end);
+  if (rest.starts_with('#')) parts.push_back(words_of_comment(rest));
+  return fmt::format("{}", fmt::join(parts, " "));
+}
+
+void add_notes(const Node& table,
+               const std::string& prefix,
+               std::string_view text,
+               nlohmann::ordered_json& notes) {
+  for (const Node& member : table.members) {
+    const std::string name = prefix + member.key;
+    const bool is_header = member.kind == Node::Kind::kHeaderTable;
+    const bool is_implied = member.kind == Node::Kind::kImpliedTable;
+    if (!is_implied && member.kind != Node::Kind::kTableArray) {
+      const std::size_t begin = is_header ? member.begin : member.key_begin;
+      if (std::string note = note_on(text, begin, member.end); !note.empty())
+        notes[name] = std::move(note);
+    }
+    if (is_header || is_implied) add_notes(member, name + ".", text, notes);
+  }
+}
+
 }  // namespace
+
+nlohmann::ordered_json notes_of(const Node& root, std::string_view text) {
+  nlohmann::ordered_json notes = nlohmann::ordered_json::object();
+  add_notes(root, "", text, notes);
+  return notes;
+}
 
 const Node* Node::member(std::string_view name) const {
   const auto found = std::find_if(

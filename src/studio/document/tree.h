@@ -43,6 +43,16 @@ struct Tree {
   nlohmann::json values;  // dates and times, infinities and NaN as strings
 };
 
+// The comments on the tables of the file and on their keys, by the dotted name: the lines directly
+// above a table's header or a key, and the end of its own line.
+//
+//   # measured in May
+//   [camera]
+//   position_ned_m = [0, 0, -150]  # a guess
+//
+// gives {"camera": "measured in May", "camera.position_ned_m": "a guess"}.
+nlohmann::ordered_json notes_of(const Node& root, std::string_view text);
+
 // Throws Error where the text is not TOML (scene::parsed_toml).
 Tree tree_of(std::string_view text, const std::string& file);
 

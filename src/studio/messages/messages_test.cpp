@@ -43,7 +43,7 @@ TEST(RequestText, AnEditHasItsChanges) {
   ASSERT_EQ(request.changes.size(), 3u);
   EXPECT_EQ(document::words_of(request.changes[1].path), "intruder");
   EXPECT_EQ(request_from(R"({"id":1,"do":"edit","merge":null,"changes":[]})").merge, "");
-  EXPECT_TRUE(request_from(R"({"id":1,"do":"save","replace":true})").replace);
+  EXPECT_EQ(request_from(R"({"id":1,"do":"keep"})").act, Act::kKeep);
   EXPECT_EQ(request_from(R"({"id":1,"do":"aircraft","search":"a320"})").search, "a320");
 }
 

@@ -90,8 +90,6 @@ std::vector<std::string> keys_of(Act act) {
   switch (act) {
     case Act::kEdit:
       return {"id", "do", "changes", "merge"};
-    case Act::kSave:
-      return {"id", "do", "replace"};
     case Act::kFrame:
       return {"id", "do", "frame", "aircraft", "crop", "scale"};
     case Act::kAircraft:
@@ -125,7 +123,6 @@ Request request_from(std::string_view text) {
     request.changes = changes_in(json);
     request.merge = word(message, "merge");
   }
-  if (*act == Act::kSave) request.replace = message.maybe_truth("replace").value_or(false);
   if (*act == Act::kFrame) take_frame(request, message);
   if (*act == Act::kAircraft) request.search = word(message, "search");
   return request;

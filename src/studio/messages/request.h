@@ -21,6 +21,7 @@ enum class Act {
   kRedo,
   kSave,
   kReload,
+  kKeep,
   kFrame,
   kPlan,
   kAircraft,
@@ -35,6 +36,7 @@ constexpr auto enum_names(Act) {
                                        {Act::kRedo, "redo"},
                                        {Act::kSave, "save"},
                                        {Act::kReload, "reload"},
+                                       {Act::kKeep, "keep"},
                                        {Act::kFrame, "frame"},
                                        {Act::kPlan, "plan"},
                                        {Act::kAircraft, "aircraft"},
@@ -50,8 +52,6 @@ struct Request {
   // edit
   std::vector<document::Change> changes;
   std::string merge;
-  // save
-  bool replace = false;
   // frame
   std::int64_t frame = 0;
   bool aircraft = true;

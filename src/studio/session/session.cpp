@@ -187,9 +187,11 @@ class Session::Impl {
       case Act::kRedo:
         return change(client, request.id, [&] { document_->redo(); });
       case Act::kSave:
-        return change(client, request.id, [&] { document_->save(request.replace); });
+        return change(client, request.id, [&] { document_->save(); });
       case Act::kReload:
         return change(client, request.id, [&] { document_->reload(); });
+      case Act::kKeep:
+        return change(client, request.id, [&] { document_->keep(); });
       case Act::kFrame:
         return show(client, std::move(request));
       case Act::kPlan:

@@ -29,6 +29,7 @@ export interface State {
   revision: number;
   text: string;
   scene: Table;
+  notes: {[key: string]: string};  // the comments of the file on its tables and keys, by their dotted names
   problem: string|null;
   saved: boolean;
   undo: number;

@@ -210,11 +210,13 @@ export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number
   const span = clip.frames - 1;
   const lasts_s = Math.min((clip.width * 0.45) / rate_px_s, (range_m * (1 - NEAREST_SHARE)) / Math.max(1, own_mps));
   const way = Math.max(1, Math.min(span, Math.round(clamp(lasts_s, 0.5, 6) * clip.rate_hz)));
-  const first = Math.max(0, Math.min(frame, span - way));
+  // One of the two moments is the frame shown: the camera moves, so a place between two others is a guess.
+  const isEarly = span - frame >= Math.min(way, clip.rate_hz, frame);
+  const [first, last] = isEarly ? [frame, Math.min(frame + way, span)] : [Math.max(0, frame - way), frame];
   const direction = at[0] < clip.width / 2 ? 1 : -1;
   const pixelAt = (k: number): Point => [at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz, at[1]];
   const rangeAt = (k: number) => Math.max(range_m * NEAREST_SHARE, range_m - (own_mps * (k - first)) / clip.rate_hz);
-  const seen = [first, first + way].map((k) => seenTable(timeOf(k, clip), pixelAt(k), rangeAt(k)));
+  const seen = [first, last].map((k) => seenTable(timeOf(k, clip), pixelAt(k), rangeAt(k)));
   if (choice.kind === 'aircraft') return {aircraft: choice.aircraft ?? '', seen};
   const flock: Table = isFlock ? {count: choice.count!, spread_m: round(choice.length_m * 6, 0)} : {};
   return {kind: choice.kind, ...flock, seen};

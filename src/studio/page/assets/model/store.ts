@@ -40,7 +40,6 @@ export interface Everything {
   planProblem: string|null;     // why there is no plan of the scene as it is
   picture: PictureHeader|null;  // of the picture that is shown: its boxes and lines
   pending: number;              // edits that the server has not answered
-  keepsMine: boolean;           // the change on disk was declined
   notices: Notice[];
   progress: Progress|null;
   busy: 'render'|'calibrate'|null;
@@ -77,7 +76,6 @@ const beginning: Everything = {
   planProblem: null,
   picture: null,
   pending: 0,
-  keepsMine: false,
   notices: [],
   progress: null,
   busy: null,

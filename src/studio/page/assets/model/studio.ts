@@ -96,6 +96,10 @@ export class Studio {
   async reload(): Promise<void> {
     await this.whole('reload');
   }
+  // Leaves another program's change of the file aside.
+  async keep(): Promise<void> {
+    await this.whole('keep');
+  }
 
   select(selected: Path|null, moment: number|null = null): void {
     this.store.put({selected, moment});
@@ -233,11 +237,8 @@ export class Studio {
     const isPast = (kind: string) => kind === 'error';
     if (notices.some((notice) => isPast(notice.kind)))
       this.store.put({notices: notices.filter((notice) => !isPast(notice.kind))});
-    this.store.put({
-      state,
-      ...(state.changed_on_disk ? {} : {keepsMine: false}),
-      ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? {selected: null, moment: null} : {})
-    });
+    this.store.put(
+        {state, ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? {selected: null, moment: null} : {})});
     this.settle();
   }
 
@@ -274,7 +275,7 @@ export class Studio {
   }
 
   // What is done to the whole text, after all edits; whether it was.
-  private async whole(what: 'undo'|'redo'|'save'|'reload'): Promise<boolean> {
+  private async whole(what: 'undo'|'redo'|'save'|'reload'|'keep'): Promise<boolean> {
     this.wholes += 1;
     try {
       await this.edits.whenIdle();
@@ -284,12 +285,11 @@ export class Studio {
     }
   }
 
-  private async ask(what: 'undo'|'redo'|'save'|'reload'): Promise<boolean> {
+  private async ask(what: 'undo'|'redo'|'save'|'reload'|'keep'): Promise<boolean> {
     const {state: before} = this.store.now;
     if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
     try {
-      const isAnswered = what === 'save' && before?.changed_on_disk && !isOffered(before, this.store.now.keepsMine);
-      const {state} = await this.connection.request<{state: State}>(what, isAnswered ? {replace: true} : {});
+      const {state} = await this.connection.request<{state: State}>(what);
       this.took(state);
       return true;
     } catch (error) {
@@ -377,6 +377,3 @@ export class Studio {
     }
   }
 }
-
-// Whether a state tells of a change on disk that the user has not answered.
-export const isOffered = (state: State|null, keepsMine: boolean) => Boolean(state?.changed_on_disk && !keepsMine);

@@ -17,9 +17,11 @@ const numbers = (value: Json|undefined, usual: number[]): number[] =>
 // The lens and the attitude of the camera; the horizon that follows from them is drawn over the frame while this is
 // shown.
 export class CameraPanel extends Part {
-  protected readonly watches: Member[] = ['state', 'tab'];
+  protected readonly watches: Member[] = ['state', 'tab', 'plan'];
   private rows: Row[] = [];
   private origin = h('p', {class: 'hint'});
+  private found = h('p', {class: 'hint'});
+  private flight = h('p', {class: 'hint'});
   private forget =
       h('button', {onclick: () => this.studio.edit([{remove: ['camera', 'attitude_yaw_pitch_roll_deg']}])},
         'Measure attitude from the horizon');
@@ -58,16 +60,18 @@ export class CameraPanel extends Part {
     this.append(
         h('h2', {}, 'Lens'), h('div', {class: 'grid'}, lens), this.origin, h('h2', {}, 'Attitude in the first frame'),
         h('div', {class: 'grid three'}, ...angles),
-        h('p', {class: 'hint'}, 'The line over the frame is where lens and attitude put the horizon.'),
+        h('p', {class: 'hint'}, 'The line over the frame is where lens and attitude put the horizon.'), this.found,
         h('div', {class: 'actions'}, this.forget), h('h2', {}, 'Own flight'), h('div', {class: 'grid'}, height),
-        h('div', {class: 'grid three'}, ...velocity));
+        h('div', {class: 'grid three'}, ...velocity), this.flight);
   }
 
   protected update(changed: Set<Member>): void {
-    const {state, tab} = this.now;
+    const {state, tab, plan} = this.now;
     if (changed.has('tab') && tab === 'camera') this.studio.store.put({showsHorizon: true});
     if (!state) return;
-    const {scene} = state;
+    const {scene, notes} = state;
+    // The file's own words on where its numbers come from.
+    const said = (...keys: string[]) => keys.map((key) => notes[key]).filter(Boolean).join('; ');
     for (const {field, value} of this.rows) field.show(value(scene));
     const lens = tableOf(scene.lens);
     const hasFov = 'vertical_fov_deg' in lens;
@@ -75,7 +79,9 @@ export class CameraPanel extends Part {
         this.origin,
         'file' in lens ? `The lens is that of ${String(lens.file)}.` :
             Array.isArray(lens.focal_px) ? `Focal lengths ${lens.focal_px.join(', ')} px.` :
-                                           '');
+                                           said('lens', 'lens.model', 'lens.vertical_fov_deg'));
+    text(this.found, plan?.own.attitude || said('camera', 'camera.attitude_yaw_pitch_roll_deg'));
+    text(this.flight, said('camera.position_ned_m', 'camera.velocity_ned_mps'));
     this.rows[0].field.input.disabled = !hasFov;
     const camera = tableOf(scene.camera);
     const isFile = 'path_file' in camera;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Member, Notice} from '../model/store';
-import {isOffered} from '../model/studio';
 import {Keyed, Part, attribute, h, text} from './part';
 
 const INFO_MS = 5000;
@@ -9,7 +8,7 @@ const INFO_MS = 5000;
 // server says.
 export class NoticeBar extends Part {
   protected readonly watches: Member[] =
-      ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'keepsMine', 'busy', 'progress'];
+      ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'busy', 'progress'];
   private lost = h(
       'p', {class: 'notice error'},
       'No connection to airtruth studio. What you do is kept and sent when it is back. If it was started again, open the address that it prints.');
@@ -26,17 +25,17 @@ export class NoticeBar extends Part {
     this.disk.append(
         h('span', {}, 'The file was changed by another program.'),
         h('button', {onclick: () => void this.studio.reload()}, 'Take the file'),
-        h('button', {onclick: () => this.studio.store.put({keepsMine: true})}, 'Keep mine'));
+        h('button', {onclick: () => void this.studio.keep()}, 'Keep mine'));
     this.append(this.lost, this.problem, this.disk, this.progress, this.list);
   }
 
   protected update(): void {
-    const {connected, everConnected, state, planProblem, keepsMine, notices, busy, progress} = this.now;
+    const {connected, everConnected, state, planProblem, notices, busy, progress} = this.now;
     this.lost.hidden = connected || !everConnected;
     const problem = state?.problem ?? planProblem;
     this.problem.hidden = !problem;
     text(this.problem, problem ?? '');
-    this.disk.hidden = !isOffered(state, keepsMine);
+    this.disk.hidden = !state?.changed_on_disk;
     const isMeasured =
         progress !== null && busy !== 'render' && (progress.total === 0 || progress.done < progress.total);
     this.progress.hidden = !isMeasured;

@@ -8,7 +8,7 @@ import type {PictureView} from './picture_view';
 export class ToolBar extends Part {
   protected readonly watches: Member[] = [
     'file', 'state', 'pending', 'connected', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'busy',
-    'progress', 'keepsMine'
+    'progress'
   ];
   private file = h('span', {class: 'file'});
   private saved = h('span', {class: 'saved', role: 'status'});
