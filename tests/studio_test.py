@@ -8,7 +8,6 @@ no text cut, on another or too faint. How long a drag takes until its picture is
 
 import argparse
 import json
-import math
 import os
 import random
 import signal
@@ -256,11 +255,12 @@ def check_rendered(root, scene, shown):
     """The truth of the render beside the handles and the boxes of the page."""
     with open(os.path.join(root, "rendered", "flight", "truth.jsonl"), encoding="utf-8") as file:
         frames = {one["frame"]: {intruder["id"]: intruder for intruder in one["intruders"]} for one in map(json.loads, file) if "intruders" in one}
-    focal = HEIGHT / 2 / math.tan(math.radians(scene["lens"]["vertical_fov_deg"]) / 2)
     for k, table in enumerate(scene["intruder"]):
-        for time_s, pixel in moments_of(table):
-            x, y, z = frames[round(time_s * 30)][table.get("id", f"intruder-{k + 1}")]["position_in_cam_m"]
-            near(f"intruder-{k + 1} at {time_s} s", (WIDTH / 2 + focal * x / z, HEIGHT / 2 + focal * y / z), pixel, BESIDE_PX)
+        in_frame = [one for one in moments_of(table) if 0 <= one[1][0] < WIDTH and 0 <= one[1][1] < HEIGHT]
+        expect(f"moments of intruder-{k + 1} in the frame", len(in_frame) > 0, True)
+        for time_s, pixel in in_frame:
+            x, y, width, height = frames[round(time_s * 30)][table.get("id", f"intruder-{k + 1}")]["exact_box_px"]
+            near(f"intruder-{k + 1} at {time_s} s", (x + width / 2, y + height / 2), pixel, BESIDE_PX)
     for frame, boxes in shown.items():
         for name, box in boxes.items():
             near(f"box of {name} in frame {frame}", frames[frame][name]["exact_box_px"], box, BESIDE_PX)

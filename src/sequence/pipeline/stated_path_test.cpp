@@ -85,15 +85,25 @@ const std::string kSeen =
     "[[intruder.seen]]\ntime_s = 0.7\npixel = [320.5, 190]\nwidth_px = 60\n"
     "[[intruder.seen]]\ntime_s = 1.2\npixel = [460, 150]\nrange_m = 110\n";
 
+// A round one: the middle of its box is where its reference point is seen.
+const std::string kSeenBalloon =
+    "[[distractor]]\nkind = 'balloon'\nsize_m = 1\n"
+    "[[distractor.seen]]\ntime_s = 0.2\npixel = [210, 160]\nrange_m = 160\n"
+    "[[distractor.seen]]\ntime_s = 0.7\npixel = [320.5, 190]\nrange_m = 130\n"
+    "[[distractor.seen]]\ntime_s = 1.2\npixel = [460, 150]\nrange_m = 110\n";
+
 TEST_F(StatedPath, TheTrueCameraSeesItWithinHalfAPixelOfWhatIsStated) {
-  const scene::Scene scene = scene_of("seen", kSeen);
+  const scene::Scene scene = scene_of("seen", kSeen + kSeenBalloon);
   const replay::Finished finished = rendered(scene);
   double largest_px = 0;
   for (const scene::Seen& seen : scene.intruders[0].seen) {
     const int frame = static_cast<int>(std::lround(seen.time_s * 30));
     const annotation::Frame& truth = finished.truth.frames.at(static_cast<std::size_t>(frame));
     const annotation::Intruder& intruder = truth.intruders[0];
-    const Pixel pixel = true_pixel(frame, *intruder.position_ned_m);
+    const Box& box = *intruder.exact_box_px;
+    EXPECT_NEAR(box.x + box.width / 2, seen.pixel.x(), 0.01) << frame;
+    EXPECT_NEAR(box.y + box.height / 2, seen.pixel.y(), 0.01) << frame;
+    const Pixel pixel = true_pixel(frame, *truth.intruders[1].position_ned_m);
     largest_px = std::max(largest_px, (pixel - seen.pixel).norm());
     EXPECT_LT((pixel - seen.pixel).norm(), 0.5) << frame;
     if (seen.range_m) {

@@ -19,13 +19,16 @@ constexpr double kBeyond_s = 3600;
 // Farthest place of an intruder whose width is stated; beyond it nothing is visible.
 constexpr double kFarthestM = 1e6;
 
-// A moment with its frame and the ray of its pixel.
+// A moment with its frame, and the ray on which the aircraft's reference point is placed.
 struct Ray {
   const scene::Seen* seen = nullptr;
   double frame_s = 0;
+  projection::Sight sight;  // at the frame's time
+  // The pixel of the ray. It is the stated one less the way from the reference point to the middle
+  // of the box.
+  Pixel pixel = Pixel::Zero();
   // When the pixel's own row is exposed.
   double time_s = 0;
-  projection::Sight sight;  // at the frame's time
   Vector3 from_ned_m = Vector3::Zero();
   Vector3 direction_in_world = Vector3::Zero();
   double range_m = 0;
@@ -39,6 +42,23 @@ struct Ray {
               seen.where);
 }
 
+void aim(Ray& ray, const World& world, const Pixel& pixel) {
+  const lens::ImageSize size = world.lens.size();
+  const Pixel inside(std::clamp(pixel.x(), 0.0, double(size.width)),
+                     std::clamp(pixel.y(), 0.0, double(size.height)));
+  const double dt_s = world.shutter.middle_s(inside, size.width, size.height);
+  const projection::Sight then = dt_s == 0 ? ray.sight : ray.sight.at(dt_s);
+  const Pixel nominal = apply(then.frame_from_nominal.inverse(), pixel);
+  if (!nominal.allFinite()) refuse_pixel(*ray.seen, "is on the horizon of the frame's homography");
+  const auto in_cam = world.lens.ray_from_pixel(nominal);
+  if (!in_cam) refuse_pixel(*ray.seen, "is beyond the lens's field");
+  const Rigid world_from_cam = then.cam_from_world.inverse();
+  ray.pixel = pixel;
+  ray.time_s = ray.frame_s + dt_s;
+  ray.from_ned_m = world_from_cam.translation;
+  ray.direction_in_world = world_from_cam.rotation * *in_cam;
+}
+
 Ray ray_of(const scene::Seen& seen, const World& world, const FrameNear& frame_near) {
   const FramePose frame = frame_near(seen);
   const auto camera = world.camera.at(frame.time_s);
@@ -48,19 +68,7 @@ Ray ray_of(const scene::Seen& seen, const World& world, const FrameNear& frame_n
         seen.where);
   Ray ray{.seen = &seen, .frame_s = frame.time_s};
   ray.sight = sight_of(world.lens, world.shutter, world.camera, *camera, frame.time_s, frame.shake);
-  const lens::ImageSize size = world.lens.size();
-  const Pixel inside(std::clamp(seen.pixel.x(), 0.0, double(size.width)),
-                     std::clamp(seen.pixel.y(), 0.0, double(size.height)));
-  const double dt_s = world.shutter.middle_s(inside, size.width, size.height);
-  const projection::Sight then = dt_s == 0 ? ray.sight : ray.sight.at(dt_s);
-  const Pixel nominal = apply(then.frame_from_nominal.inverse(), seen.pixel);
-  if (!nominal.allFinite()) refuse_pixel(seen, "is on the horizon of the frame's homography");
-  const auto in_cam = world.lens.ray_from_pixel(nominal);
-  if (!in_cam) refuse_pixel(seen, "is beyond the lens's field");
-  const Rigid world_from_cam = then.cam_from_world.inverse();
-  ray.time_s = frame.time_s + dt_s;
-  ray.from_ned_m = world_from_cam.translation;
-  ray.direction_in_world = world_from_cam.rotation * *in_cam;
+  aim(ray, world, seen.pixel);
   ray.range_m =
       seen.range_m ? *seen.range_m : world.lens.focal_px() * kUsualLengthM / *seen.width_px;
   return ray;
@@ -120,11 +128,11 @@ scene::Intruder through_places(const scene::Intruder& intruder, const std::vecto
   return result;
 }
 
-// The width of the exact box over the stated one; empty where a part of the aircraft has no pixel.
-std::optional<double> width_share(const Ray& ray,
-                                  const trajectory::Path& path,
-                                  const World& world,
-                                  const projection::SilhouettePoints& aircraft) {
+// Empty where a part of the aircraft has no pixel.
+std::optional<Box> whole_box(const Ray& ray,
+                             const trajectory::Path& path,
+                             const World& world,
+                             const projection::SilhouettePoints& aircraft) {
   const auto state = path.at(ray.frame_s);
   check(state.has_value(), "the path reaches its own moments");
   const auto exact = projection::exact_box(ray.sight,
@@ -132,33 +140,42 @@ std::optional<double> width_share(const Ray& ray,
                                            state->world_from_body_rigid(),
                                            ray.frame_s,
                                            twist_of(path, *state, ray.frame_s, world.shutter));
-  if (!exact.box || exact.partly_unseen) return std::nullopt;
-  return exact.box->width / *ray.seen->width_px;
+  return exact.partly_unseen ? std::nullopt : exact.box;
 }
 
-// Moves each place whose width is stated to the range that gives it. The attitudes follow from all
-// places, so that they are moved together until all widths are as stated.
-void settle_widths(const scene::Intruder& intruder,
-                   const World& world,
-                   const projection::SilhouettePoints& aircraft,
-                   std::vector<Ray>& rays) {
+// Moves each place until the middle of the box is at the stated pixel, and where a width is stated
+// to the range that gives it. The attitudes follow from all places, so that they are moved
+// together.
+void settle_boxes(const scene::Intruder& intruder,
+                  const World& world,
+                  const projection::SilhouettePoints& aircraft,
+                  std::vector<Ray>& rays) {
   // Largest number of rounds: it ends a search for a width that no range gives.
   constexpr int kMaxRounds = 200;
-  // From this round on the steps are halved, for attitudes that answer to the ranges.
+  // From this round on the steps are halved, for attitudes that answer to the places.
   constexpr int kDampedRound = 20;
   const Ray* off = nullptr;
   for (int round = 0; round < kMaxRounds; ++round) {
     const trajectory::Path path = path_of(through_places(intruder, rays), world.camera);
     off = nullptr;
+    bool is_settled = true;
     for (Ray& ray : rays) {
+      const auto box = whole_box(ray, path, world, aircraft);
+      if (box && meets_frame({ray.seen->pixel.x(), ray.seen->pixel.y(), 0, 0}, world.lens.size())) {
+        const Pixel miss =
+            ray.seen->pixel - Pixel(box->x + 0.5 * box->width, box->y + 0.5 * box->height);
+        is_settled = is_settled && miss.norm() <= kMiddlePx;
+        aim(ray, world, ray.pixel + (round < kDampedRound ? 1.0 : 0.5) * miss);
+      }
       if (!ray.seen->width_px) continue;
-      const double share = width_share(ray, path, world, aircraft).value_or(2);
+      const double share = box ? box->width / *ray.seen->width_px : 2;
       if (std::abs(share - 1) > kWidthShare) off = &ray;
       ray.range_m *= round < kDampedRound ? share : std::sqrt(share);
       ray.range_m = std::min(ray.range_m, kFarthestM);
     }
-    if (off == nullptr) return;
+    if (off == nullptr && is_settled) return;
   }
+  if (off == nullptr) return;
   throw Error(
       fmt::format("no range gives {} a width_px of {} at this pixel; expected another width, "
                   "or range_m",
@@ -177,7 +194,7 @@ scene::Intruder placed_as_seen(const scene::Intruder& intruder,
                                const projection::SilhouettePoints* aircraft) {
   check(intruder.seen.size() >= 2, "an intruder is seen at two moments or more");
   std::vector<Ray> rays = rays_of(intruder, world, frame_near);
-  if (aircraft != nullptr) settle_widths(intruder, world, *aircraft, rays);
+  if (aircraft != nullptr) settle_boxes(intruder, world, *aircraft, rays);
   return through_places(intruder, rays);
 }
 

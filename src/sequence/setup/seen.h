@@ -21,15 +21,17 @@ using FrameNear = std::function<FramePose(const scene::Seen&)>;
 // Before the motion is measured: a frame at that very time, without shake.
 FramePose steady_frame(const scene::Seen& seen);
 
-// Returns the intruder with waypoints_ned_m and times_s in place of `seen`. The path passes each
-// stated pixel at the time of its frame (with a rolling shutter: of its row): the pixel's ray
-// through the lens, the measured motion of the frame and the nominal pose at that time, at the
-// stated range. Between the places it is the natural cubic spline, and it goes on straight for an
-// hour beyond both ends.
+// Returns the intruder with waypoints_ned_m and times_s in place of `seen`. In the frame of each
+// moment the exact box of `aircraft` in its attitude there has its middle at the stated pixel,
+// within kMiddlePx, and its reference point is at the stated range: a place on a ray through the
+// lens, the measured motion of the frame and the nominal pose at that time (with a rolling shutter:
+// of its row). Where the stated pixel is outside the frame, or a part of the aircraft has no pixel,
+// the reference point is at the stated one: far outside the frame a box is no measure of a place.
+// Between the places the path is the natural cubic spline, and it goes on straight for an hour
+// beyond both ends.
 //
-// Where a width is stated, the range is the one at which the exact box of `aircraft` in its
-// attitude there has this width, within kWidthShare of it; nullptr: the aircraft is
-// kUsualLengthM wide in any attitude.
+// Where a width is stated, the range is the one at which the exact box has this width, within
+// kWidthShare of it. nullptr: the aircraft is a point, kUsualLengthM wide in any attitude.
 //
 // Throws Error at the moment's place: its pixel is beyond the lens's field, its frame is that of
 // the moment before, no range gives the width, the camera's path does not reach it, or the path
@@ -41,6 +43,9 @@ scene::Intruder placed_as_seen(const scene::Intruder& intruder,
 
 // Largest relative error of a width.
 constexpr double kWidthShare = 1e-4;
+// Largest distance between the middle of a box and its stated pixel; a hundredth of what a label
+// may be off.
+constexpr double kMiddlePx = 1e-3;
 // A choice, from which the ranges of widths are first guessed.
 constexpr double kUsualLengthM = 15;
 constexpr double kFastestMps = 1e4;  // as scene::kSpeed

@@ -127,6 +127,30 @@ std::map<int, std::vector<std::string>> checks_of(const Stage& stage) {
   return checks;
 }
 
+Pixel middle_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
+
+bool is_in(const Pixel& pixel, const lens::Lens& lens) {
+  return setup::meets_frame({pixel.x(), pixel.y(), 0, 0}, lens.size());
+}
+
+// From the pixel of an aircraft's reference point to the middle of its box, times the range, by
+// which it shrinks; 0 where it is not seen.
+Pixel range_times_offset(const setup::Actor& actor,
+                         const projection::Sight& sight,
+                         const trajectory::State& camera,
+                         double time_s) {
+  const auto state = actor.path.at(time_s);
+  if (!state) return Pixel::Zero();
+  const auto box =
+      projection::exact_box(sight, actor.type->silhouette, state->world_from_body_rigid(), time_s)
+          .box;
+  const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
+  if (!box || !pixel) return Pixel::Zero();
+  const double range_m = (state->position_in_world - camera.position_in_world).norm();
+  return is_in(middle_of(*box), *sight.lens) ? Pixel(range_m * (middle_of(*box) - *pixel))
+                                             : Pixel(Pixel::Zero());
+}
+
 Json cpa_of(const std::optional<passage::Approach>& closest) {
   if (!closest) return nullptr;
   return {{"time_s", rounded(closest->time_s, 1e-3)},
@@ -240,8 +264,10 @@ class Planner {
   // [frame, x, y, range_m, width_px, visible]
   static Json point(const setup::Moment& moment, std::size_t actor) {
     const Vector3& place = moment.states[actor]->position_in_world;
-    const auto pixel = projection::pixel_from_world(moment.sight, place);
     const auto& box = moment.boxes[actor].box;
+    auto pixel = projection::pixel_from_world(moment.sight, place);
+    // As a moment of [[intruder.seen]] states it.
+    if (box && is_in(middle_of(*box), *moment.sight.lens)) pixel = middle_of(*box);
     return {moment.frame,
             pixel ? Json(hundredths(pixel->x())) : Json(),
             pixel ? Json(hundredths(pixel->y())) : Json(),
@@ -368,13 +394,16 @@ Json lines_over(const Stage& stage,
       std::max<std::int64_t>(1, (count + kMostLinePoints - 1) / kMostLinePoints);
   Json lines = Json::array();
   for (const preview::Party& party : preview::parties_of(stage.scene())) {
+    const setup::Actor& actor = world.actors[party.middle];
+    const Pixel to_middle = range_times_offset(actor, sight, *camera, time_s);
     Json points = Json::array();
     for (std::int64_t k = 0;; k = std::min(count - 1, k + step)) {
       const auto own = world.camera.at(stage.time_s(k));
-      const auto other = world.actors[party.middle].path.at(stage.time_s(k));
+      const auto other = actor.path.at(stage.time_s(k));
       if (own && other) {
-        const auto pixel = projection::pixel_from_world(
-            sight, camera->position_in_world + other->position_in_world - own->position_in_world);
+        const Vector3 off = other->position_in_world - own->position_in_world;
+        auto pixel = projection::pixel_from_world(sight, camera->position_in_world + off);
+        if (pixel) *pixel += to_middle / off.norm();
         points.push_back({k,
                           pixel ? Json(rounded(pixel->x(), 0.1)) : Json(),
                           pixel ? Json(rounded(pixel->y(), 0.1)) : Json()});
