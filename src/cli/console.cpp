@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth::cli {
@@ -39,7 +40,7 @@ std::string time_left(double left_s) {
 // the terminal.
 std::string one_line(std::string text) {
   for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = c == '\n' ? ' ' : '?';
+    if (is_control(c)) c = c == '\n' ? ' ' : '?';
   return text;
 }
 

@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::cli {
 namespace {
@@ -233,13 +234,6 @@ void add_pages(const CLI::App& root, const Page& page, std::map<std::string, std
   }
 }
 
-// One word of bash.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
-  return result + "'";
-}
-
 void add_cases(const CLI::App& root,
                const Page& page,
                std::string& words,
@@ -256,8 +250,9 @@ void add_cases(const CLI::App& root,
   for (const CLI::App* command : commands) all.push_back(command->get_name());
   const std::string name = fmt::format("{}", fmt::join(page.path, " "));
   if (!commands.empty())
-    groups += fmt::format(
-        "    {}) commands={} ;;\n", quoted(name), quoted(fmt::format("{}", fmt::join(all, " "))));
+    groups += fmt::format("    {}) commands={} ;;\n",
+                          shell_word(name),
+                          shell_word(fmt::format("{}", fmt::join(all, " "))));
   all.clear();
   for (const CLI::Option* option : options) {
     const auto names = spellings(*option);
@@ -266,12 +261,13 @@ void add_cases(const CLI::App& root,
     for (const std::string& spelling : names) {
       if (value.name.empty()) continue;
       values += fmt::format("    {}) takes_value=1 choices={} ;;\n",
-                            quoted(name + " " + spelling),
-                            quoted(fmt::format("{}", fmt::join(value.choices, " "))));
+                            shell_word(name + " " + spelling),
+                            shell_word(fmt::format("{}", fmt::join(value.choices, " "))));
     }
   }
-  words += fmt::format(
-      "    {}) options={} ;;\n", quoted(name), quoted(fmt::format("{}", fmt::join(all, " "))));
+  words += fmt::format("    {}) options={} ;;\n",
+                       shell_word(name),
+                       shell_word(fmt::format("{}", fmt::join(all, " "))));
   for (const CLI::App* command : commands) {
     Page below{command, page.path};
     below.path.push_back(command->get_name());

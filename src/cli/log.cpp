@@ -13,6 +13,7 @@
 #include "camera/motion/estimator.h"
 #include "cli/commands.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "scene/flight_log/local_path.h"
@@ -141,13 +142,13 @@ void align(const AlignArguments& arguments, Context& context) {
   context.console().result(fmt::format(
       "the log's time is the clip's plus {:.3f} +- {:.3f} s (correlation of turn rates {:.2f}; "
       "beyond "
-      "{:.0f} s of it {:.2f} at most)\nfor a scene:\n[camera]\nlog = \"{}\"\nlog_offset_s = {:.3f}",
+      "{:.0f} s of it {:.2f} at most)\nfor a scene:\n[camera]\nlog = {}\nlog_offset_s = {:.3f}",
       found.fit->offset_s,
       found.fit->offset_sigma_s,
       found.fit->correlation,
       flight_log::kApartS,
       found.other_correlation,
-      arguments.log,
+      toml_string(arguments.log),
       found.fit->offset_s));
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "foundation/base/text.h"
 #include "scene/scene/camera_keys.h"
 
 namespace airtruth::camera_file {
@@ -39,15 +40,12 @@ std::string horizon_line(const Calibration& c) {
 std::string head_of(const Calibration& c) {
   std::string text =
       "# Measured by airtruth calibrate. Values stand for [realism] file = \"...\" of a scene.\n";
-  std::string quoted;
-  for (const char ch : c.video.filename().string())
-    quoted += ch == '"' || ch == '\\' || static_cast<unsigned char>(ch) < 0x20 ? '_' : ch;
-  text += fmt::format("[clip]\nvideo = \"{}\"\nwidth = {}\nheight = {}\nframes = {}\n",
-                      quoted,
+  text += fmt::format("[clip]\nvideo = {}\nwidth = {}\nheight = {}\nframes = {}\n",
+                      toml_string(c.video.filename().string()),
                       c.width,
                       c.height,
                       c.frames);
-  if (!c.lens.empty()) text += fmt::format("lens = \"{}\"\n", c.lens);
+  if (!c.lens.empty()) text += fmt::format("lens = {}\n", toml_string(c.lens));
   if (c.tone.gamma != 0) text += fmt::format("gamma = {}\n", c.tone.gamma);
   return text + horizon_line(c);
 }

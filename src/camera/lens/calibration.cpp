@@ -61,7 +61,7 @@ std::string camera_of(const JsonObject& profile) {
     const std::string text = profile.maybe_text(key).value_or("");
     if (!text.empty()) camera += (camera.empty() ? "" : " ") + text;
   }
-  std::erase_if(camera, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  std::erase_if(camera, is_control);
   return camera;
 }
 

@@ -15,6 +15,7 @@
 #include "camera/lens/photogrammetry.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::lens {
 namespace {
@@ -279,8 +280,7 @@ std::string opencv_calibration(const Lens& lens, const std::string& note) {
   if (distortion.empty()) distortion.assign(4, 0.0);
   const bool fisheye = std::holds_alternative<Fisheye>(lens.model());
   std::string line = note;
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  std::replace_if(line.begin(), line.end(), is_control, ' ');
   // OpenCV's (0, 0) is the centre of the first pixel; airtruth's is its corner.
   const std::vector<double> matrix = {n.focal_px.x(),
                                       0,

@@ -15,24 +15,12 @@
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::build {
 namespace {
 
 constexpr std::int64_t kMaxTasks = 1000;  // Slurm's MaxArraySize is 1,001 by default
-
-// Quotes text as one word of a shell command.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      result += "'\\''";
-    } else {
-      result += c;
-    }
-  }
-  return result + "'";
-}
 
 // The options of the catalogue, then those of the command line. Where two have the same name, the
 // later one counts.
@@ -90,12 +78,12 @@ std::string work_script(const catalogue::Catalogue& catalogue,
   text += fmt::format(
       "exec {} dataset work {} --out {} --index \"$SLURM_ARRAY_TASK_ID\" --of {} --jobs "
       "\"${{SLURM_CPUS_ON_NODE:-1}}\"",
-      quoted(options.program.string()),
-      quoted(fs::absolute(catalogue.file).string()),
-      quoted(out.string()),
+      shell_word(options.program.string()),
+      shell_word(fs::absolute(catalogue.file).string()),
+      shell_word(out.string()),
       array.tasks);
   for (const auto& [name, video] : options.videos)
-    text += " --background " + quoted(name + "=" + video.string());
+    text += " --background " + shell_word(name + "=" + video.string());
   return text + "\n";
 }
 
@@ -106,8 +94,8 @@ std::string verify_script(const fs::path& out,
               catalogue::sbatch_log((out / "slurm").string(), "verify.log"),
               given) +
          fmt::format("exec {} dataset verify {} --finish --jobs \"${{SLURM_CPUS_ON_NODE:-1}}\"\n",
-                     quoted(options.program.string()),
-                     quoted(out.string()));
+                     shell_word(options.program.string()),
+                     shell_word(out.string()));
 }
 
 // Returns the first line that a command prints. Throws Error where the command fails.
@@ -154,11 +142,12 @@ Submitted submit(const catalogue::Catalogue& catalogue,
   write_file(submitted.work_script, work);
   write_file(submitted.verify_script, verify);
   if (options.dry_run) return submitted;
-  submitted.work_job = first_line("sbatch --parsable " + quoted(submitted.work_script.string()));
+  submitted.work_job =
+      first_line("sbatch --parsable " + shell_word(submitted.work_script.string()));
   submitted.work_job = submitted.work_job.substr(0, submitted.work_job.find(';'));
   submitted.verify_job =
       first_line("sbatch --parsable --dependency=afterany:" + submitted.work_job + " " +
-                 quoted(submitted.verify_script.string()));
+                 shell_word(submitted.verify_script.string()));
   submitted.verify_job = submitted.verify_job.substr(0, submitted.verify_job.find(';'));
   return submitted;
 }

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "foundation/base/text.h"
+
 namespace airtruth::catalogue {
 namespace {
 
@@ -35,8 +37,6 @@ constexpr std::array<std::string_view, 15> kOwnOptions = {"output",
 // addresses, constraints and file names. None of them means anything to sbatch's reader of #SBATCH
 // lines.
 constexpr std::string_view kValueMarks = "_-.,:=/+@%[]()*&|~^";
-
-bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
 std::string shown_text(std::string_view text) {
   std::string result = "'";

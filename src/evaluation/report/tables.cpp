@@ -37,16 +37,8 @@ std::vector<Column> columns_of(std::string_view text) {
   return columns;
 }
 
-// In quotes where it holds a comma, a quote or a line break.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + "\"";
-}
-
 std::string cell_of(const Json& value, const char* number) {
-  if (value.is_string()) return quoted(value.get<std::string>());
+  if (value.is_string()) return csv_cell(value.get<std::string>());
   if (value.is_null()) return "";
   if (!value.is_number_float()) return value.dump();
   const auto fraction = value.get<double>();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cstdint>
+#include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -9,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <toml++/toml.h>
 #include <unistd.h>
 
 #include "foundation/base/error.h"
@@ -38,6 +42,21 @@ TEST(Error, SaysThePlaceThenTheFact) {
   EXPECT_STREQ(error.what(), "scene.toml:12:3: is -1; expected a positive number");
   EXPECT_EQ(error.message(), "is -1; expected a positive number");
   EXPECT_STREQ(Error("no place").what(), "no place");
+}
+
+TEST(TomlString, IsReadBackAsTheSameText) {
+  std::string text = "\"quoted\" \\u0041 \u00e9\u4e2d\U0001f6e9\x7f";
+  for (int c = 0; c < 0x20; ++c) text += static_cast<char>(c);
+  EXPECT_EQ(toml::parse("v = " + toml_string(text))["v"].value<std::string>(), text);
+  EXPECT_EQ(toml_string("a\tb\n\r"), R"("a\tb\n\u000D")");
+}
+
+TEST(ShellWord, IsOneArgumentOfTheShell) {
+  const std::string text = "it's $HOME `a` \"b\" \\ *\n";
+  const std::unique_ptr<FILE, int (*)(FILE*)> shell(
+      ::popen(("printf %s " + shell_word(text)).c_str(), "r"), ::pclose);
+  std::array<char, 100> said{};
+  EXPECT_EQ(std::string(said.data(), std::fread(said.data(), 1, said.size(), shell.get())), text);
 }
 
 TEST(LineOf, CountsFromOneAndStaysWithinTheText) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include "foundation/base/names.h"
@@ -29,6 +30,29 @@ std::string csv_cell(std::string_view text) {
   std::string quoted = "\"";
   for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
   return quoted + "\"";
+}
+
+std::string toml_string(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      result += {'\\', c};
+    else if (c == '\n')
+      result += "\\n";
+    else if (c == '\t')
+      result += "\\t";
+    else if (is_control(c))
+      result += fmt::format("\\u{:04X}", int{c});
+    else
+      result += c;
+  }
+  return result + '"';
+}
+
+std::string shell_word(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? "'\\''" : std::string(1, c);
+  return result + "'";
 }
 
 double finite_number(const std::string& cell, const Where& where) {

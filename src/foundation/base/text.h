@@ -9,7 +9,7 @@
 
 #include "foundation/base/error.h"
 
-// Small work on the text of files: blanks, lines, cells, and base64.
+// Small work on the text of files: blanks, lines, cells, quoted words, and base64.
 namespace airtruth {
 
 // The text without the blanks, tabs and line ends around it.
@@ -21,6 +21,9 @@ inline std::string_view trimmed(std::string_view text) {
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
+
+// Whether the character controls a terminal or a parser, and shows nothing: ASCII's C0 set and DEL.
+constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
 // The line, counted from 1, of the byte at `offset` in the text, for messages about text that a
 // parser knows by its offset. An offset outside of the text means its nearest end.
@@ -38,6 +41,14 @@ std::vector<std::string> cells_of(std::string_view line);
 // The text as a cell of a CSV file: in quotes where it holds a comma, a quote or a line end (RFC
 // 4180).
 std::string csv_cell(std::string_view text);
+
+// The text as a basic string of a TOML file, in its quotes (TOML 1.0, "String").
+//
+//   toml_string("a\"b\n") is "a\"b\n" as a programmer would write it: eight characters
+std::string toml_string(std::string_view text);
+
+// The text as one word of a shell command, in single quotes.
+std::string shell_word(std::string_view text);
 
 // The cell as a number. Throws Error where it is not a number or not finite.
 double finite_number(const std::string& cell, const Where& where);

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstring>
 
+#include "foundation/base/text.h"
+
 namespace airtruth::sandbox {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr std::size_t kMaxWords = 65536;                   // bytes of an error'
 // any.
 std::string one_line(std::string text) {
   for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+    if (is_control(c)) c = '?';
   return text;
 }
 

@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
 #include "labels/exchange/pictures.h"
@@ -48,7 +49,7 @@ class MotWriter : public FolderWriter {
     write_file(folder / "gt" / "labels.txt", classes());
     write_file(folder / "seqinfo.ini", about(clip));
     write_file(folder / "tracks.txt", tracks(clip));
-    lists_[part] += in_csv(clip.name) + "\n";
+    lists_[part] += csv_cell(clip.name) + "\n";
   }
 
   void finish() override {
@@ -88,14 +89,6 @@ class MotWriter : public FolderWriter {
       for (const Label& label : frame.labels)
         if (label.visible) return true;
     return false;
-  }
-
-  // Names with commas are quoted, as TrackEval's csv.reader expects.
-  static std::string in_csv(const std::string& name) {
-    if (name.find_first_of(",\"") == std::string::npos) return name;
-    std::string quoted = "\"";
-    for (const char c : name) quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + "\"";
   }
 
   std::size_t number_of_class(const Label& label) const {

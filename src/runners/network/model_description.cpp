@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "foundation/json/json_object.h"
 
 namespace airtruth::network {
@@ -162,7 +163,7 @@ std::vector<std::string> classes_of(const JsonObject& json) {
   std::vector<std::string> classes = json.texts("classes");
   const auto usable = [](const std::string& name) {
     return !name.empty() && name.size() <= 100 && utf8_fault(name) == std::string::npos &&
-           std::ranges::none_of(name, [](unsigned char c) { return c < ' ' || c == 0x7f; });
+           std::ranges::none_of(name, is_control);
   };
   if (classes.empty() || classes.size() > kMostClasses || !std::ranges::all_of(classes, usable)) {
     json.fail("classes", fmt::format("1 to {} names of 1 to 100 bytes", kMostClasses));

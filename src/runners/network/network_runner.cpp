@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "foundation/sandbox/child.h"
 #include "foundation/sandbox/confine.h"
 #include "foundation/sandbox/messages.h"
@@ -42,8 +43,7 @@ class Network {
       : inference_(inference), channels_(job.channels), mean_(job.mean), scale_(job.scale) {
     if (const auto other = external_data_of(job.onnx)) {
       std::string name = other->substr(0, 100);
-      std::ranges::replace_if(
-          name, [](unsigned char c) { return c < ' ' || c == 0x7f; }, '?');
+      std::ranges::replace_if(name, is_control, '?');
       throw Error("its weights lie in a second file, '" + name +
                   "'; expected one file, as Python's onnx.save(onnx.load(\"MODEL.onnx\"), "
                   "\"MODEL.onnx\") makes of both");

@@ -9,6 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::scene {
 namespace {
@@ -54,10 +55,7 @@ std::string listed(const std::vector<std::string>& words) {
 // The user's text in quotes, shortened to fit one line and without control characters.
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
-  for (const char c : text.substr(0, 60)) {
-    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    result += control ? '?' : c;
-  }
+  for (const char c : text.substr(0, 60)) result += is_control(c) ? '?' : c;
   while (text.size() > 60 && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80)
     result.pop_back();
   if (text.size() > 60) {
@@ -68,9 +66,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 bool has_control_character(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-  });
+  return std::any_of(text.begin(), text.end(), is_control);
 }
 
 std::string element_name(std::string_view key, std::size_t i) {

@@ -58,8 +58,7 @@ toml::table parsed_toml(std::string_view text, const std::string& file) {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     std::string reason(error.description());
-    std::replace_if(
-        reason.begin(), reason.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    std::replace_if(reason.begin(), reason.end(), is_control, ' ');
     const auto begin = error.source().begin;
     throw Error("is not TOML: " + reason,
                 {file, static_cast<int>(begin.line), static_cast<int>(begin.column)});

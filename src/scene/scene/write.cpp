@@ -13,6 +13,7 @@
 
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "scene/scene/camera_keys.h"
 #include "scene/scene/scene.h"
 
@@ -56,17 +57,7 @@ class Text {
   template <typename Enum>
   requires std::is_enum_v<Enum>
   static std::string toml(Enum value) { return toml(std::string(enum_name(value))); }
-  static std::string toml(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) {
-      if (c == '"' || c == '\\') result += '\\';
-      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-        result += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-      else
-        result += c;
-    }
-    return result + "\"";
-  }
+  static std::string toml(const std::string& text) { return toml_string(text); }
   template <typename Range>
   requires requires(const Range& r) {
     r.front();

@@ -15,6 +15,7 @@
 #include "camera/motion/shake.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_frames.h"
 #include "picture/video/reader.h"
@@ -51,6 +52,23 @@ std::optional<fs::path> subtitles_of(const fs::path& video) {
     if (fs::is_regular_file(file)) return file;
   }
   return std::nullopt;
+}
+
+// A path as a string of the scene. Throws Error where a scene cannot state it.
+std::string in_quotes(const fs::path& path) {
+  const std::string text = path.string();
+  if (std::ranges::any_of(text, is_control))
+    throw Error("has a control character in its name; expected a name that a scene can state",
+                {text});
+  return toml_string(text);
+}
+
+// A file as the scene names it: relative to the scene's folder where that is stated.
+std::string as_written(const fs::path& file, const NewSceneOptions& options) {
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  return in_quotes(options.folder
+                       ? whole.lexically_proximate(fs::absolute(*options.folder).lexically_normal())
+                       : whole);
 }
 
 LensWords in_words(const lens::Lens& lens, const std::string& origin) {
@@ -137,7 +155,7 @@ std::string note_in(const fs::path& calibration) {
 LensWords lens_for(const fs::path& video, lens::ImageSize size, const NewSceneOptions& options) {
   if (options.lens)
     return {lens::read_calibration(*options.lens, size, options.warn),
-            fmt::format("[lens]\nfile = \"{}\"\n", fs::absolute(*options.lens).string()),
+            fmt::format("[lens]\nfile = {}\n", in_quotes(fs::absolute(*options.lens))),
             "the stated calibration" + note_in(*options.lens)};
   if (auto found = lens_from_files(video, size)) return *found;
   return estimated_lens(video, options);
@@ -163,23 +181,6 @@ std::optional<fs::path> log_of(const fs::path& video) {
   return std::nullopt;
 }
 
-std::string quoted(const fs::path& path) {
-  std::string text = "\"";
-  for (const char c : path.string()) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return text + '"';
-}
-
-// A file as the scene names it: relative to the scene's folder where that is stated.
-fs::path as_written(const fs::path& file, const NewSceneOptions& options) {
-  const fs::path whole = fs::absolute(file).lexically_normal();
-  return options.folder
-             ? whole.lexically_proximate(fs::absolute(*options.folder).lexically_normal())
-             : whole;
-}
-
 struct CameraWords {
   scene::Camera camera;
   std::string table;
@@ -195,7 +196,7 @@ CameraWords camera_for(const fs::path& video,
     words.camera.log = log;
     words.table +=
         fmt::format("log = {}                  # where the aircraft flew: airtruth log show\n",
-                    quoted(as_written(*log, options)));
+                    as_written(*log, options));
   } else {
     words.camera.position_ned_m = {0, 0, -150};
     words.camera.velocity_ned_mps = {20, 0, 0};
@@ -271,11 +272,11 @@ Part part_of(const fs::path& video,
   return part;
 }
 
-std::string background_words(const fs::path& video,
+std::string background_words(const std::string& video,
                              const Part& part,
                              double duration_s,
                              const std::optional<double>& picture_rate_hz) {
-  std::string words = fmt::format("[background]\nvideo = {}\n", quoted(video));
+  std::string words = fmt::format("[background]\nvideo = {}\n", video);
   if (picture_rate_hz) words += fmt::format("frame_rate_hz = {}\n", *picture_rate_hz);
   if (!part.is_whole)
     words += fmt::format(
@@ -322,6 +323,7 @@ std::string profile_lines(const video::StreamInfo& info) {
 }  // namespace
 
 std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
+  const std::string background = as_written(video, options);
   const video::StreamInfo info = info_of(video, options);
   const lens::ImageSize size{info.width, info.height};
   const LensWords lens = lens_for(video, size, options);
@@ -360,7 +362,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       info.height,
       rate_hz,
       seconds_of(info.frame_count_estimate),
-      background_words(as_written(video, options), part, duration_s, options.picture_rate_hz),
+      background_words(background, part, duration_s, options.picture_rate_hz),
       lens.origin,
       lens.table,
       camera.table,

@@ -121,6 +121,30 @@ std::string fault_of(const fs::path& video, const NewSceneOptions& options) {
   return "";
 }
 
+TEST(NewScene, NamesOfFilesMayHoldQuotesAndNoControlCharacters) {
+  const test_support::TemporaryFolder folder;
+  const fs::path video = folder / "a \"b\" \\n \u00e9.mp4";
+  synthetic::FlightOptions flight;
+  flight.frame_count = 4;
+  flight.width = 160;
+  flight.height = 120;
+  demo::write_flight(synthetic::Flight(flight), video, {});
+  NewSceneOptions options;
+  options.lens = fs::path(video).replace_extension(".yml");
+  const lens::Lens lens = lens::pinhole_from_vertical_fov(60, {160, 120});
+  std::ofstream(*options.lens) << lens::opencv_calibration(lens, "");
+  const scene::Scene scene = scene::parse_scene(scene_text(video, options), folder / "s.toml");
+  EXPECT_EQ(scene.background.video, video);
+  EXPECT_EQ(scene.lens.file, options.lens);
+
+  const fs::path in_two_lines = folder / "a\nb.mp4";
+  fs::copy_file(video, in_two_lines);
+  EXPECT_THAT(fault_of(in_two_lines, options), testing::HasSubstr("has a control character"));
+  fs::copy_file(*options.lens, folder / "a\x7f.yml");
+  options.lens = folder / "a\x7f.yml";
+  EXPECT_THAT(fault_of(video, options), testing::HasSubstr("has a control character"));
+}
+
 TEST(NewScene, PicturesAskForTheirRate) {
   const test_support::TemporaryFolder folder;
   synthetic::FlightOptions options;

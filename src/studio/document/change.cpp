@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::document {
 namespace {
@@ -48,24 +49,6 @@ void check_value(const Json& value, const std::string& place, int depth = 0) {
     refuse(place, "holds a number that is not finite");
   if (value.is_structured())
     for (const Json& part : value) check_value(part, place, depth + 1);
-}
-
-std::string toml_string(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      result += {'\\', c};
-    else if (c == '\n')
-      result += "\\n";
-    else if (c == '\t')
-      result += "\\t";
-    else if (code < 0x20 || code == 0x7f)
-      result += fmt::format("\\u{:04X}", code);
-    else
-      result += c;
-  }
-  return result + '"';
 }
 
 // 613.2, 288, 0.000012: as a person writes it.
