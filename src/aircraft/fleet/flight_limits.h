@@ -10,8 +10,6 @@
 // with its sources. Speeds are true airspeeds in still air.
 namespace airtruth::fleet {
 
-inline constexpr double kStandardGravityMps2 = 9.80665;  // 3rd CGPM, 1901
-
 struct FlightLimits {
   std::string_view name;  // of the class: "light piston"
   // The envelope of the class: the lowest stall speed and the highest limit speed among its types,

@@ -10,6 +10,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::fleet {
 namespace {
@@ -25,8 +26,8 @@ model::Extents extents_of(double span_m, double length_m) {
 TEST(Scale, IsCorrectedWhereSpanAndLengthAgreeThatItIsOff) {
   const PublishedSize* cessna = published_size("c172/news");
   ASSERT_NE(cessna, nullptr);
-  EXPECT_NEAR(cessna->span_m, 36 * 0.3048 + 0.0254, 0.01);
-  EXPECT_NEAR(cessna->length_m, 27 * 0.3048 + 2 * 0.0254, 0.01);
+  EXPECT_NEAR(cessna->span_m, 36 * kMetresOfFoot + 0.0254, 0.01);
+  EXPECT_NEAR(cessna->length_m, 27 * kMetresOfFoot + 2 * 0.0254, 0.01);
   EXPECT_NEAR(scale_to_published(extents_of(9.63, 7.77), *cessna), 11.00 / 9.63, 1e-12);
   EXPECT_EQ(scale_to_published(extents_of(9.63, 8.28), *cessna), 1);   // the length is right
   EXPECT_EQ(scale_to_published(extents_of(9.63, 9.00), *cessna), 1);   // too narrow and too long

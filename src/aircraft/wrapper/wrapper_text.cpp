@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/text.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::wrapper {
 namespace {
@@ -46,14 +47,13 @@ Vector3 vector(const Node& node, const char* suffix) {
 
 double property_value(const std::string& property, const Cruise& cruise) {
   constexpr double kGearUpAboveFt = 500;  // chosen: an approach is stabilised by then, gear down
-  constexpr double kFpsFromKt = 1.68781;  // feet a second: 1852 m / 3600 s / 0.3048 m
   constexpr double kKtOfMach1 = 661.5;    // at sea level in the standard atmosphere
   const auto contains = [&](const char* part) { return property.find(part) != std::string::npos; };
   const double gear_down = cruise.altitude_agl_ft > kGearUpAboveFt ? 0 : 1;
   if (contains("gear/gear")) return contains("position-norm") ? gear_down : 0;
   if (contains("gear-down")) return gear_down;
   if (contains("speed-kt")) return cruise.airspeed_kt;  // air and ground
-  if (contains("uBody-fps")) return cruise.airspeed_kt * kFpsFromKt;
+  if (contains("uBody-fps")) return cruise.airspeed_kt * kMpsOfKnot / kMetresOfFoot;
   if (contains("velocities/mach")) return cruise.airspeed_kt / kKtOfMach1;
   if (contains("altitude-agl-ft") || contains("altitude-ft")) return cruise.altitude_agl_ft;
   // Usual speeds at cruise, in revolutions a minute: of a helicopter's main and tail rotor, and of

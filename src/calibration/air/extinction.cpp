@@ -264,8 +264,6 @@ Measured<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
 std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& ground,
                                                const SkyCurves& sky,
                                                double altitude_m) {
-  // -ln(0.02): Koschmieder's visibility is the range at which 2 % of the contrast remain.
-  constexpr double kKoschmieder = 3.912;
   // Share of the values that lie below the one that is used.
   constexpr double kQuantile = 0.25;
   // Least number of cells with a value.

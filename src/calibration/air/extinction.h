@@ -32,6 +32,10 @@ Measured<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
                                   const SkyCurves& sky,
                                   double altitude_m);
 
+// Extinction times visibility, -ln(0.02): the visibility of Koschmieder (1924) is the range at
+// which 2 % of the contrast remain.
+constexpr double kKoschmieder = 3.912;
+
 // A weak prior for clips without a measured extinction: the least visibility, in km, that the
 // appearance of the horizon supports. Let A be the light of the sky at the horizon, D that of the
 // darkest near ground (more than 10 degrees below the horizon) and L that of the darkest ground

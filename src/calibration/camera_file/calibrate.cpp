@@ -60,15 +60,12 @@ bool is_measured(const motion::FrameMotion& motion) {
   return motion.state == motion::State::kMeasured || motion.state == motion::State::kReference;
 }
 
-// Koschmieder (1924): extinction = 3.912 / visibility, the range at which 2 % of the contrast
-// remain.
-constexpr double kKoschmieder = 3.912;
 // The visibility beyond which the international visibility code calls the air exceptionally clear
 // (extinction.h).
 constexpr double kClearKm = air::kVisibilityClassesKm.back();
 
 Quantity hazy_prior(const air::Air& air, bool height_known) {
-  const double per_km = kKoschmieder / *air.visibility_km;
+  const double per_km = air::kKoschmieder / *air.visibility_km;
   const Estimate hazy{per_km, per_km};
   Quantity quantity;
   quantity.values = {hazy, hazy, hazy};
@@ -83,7 +80,7 @@ Quantity hazy_prior(const air::Air& air, bool height_known) {
 }
 
 Quantity clear_air(const air::Air& air) {
-  const Estimate clear{0, kKoschmieder / kClearKm};
+  const Estimate clear{0, air::kKoschmieder / kClearKm};
   Quantity quantity;
   quantity.values = {clear, clear, clear};
   quantity.source = "assumed";

@@ -10,6 +10,7 @@
 #include "calibration/optics/edge_fit.h"
 #include "calibration/optics/step_model.h"
 #include "foundation/base/error.h"
+#include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
 
 namespace airtruth::optics {
@@ -151,11 +152,9 @@ Estimate common_amount(const std::vector<GatheredEdge>& edges, const std::vector
     total += a.weight, squares += a.weight * a.weight;
     a.value = std::abs(a.value - middle);
   }
-  // The standard deviation of a Gaussian over its median absolute deviation.
-  constexpr double kSigmaFromMedian = 1.4826;
   // The median of Gaussian values has the error of a mean of 2 / pi as many values.
   const double many = total * total / squares * 2 / kPi;
-  const double scatter = std::hypot(kSigmaFromMedian * median_of(amounts), kAmountScatter);
+  const double scatter = std::hypot(kSigmaOfMad * median_of(amounts), kAmountScatter);
   return {middle, scatter / std::sqrt(many)};
 }
 

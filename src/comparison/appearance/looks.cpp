@@ -108,7 +108,8 @@ double laplacian_deviation(const cv::Mat& grey, const cv::Mat& mask) {
   cv::filter2D(grey, laplacian, CV_32F, kernel);
   std::vector<double> values = values_where(laplacian, mask);
   for (double& v : values) v = std::abs(v);
-  return 1.4826 * median_or_0(std::move(values)) / 6;  // of unit white noise: 1 (Immerkaer 1996)
+  // Of unit white noise: 1 (Immerkaer 1996).
+  return kSigmaOfMad * median_or_0(std::move(values)) / 6;
 }
 
 // How much of the spectrum lies above a frequency, in cycles a pixel.

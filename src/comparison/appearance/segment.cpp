@@ -19,7 +19,6 @@ namespace {
 constexpr double kMinDifference = 8;  // code values that the aircraft differs by
 constexpr double kDeviations = 4;     // of the rim's spread that the aircraft differs by
 constexpr int kMinArea = 3;           // px of a silhouette
-constexpr double kFromMad = 1.4826;   // standard deviation over median absolute deviation
 
 // a + b x + c y through the samples, x and y from the middle.
 cv::Vec3d plane_through(const cv::Mat& grey, const cv::Mat& where) {
@@ -52,7 +51,7 @@ double spread_about(const cv::Mat& grey, const cv::Mat& level, const cv::Mat& wh
     for (int x = 0; x < grey.cols; ++x)
       if (where.at<unsigned char>(y, x) != 0)
         off.push_back(std::abs(double(grey.at<float>(y, x)) - double(level.at<float>(y, x))));
-  return kFromMad * median_or_0(std::move(off));
+  return kSigmaOfMad * median_or_0(std::move(off));
 }
 
 cv::Mat rim_of(const cv::Size& size) {

@@ -13,6 +13,7 @@
 #include "dataset/build/plan.h"
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
@@ -277,7 +278,7 @@ TEST(Drawing, ABankedPathIsACoordinatedTurn) {
       "climb_deg = [0, 0]\nbank_deg = [30, 30]\nrange_m = [400, 500]\n");
   for (std::int64_t i = 0; i < 20; ++i) {
     const auto path = path_of_first(Expansion(catalogue).at(i).scene);
-    const double radius_m = 55.0 * 55 / (9.80665 * std::tan(radians(30)));
+    const double radius_m = 55.0 * 55 / (kStandardGravityMps2 * std::tan(radians(30)));
     const auto begin = path.at(0);
     const auto end = path.at(3);
     ASSERT_TRUE(begin && end);

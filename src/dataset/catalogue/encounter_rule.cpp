@@ -21,6 +21,7 @@
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
+#include "foundation/geometry/units.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/moment.h"
 
@@ -227,7 +228,7 @@ Demands demands_of(const track::Track& track) {
     const double rate = std::abs(turned) / (track.times_s[i] - track.times_s[i - 1]);
     // A coordinated turn.
     demands.bank_deg =
-        std::max(demands.bank_deg, degrees(std::atan(speed * rate / fleet::kStandardGravityMps2)));
+        std::max(demands.bank_deg, degrees(std::atan(speed * rate / kStandardGravityMps2)));
   }
   return demands;
 }

@@ -10,6 +10,7 @@
 #include "aircraft/fleet/flight_limits.h"
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 #include "labels/projection/exact_box.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/moment.h"
@@ -73,7 +74,7 @@ void lay_turn(scene::Intruder& intruder,
               double clip_s) {
   const double over_ground_mps = encounter.speed_mps * std::cos(radians(encounter.climb_deg));
   const double turn_rate =
-      fleet::kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
+      kStandardGravityMps2 * std::tan(radians(encounter.bank_deg)) / over_ground_mps;
   const double step_s = std::min(kTurnStep_s, radians(kTurnStepDeg) / std::abs(turn_rate));
   const double begin_s = -kTurnMargin * step_s;
   const double span_s = clip_s + kPastClip_s - begin_s;

@@ -10,6 +10,7 @@
 #include "encounter/encounter_model/sampler.h"
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 #include "support/chi_square.h"
 #include "support/small_encounter_model.h"
 
@@ -165,7 +166,7 @@ TEST(ModelSampler, TheCutIsTheConditionalDistribution) {
   chi.add(layers, {low / (low + high), high / (low + high)});
   EXPECT_LT(chi.normal_deviate(), test_support::kLevel0001);
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    const double start_ft = -sampler.sample(i).track.positions_ned_m[0].z() / track::kMetresOfFoot;
+    const double start_ft = -sampler.sample(i).track.positions_ned_m[0].z() / kMetresOfFoot;
     EXPECT_GE(start_ft, 1000 - 1e-9);
     EXPECT_LE(start_ft, 2000 + 1e-9);
   }
@@ -208,8 +209,8 @@ TEST(ModelSampler, TracksMoveAsTheirVelocitiesSay) {
     EXPECT_EQ(track.velocities_ned_mps[0].y(), 0);
     longest_m = std::max(longest_m, track.positions_ned_m.back().head<2>().norm());
   }
-  EXPECT_LT(longest_m, 120 * 150 * track::kMpsOfKnot);
-  EXPECT_GT(longest_m, 120 * 100 * track::kMpsOfKnot);
+  EXPECT_LT(longest_m, 120 * 150 * kMpsOfKnot);
+  EXPECT_GT(longest_m, 120 * 100 * kMpsOfKnot);
 }
 
 // Aircraft that all fly at 100 kt, level, and turn right at 3 to 3.0001 degrees a second.
@@ -247,7 +248,7 @@ TEST(ModelSampler, ASteadyTurnIsACircle) {
   SampleOptions options;
   options.duration_s = 120;  // once round
   const track::Track track = Sampler(model, options).sample(0).track;
-  const double radius_m = 100 * track::kMpsOfKnot / radians(3);
+  const double radius_m = 100 * kMpsOfKnot / radians(3);
   for (const Vector3& position : track.positions_ned_m) {
     EXPECT_NEAR((position.head<2>() - Eigen::Vector2d(0, radius_m)).norm(), radius_m, 0.1);
     EXPECT_EQ(position.z(), track.positions_ned_m[0].z());

@@ -9,6 +9,7 @@
 
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::encounter_model {
 namespace {
@@ -60,10 +61,9 @@ Sampler::Sampler(BayesModel model, const SampleOptions& options)
         "a track of {} s is asked for; expected 1 to {} s", options.duration_s, kMaxDuration_s));
   for (const std::size_t variable : cut_.variables()) is_cut_[variable] = true;
   const VariablePlaces& places = model_.places;
-  if (places.speed_kt) speeds_ = ranges_of(model_.edges[*places.speed_kt], track::kMpsOfKnot);
+  if (places.speed_kt) speeds_ = ranges_of(model_.edges[*places.speed_kt], kMpsOfKnot);
   rate_variables_ = {places.acceleration_ktps, places.vertical_rate_ftpmin, places.turn_rate_dps};
-  const std::array<double, kRates> units = {
-      track::kMpsOfKnot, track::kMpsOfFootPerMinute, radians(1)};
+  const std::array<double, kRates> units = {kMpsOfKnot, kMpsOfFootPerMinute, radians(1)};
   for (std::size_t rate = 0; rate < kRates; ++rate)
     if (const auto variable = rate_variables_[rate])
       ranges_[rate] = ranges_of(model_.edges[*variable], units[rate]);
@@ -148,7 +148,7 @@ struct Sampler::Flight {
 Sampler::Flight Sampler::begin(Random& random, const std::size_t* bins) const {
   Flight flight;
   const auto [low_ft, width_ft] = cut_.altitude_range_ft(bins[*model_.places.altitude_ft]);
-  flight.position_m.z() = -track::kMetresOfFoot * (low_ft + width_ft * random.uniform());
+  flight.position_m.z() = -kMetresOfFoot * (low_ft + width_ft * random.uniform());
   if (const auto speed = model_.places.speed_kt)
     flight.speed_mps = drawn_value(speeds_[bins[*speed]], random);
   for (std::size_t rate = 0; rate < kRates; ++rate)

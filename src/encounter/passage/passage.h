@@ -7,6 +7,7 @@
 
 #include "encounter/separation/violation.h"
 #include "foundation/base/names.h"
+#include "foundation/geometry/units.h"
 #include "scene/trajectory/path.h"
 
 // The encounter of two whole paths, between frames too. Times are on the clock of the paths.
@@ -83,7 +84,7 @@ constexpr auto enum_names(VerticalMotion) {
                                                   {VerticalMotion::kDescending, "descending"}});
 }
 // A climb of 500 ft/min and more is climbing, as TCAS II shows it by an arrow (RTCA DO-185B).
-constexpr double kClimbingMps = 500 * separation::kMetresPerFoot / 60;
+constexpr double kClimbingMps = 500 * kMpsOfFootPerMinute;
 VerticalMotion vertical_motion_of(const separation::Mover& intruder);
 
 // Where an intruder stands against the horizon of level ground.

@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::placement {
 namespace {
@@ -119,7 +120,8 @@ TEST(ByApproach, TheSpeedIsAlongThePath) {
   EXPECT_NEAR(state->velocity_in_world_mps.z(), 20, 1e-9);
   const YawPitchRoll attitude = yaw_pitch_roll(state->world_from_body);
   const double ground_mps = std::sqrt(62.0 * 62 - 20 * 20);
-  EXPECT_NEAR(attitude.roll_deg, degrees(std::atan(ground_mps * radians(3) / 9.80665)), 1e-9);
+  EXPECT_NEAR(
+      attitude.roll_deg, degrees(std::atan(ground_mps * radians(3) / kStandardGravityMps2)), 1e-9);
   EXPECT_NEAR(attitude.pitch_deg, -degrees(std::asin(20.0 / 62)), 1e-9);
   EXPECT_NEAR(std::remainder(attitude.yaw_deg - (180 + 3 * (2 - 8)), 360), 0, 1e-9);
 }

@@ -16,13 +16,11 @@
 
 #include "encounter/separation/violation.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/units.h"
 #include "support/random_encounter.h"
 
 namespace airtruth::separation {
 namespace {
-
-constexpr double kMpsPerKnot = kMetresPerNauticalMile / 3600;
-constexpr double kMpsPerFpm = kMetresPerFoot / 60;
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells(1);
@@ -62,14 +60,14 @@ Answer answer_of(const std::vector<std::string>& row, std::size_t levels) {
   std::size_t i = 5;
   for (std::size_t level = 0; level < levels; ++level)
     answer.to_volume_s.push_back(defined(row.at(i++)));
-  answer.horizontal_m = *defined(row.at(i++)) * kMetresPerNauticalMile;
-  answer.above_m = *defined(row.at(i++)) * kMetresPerFoot;
-  answer.relative_speed_mps = *defined(row.at(i++)) * kMpsPerKnot;
+  answer.horizontal_m = *defined(row.at(i++)) * kMetresOfNauticalMile;
+  answer.above_m = *defined(row.at(i++)) * kMetresOfFoot;
+  answer.relative_speed_mps = *defined(row.at(i++)) * kMpsOfKnot;
   ++i;  // the vertical closure rate
-  answer.hmd_m = *defined(row.at(i++)) * kMetresPerNauticalMile;
-  answer.vmd_m = *defined(row.at(i++)) * kMetresPerFoot;
+  answer.hmd_m = *defined(row.at(i++)) * kMetresOfNauticalMile;
+  answer.vmd_m = *defined(row.at(i++)) * kMetresOfFoot;
   answer.tcpa_s = defined(row.at(i++)).value_or(0);
-  answer.dcpa_m = *defined(row.at(i++)) * kMetresPerNauticalMile;
+  answer.dcpa_m = *defined(row.at(i++)) * kMetresOfNauticalMile;
   answer.tcoa_s = defined(row.at(i++));
   answer.tau_mod_s = i < row.size() ? defined(row.at(i)) : std::nullopt;
   return answer;
@@ -84,8 +82,8 @@ void expect_near(double ours, double theirs, double printed, const char* what) {
 void expect_same(const test_support::Pair& pair, const Answer& answer, double digit) {
   const Measures m = measures(pair.own, pair.intruder);
   const Vector3 v = pair.intruder.velocity_ned_mps - pair.own.velocity_ned_mps;
-  const double nmi = digit * kMetresPerNauticalMile;
-  const double foot = digit * kMetresPerFoot;
+  const double nmi = digit * kMetresOfNauticalMile;
+  const double foot = digit * kMetresOfFoot;
   expect_near(m.horizontal_m, answer.horizontal_m, nmi, "horizontal separation");
   expect_near(std::abs(m.above_m), answer.above_m, foot, "vertical separation");
   expect_near(v.head<2>().norm(), answer.relative_speed_mps, digit, "relative speed");
@@ -119,7 +117,7 @@ void expect_same_violation(const test_support::Pair& pair,
 // ------------------------------------------------------------------------------------------ H1
 
 // A place on DAIDALUS's sphere, on which a minute of arc is a nautical mile.
-constexpr double kEarthRadiusM = kMetresPerNauticalMile * 60 * 180 / kPi;
+constexpr double kEarthRadiusM = kMetresOfNauticalMile * 60 * 180 / kPi;
 
 Vector3 on_sphere(double latitude, double longitude) {
   return {std::cos(latitude) * std::cos(longitude),
@@ -149,10 +147,10 @@ struct Geodetic {
 Geodetic geodetic_of(const std::vector<std::string>& row) {
   return {radians(std::stod(row.at(1))),
           radians(std::stod(row.at(2))),
-          std::stod(row.at(3)) * kMetresPerFoot,
-          std::stod(row.at(4)) * kMpsPerKnot,
-          std::stod(row.at(5)) * kMpsPerKnot,
-          std::stod(row.at(6)) * kMpsPerFpm};
+          std::stod(row.at(3)) * kMetresOfFoot,
+          std::stod(row.at(4)) * kMpsOfKnot,
+          std::stod(row.at(5)) * kMpsOfKnot,
+          std::stod(row.at(6)) * kMpsOfFootPerMinute};
 }
 
 Mover projected(const Plane& plane, const Geodetic& g) {

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "foundation/geometry/transform.h"
+#include "foundation/geometry/units.h"
 
 // How two aircraft stand to each other at one instant: the measures of detect-and-avoid, for
 // aircraft that keep their present velocity. Source of the measures: Munoz et al. 2014 ("A Family
@@ -41,7 +42,7 @@ struct MeasureOptions {
   // How far ahead the miss distances look. 180 s is the lookahead of DAIDALUS for DO-365.
   double lookahead_s = 180;
   // The distance of the modified tau, DMOD. 0.66 nmi is that of DO-365 (appendix C).
-  double tau_distance_m = 0.66 * 1852;
+  double tau_distance_m = 0.66 * kMetresOfNauticalMile;
 };
 
 // A measure that is not defined is empty; no measure is ever NaN or infinite.

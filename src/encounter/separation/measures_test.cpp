@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "foundation/geometry/units.h"
 #include "support/random_encounter.h"
 
 namespace airtruth::separation {
@@ -29,7 +30,7 @@ TEST(Measures, HeadOnWithAnOffset) {
   EXPECT_DOUBLE_EQ(m.hmd_m, 200);
   EXPECT_DOUBLE_EQ(*m.tcoa_s, 60);
   EXPECT_DOUBLE_EQ(m.vmd_m, 0);
-  const double dmod_m = 0.66 * 1852;
+  const double dmod_m = 0.66 * kMetresOfNauticalMile;
   EXPECT_NEAR(*m.tau_mod_s, (4000.0 * 4000 + 200 * 200 - dmod_m * dmod_m) / (4000 * 200), 1e-12);
 }
 
@@ -86,7 +87,7 @@ TEST(Measures, AClosingSpeedOfRoundingGivesNoTau) {
     EXPECT_TRUE(abeam.dcpa_m) << closing_mps;
   }
   const Measures slow = measures({{0, 0, -500}, {0, 0, 0}}, {{3000, 0, -500}, {-1e-3, 40, 0}});
-  const double dmod_m = 0.66 * 1852;
+  const double dmod_m = 0.66 * kMetresOfNauticalMile;
   EXPECT_NEAR(slow.tau_mod_s.value(), (3000.0 * 3000 - dmod_m * dmod_m) / (3000 * 1e-3), 1e-3);
 }
 

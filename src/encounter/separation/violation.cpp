@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "foundation/geometry/units.h"
+
 namespace airtruth::separation {
 namespace {
 
@@ -75,8 +77,8 @@ std::optional<Interval> violation(const Volume& stated,
 
 namespace {
 
-constexpr double kFt = kMetresPerFoot;
-constexpr double kNmi = kMetresPerNauticalMile;
+constexpr double kFt = kMetresOfFoot;
+constexpr double kNmi = kMetresOfNauticalMile;
 
 // The source's own units are kept in the numbers.
 constexpr std::array kVolumes = {

@@ -12,9 +12,6 @@
 // The volumes of airspace around an aircraft that detect-and-avoid keeps others out of.
 namespace airtruth::separation {
 
-constexpr double kMetresPerFoot = 0.3048;
-constexpr double kMetresPerNauticalMile = 1852;
-
 // Thresholds as of Munoz et al. 2014 (NASA/TM-2014-218280, section 2). A state violates the volume
 // where it violates both parts:
 //   horizontally: distance <= horizontal_m, or dcpa <= horizontal_m and 0 <= tau_mod <= tau_s with

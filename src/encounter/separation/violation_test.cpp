@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "foundation/geometry/units.h"
 #include "support/random_encounter.h"
 
 namespace airtruth::separation {
@@ -47,7 +48,7 @@ TEST(Violation, HeadOnThroughTheNearMidAirCollision) {
 TEST(Violation, TheTauBeginsBeforeTheCircle) {
   const Mover own{{0, 0, -1000}, {100, 0, 0}};
   const Mover intruder{{20000, 0, -1000}, {-100, 0, 0}};
-  const double d_m = 0.66 * 1852;
+  const double d_m = 0.66 * kMetresOfNauticalMile;
   const double begins_m = 3500 + std::sqrt(3500.0 * 3500 + d_m * d_m);
   const auto lost = violation(volume("do365-phase1"), own, intruder, 180);
   ASSERT_TRUE(lost);
@@ -63,9 +64,9 @@ TEST(Violation, TheCoAltitudeThresholdBeginsBeforeTheSlab) {
   const auto lost = violation(volume("do365-buffered"), own, intruder, 180);
   ASSERT_TRUE(lost);
   EXPECT_DOUBLE_EQ(lost->begin_s, 20);
-  EXPECT_NEAR(lost->end_s, (400 + 450 * 0.3048) / 10, 1e-6);
+  EXPECT_NEAR(lost->end_s, (400 + 450 * kMetresOfFoot) / 10, 1e-6);
   const auto without = violation(volume("do365-phase1"), own, intruder, 180);
-  EXPECT_NEAR(without->begin_s, (400 - 450 * 0.3048) / 10, 1e-6);
+  EXPECT_NEAR(without->begin_s, (400 - 450 * kMetresOfFoot) / 10, 1e-6);
 }
 
 // 609.6 m abeam on any course: rounding of the distance does not decide, 1 mm does.

@@ -64,12 +64,4 @@ void turn_and_move(Track& track,
                    const Vector3& pivot_ned_m,
                    const Vector3& shift_m);
 
-// Units of aviation in SI. All are exact: the international foot (1959) and the international
-// nautical mile (1929).
-
-constexpr double kMetresOfFoot = 0.3048;
-constexpr double kMetresOfNauticalMile = 1852;
-constexpr double kMpsOfKnot = kMetresOfNauticalMile / 3600;
-constexpr double kMpsOfFootPerMinute = kMetresOfFoot / 60;
-
 }  // namespace airtruth::track

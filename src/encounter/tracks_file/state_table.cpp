@@ -15,6 +15,7 @@
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -205,7 +206,7 @@ class RowReader {
       throw Error("the position is more than 60 degrees from the first; expected an encounter",
                   where_);
     // The sphere on which a minute of arc is a nautical mile.
-    constexpr double kEarthRadius_m = track::kMetresOfNauticalMile * 60 * 180 / kPi;
+    constexpr double kEarthRadius_m = kMetresOfNauticalMile * 60 * 180 / kPi;
     position_m.x() = kEarthRadius_m * (cos_0 * sin_here - sin_0 * cos_here * cos_turn);
     position_m.y() = kEarthRadius_m * cos_here * sin_turn;
     const double north = velocity_mps.x(), east = velocity_mps.y();
@@ -320,8 +321,8 @@ std::string state_table_of(const track::Encounter& encounter) {
       "unitless, [ft], [ft], [ft], [rad], [ftps], [ftps], [s]\n";
   for (const track::Track& track : whole_tracks(encounter, ".txt"))
     for (std::size_t i = 0; i < track.size(); ++i) {
-      const Vector3 p = track.positions_ned_m[i] / track::kMetresOfFoot;
-      const Vector3 v = track.velocities_ned_mps[i] / track::kMetresOfFoot;
+      const Vector3 p = track.positions_ned_m[i] / kMetresOfFoot;
+      const Vector3 v = track.velocities_ned_mps[i] / kMetresOfFoot;
       const double course = std::atan2(v.y(), v.x());
       fmt::format_to(std::back_inserter(text),
                      "{}, {}, {}, {}, {}, {}, {}, {}\n",

@@ -10,6 +10,7 @@
 #include "encounter/track/track.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -90,8 +91,7 @@ TEST(StateTable, AnAirspeedIsAlongTheClimbingPath) {
       "INTRUDER, 0, 1000, 1000, 0, 50, 0, 0.0\n",
       "1.txt");
   EXPECT_LT(
-      (encounter.aircraft[0].velocities_ned_mps[0] / track::kMetresOfFoot - Vector3(0, 40, -30))
-          .norm(),
+      (encounter.aircraft[0].velocities_ned_mps[0] / kMetresOfFoot - Vector3(0, 40, -30)).norm(),
       1e-9);
 }
 
@@ -203,11 +203,10 @@ TEST(StateTable, DistancesAreThoseOfDaidalus) {
   const track::Track &own = encounters[0].aircraft[0], &other = encounters[0].aircraft[1];
   EXPECT_EQ(own.size(), 230u);
   const Vector3 apart = own.positions_ned_m[0] - other.positions_ned_m[0];
-  EXPECT_NEAR(apart.head<2>().norm() / track::kMetresOfNauticalMile, 44.554796, 1e-6);
+  EXPECT_NEAR(apart.head<2>().norm() / kMetresOfNauticalMile, 44.554796, 1e-6);
   // DAIDALUS projects the mean velocity over 10 s, here the velocity itself is projected.
   const Vector3 closing = own.velocities_ned_mps[0] - other.velocities_ned_mps[0];
-  EXPECT_NEAR(
-      -apart.head<2>().normalized().dot(closing.head<2>()) / track::kMpsOfKnot, 799.951467, 0.01);
+  EXPECT_NEAR(-apart.head<2>().normalized().dot(closing.head<2>()) / kMpsOfKnot, 799.951467, 0.01);
 }
 
 TEST(StateTable, TheExamplesOfThePairingToolAreRead) {

@@ -14,6 +14,7 @@
 #include "encounter/track/track.h"
 #include "foundation/base/text.h"
 #include "foundation/geometry/transform.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -99,15 +100,15 @@ constexpr auto kUnits = std::to_array<Unit>({
     {"unitless unspecified", Dimension::kNone, 1},
     {"m meter metre", Dimension::kLength, 1},
     {"km", Dimension::kLength, 1000},
-    {"ft feet foot", Dimension::kLength, track::kMetresOfFoot},
-    {"nmi nm NM", Dimension::kLength, track::kMetresOfNauticalMile},
+    {"ft feet foot", Dimension::kLength, kMetresOfFoot},
+    {"nmi nm NM", Dimension::kLength, kMetresOfNauticalMile},
     {"deg degree", Dimension::kAngle, radians(1)},
     {"rad radian", Dimension::kAngle, 1},
     {"m/s mps", Dimension::kSpeed, 1},
     {"km/h kph", Dimension::kSpeed, 1 / 3.6},
-    {"knot kn kt kts", Dimension::kSpeed, track::kMpsOfKnot},
-    {"fpm ft/min", Dimension::kSpeed, track::kMpsOfFootPerMinute},
-    {"ftps fps ft/s", Dimension::kSpeed, track::kMetresOfFoot},
+    {"knot kn kt kts", Dimension::kSpeed, kMpsOfKnot},
+    {"fpm ft/min", Dimension::kSpeed, kMpsOfFootPerMinute},
+    {"ftps fps ft/s", Dimension::kSpeed, kMetresOfFoot},
     {"s sec", Dimension::kTime, 1},
     {"ms", Dimension::kTime, 1e-3},
     {"min", Dimension::kTime, 60},

@@ -11,6 +11,7 @@
 #include "encounter/track/track.h"
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -51,7 +52,7 @@ track::Encounter parse_track_csv(std::string_view text, const std::filesystem::p
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = number_in(cells[places[i]], kColumnNames[i], lines.where());
     const Vector3 position_ned_ft(values[1], values[2], -values[3]);
-    builder.add("track", values[0], track::kMetresOfFoot * position_ned_ft, nullptr, lines.where());
+    builder.add("track", values[0], kMetresOfFoot * position_ned_ft, nullptr, lines.where());
   }
   if (builder.is_empty()) throw Error("has no rows; expected one for each second", lines.where());
   return builder.take();

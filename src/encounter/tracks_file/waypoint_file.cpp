@@ -11,6 +11,7 @@
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -54,7 +55,7 @@ class Reader {
     const double north = number("north");
     const double east = number("east");
     const double altitude = number("altitude");
-    return track::kMetresOfFoot * Vector3(north, east, -altitude);
+    return kMetresOfFoot * Vector3(north, east, -altitude);
   }
   std::string place() const { return place_; }
 
@@ -114,9 +115,9 @@ void append(std::string& bytes, Value value) {
 }
 
 void append_position(std::string& bytes, const Vector3& position_ned_m) {
-  append(bytes, position_ned_m.x() / track::kMetresOfFoot);
-  append(bytes, position_ned_m.y() / track::kMetresOfFoot);
-  append(bytes, -position_ned_m.z() / track::kMetresOfFoot);
+  append(bytes, position_ned_m.x() / kMetresOfFoot);
+  append(bytes, position_ned_m.y() / kMetresOfFoot);
+  append(bytes, -position_ned_m.z() / kMetresOfFoot);
 }
 
 }  // namespace

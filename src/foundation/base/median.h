@@ -27,6 +27,10 @@ inline double median_between(std::vector<double> values) {
   return (*std::max_element(values.begin(), middle) + upper) / 2;
 }
 
+// The standard deviation of normal values over their median absolute deviation (Rousseeuw and Croux
+// 1993).
+constexpr double kSigmaOfMad = 1.4826;
+
 template <class T>
 T median_or_0(std::vector<T> values) {
   return values.empty() ? T{0} : median(std::move(values));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "foundation/base/median.h"
+
 namespace airtruth::classical {
 namespace {
 
@@ -192,8 +194,6 @@ constexpr int kRingTo = 2 * kElement - 2;
 constexpr double kLeastRing = 0.5;
 constexpr int kWholeRing =
     (2 * kRingTo + 1) * (2 * kRingTo + 1) - (2 * kRingFrom - 1) * (2 * kRingFrom - 1);
-// Standard deviation of normal noise over its median absolute deviation (Rousseeuw and Croux 1993).
-constexpr double kSigmaOfMad = 1.4826;
 // Noise is taken from the median deviation and from this quantile of it, whichever is more: clutter
 // has long tails.
 constexpr double kTailQuantile = 0.9;

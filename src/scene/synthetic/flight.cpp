@@ -10,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
+#include "foundation/geometry/units.h"
 #include "scene/synthetic/row_painter.h"
 #include "scene/synthetic/sensor.h"
 
@@ -85,7 +86,6 @@ constexpr double kRollPeriod_s = 8.5;
 constexpr double kPitchPeriod_s = 6.1;
 constexpr double kPitchAmplitude_deg = 0.7;
 // Standard gravity (3rd CGPM, 1901).
-constexpr double kGravity_mps2 = 9.80665;
 
 // The pose of the camera and its shake. Both are closed forms of time, so that frames can be
 // computed in any order.
@@ -147,7 +147,7 @@ trajectory::State FlightPath::nominal(int index) const {
   const double rate = 2 * kPi / kRollPeriod_s;
   const double roll_deg = options_.roll_deg * std::sin(rate * time_s + roll_phase_rad_);
   // A coordinated turn: yaw rate = g tan(roll) / speed, integrated for the small sinusoidal roll.
-  const double turn = options_.speed_mps > 1 ? kGravity_mps2 / options_.speed_mps : 0.0;
+  const double turn = options_.speed_mps > 1 ? kStandardGravityMps2 / options_.speed_mps : 0.0;
   const double yaw_deg = options_.heading_deg + std::min(turn, 0.5) * options_.roll_deg / rate *
                                                     (std::cos(roll_phase_rad_) -
                                                      std::cos(rate * time_s + roll_phase_rad_));

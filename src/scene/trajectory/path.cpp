@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 #include "scene/trajectory/path_impl.h"
 #include "scene/trajectory/spline.h"
 
@@ -18,7 +19,6 @@ namespace airtruth::trajectory {
 namespace {
 
 // Standard gravity (3rd CGPM, 1901).
-constexpr double kGravityMps2 = 9.80665;
 // Below this horizontal speed, in metres a second, the velocity defines no heading.
 constexpr double kHorizontalMps = 1e-6;
 // Points that are nearer to each other are the same.
@@ -91,7 +91,7 @@ YawPitchRoll attitude_along(const Vector3& velocity,
   attitude.yaw_deg = degrees(std::atan2(velocity.y(), velocity.x()));
   const double turn_rate = (velocity.x() * acceleration.y() - velocity.y() * acceleration.x()) /
                            (horizontal * horizontal);
-  attitude.roll_deg = degrees(std::atan2(horizontal * turn_rate, kGravityMps2));
+  attitude.roll_deg = degrees(std::atan2(horizontal * turn_rate, kStandardGravityMps2));
   return attitude;
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 
 namespace airtruth::trajectory {
 namespace {
@@ -59,7 +60,9 @@ TEST(AtSpeed, BanksAsACoordinatedTurn) {
   const Path path = spline_at_speed(circle, 100);
   for (double t = 15; t < 45; t += 0.37) {
     const YawPitchRoll attitude = yaw_pitch_roll(path.at(t)->world_from_body);
-    EXPECT_NEAR(attitude.roll_deg, degrees(std::atan(100.0 * 100.0 / (radius * 9.80665))), 0.05);
+    EXPECT_NEAR(attitude.roll_deg,
+                degrees(std::atan(100.0 * 100.0 / (radius * kStandardGravityMps2))),
+                0.05);
   }
 }
 
@@ -167,7 +170,7 @@ TEST(Steady, ATurnIsAnArc) {
   const YawPitchRoll attitude = yaw_pitch_roll(end->world_from_body);
   EXPECT_NEAR(attitude.yaw_deg, -90, 1e-9);
   EXPECT_NEAR(attitude.pitch_deg, degrees(std::atan2(2, 50)), 1e-9);
-  EXPECT_NEAR(attitude.roll_deg, degrees(std::atan(50 * radians(-9) / 9.80665)), 1e-9);
+  EXPECT_NEAR(attitude.roll_deg, degrees(std::atan(50 * radians(-9) / kStandardGravityMps2)), 1e-9);
 }
 
 TEST(Steady, VelocityIsTheChangeOfPosition) {

@@ -12,6 +12,7 @@
 
 #include "aircraft/fleet/flight_limits.h"
 #include "foundation/geometry/transform.h"
+#include "foundation/geometry/units.h"
 #include "sequence/setup/world.h"
 
 namespace airtruth::setup {
@@ -48,7 +49,7 @@ std::optional<double> turn_bank_deg(const trajectory::Path& path, double time_s)
   const double speed_mps = 0.5 * (ground_speed_mps(a) + ground_speed_mps(b));
   if (speed_mps < kHeadingMps) return std::nullopt;
   const double turn_rad = std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
-  return degrees(std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / fleet::kStandardGravityMps2));
+  return degrees(std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / kStandardGravityMps2));
 }
 
 // What a class limits, in the order of BeyondLimit::Quantity, and how an excess of it reads.

@@ -12,14 +12,13 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/units.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::setup {
 namespace {
-
-constexpr double kKnotsInMps = 0.514444;
 
 scene::Intruder intruder_of(const std::string& aircraft) {
   scene::Intruder intruder;
@@ -56,14 +55,14 @@ TEST_F(SharedInputsTest, OneAircraftInOneConfigurationIsLoadedOnce) {
   SharedInputs shared;
   // Gear up above 180 knots, by the model's own wrapper.
   const scene::Intruder intruder = intruder_of("738/738-Ryanair");
-  const auto fast = shared.type_of(intruder, straight_at(250 * kKnotsInMps), {}, {});
-  EXPECT_EQ(shared.type_of(intruder, straight_at(300 * kKnotsInMps), {}, {}), fast);
-  const auto slow = shared.type_of(intruder, straight_at(150 * kKnotsInMps), {}, {});
+  const auto fast = shared.type_of(intruder, straight_at(250 * kMpsOfKnot), {}, {});
+  EXPECT_EQ(shared.type_of(intruder, straight_at(300 * kMpsOfKnot), {}, {}), fast);
+  const auto slow = shared.type_of(intruder, straight_at(150 * kMpsOfKnot), {}, {});
   EXPECT_NE(slow, fast);
   EXPECT_GT(slow->aircraft->mesh.triangle_count(), fast->aircraft->mesh.triangle_count());
   EXPECT_EQ(shared.kept(), 2u);
   // The same as loaded alone.
-  const auto alone = aircraft_of(intruder, straight_at(300 * kKnotsInMps), {});
+  const auto alone = aircraft_of(intruder, straight_at(300 * kMpsOfKnot), {});
   EXPECT_EQ(alone->mesh, fast->aircraft->mesh);
   EXPECT_EQ(alone->sources, fast->aircraft->sources);
 }

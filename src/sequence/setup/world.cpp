@@ -11,15 +11,13 @@
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/units.h"
 #include "labels/annotation/object_class.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::setup {
 namespace {
-
-constexpr double kMetresPerSecondInKnots = 1.943844;
-constexpr double kMetresInFeet = 3.280840;
 
 // An aircraft's configuration is that of the nearest of these steps. Propellers that turn with the
 // airspeed and flaps that follow it would else make each path's aircraft one of its own, with its
@@ -114,10 +112,10 @@ model::LoadOptions load_options(const scene::Intruder& intruder,
   // A path without a beginning begins with the clip.
   const double begin_s = std::isfinite(path.start_s()) ? path.start_s() : 0;
   if (const auto state = path.at(begin_s)) {
-    options.airspeed_kt = nearest_step(
-        state->velocity_in_world_mps.norm() * kMetresPerSecondInKnots, kAirspeedStepKt);
+    options.airspeed_kt =
+        nearest_step(state->velocity_in_world_mps.norm() / kMpsOfKnot, kAirspeedStepKt);
     options.altitude_agl_ft =
-        nearest_step(std::max(0.0, -state->position_in_world.z()) * kMetresInFeet, kHeightStepFt);
+        nearest_step(std::max(0.0, -state->position_in_world.z()) / kMetresOfFoot, kHeightStepFt);
   }
   options.catalogue_scale = intruder.catalogue_scale;
   if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
