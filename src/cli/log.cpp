@@ -120,7 +120,7 @@ std::vector<motion::FrameMotion> motion_of(const AlignArguments& arguments, Cont
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, size.width, size.height);
   const std::int64_t total = reader.info().frame_count_estimate - arguments.first_frame;
   auto motion = setup::measure_motion(
-      reader,
+      std::move(reader),
       motion::Estimator(lens_of(arguments, size, console.warn()), {}, mask ? &*mask : nullptr),
       context.stop,
       [&](std::int64_t done) { console.progress("measuring the motion", done, total); });

@@ -136,8 +136,8 @@ FrameMotion unpacked(const char* bytes, std::int64_t frame) {
   std::memcpy(numbers.data(), bytes + sizeof head, packed_size(head.is_rotation) - sizeof head);
   FrameMotion motion{.frame = frame,
                      .time_s = head.time_s,
-                     .inliers = head.inliers,
                      .rms_px = head.rms_px,
+                     .inliers = head.inliers,
                      .state = static_cast<State>(head.state)};
   if (head.is_rotation)
     motion.rotation = Quaternion(numbers[0], numbers[1], numbers[2], numbers[3]);
@@ -236,6 +236,18 @@ void store(const disk_cache::Cache& cache, const CacheKey& key, std::string pack
   if (before && (before->to_the_end || (!now.to_the_end && before->frames() >= now.frames())))
     return;
   cache.keep(key.entry(), packed += now.to_the_end ? kToTheEnd : kUntilThere);
+}
+
+void store(const disk_cache::Cache& cache,
+           const CacheKey& key,
+           const std::vector<FrameMotion>& motion) {
+  if (motion.empty()) return;
+  std::string packed;
+  // A string that grows holds its frames twice.
+  packed.reserve(motion.size() * packed_size(motion.front().rotation.has_value()) +
+                 kUntilThere.size());
+  for (const FrameMotion& frame : motion) pack(frame, packed);
+  store(cache, key, std::move(packed));
 }
 
 }  // namespace airtruth::motion

@@ -55,16 +55,16 @@ inline bool is_known(State state) {
 struct FrameMotion {
   std::int64_t frame = 0;
   double time_s = 0;
+  // The root mean square reprojection error of the inliers, in pixels of the frame.
+  double rms_px = 0;
+  int inliers = 0;
+  State state = State::kReference;
   // p_in_frame ~ H p_in_reference, in airtruth's pixels (corner origin), h33 = 1. The reference is
   // the first frame for Reference::kFirstFrame, and the smoothed camera path for kSmoothed. The map
   // is the identity for the model rotation.
   Homography frame_from_reference = Homography::Identity();
   // cam_from_reference_cam of the model rotation; empty for the model homography.
   std::optional<Quaternion> rotation;
-  int inliers = 0;
-  // The root mean square reprojection error of the inliers, in pixels of the frame.
-  double rms_px = 0;
-  State state = State::kReference;
 };
 
 enum class Reference { kFirstFrame, kSmoothed };
@@ -139,5 +139,8 @@ std::optional<std::vector<FrameMotion>> cached(const disk_cache::Cache& cache, c
 void pack(const FrameMotion& motion, std::string& packed);
 // Keeps packed motion, unless the cache already holds more frames for this key.
 void store(const disk_cache::Cache& cache, const CacheKey& key, std::string packed);
+void store(const disk_cache::Cache& cache,
+           const CacheKey& key,
+           const std::vector<FrameMotion>& motion);
 
 }  // namespace airtruth::motion

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <span>
 
 #include <unsupported/Eigen/MatrixFunctions>
 
@@ -82,45 +84,47 @@ Homography unit_determinant(const Homography& h) {
   return d != 0 ? Homography(h / std::cbrt(d)) : Homography(Homography::Identity());
 }
 
+using Frames = std::span<const FrameMotion>;
+
 // The map between neighbouring frames, b_from_a, from the composed maps.
-Homography step(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
+Homography step(Frames motion, std::size_t from, std::size_t to) {
   return unit_determinant(motion[to].frame_from_reference *
                           motion[from].frame_from_reference.inverse());
 }
 
 // The rotation of frame `to` against frame `from`, as a rotation vector.
-Vector3 turn(const std::vector<FrameMotion>& motion, std::size_t from, std::size_t to) {
+Vector3 turn(Frames motion, std::size_t from, std::size_t to) {
   const Eigen::AngleAxisd turned(*motion[to].rotation * motion[from].rotation->conjugate());
   return turned.angle() * turned.axis();
 }
 
-// The shake of every frame on the group of rotations. Here every frame of the window is compared
+// Where the Gaussian ends, in standard deviations: its weight there is 0.04.
+constexpr double kMaxSigmas = 2.5;
+
+double sigmas_between(const FrameMotion& from, const FrameMotion& to, double sigma_s) {
+  return (to.time_s - from.time_s) / sigma_s;
+}
+
+// The shake of frame k on the group of rotations. Here every frame of the window is compared
 // with frame k directly.
-std::vector<Quaternion> shaking_rotations(const std::vector<FrameMotion>& against_first,
-                                          double sigma_s) {
-  std::vector<Quaternion> result;
-  result.reserve(against_first.size());
-  for (std::size_t k = 0; k < against_first.size(); ++k) {
-    Vector3 sum = Vector3::Zero();
-    double total = 1;
-    const auto add = [&](std::size_t i) {
-      const double dt = (against_first[i].time_s - against_first[k].time_s) / sigma_s;
-      if (std::abs(dt) > 2.5) return false;
-      const double weight = std::exp(-0.5 * dt * dt);
-      sum += weight * turn(against_first, k, i);
-      total += weight;
-      return true;
-    };
-    for (std::size_t i = k + 1; i < against_first.size(); ++i)
-      if (against_first[i].state == State::kCut || !add(i)) break;
-    for (std::size_t i = k; i > 0; --i)
-      if (against_first[i].state == State::kCut || !add(i - 1)) break;
-    const Vector3 steady = sum / total;
-    const double angle = steady.norm();
-    result.push_back(angle > 0 ? Quaternion(Eigen::AngleAxisd(-angle, steady / angle))
-                               : Quaternion::Identity());
-  }
-  return result;
+Quaternion shaking_rotation(Frames against_first, std::size_t k, double sigma_s) {
+  Vector3 sum = Vector3::Zero();
+  double total = 1;
+  const auto add = [&](std::size_t i) {
+    const double dt = sigmas_between(against_first[k], against_first[i], sigma_s);
+    if (std::abs(dt) > kMaxSigmas) return false;
+    const double weight = std::exp(-0.5 * dt * dt);
+    sum += weight * turn(against_first, k, i);
+    total += weight;
+    return true;
+  };
+  for (std::size_t i = k + 1; i < against_first.size(); ++i)
+    if (against_first[i].state == State::kCut || !add(i)) break;
+  for (std::size_t i = k; i > 0; --i)
+    if (against_first[i].state == State::kCut || !add(i - 1)) break;
+  const Vector3 steady = sum / total;
+  const double angle = steady.norm();
+  return angle > 0 ? Quaternion(Eigen::AngleAxisd(-angle, steady / angle)) : Quaternion::Identity();
 }
 
 // The weighted sum over the neighbours of a frame.
@@ -130,19 +134,14 @@ struct NeighbourSum {
 };
 
 // Adds the neighbours of frame k in one direction: log(i_from_k) with a Gaussian weight in time.
-void add_neighbours(const std::vector<FrameMotion>& against_first,
-                    std::size_t k,
-                    int direction,
-                    double sigma_s,
-                    NeighbourSum& all) {
-  // Where the Gaussian ends, in standard deviations: its weight there is 0.04.
-  constexpr double kMaxSigmas = 2.5;
+void add_neighbours(
+    Frames against_first, std::size_t k, int direction, double sigma_s, NeighbourSum& all) {
   Homography i_from_k = Homography::Identity();
   std::size_t i = k;
   while (direction > 0 ? i + 1 < against_first.size() : i > 0) {
     const std::size_t next = direction > 0 ? i + 1 : i - 1;
     if (against_first[std::max(i, next)].state == State::kCut) return;
-    const double dt = (against_first[next].time_s - against_first[k].time_s) / sigma_s;
+    const double dt = sigmas_between(against_first[k], against_first[next], sigma_s);
     if (std::abs(dt) > kMaxSigmas) return;
     i_from_k = unit_determinant(step(against_first, i, next) * i_from_k);
     const double weight = std::exp(-0.5 * dt * dt);
@@ -163,34 +162,41 @@ void add_neighbours(const std::vector<FrameMotion>& against_first,
 // first-order mean on the group of homographies (Fletcher 2004). The frame's shake is the inverse.
 // Only maps between frames that are close in time are used, since no homography describes a long
 // turn. Nothing is smoothed across a cut.
-std::vector<Homography> shaking_homographies(const std::vector<FrameMotion>& against_first,
-                                             double sigma_s) {
-  std::vector<Homography> result;
-  result.reserve(against_first.size());
-  for (std::size_t k = 0; k < against_first.size(); ++k) {
-    NeighbourSum all;
-    for (const int direction : {+1, -1}) add_neighbours(against_first, k, direction, sigma_s, all);
-    const Homography steady_from_k = (all.sum / all.weight).exp();
-    const Homography shake = steady_from_k.inverse();
-    result.push_back(shake.allFinite() ? Homography(shake / shake(2, 2))
-                                       : Homography(Homography::Identity()));
-  }
-  return result;
+Homography shaking_homography(Frames against_first, std::size_t k, double sigma_s) {
+  NeighbourSum all;
+  for (const int direction : {+1, -1}) add_neighbours(against_first, k, direction, sigma_s, all);
+  const Homography steady_from_k = (all.sum / all.weight).exp();
+  const Homography shake = steady_from_k.inverse();
+  return shake.allFinite() ? Homography(shake / shake(2, 2)) : Homography(Homography::Identity());
+}
+
+// Frame k with its shake as its motion.
+FrameMotion shaking(Frames against_first, std::size_t k, double sigma_s) {
+  FrameMotion frame = against_first[k];
+  if (frame.rotation)
+    frame.rotation = shaking_rotation(against_first, k, sigma_s);
+  else
+    frame.frame_from_reference = shaking_homography(against_first, k, sigma_s);
+  return frame;
 }
 
 }  // namespace
 
-std::vector<FrameMotion> smoothed(std::vector<FrameMotion> against_first, const Options& options) {
+std::vector<FrameMotion> smoothed(std::vector<FrameMotion> motion, const Options& options) {
   check(options.smoothing_s > 0, "smoothing takes time");
-  if (against_first.empty()) return against_first;
-  if (against_first.front().rotation) {
-    const auto shake = shaking_rotations(against_first, options.smoothing_s);
-    for (std::size_t k = 0; k < shake.size(); ++k) against_first[k].rotation = shake[k];
-  } else {
-    const auto shake = shaking_homographies(against_first, options.smoothing_s);
-    for (std::size_t k = 0; k < shake.size(); ++k) against_first[k].frame_from_reference = shake[k];
+  // A long clip is in memory once: the shake of a frame takes its place as soon as no window of a
+  // later frame reaches back to it.
+  std::size_t placed = 0;
+  std::deque<FrameMotion> waiting;  // the shakes of the frames after the placed ones
+  for (std::size_t k = 0; k < motion.size(); ++k) {
+    waiting.push_back(shaking(Frames(motion).subspan(placed), k - placed, options.smoothing_s));
+    for (; sigmas_between(motion[placed], motion[k], options.smoothing_s) > kMaxSigmas; ++placed) {
+      motion[placed] = waiting.front();
+      waiting.pop_front();
+    }
   }
-  return against_first;
+  std::ranges::copy(waiting, motion.begin() + static_cast<std::ptrdiff_t>(placed));
+  return motion;
 }
 
 }  // namespace airtruth::motion

@@ -22,8 +22,8 @@ inline double differentiator_weight(int j, int reach) {
 }
 
 // The motion of each frame against a Gaussian-smoothed camera path, which is the shake, from the
-// motion against the first frame. The function needs all frames at once (a few hundred bytes each).
-std::vector<FrameMotion> smoothed(std::vector<FrameMotion> against_first, const Options& options);
+// motion against the first frame.
+std::vector<FrameMotion> smoothed(std::vector<FrameMotion> motion, const Options& options);
 
 // The shake of frame k and its change per second, from the neighbouring frames. Motion blur and a
 // rolling shutter are computed from it.

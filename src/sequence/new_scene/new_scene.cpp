@@ -239,10 +239,12 @@ std::vector<motion::FrameMotion> motion_in(const fs::path& video,
   reader_options.with_cuts = true;
   video::Reader reader(video, reader_options, options.warn);
   const std::int64_t total = std::min(kMaxMotionFrames, reader.info().frame_count_estimate);
-  return setup::measure_motion(
-      reader, motion::Estimator(lens, {}, nullptr), options.stop, [&](std::int64_t done) {
-        if (options.progress) options.progress(done, total);
-      });
+  return setup::measure_motion(std::move(reader),
+                               motion::Estimator(lens, {}, nullptr),
+                               options.stop,
+                               [&](std::int64_t done) {
+                                 if (options.progress) options.progress(done, total);
+                               });
 }
 
 Part part_of(const fs::path& video,

@@ -60,7 +60,7 @@ class FrameMaker {
   void describe(Work& work) const;
 
   // Keeps the measured motion for the next run, after the last frame.
-  void store_motion() const { resolved_.motion->store(); }
+  void store_motion() { resolved_.motion->store(); }
 
   // True where draw() and compose() belong to the thread that opened the scene: OpenGL's context
   // belongs to one thread.

@@ -170,9 +170,9 @@ MotionSource MotionSource::of_frames(MotionInputs inputs, std::span<const video:
   return source;
 }
 
-motion::Estimator MotionSource::estimator(int width, int height) const {
+motion::Estimator MotionSource::estimator() const {
   return lens_ ? motion::Estimator(*lens_, options_, mask_)
-               : motion::Estimator(width, height, options_, mask_);
+               : motion::Estimator(size_.width, size_.height, options_, mask_);
 }
 
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
@@ -183,17 +183,12 @@ void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
 }
 
 void MotionSource::measure(const MotionPass& pass) {
-  video::Reader reader = pass.open();
   if (!none_) {
-    auto against_first = measure_motion(
-        reader, estimator(reader.info().width, reader.info().height), pass.stop, pass.seen);
-    if (cache_.keeps()) {
-      std::string packed;
-      for (const motion::FrameMotion& motion : against_first) motion::pack(motion, packed);
-      motion::store(cache_, key_, std::move(packed));
-    }
+    auto against_first = measure_motion(pass.open(), estimator(), pass.stop, pass.seen);
+    if (cache_.keeps()) motion::store(cache_, key_, against_first);
     return set_pass(std::move(against_first));
   }
+  video::Reader reader = pass.open();
   while (const auto frame = reader.next()) {
     if (pass.stop.stop_requested()) throw Interrupted();
     all_.push_back(reference_at(*frame));
@@ -229,7 +224,7 @@ MotionSource::Measured MotionSource::nearest(double time_s) const {
 }
 
 motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
-  if (!estimator_) estimator_.emplace(estimator(frame.picture.width, frame.picture.height));
+  if (!estimator_) estimator_.emplace(estimator());
   motion::FrameMotion motion =
       estimator_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
   motion.frame = frame.index;
@@ -237,8 +232,8 @@ motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
   return motion;
 }
 
-void MotionSource::store() const {
-  if (!against_first_.empty()) motion::store(cache_, key_, against_first_);
+void MotionSource::store() {
+  if (!against_first_.empty()) motion::store(cache_, key_, std::move(against_first_));
 }
 
 std::vector<gyro::GyroSample> gyro_of(const fs::path& video) {
@@ -250,7 +245,7 @@ std::vector<gyro::GyroSample> gyro_of(const fs::path& video) {
   return gyro;
 }
 
-std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
+std::vector<motion::FrameMotion> measure_motion(video::Reader reader,
                                                 motion::Estimator estimator,
                                                 const std::stop_token& stop,
                                                 const std::function<void(std::int64_t)>& seen) {

@@ -79,7 +79,7 @@ class MotionSource {
   // The frame nearest to a time; only where all are known ahead and the clip has a frame.
   Measured nearest(double time_s) const;
   // Stores what next() has measured for the next run, after the last frame. A pass stores its own.
-  void store() const;
+  void store();
   bool is_from_cache() const { return from_cache_; }
   // The motion of every frame; empty where it is not known ahead.
   const std::vector<motion::FrameMotion>& all() const& { return all_; }
@@ -97,7 +97,7 @@ class MotionSource {
   void set_pass(std::vector<motion::FrameMotion> against_first);
   motion::FrameMotion measured(const video::Frame& frame);
 
-  motion::Estimator estimator(int width, int height) const;
+  motion::Estimator estimator() const;
 
   bool none_ = false;
   bool needs_change_ = false;
@@ -149,8 +149,9 @@ scene::MotionModel motion_model(const scene::Scene& scene);
 std::vector<gyro::GyroSample> gyro_of(const fs::path& video);
 
 // Measures the motion of a whole clip against its first frame, as a rotation where a lens is given.
-// Calls `seen` after each frame. Throws Interrupted on stop.
-std::vector<motion::FrameMotion> measure_motion(video::Reader& reader,
+// Calls `seen` after each frame. Throws Interrupted on stop. The index of a long video takes as
+// much memory as a third of its motion; the reader is closed before the motion is used.
+std::vector<motion::FrameMotion> measure_motion(video::Reader reader,
                                                 motion::Estimator estimator,
                                                 const std::stop_token& stop,
                                                 const std::function<void(std::int64_t)>& seen);
