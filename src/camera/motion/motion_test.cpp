@@ -268,7 +268,9 @@ TEST(Smoothed, IsTheSameBackwards) {
       const FrameMotion &one = steady[k], &other = back[all.size() - 1 - k];
       EXPECT_EQ(one.frame, other.frame);
       EXPECT_TRUE(one.frame_from_reference.isApprox(other.frame_from_reference, 1e-9)) << k;
-      if (is_rotation) EXPECT_TRUE(one.rotation->isApprox(*other.rotation, 1e-9)) << k;
+      if (is_rotation) {
+        EXPECT_TRUE(one.rotation->isApprox(*other.rotation, 1e-9)) << k;
+      }
     }
   }
 }
