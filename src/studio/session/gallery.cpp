@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "aircraft/fleet/fleet.h"
+#include "aircraft/fleet/flight_limits.h"
 #include "aircraft/fleet/scale.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
@@ -31,12 +32,19 @@ constexpr std::array kKinds = {scene::DistractorKind::kBird,
                                scene::DistractorKind::kMultirotor,
                                scene::DistractorKind::kBalloon};
 
+// "airliner"; empty where the type has no class.
+std::string class_of(const std::string& name) {
+  const fleet::FlightLimits* limits = fleet::flight_limits(name);
+  return limits == nullptr ? "" : std::string(limits->name);
+}
+
 Json group_of(const std::string& type, const std::vector<std::string>& liveries) {
   const fleet::PublishedSize* size = fleet::published_size(liveries.front());
   const bool is_known = size != nullptr && size->is_known();
   return {{"name", type},
           {"kind", "aircraft"},
           {"type", size != nullptr ? size->type : ""},
+          {"class", class_of(liveries.front())},
           {"length_m", is_known ? Json(size->length_m) : Json()},
           {"span_m", is_known ? Json(size->span_m) : Json()},
           {"picture", liveries.front()},
@@ -66,14 +74,15 @@ Json Gallery::groups(const std::string& word) {
       groups.push_back({{"name", enum_name(kind)},
                         {"kind", enum_name(kind)},
                         {"type", enum_name(kind)},
+                        {"class", ""},
                         {"length_m", nullptr},
                         {"span_m", nullptr},
                         {"picture", enum_name(kind)},
                         {"liveries", Json::array()}});
   for (const auto& [type, all] : types) {
     const fleet::PublishedSize* size = fleet::published_size(all.front());
-    const bool is_whole =
-        contains(type, wanted) || (size != nullptr && contains(size->type, wanted));
+    const bool is_whole = contains(type, wanted) || contains(class_of(all.front()), wanted) ||
+                          (size != nullptr && contains(size->type, wanted));
     std::vector<std::string> liveries;
     for (const std::string& name : all)
       if (is_whole || contains(name, wanted)) liveries.push_back(name);

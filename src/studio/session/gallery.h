@@ -14,8 +14,9 @@ namespace airtruth::session {
 // What can be put into a scene, with pictures. Of one thread.
 class Gallery {
  public:
-  // {"groups": [{"name", "kind", "type", "length_m", "span_m", "picture", "liveries": [...]}]}:
-  // the types whose name, or whose published type, contains the word; letter case does not matter.
+  // {"groups": [{"name", "kind", "type", "class", "length_m", "span_m", "picture", "liveries":
+  // [...]}]}: the types whose name, published type or class of flight limits contains the word;
+  // letter case does not matter.
   // Birds, multirotors and balloons are groups of their own, without liveries.
   nlohmann::ordered_json groups(const std::string& word);
 

@@ -93,6 +93,7 @@ export interface AircraftGroup {
   type: string;  // published
   length_m: number|null;
   span_m: number|null;
+  class: string;    // of its flight limits: "airliner"
   picture: string;  // a name for /aircraft.jpg
   liveries: string[];
 }

@@ -24,7 +24,7 @@ export class Gallery extends DialogPart {
   private input = h('input', {
     type: 'text',
     role: 'searchbox',
-    placeholder: 'Search: a320, cessna, ryanair …',
+    placeholder: 'Search: a320, cessna, ryanair, airliner …',
     'aria-label': 'Search aircraft',
     autocomplete: 'off',
     oninput: () => this.searchSoon()
@@ -107,9 +107,7 @@ export class Gallery extends DialogPart {
         },
           ...names.map((name) => h('option', {value: name}, shortName(name))));
     const choose = () => this.chosen({kind: 'aircraft', aircraft: livery.value, length_m: group.length_m ?? 12});
-    const size = group.length_m ?
-        `${round(group.length_m, 1)} m long${group.span_m ? `, span ${round(group.span_m, 1)} m` : ''}` :
-                                                            'size not published';
+    const words = [group.class, sizeOf(group)].filter(Boolean).join(', ');
     return h(
         'article', {class: 'card'},
         h('button', {
@@ -117,7 +115,7 @@ export class Gallery extends DialogPart {
           onclick: choose,
           'aria-label': `${this.now.replaces ? 'Use' : 'Add'} ${group.type || group.name}`
         },
-          picture, h('strong', {}, group.type || group.name), h('span', {class: 'hint'}, size)),
+          picture, h('strong', {}, group.type || group.name), h('span', {class: 'hint'}, words)),
         names.length > 1 ? livery : null);
   }
 
@@ -131,4 +129,6 @@ export class Gallery extends DialogPart {
   }
 }
 
+const sizeOf = ({length_m, span_m}: AircraftGroup) =>
+    length_m ? `${round(length_m, 1)} m long${span_m ? `, span ${round(span_m, 1)} m` : ''}` : 'size not published';
 const shortName = (name: string) => name.split('/').slice(1).join('/') || name;
