@@ -12,7 +12,7 @@ READ_NUMBER = """
 const numberOn = (picture) => {
   const copy = document.createElement('canvas');
   copy.width = 320; copy.height = 240;
-  const context = copy.getContext('2d');
+  const context = copy.getContext('2d', { willReadFrequently: true });
   context.drawImage(picture, 0, 0, 320, 240);
   let number = 0;
   for (let bit = 0; bit < 12; ++bit) {

@@ -2,7 +2,7 @@
 """The studio's page in a real browser: python3 studio_test.py AIRTRUTH SOURCE [--drags N] [--monkey SECONDS] [--only NAME]
 
 From a virtual flight to a saved scene with two aircraft and a flock by the mouse alone, rendered by the command line with all of it
-where the handles stood; edits through reloads, lost connections and other programs; random clicks, drags, keys, resizes and reloads;
+where the handles stood; both films at one frame; edits through reloads, lost connections and other programs; random clicks, drags, keys, resizes and reloads;
 no text cut, on another or too faint. How long a drag takes until its picture is drawn is printed, never asserted.
 """
 
@@ -17,6 +17,7 @@ import tempfile
 import time
 import tomllib
 
+import numbered_clip
 from browser import CONTROL, SHIFT, Browser
 from report_page_test import browser_or_skip
 
@@ -81,7 +82,6 @@ LOOK = r"""(() => {
   }
   return [...new Set(faults)];
 })()"""
-
 
 class Server:
     """`airtruth studio` on a video or a scene, in a folder."""
@@ -264,6 +264,96 @@ def check_rendered(root, scene, shown):
     for frame, boxes in shown.items():
         for name, box in boxes.items():
             near(f"box of {name} in frame {frame}", frames[frame][name]["exact_box_px"], box, BESIDE_PX)
+
+
+def words_of(browser, selector):
+    """What is to be read now in all elements of a selector."""
+    return browser.run(f"[...document.querySelectorAll({json.dumps(selector)})].filter((e) => e.checkVisibility()).map((e) => e.textContent)")
+
+
+def press_button(browser, words):
+    """A click of the mouse on a button by its words."""
+    buttons = browser.run("[...document.querySelectorAll('button')].map((b) => b.checkVisibility() ? b.textContent : '')")
+    browser.click_on("button", buttons.index(words))
+
+
+def test_film(airtruth, browser, root):
+    """The rendered film and the original show one frame, and the boxes are those of it."""
+    first, count = 20, 24
+    os.mkdir(os.path.join(root, "clip"))
+    for number in range(60):
+        numbered_clip.write_png(os.path.join(root, "clip", f"{number:04}.png"), number)
+    subprocess.run(["ffmpeg", "-v", "error", "-framerate", "30", "-i", "clip/%04d.png", "-pix_fmt", "yuv420p", "-crf", "12", "numbered.mp4"], cwd=root, check=True)
+    write(os.path.join(root, "film.toml"), f"""[background]
+video = "numbered.mp4"
+first_frame = {first}
+frame_count = {count}
+[lens]
+vertical_fov_deg = 60
+[camera]
+position_ned_m = [0, 0, -150]
+velocity_ned_mps = [20, 0, 0]
+attitude_yaw_pitch_roll_deg = [0, 0, 0]
+[motion]
+model = "none"
+[[intruder]]
+aircraft = "738/738-ANA"
+[[intruder.seen]]
+time_s = 0
+pixel = [100, 180]
+range_m = 250
+[[intruder.seen]]
+time_s = 0.7
+pixel = [260, 180]
+range_m = 250
+""")
+    server = Server(airtruth, root, "film.toml")
+    page = Page(browser)
+    browser.open(server.address)
+    browser.wait(f"window.airtruthStudio && {STORE}.state")
+    expect("problem", page.state()["problem"], None)
+    page.rest()
+    browser.key("r")
+    expect("where it will be", "will be in film below the folder of --out" in words_of(browser, "studio-render .hint")[0], True)
+    press_button(browser, "Render the clip")
+    browser.wait(f"{STORE}.film && document.querySelectorAll('studio-render video')[1].readyState >= 2", 120)
+    browser.run(numbered_clip.READ_NUMBER + """
+      window.numbersShown = () => [...document.querySelectorAll('studio-render video')].map(numberOn);
+      window.boxShown = () => { const r = document.querySelector('.films rect'); return r && ['x', 'y', 'width', 'height'].map((name) => Number(r.getAttribute(name))); }; 1""")
+    browser.click_on("studio-render .tick input")
+    both = lambda frame: browser.wait(f"String(numbersShown()) === '{first + frame},{first + frame}'", 20)
+    truth = {frame: boxes[0]["box"] for frame, boxes in browser.run(f"{STORE}.film.boxes")}
+
+    def check(frame):
+        both(frame)
+        x, y, width, height = truth[frame]
+        browser.wait(f"boxShown() && {[x - 2, y - 2, width + 4, height + 4]}.every((v, k) => Math.abs(v - boxShown()[k]) < 0.01)", 20)
+
+    def go_to(frame):
+        browser.run(f"(() => {{ const time = document.querySelector('[aria-label=\"Frame of the film\"]'); time.value = {frame}; time.dispatchEvent(new Event('input')); }})()")
+        check(frame)
+
+    check(0)
+    for frame in (7, 8, count - 1, 3):
+        go_to(frame)
+    # Between two frames the one before is on the screen.
+    browser.run(f"document.querySelectorAll('studio-render video')[1].currentTime = {5.9 / 30}; 1")
+    check(5)
+    press_button(browser, "Play")
+    browser.wait("document.querySelectorAll('studio-render video')[1].currentTime > 0.4")
+    if browser.run("!document.querySelectorAll('studio-render video')[1].paused"):
+        press_button(browser, "Pause")
+    browser.wait("(() => { const [a, b] = numbersShown(); return a === b && !document.querySelector('studio-render video').seeking; })()", 20)
+    check(browser.run("numbersShown()")[1] - first)
+    # Another film begins at its beginning, also where this one is there.
+    go_to(0)
+    browser.run(f"window.firstFilm = {STORE}.film; 1")
+    press_button(browser, "Render the clip")
+    browser.wait(f"{STORE}.film !== firstFilm && !{STORE}.busy && document.querySelectorAll('studio-render video')[1].readyState >= 2", 120)
+    check(0)
+    expect("console", browser.errors, [])
+    server.end()
+    print(f"film: both at one frame, from frame {first} of the clip on, and the boxes of that frame")
 
 
 def test_edits(airtruth, browser, root):
@@ -497,7 +587,7 @@ def main():
     arguments = arguments.parse_args()
     airtruth = os.path.abspath(arguments.airtruth)
     program = browser_or_skip("studio_test")
-    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "edits": test_edits, "layout": test_layout,
+    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "film": test_film, "edits": test_edits, "layout": test_layout,
              "latency": lambda *given: test_latency(*given, arguments.drags), "monkey": lambda *given: test_monkey(*given, arguments.monkey)}
     for name, test in tests.items():
         if arguments.only not in (None, name):

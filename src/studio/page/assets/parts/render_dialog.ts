@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx, Rendered} from '../model/contract';
-import {clamp, round} from '../model/geometry';
+import {clamp} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
 import {tick} from './fields';
 import {attribute, h, s, text} from './part';
 
-const LEAST_OFF_S = 0.05;  // of two films, after which one is moved to the other's time
+const MOST_AHEAD_S = 0.5;  // of one film to the other, beyond which it does not catch up by its speed
+const CATCH_UP = 4;        // of its speed, for each second that it is ahead
 
 interface FilmBox {
   id: string;
@@ -15,7 +16,8 @@ interface FilmBox {
 
 // Rendering with its progress, and then the film over the original, parted by a line that is drawn aside.
 export class RenderDialog extends DialogPart {
-  protected readonly watches: Member[] = ['dialog', 'busy', 'progress', 'film', 'clip', 'state'];
+  protected readonly watches: Member[] =
+      ['dialog', 'busy', 'progress', 'film', 'clip', 'state', 'file', 'notices', 'connected'];
   protected readonly name = 'render';
   protected readonly title_ = 'Render';
   private begin = h('button', {class: 'main', onclick: () => void this.studio.render()}, 'Render the clip');
@@ -23,11 +25,12 @@ export class RenderDialog extends DialogPart {
   private bar = h('progress', {'aria-label': 'Progress'});
   private words = h('output', {});
   private where = h('p', {class: 'hint'});
+  private problem = h('p', {class: 'notice error'});
   private original = h('video', {muted: true, playsinline: true, preload: 'auto', 'aria-label': 'The original'});
   private rendered = h('video', {muted: true, playsinline: true, preload: 'auto', 'aria-label': 'With the aircraft'});
   private boxes = s('svg', {'aria-hidden': 'true'});
   private boxesOf = new Map<number, FilmBox[]>();
-  private showsBoxes = tick('Boxes', () => this.showBoxes(this.rendered.currentTime));
+  private showsBoxes = tick('Boxes', () => this.showBoxes());
   private stage = h('div', {class: 'films'});
   private line = h('div', {class: 'line', 'aria-hidden': 'true'});
   private swipe: HTMLInputElement = h('input', {
@@ -43,14 +46,16 @@ export class RenderDialog extends DialogPart {
   private time: HTMLInputElement = h('input', {
     type: 'range',
     min: 0,
-    max: 1,
-    step: 0.001,
+    step: 1,
     value: 0,
-    'aria-label': 'Time in the film',
-    oninput: () => this.seek()
+    'aria-label': 'Frame of the film',
+    oninput: () => this.goTo(this.time.valueAsNumber)
   });
   private film = h('div', {class: 'film'});
   private shown: Rendered|null = null;
+  private frame = 0;           // of the film, on the screen
+  private originalFrame = -1;  // of the original
+  private sought = -1;         // of the original, to save seeking again where it has no such frame
 
   protected fill(): Node[] {
     this.stage.append(
@@ -60,8 +65,12 @@ export class RenderDialog extends DialogPart {
       if (event.buttons & 1) this.swipeTo(event);
     });
     this.stage.addEventListener('pointerdown', (event) => this.swipeTo(event));
-    this.rendered.addEventListener('timeupdate', () => this.follow());
-    this.rendered.addEventListener('ended', () => this.follow());
+    watch(this.rendered, (time_s) => this.came(Math.round(time_s * this.rate_hz)));
+    watch(this.original, (time_s) => {
+      this.originalFrame = Math.round(time_s * this.rate_hz);
+      this.follow();
+    });
+    this.rendered.addEventListener('ended', () => this.pause());
     // Numbered pictures are no video, and not every container is one that browsers play.
     this.original.addEventListener('error', () => {
       this.original.hidden = true;
@@ -72,16 +81,22 @@ export class RenderDialog extends DialogPart {
           this.where, `The film is in ${this.shown?.folder ?? ''}; browsers play mp4 ([output] video), not this kind.`);
     });
     this.rendered.addEventListener('loadedmetadata', () => this.shape());
-    this.rendered.addEventListener('seeked', () => this.showBoxes(this.rendered.currentTime));
     this.film.append(this.stage, h('div', {class: 'actions'}, this.play, this.time, this.showsBoxes.element));
-    return [h('div', {class: 'actions'}, this.begin, this.cancel, this.bar, this.words), this.where, this.film];
+    return [
+      h('div', {class: 'actions'}, this.begin, this.cancel, this.bar, this.words), this.where, this.problem, this.film
+    ];
   }
 
   protected override update(changed: Set<Member>): void {
     super.update(changed);
-    const {busy, progress, film, dialog} = this.now;
+    const {busy, progress, film, dialog, file, state, notices, connected} = this.now;
     const isRendering = busy === 'render';
-    this.begin.disabled = busy !== null;
+    const name = state?.scene.name ?? file.replace(/^.*\//, '').replace(/\.toml$/, '');
+    this.begin.disabled = busy !== null || !connected;
+    // Notices are behind the dialog.
+    const error = notices.filter((notice) => notice.kind === 'error').pop();
+    this.problem.hidden = !error;
+    text(this.problem, error?.line ?? '');
     this.cancel.hidden = this.bar.hidden = !isRendering;
     if (isRendering && progress?.total) {
       this.bar.max = progress.total;
@@ -97,8 +112,10 @@ export class RenderDialog extends DialogPart {
                           '');
     text(
         this.where,
-        film ? `The film and its truth are in ${film.folder}` :
-               'The film, its boxes and its truth are written as `airtruth render` writes them.');
+        film ?
+            `The film and its truth are in ${film.folder}` :
+            `The film, its boxes and its truth will be in ${
+                name} below the folder of --out (“out” where the studio was started without it), as \`airtruth render\` writes them. What is there is replaced.`);
     this.film.hidden = !film || isRendering;
     if (film && film !== this.shown) this.load(film);
     if (dialog !== 'render') this.pause();
@@ -113,6 +130,8 @@ export class RenderDialog extends DialogPart {
     this.original.hidden = false;
     this.original.src = address('original');
     this.rendered.src = address('rendered');
+    attribute(this.time, 'max', (this.now.clip?.frames ?? 1) - 1);
+    this.sought = this.originalFrame = -1;
     this.partFilms();
   }
 
@@ -122,18 +141,10 @@ export class RenderDialog extends DialogPart {
     this.stage.style.width = `min(100%, calc(62vh * ${videoWidth / videoHeight}))`;
     this.stage.style.aspectRatio = `${videoWidth} / ${videoHeight}`;
     attribute(this.boxes, 'viewBox', `0 0 ${videoWidth} ${videoHeight}`);
-    this.showBoxes(this.rendered.currentTime);
-    const next = (_: number, {mediaTime}: {mediaTime: number}) => {
-      this.showBoxes(mediaTime);
-      this.rendered.requestVideoFrameCallback?.(next);
-    };
-    this.rendered.requestVideoFrameCallback?.(next);
   }
 
-  private showBoxes(time_s: number): void {
-    const {clip} = this.now;
-    const boxes =
-        this.showsBoxes.input.checked && clip ? this.boxesOf.get(Math.round(time_s * clip.rate_hz)) ?? [] : [];
+  private showBoxes(): void {
+    const boxes = this.showsBoxes.input.checked ? this.boxesOf.get(this.frame) ?? [] : [];
     this.boxes.replaceChildren(...boxes.map(
         ({id, box: [x, y, width, height]}) =>
             s('rect', {x: x - 2, y: y - 2, width: width + 4, height: height + 4}, s('title', {}, id))));
@@ -151,38 +162,63 @@ export class RenderDialog extends DialogPart {
     this.line.style.left = `${share}%`;
   }
 
-  // The original may begin before the part that is used.
-  private get offset_s(): number {
-    const {clip} = this.now;
-    return clip ? clip.first_frame / clip.rate_hz : 0;
+  private get rate_hz(): number {
+    return this.now.clip?.rate_hz ?? 1;
   }
 
   private toggle(): void {
-    if (this.rendered.paused) {
-      void this.rendered.play().catch(() => undefined);
-      void this.original.play().catch(() => undefined);
-      text(this.play, 'Pause');
-    } else {
-      this.pause();
-    }
+    if (!this.rendered.paused) return this.pause();
+    if (this.rendered.ended) this.goTo(0);
+    for (const film of [this.rendered, this.original]) void film.play().catch(() => undefined);
+    text(this.play, 'Pause');
   }
 
   private pause(): void {
-    this.rendered.pause();
-    this.original.pause();
+    for (const film of [this.rendered, this.original]) film.pause();
     text(this.play, 'Play');
+    this.follow();
   }
 
-  private seek(): void {
-    this.rendered.currentTime = this.time.valueAsNumber * (this.rendered.duration || 0);
-    this.original.currentTime = this.rendered.currentTime + this.offset_s;
+  private goTo(frame: number): void {
+    this.frame = frame;
+    seek(this.rendered, frame, this.rate_hz);
+    this.follow();
   }
 
+  // A frame of the film is on the screen.
+  private came(frame: number): void {
+    this.frame = frame;
+    if (!this.rendered.seeking) this.time.value = String(frame);
+    this.showBoxes();
+    this.follow();
+  }
+
+  // The original shows the frame that the film shows: while both play it runs faster or slower until it does.
   private follow(): void {
-    const {currentTime, duration, ended} = this.rendered;
-    if (duration) this.time.value = String(round(currentTime / duration, 4));
-    if (Math.abs(this.original.currentTime - currentTime - this.offset_s) > LEAST_OFF_S)
-      this.original.currentTime = currentTime + this.offset_s;
-    if (ended) this.pause();
+    const {clip} = this.now;
+    if (!this.shown || !clip) return;
+    const wanted = this.frame + clip.first_frame;
+    const ahead_s = (this.originalFrame - wanted) / clip.rate_hz;
+    if (!this.rendered.paused && Math.abs(ahead_s) < MOST_AHEAD_S) {
+      this.original.playbackRate = clamp(1 - CATCH_UP * ahead_s, 0.5, 1.5);
+      this.sought = -1;
+    } else if (this.originalFrame !== wanted && this.sought !== wanted) {
+      this.sought = wanted;
+      seek(this.original, wanted, clip.rate_hz);
+    }
   }
+}
+
+// By the middle of the frame, so that no rounding shows the one before.
+function seek(film: HTMLVideoElement, frame: number, rate_hz: number): void {
+  film.currentTime = (frame + 0.5) / rate_hz;
+}
+
+// Tells the time of each frame that a film shows.
+function watch(film: HTMLVideoElement, came: (time_s: number) => void): void {
+  const next = (_: number, {mediaTime}: {mediaTime: number}) => {
+    film.requestVideoFrameCallback(next);
+    came(mediaTime);
+  };
+  film.requestVideoFrameCallback?.(next);
 }
