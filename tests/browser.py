@@ -106,6 +106,14 @@ class Browser:
     def open(self, address):
         self.call("Page.navigate", url=address)
 
+    def press(self, selector, states):
+        """Elements under pseudo-classes such as hover, as if the mouse were on all of them; no states: as they are."""
+        for domain in ("DOM", "CSS"):
+            self.call(f"{domain}.enable")
+        root = self.call("DOM.getDocument", depth=0)["root"]["nodeId"]
+        for node in self.call("DOM.querySelectorAll", nodeId=root, selector=selector)["nodeIds"]:
+            self.call("CSS.forcePseudoState", nodeId=node, forcedPseudoClasses=states)
+
     def run(self, script):
         """The value of an expression in the page; a promise is awaited."""
         result = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)

@@ -485,6 +485,10 @@ def test_layout(airtruth, browser, root):
                         break
                     time.sleep(0.2)
                     found = browser.run(LOOK)
+                for pseudo in (["hover"], ["focus", "focus-visible"], ["hover", "active"]) if size[0] == 1600 else ():
+                    browser.press("button, select", pseudo)
+                    found += [f"{fault} under {pseudo[0]}" for fault in browser.run(LOOK) if "faint" in fault]
+                    browser.press("button, select", [])
                 faults += [f"{size[0]} px, {'dark' if is_dark else 'light'}, {name}: {fault}" for fault in found]
             browser.run("airtruthStudio.studio.store.put({ dialog: null, tab: 'flyers' }); 1")
     browser.looks((1600, 1000))
