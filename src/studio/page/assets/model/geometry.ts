@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Ned, Plan, Track, TrackPoint} from './contract';
+import type {BoxPx, Ned, Plan, Track, TrackPoint} from './contract';
 
 export type Point = [number, number];
 
@@ -10,6 +10,22 @@ export const degrees = (radians: number) => (radians * 180) / Math.PI;
 export const radians = (deg: number) => (deg * Math.PI) / 180;
 // To 0 up to 360.
 export const turned = (deg: number) => ((deg % 360) + 360) % 360;
+
+const meet = (a: BoxPx, b: BoxPx) =>
+    a[0] < b[0] + b[2] && b[0] < a[0] + a[2] && a[1] < b[1] + b[3] && b[1] < a[1] + a[3];
+const isInside = (a: BoxPx, room: BoxPx) =>
+    a[0] >= room[0] && a[1] >= room[1] && a[0] + a[2] <= room[0] + room[2] && a[1] + a[3] <= room[1] + room[3];
+
+// Where something of a size stands: at the first place in the room that meets nothing of what is taken, else at the
+// first, moved into the room.
+export function freePlace([w, h]: Point, places: Point[], room: BoxPx, taken: BoxPx[]): BoxPx {
+  const boxes = places.map(([x, y]): BoxPx => [x, y, w, h]);
+  const [x, y] = places[0];
+  return boxes.find((box) => isInside(box, room) && !taken.some((one) => meet(one, box))) ?? [
+    clamp(x, room[0], Math.max(room[0], room[0] + room[2] - w)),
+    clamp(y, room[1], Math.max(room[1], room[1] + room[3] - h)), w, h
+  ];
+}
 
 export interface Seen {
   pixel: Point;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Json, Table} from '../model/contract';
 import {numberOf, tableOf} from '../model/flyers';
+import {round} from '../model/geometry';
 import type {Member} from '../model/store';
 import {NumberField} from './fields';
 import {Part, h, text} from './part';
@@ -10,6 +11,7 @@ interface Row {
   value: (scene: Table) => number | null;
 }
 
+const [MOST_M, MOST_MPS] = [1e9, 1e4];  // of a scene
 const ANGLES = ['Yaw', 'Pitch', 'Roll'];
 const numbers = (value: Json|undefined, usual: number[]): number[] =>
     (Array.isArray(value) && value.length === usual.length ? value.map(Number) : usual);
@@ -17,7 +19,7 @@ const numbers = (value: Json|undefined, usual: number[]): number[] =>
 // The lens and the attitude of the camera; the horizon that follows from them is drawn over the frame while this is
 // shown.
 export class CameraPanel extends Part {
-  protected readonly watches: Member[] = ['state', 'tab', 'plan'];
+  protected readonly watches: Member[] = ['state', 'plan'];
   private rows: Row[] = [];
   private origin = h('p', {class: 'hint'});
   private found = h('p', {class: 'hint'});
@@ -44,7 +46,7 @@ export class CameraPanel extends Part {
                       .map((old, i) => (i === k ? value : old))
             }]));
     const height = this.row(
-        {label: 'Height', unit: 'm', step: 1},
+        {label: 'Height', unit: 'm', step: 1, min: -MOST_M, max: MOST_M},
         (scene) => -numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150])[2],
         (value, scene) => [{
           set: ['camera', 'position_ned_m'],
@@ -52,7 +54,8 @@ export class CameraPanel extends Part {
         }]);
     const velocity = ['North', 'East', 'Down'].map(
         (label, k) => this.row(
-            {label, unit: 'm/s', step: 1}, (scene) => numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0])[k],
+            {label, unit: 'm/s', step: 1, min: -MOST_MPS, max: MOST_MPS},
+            (scene) => numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0])[k],
             (value, scene) => [{
               set: ['camera', 'velocity_ned_mps'],
               to: numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0]).map((old, i) => (i === k ? value : old))
@@ -65,9 +68,8 @@ export class CameraPanel extends Part {
         h('div', {class: 'grid three'}, ...velocity), this.flight);
   }
 
-  protected update(changed: Set<Member>): void {
-    const {state, tab, plan} = this.now;
-    if (changed.has('tab') && tab === 'camera') this.studio.store.put({showsHorizon: true});
+  protected update(): void {
+    const {state, plan} = this.now;
     if (!state) return;
     const {scene, notes} = state;
     // The file's own words on where its numbers come from.
@@ -78,8 +80,9 @@ export class CameraPanel extends Part {
     text(
         this.origin,
         'file' in lens ? `The lens is that of ${String(lens.file)}.` :
-            Array.isArray(lens.focal_px) ? `Focal lengths ${lens.focal_px.join(', ')} px.` :
-                                           said('lens', 'lens.model', 'lens.vertical_fov_deg'));
+            Array.isArray(lens.focal_px) ?
+                         `Focal lengths ${lens.focal_px.map((px) => round(Number(px), 1)).join(', ')} px.` :
+                         said('lens', 'lens.model', 'lens.vertical_fov_deg'));
     text(this.found, plan?.own.attitude || said('camera', 'camera.attitude_yaw_pitch_roll_deg'));
     text(this.flight, said('camera.position_ned_m', 'camera.velocity_ned_mps'));
     this.rows[0].field.input.disabled = !hasFov;
@@ -91,7 +94,7 @@ export class CameraPanel extends Part {
     this.rows.slice(5).forEach(({field}) => {
       field.input.disabled = isFile || 'log' in camera;
     });
-    this.forget.hidden = !('attitude_yaw_pitch_roll_deg' in camera);
+    this.forget.disabled = !('attitude_yaw_pitch_roll_deg' in camera);
   }
 
   private row(

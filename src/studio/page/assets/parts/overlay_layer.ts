@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {ExactBox} from '../model/contract';
+import type {BoxPx, ExactBox} from '../model/contract';
 import {flyersOf, isSame, trackOf} from '../model/flyers';
-import {nedAt, round} from '../model/geometry';
+import {freePlace, nedAt, round} from '../model/geometry';
 import type {Everything} from '../model/store';
-import {Keyed, attribute, s, text} from './part';
+import {Keyed, attribute, s, text, wordsWidth} from './part';
 
 const MOTION_FRAMES = 30;
+const LABEL_PX = 13;
 
 interface Box {
   exact: ExactBox;
   colour: number;
   isSelected: boolean;
   label: string;
+  at: BoxPx;  // of the label
 }
 
 // What is measured or follows, drawn over the frame: boxes with range and size, the horizon, and how it moved lately.
@@ -29,7 +31,8 @@ export class OverlayLayer {
         boxes, () => s('g', {}, s('path'), s('text')), (element, box) => this.renew(element, box));
   }
 
-  update(now: Readonly<Everything>, px: number): void {
+  // Labels are in the room and beside what is taken.
+  update(now: Readonly<Everything>, px: number, room: BoxPx, taken: BoxPx[]): void {
     this.px = px;
     this.showHorizon(now);
     this.showMotion(now);
@@ -37,6 +40,7 @@ export class OverlayLayer {
     const flyers = state ? flyersOf(state.scene) : [];
     const shown = showsBoxes ? picture?.boxes ?? [] : [];
     const tables = shown.map((one) => JSON.stringify(one.table));
+    taken.push(...shown.map((one) => one.box));
     this.boxes.show(shown.map((exact, k) => {
       const flyer = flyers.find((one) => isSame(one.path, exact.table));
       const isSelected = isSame(now.selected, exact.table);
@@ -51,11 +55,27 @@ export class OverlayLayer {
           isSelected ?
           `${words}  ${distance(exact.range_m)}${count > 1 ? '' : `  ${round(w, 1)} × ${round(h, 1)} px`}` :
           words;
-      return {key: exact.id, item: {exact, colour: flyer?.colour ?? 0, isSelected, label}};
+      const at = this.labelAt(exact.box, label, room, taken);
+      if (label) taken.push(at);
+      return {key: exact.id, item: {exact, colour: flyer?.colour ?? 0, isSelected, label, at}};
     }));
   }
 
-  private renew(element: SVGGElement, {exact, colour, isSelected, label: words}: Box): void {
+  private labelAt([x, y, width, height]: BoxPx, words: string, room: BoxPx, taken: BoxPx[]): BoxPx {
+    const {px} = this;
+    const [w, h, gap] = [wordsWidth(words, LABEL_PX) * px, 1.25 * LABEL_PX * px, 4 * px];
+    const [left, right, above, below] = [x - gap - w, x + width + gap, y - gap - h, y + height + gap];
+    const middle = x + (width - w) / 2;
+    return freePlace(
+        [w, h],
+        [
+          [right, above], [left, above], [right, below], [left, below], [middle, above - h], [middle, below + h],
+          [middle, above - 3 * h], [middle, below + 3 * h]
+        ],
+        room, taken);
+  }
+
+  private renew(element: SVGGElement, {exact, colour, isSelected, label: words, at}: Box): void {
     attribute(element, 'class', `box colour-${colour}${isSelected ? ' selected' : ''}`);
     const [path, label] = [element.children[0], element.children[1]];
     const {px} = this;
@@ -64,14 +84,14 @@ export class OverlayLayer {
     const arm = Math.min(12 * px, (x1 - x0) / 3, (y1 - y0) / 3);
     const corner = (cx: number, cy: number, dx: number, dy: number) => `M${cx + dx * arm},${cy}H${cx}V${cy + dy * arm}`;
     attribute(path, 'd', corner(x0, y0, 1, 1) + corner(x1, y0, -1, 1) + corner(x0, y1, 1, -1) + corner(x1, y1, -1, -1));
-    attribute(label, 'x', x1 + 4 * px);
-    attribute(label, 'y', y0 - 3 * px);
-    attribute(label, 'font-size', 13 * px);
+    attribute(label, 'x', at[0]);
+    attribute(label, 'y', at[1] + LABEL_PX * px);
+    attribute(label, 'font-size', LABEL_PX * px);
     text(label, words);
   }
 
-  private showHorizon({plan, frame, showsHorizon}: Readonly<Everything>): void {
-    const line = showsHorizon && plan ? nearest(plan.horizon, frame) : null;
+  private showHorizon({plan, frame, showsHorizon, tab}: Readonly<Everything>): void {
+    const line = (showsHorizon || tab === 'camera') && plan ? nearest(plan.horizon, frame) : null;
     this.horizon.toggleAttribute('hidden', !line);
     if (line)
       for (const [k, name] of ['x1', 'y1', 'x2', 'y2'].entries()) attribute(this.horizon, name, line[k]);

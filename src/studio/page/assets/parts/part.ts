@@ -8,6 +8,8 @@ export function provide(studio: Studio): void {
   theStudio = studio;
 }
 
+export const say = (line: string): void => theStudio!.store.say('info', line);
+
 // A part of the page: an element that is built once, and brought up to date when a member of the store that it watches
 // changes.
 export abstract class Part extends HTMLElement {
@@ -39,6 +41,13 @@ export abstract class Part extends HTMLElement {
 
 // Screen pixels of what is drawn as large as text: 1 where text is 16 px.
 export const ui = (): number => parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
+
+// How wide words are on the screen, in the page's type.
+const ruler = document.createElement('canvas').getContext('2d')!;
+export function wordsWidth(words: string, size_px: number): number {
+  ruler.font = `${size_px}px system-ui, "DejaVu Sans", sans-serif`;
+  return ruler.measureText(words).width;
+}
 
 type Child = Node|string|null|undefined|false;
 type Attributes = Record<string, string|number|boolean|null|undefined|EventListener>;

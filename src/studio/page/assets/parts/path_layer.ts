@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {LinePoint, Path} from '../model/contract';
+import type {BoxPx, Clip, LinePoint, Path} from '../model/contract';
 import {type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel} from '../model/flyers';
-import {type Point, mix, round} from '../model/geometry';
+import {type Point, clamp, degrees, freePlace, mix, round} from '../model/geometry';
 import type {Studio} from '../model/studio';
 import {distance} from './overlay_layer';
-import {Keyed, attribute, s, text} from './part';
+import {Keyed, attribute, s, text, wordsWidth} from './part';
 
 const HANDLE_PX = 8;
+const RIM_PX = 11;  // from the panel's edge, of a handle that is drawn there
+const LABEL_PX = 12;
+const AWAY_PX = 14;    // of a label from its handle's middle
 const PAUSE_MS = 500;  // after which turning the wheel on is a new step of undo
 const FAR = 30000;     // pixels beyond which a path is not drawn
 
@@ -14,6 +17,17 @@ interface Line {
   points: LinePoint[];
   flyer: Flyer;
   isSelected: boolean;
+}
+
+// A handle as it is drawn: at its place, or at the rim of the panel, pointing to it.
+interface Handle {
+  moment: Moment;
+  flyer: Flyer;
+  index: number;
+  at: Point;
+  points_deg: number|null;
+  words: string;
+  label: BoxPx;
 }
 
 interface Held {
@@ -29,7 +43,7 @@ interface Held {
 export class PathLayer {
   readonly element = s('g', {class: 'paths'});
   private tracks: Keyed<Line, SVGGElement>;
-  private handles: Keyed<{moment: Moment; flyer: Flyer; index: number}, SVGGElement>;
+  private handles: Keyed<Handle, SVGGElement>;
   private held: Held|null = null;
   private isWheel = false;
   private wheelMerge = {name: '', at: -Infinity};
@@ -42,10 +56,11 @@ export class PathLayer {
     this.handles = new Keyed(handles, () => this.makeHandle(), (element, item) => this.renewHandle(element, item));
   }
 
-  update(px: number): void {
+  // Returns what handles and their labels cover.
+  update(px: number, room: BoxPx): BoxPx[] {
     this.px = px;
     const {state, clip, selected} = this.studio.store.now;
-    if (!state || !clip) return;
+    if (!state || !clip) return [];
     const flyers = flyersOf(state.scene);
     this.tracks.show(flyers.flatMap((flyer) => {
       const points = this.pointsOf(flyer.path);
@@ -55,8 +70,50 @@ export class PathLayer {
     }));
     const flyer = flyers.find((one) => isSame(one.path, selected));
     const moments = flyer?.statement === 'moments' ? momentsOf(flyer, clip) : [];
-    this.handles.show(moments.map(
-        (moment, index) => ({key: `${JSON.stringify(selected)}${index}`, item: {moment, flyer: flyer!, index}})));
+    const handles = flyer ? this.placed(moments, flyer, room, clip) : [];
+    this.handles.show(handles.map((item) => ({key: `${JSON.stringify(selected)}${item.index}`, item})));
+    return [...handles.map((one) => this.ringOf(one.at)), ...handles.map((one) => one.label)];
+  }
+
+  private ringOf([x, y]: Point): BoxPx {
+    const r = (HANDLE_PX + 2) * this.px;
+    return [x - r, y - r, 2 * r, 2 * r];
+  }
+
+  private placed(moments: Moment[], flyer: Flyer, room: BoxPx, clip: Clip): Handle[] {
+    const {px} = this;
+    const places = moments.map((moment) => this.placeOf(moment, flyer));
+    const rings = places.map((place) => atRim(place, room, RIM_PX * px));
+    const taken = rings.map((ring) => this.ringOf(ring));
+    return moments.map((moment, index) => {
+      const [at, place] = [rings[index], places[index]];
+      const [x, y] = this.draftOf(moment) ?? moment.pixel;
+      const isOutside = x < 0 || y < 0 || x > clip.width || y > clip.height;
+      const words = `${round(moment.time_s, 2)} s${isOutside ? ', outside the picture' : ''}`;
+      const [w, h] = [wordsWidth(words, LABEL_PX) * px, 1.25 * LABEL_PX * px];
+      const away = AWAY_PX * px;
+      const label = freePlace(
+          [w, h],
+          [
+            [at[0] - w / 2, at[1] + away], [at[0] - w / 2, at[1] - away - h], [at[0] + away, at[1] - h / 2],
+            [at[0] - away - w, at[1] - h / 2]
+          ],
+          room, taken);
+      taken.push(label);
+      const points_deg = at === place ? null : degrees(Math.atan2(place[1] - at[1], place[0] - at[0]));
+      return {moment, flyer, index, at, points_deg, words, label};
+    });
+  }
+
+  private draftOf(moment: Moment): Point|null {
+    const {draft} = this.studio.store.now;
+    return draft && isSame(draft.path, moment.path) ? draft.pixel : null;
+  }
+
+  // As the camera of the frame shown would see it.
+  private placeOf(moment: Moment, flyer: Flyer): Point {
+    const isThere = moment.frame === this.studio.store.now.frame;
+    return this.draftOf(moment) ?? (isThere ? null : placeOn(this.pointsOf(flyer.path), moment.frame)) ?? moment.pixel;
   }
 
   isOf(target: EventTarget|null): boolean {
@@ -82,8 +139,8 @@ export class PathLayer {
       const moment = flyer && momentsOf(flyer, clip)[index];
       if (!flyer || !moment) return false;
       const at = this.pixelAt(event);
-      // In another frame the camera looks elsewhere: then the handle comes to the pointer.
-      const isThere = moment.frame === this.studio.store.now.frame;
+      // In another frame the camera looks elsewhere, and at the rim it is not: then the handle comes to the pointer.
+      const isThere = moment.frame === this.studio.store.now.frame && !handle.classList.contains('rim');
       handle.setPointerCapture(event.pointerId);
       handle.focus();
       this.held = {
@@ -222,7 +279,8 @@ export class PathLayer {
           onkeydown: ((event: KeyboardEvent) => this.key(event, Number(handle.dataset.index))) as EventListener,
           onfocus: () => this.focused(Number(handle.dataset.index))
         },
-          s('circle', {class: 'reach'}), s('circle', {class: 'ring'}), s('circle', {class: 'dot'}), s('text'));
+          s('circle', {class: 'reach'}), s('circle', {class: 'ring'}), s('circle', {class: 'dot'}),
+          s('path', {class: 'arrow', d: 'M8,0L-5,5L-2,0L-5,-5Z'}), s('text'));
     return handle;
   }
 
@@ -235,14 +293,13 @@ export class PathLayer {
     if (moment) this.studio.show(moment.frame);
   }
 
-  private renewHandle(element: SVGGElement, {moment, flyer, index}: {moment: Moment; flyer: Flyer; index: number}):
-      void {
-    const {draft, frame, moment: chosen, plan} = this.studio.store.now;
-    const there = moment.frame === frame ? null : placeOn(this.pointsOf(flyer.path), moment.frame);
-    const [x, y] = draft && isSame(draft.path, moment.path) ? draft.pixel : there ?? moment.pixel;
+  private renewHandle(element: SVGGElement, {moment, flyer, index, at, points_deg, words, label}: Handle): void {
+    const {frame, moment: chosen, plan} = this.studio.store.now;
+    const [x, y] = at;
     attribute(
         element, 'class',
-        `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}`);
+        `handle colour-${flyer.colour}${chosen === index ? ' chosen' : ''}${moment.frame === frame ? ' current' : ''}${
+            points_deg === null ? '' : ' rim'}`);
     attribute(element, 'data-index', index);
     const {px} = this;
     for (const [k, radius] of [16, HANDLE_PX, 2.5].entries()) {
@@ -250,22 +307,30 @@ export class PathLayer {
       attribute(element.children[k], 'cy', y);
       attribute(element.children[k], 'r', radius * px);
     }
-    const label = element.children[3];
-    attribute(label, 'x', x);
-    attribute(label, 'y', y + 26 * px);
-    attribute(label, 'font-size', 12 * px);
-    text(label, `${round(moment.time_s, 2)} s`);
+    attribute(element.children[3], 'transform', `translate(${x} ${y}) rotate(${points_deg ?? 0}) scale(${px})`);
+    const line = element.children[4];
+    attribute(line, 'x', label[0]);
+    attribute(line, 'y', label[1] + LABEL_PX * px);
+    attribute(line, 'font-size', LABEL_PX * px);
+    text(line, words);
     const known = trackOf(plan, flyer.path)?.handles[index];
     const size = [
       known?.range_m && distance(known.range_m), known?.width_px && `${round(known.width_px, 1)} px wide`
     ].filter(Boolean).join(', ');
     attribute(
         element, 'aria-label',
-        `Moment ${index + 1} of ${flyer.id}: ${round(moment.time_s, 2)} s, at ${round(moment.pixel[0], 1)}, ${
+        `Moment ${index + 1} of ${flyer.id}: ${words}, at ${round(moment.pixel[0], 1)}, ${
             round(
                 moment.pixel[1],
                 1)} px${size ? `, ${size}` : ''}. Arrow keys move it, plus and minus change its size.`);
   }
+}
+
+// The same place, or the nearest in a panel where it is beyond its edges.
+function atRim(place: Point, [left, top, width, height]: BoxPx, rim: number): Point {
+  const [x, y] = place;
+  if (x >= left && y >= top && x <= left + width && y <= top + height) return place;
+  return [clamp(x, left + rim, left + width - rim), clamp(y, top + rim, top + height - rim)];
 }
 
 // A line that is broken where it has no place, is too far away, or is not as asked.

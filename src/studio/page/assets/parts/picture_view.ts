@@ -4,7 +4,7 @@ import {frameOf} from '../model/flyers';
 import {type Point, clamp} from '../model/geometry';
 import type {Look, Member} from '../model/store';
 import {OverlayLayer} from './overlay_layer';
-import {Part, attribute, h, s, ui} from './part';
+import {Part, attribute, h, s, text, ui} from './part';
 import {PathLayer} from './path_layer';
 
 const MOST_SCALE = 40;
@@ -17,18 +17,20 @@ const PIXELS_FROM_SCALE = 3;  // frame pixels are shown as squares from here on
 export class PictureView extends Part {
   protected readonly watches: Member[] = [
     'clip', 'look', 'plan', 'state', 'frame', 'selected', 'moment', 'draft', 'picture', 'showsBoxes', 'showsHorizon',
-    'showsMotion', 'connected'
+    'showsMotion', 'connected', 'tab'
   ];
   private canvas = h('canvas', {role: 'img', 'aria-label': 'The frame with the aircraft in it'});
   private svg = s('svg', {class: 'over', role: 'group', 'aria-label': 'Paths over the frame'});
+  // Where the pointer is in the frame.
+  private pixel = h('output', {class: 'pixel', hidden: true, 'aria-hidden': 'true'});
   private overlay = new OverlayLayer();
   private paths = new PathLayer(this.studio, (event) => this.pixelAt(event));
   private pointers = new Map<number, Point>();
   private dragged = false;
 
   protected build(): void {
-    this.svg.append(this.overlay.element, this.paths.element);
-    this.append(this.canvas, this.svg);
+    this.svg.append(this.paths.element, this.overlay.element);
+    this.append(this.canvas, this.svg, this.pixel);
     this.studio.pictures.onDrawn = (header) => {
       this.draw(header.crop);
       this.studio.store.put({picture: header});
@@ -36,7 +38,11 @@ export class PictureView extends Part {
     new ResizeObserver(() => this.resized()).observe(this);
     this.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     this.addEventListener('pointerdown', (event) => this.down(event));
-    this.addEventListener('pointermove', (event) => this.move(event));
+    this.addEventListener('pointermove', (event) => {
+      this.read(event);
+      this.move(event);
+    });
+    this.addEventListener('pointerleave', () => this.read(null));
     for (const end of ['pointerup', 'pointercancel'] as const) this.addEventListener(end, (event) => this.up(event));
     this.addEventListener('dblclick', (event) => this.doubleClick(event));
   }
@@ -45,8 +51,8 @@ export class PictureView extends Part {
     if (changed.has('look') || changed.has('clip')) this.draw();
     this.place();
     const px = ui() / this.scale;
-    this.overlay.update(this.now, px);
-    this.paths.update(px);
+    const room = this.shown;
+    this.overlay.update(this.now, px, room, this.paths.update(px, room));
   }
 
   // All of the frame, in the middle.
@@ -103,11 +109,19 @@ export class PictureView extends Part {
     this.update(new Set());
   }
 
-  private place(): void {
+  // What of the frame's coordinates is in the panel.
+  private get shown(): BoxPx {
     const {x, y, scale} = this.look;
-    attribute(
-        this.svg, 'viewBox',
-        `${x} ${y} ${Math.max(1, this.clientWidth) / scale} ${Math.max(1, this.clientHeight) / scale}`);
+    return [x, y, Math.max(1, this.clientWidth) / scale, Math.max(1, this.clientHeight) / scale];
+  }
+
+  private place(): void {
+    attribute(this.svg, 'viewBox', this.shown.join(' '));
+  }
+
+  private read(event: PointerEvent|null): void {
+    this.pixel.hidden = !event || !this.now.clip;
+    if (event) text(this.pixel, `${this.pixelAt(event).map((v) => v.toFixed(1)).join(', ')} px`);
   }
 
   // The frame, or what changed of it.

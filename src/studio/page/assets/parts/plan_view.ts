@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Change, Clip, Ned, Plan, Table, Track} from '../model/contract';
+import type {BoxPx, Change, Clip, Ned, Plan, Table, Track} from '../model/contract';
 import {type Flyer, flyersOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth} from '../model/flyers';
-import {type Point, acrossRelative, courseOf, degrees, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
-import {attribute, renewed, s, ui} from './part';
+import {type Point, acrossRelative, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
+import {attribute, renewed, s, ui, wordsWidth} from './part';
 import {SideView, niceStep} from './side_view';
 
 const MARGIN_PX = 26;
@@ -10,6 +10,7 @@ const MOST_M = 20000;  // from the own path, of what the view has room for
 const LEAST_M = 60;
 const LEAST_ACROSS = 0.2;  // below which the place across follows from `cpa_ahead_m`, not from `cpa_right_m`
 const ARROW_PX = 46;
+const LABEL_PX = 12;
 
 // From north-east metres to the view's: right and up, the own course at the beginning upwards.
 interface Ground {
@@ -28,6 +29,8 @@ export class PlanView extends SideView<Drag> {
   private origin: Ned = [0, 0, 0];
   private middle: Ground = {right: 0, ahead: 0};
   private scale = 1;  // screen pixels a metre
+  private labels: {words: string; at: Point; away: number}[] = [];
+  private taken: BoxPx[] = [];  // by handles, marks and labels
 
   constructor() {
     super('From above', 'Plan view, own course up');
@@ -41,6 +44,8 @@ export class PlanView extends SideView<Drag> {
     if (!this.drag) this.frameAll(plan, clip, width, height);
     attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
     const own = nedAt(plan, plan.own.ned, frame);
+    this.labels = [];
+    this.taken = [];
     renewed(this.svg, [
       this.grid(width, height),
       ...(own ? [this.fieldOfView(plan, own), ...this.volumes(plan, own)] : []),
@@ -48,6 +53,29 @@ export class PlanView extends SideView<Drag> {
       ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
       ...(own ? [this.ownMark(plan, clip, own)] : []),
     ]);
+    this.svg.append(this.placedLabels(width, height));
+  }
+
+  // Above all else, in the view and beside handles.
+  private placedLabels(width: number, height: number): SVGGElement {
+    const h = 1.25 * LABEL_PX * this.px;
+    return s('g', {class: 'labels'}, ...this.labels.map(({words, at: [x, y], away}) => {
+      const w = wordsWidth(words, LABEL_PX * this.px);
+      const far = away + 2 * h;
+      const box = freePlace(
+          [w, h],
+          [
+            [x + away, y - h / 2], [x - away - w, y - h / 2], [x - w / 2, y - away - h], [x - w / 2, y + away],
+            [x - w / 2, y - far - h], [x - w / 2, y + far], [x + far, y - h / 2], [x - far - w, y - h / 2]
+          ],
+          [0, 0, width, height], this.taken);
+      this.taken.push(box);
+      return s('text', {x: box[0], y: box[1] + LABEL_PX * this.px}, words);
+    }));
+  }
+
+  private take(x: number, y: number, r: number): void {
+    this.taken.push([x - r, y - r, 2 * r, 2 * r]);
   }
 
   private get ownVelocity(): Ned|null {
@@ -112,9 +140,12 @@ export class PlanView extends SideView<Drag> {
     const step = step_m * this.scale;
     for (let x = x0 % step; x < width; x += step) group.append(s('line', {x1: x, x2: x, y1: 0, y2: height}));
     for (let y = y0 % step; y < height; y += step) group.append(s('line', {x1: 0, x2: width, y1: y, y2: y}));
+    const words = step_m >= 1000 ? `${step_m / 1000} km` : `${step_m} m`;
+    this.taken.push(
+        [0, height - 32 * this.px, Math.max(step, wordsWidth(words, LABEL_PX * this.px)) + 12, 32 * this.px]);
     group.append(
         s('path', {class: 'scale', d: `M8,${height - 12 * this.px}v${6 * this.px}h${round(step, 1)}v${- 6 * this.px}`}),
-        s('text', {x: 12, y: height - 16 * this.px}, step_m >= 1000 ? `${step_m / 1000} km` : `${step_m} m`));
+        s('text', {x: 12, y: height - 16 * this.px}, words));
     return group;
   }
 
@@ -131,20 +162,20 @@ export class PlanView extends SideView<Drag> {
 
   private volumes(plan: Plan, own: Ned): SVGElement[] {
     const [cx, cy] = this.at(own);
-    return plan.volumes.filter((volume) => volume.horizontal_m > 0)
-        .map(
-            (volume) =>
-                s('g', {class: 'volume'},
-                  s('circle', {cx, cy, r: volume.horizontal_m * this.scale},
-                    s('title', {}, `${volume.name}: ${round(volume.horizontal_m, 0)} m`)),
-                  s('text', {class: 'middle', x: cx, y: cy - volume.horizontal_m * this.scale - 4 * this.px},
-                    volume.name)));
+    return plan.volumes.filter((volume) => volume.horizontal_m > 0).map((volume) => {
+      const r = volume.horizontal_m * this.scale;
+      this.labels.push({words: volume.name, at: [cx, cy - r - LABEL_PX * this.px], away: 0});
+      return s(
+          'g', {class: 'volume'},
+          s('circle', {cx, cy, r}, s('title', {}, `${volume.name}: ${round(volume.horizontal_m, 0)} m`)));
+    });
   }
 
   private ownMark(plan: Plan, clip: Clip, own: Ned): SVGGElement {
     const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
     const angle = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) - this.course_deg : 0;
     const [x, y] = this.at(own);
+    this.take(x, y, 9 * this.px);
     return s(
         'g', {
           class: 'own-mark',
@@ -165,6 +196,7 @@ export class PlanView extends SideView<Drag> {
     if (now && own) {
       const [[x, y], [ox, oy]] = [this.at(now), this.at(own)];
       if (isSelected) group.append(s('line', {class: 'sight', x1: ox, y1: oy, x2: x, y2: y}));
+      this.take(x, y, 5 * this.px);
       group.append(s('circle', {class: 'place', cx: x, cy: y, r: 4.5 * this.px}, s('title', {}, flyer.id)));
     }
     if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
@@ -175,18 +207,19 @@ export class PlanView extends SideView<Drag> {
     const cpa = approachOf(plan, track, clip);
     if (!cpa) return [];
     const [[x, y], [ox, oy]] = [this.at(cpa.place), this.at(cpa.own)];
-    const label =
-        `Closest approach of ${flyer.id}: ${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`;
+    const words = `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`;
+    this.take(x, y, 7 * this.px);
+    this.labels.push({words, at: [x, y], away: 10 * this.px});
     const parts: SVGElement[] = [
       s('line', {class: 'miss', x1: ox, y1: oy, x2: x, y2: y}),
-      this.diamond(flyer, x, y, label, (event) => this.key(event, flyer, 'approach')),
-      s('text', {x: x + 10 * this.px, y: y + 4 * this.px},
-        `${round(track.cpa!.distance_m, 0)} m at ${round(track.cpa!.time_s, 1)} s`),
+      this.diamond(
+          flyer, x, y, `Closest approach of ${flyer.id}: ${words}`, (event) => this.key(event, flyer, 'approach')),
     ];
     if (flyer.statement !== 'approach') return parts;
     const course = numberOf(tableOf(flyer.table.encounter).course_deg) ?? 0;
     const angle = radians(course + cpa.ownCourse_deg - this.course_deg);
     const [tx, ty] = [x + ARROW_PX * this.px * Math.sin(angle), y - ARROW_PX * this.px * Math.cos(angle)];
+    this.take(tx, ty, 7 * this.px);
     parts.push(
         s('line', {class: 'course', x1: x, y1: y, x2: tx, y2: ty}),
         s('circle', {
@@ -209,6 +242,7 @@ export class PlanView extends SideView<Drag> {
       const place = nedAt(plan, track.ned, moment.frame);
       if (!place) return [];
       const [x, y] = this.at(place);
+      this.take(x, y, 6 * this.px);
       return [this.square(index, moment.time_s, x, y, 'its range')];
     });
   }
