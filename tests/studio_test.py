@@ -2,7 +2,7 @@
 """The studio's page in a real browser: python3 studio_test.py AIRTRUTH SOURCE [--drags N] [--monkey SECONDS] [--only NAME]
 
 From a virtual flight to a saved scene with two aircraft and a flock by the mouse alone, rendered by the command line with all of it
-where the handles stood; both films at one frame; edits through reloads, lost connections and other programs; random clicks, drags, keys, resizes and reloads;
+where the handles stood; keys, refused numbers and broken files; both films at one frame; edits through reloads, lost connections and other programs; random clicks, drags, keys, resizes and reloads;
 no text cut, on another or too faint. How long a drag takes until its picture is drawn is printed, never asserted.
 """
 
@@ -82,6 +82,25 @@ LOOK = r"""(() => {
   }
   return [...new Set(faults)];
 })()"""
+
+# Labels that leave their view, or lie under a handle.
+LABELS = r"""(() => {
+  const faults = [];
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
+  for (const [svg, labels, handles] of [['.over', '.overlay text, .handle text', '.handle .ring'], ['studio-plan svg', '.labels text', '.grab']]) {
+    const view = document.querySelector(svg);
+    const room = view.getBoundingClientRect();
+    const marks = [...view.querySelectorAll(handles)].map((e) => e.getBoundingClientRect());
+    for (const label of view.querySelectorAll(labels)) {
+      const box = label.getBoundingClientRect();
+      if (!box.width) continue;
+      if (box.left < room.left - 1 || box.right > room.right + 1 || box.top < room.top - 1 || box.bottom > room.bottom + 1) faults.push(`"${label.textContent}" is cut`);
+      if (marks.some((mark) => meet(mark, box))) faults.push(`"${label.textContent}" is under a handle`);
+    }
+  }
+  return faults;
+})()"""
+
 
 class Server:
     """`airtruth studio` on a video or a scene, in a folder."""
@@ -277,6 +296,169 @@ def press_button(browser, words):
     browser.click_on("button", buttons.index(words))
 
 
+def type_into(browser, name, text):
+    """Another text in a number's field, not yet entered."""
+    selector = f"input[aria-label={json.dumps(name)}]"
+    browser.click_on(selector)
+    browser.run(f"document.querySelector({json.dumps(selector)}).select()")
+    browser.type(text)
+
+
+def test_keys(airtruth, browser, root):
+    """The keyboard after the mouse, numbers that are refused, and gestures that cannot be done."""
+    flight(airtruth, root)
+    server = Server(airtruth, root, "flight.mp4")
+    page = Page(browser)
+    page.open(server.address)
+    value = lambda name: browser.run(f"document.querySelector('input[aria-label={json.dumps(name)}]').value")
+    focus = lambda: browser.run("document.activeElement.tagName")
+    # A path by its closest approach has no moments, and says so.
+    page.select(0)
+    for gesture in (lambda: browser.key("m"), lambda: browser.click(*page.screen((320, 150)), count=2)):
+        gesture()
+        browser.wait("[...document.querySelectorAll('.notice')].some((e) => e.textContent.includes('closest approach. “State by moments in the picture”'))")
+        browser.click_on(".notice [aria-label=Dismiss]")
+    # A number that is refused says what is expected, and goes back to its value: by Escape, by leaving, and by undo.
+    speed = value("Speed, m/s")
+    type_into(browser, "Speed, m/s", "0")
+    expect("what is expected", words_of(browser, ".expected"), ["Expected a number from 0.001 to 10000 m/s."])
+    browser.key("Escape")
+    expect("after Escape", (value("Speed, m/s"), focus(), words_of(browser, ".expected")), (speed, "BODY", []))
+    type_into(browser, "Speed, m/s", "-")
+    browser.key("Tab")
+    expect("after Tab", (value("Speed, m/s"), words_of(browser, ".expected")), (speed, []))
+    browser.wait(f"[...document.querySelectorAll('.notice')].some((e) => e.textContent.includes('Speed: {speed} stays. Expected a number from 0.001 to 10000 m/s.'))")
+    type_into(browser, "Speed, m/s", "47")
+    browser.key("Enter")
+    page.rest()
+    for give_back in (lambda: browser.key("z", CONTROL), lambda: press_button(browser, "Undo")):
+        type_into(browser, "Speed, m/s", "0")
+        give_back()
+        page.rest()
+        expect("undo of what was refused", (value("Speed, m/s"), page.state()["undo"]), ("47", 1))
+    type_into(browser, "Right, m", "55")
+    browser.key("Escape")
+    browser.key("2")
+    page.rest()
+    expect("keys after Escape", (browser.run(f"{STORE}.tab"), page.state()["undo"]), ("light", 1))
+    # The Horizon is drawn over the camera's panel alone.
+    horizon = "document.querySelector('.horizon').hasAttribute('hidden')"
+    browser.key("3")
+    browser.wait(f"!{horizon}")
+    browser.key("1")
+    browser.wait(horizon)
+    # Space plays after a click on a button, and presses the one that was reached by Tab.
+    press_button(browser, "Undo")
+    page.rest()
+    expect("undone", page.state()["undo"], 0)
+    browser.key("z", CONTROL | SHIFT)
+    page.rest()
+    browser.run("for (let k = 2; k < 5; ++k) airtruthStudio.studio.edit([{ set: ['seed'], to: k }]); 1")
+    page.rest()
+    for press in (lambda: press_button(browser, "Undo"), lambda: browser.click_on(".tick"), lambda: browser.click_on(".tick input")):
+        press()
+        page.rest()
+        before = (page.state()["undo"], browser.run(f"{STORE}.showsAircraft"))
+        browser.key(" ")
+        browser.wait(f"{STORE}.playing")
+        browser.key(" ")
+        browser.wait(f"!{STORE}.playing")
+        page.rest()
+        expect("after Space", (page.state()["undo"], browser.run(f"{STORE}.showsAircraft")), before)
+    browser.click_on("studio-time .strip input")
+    page.rest()
+    frame = browser.run(f"{STORE}.frame")
+    browser.key("ArrowLeft", SHIFT)
+    expect("ten frames back after a click on the thumbnails", browser.run(f"{STORE}.frame"), frame - 10)
+    for reached, pressed in (("button", "state.undo"), (".tick input", "showsAircraft")):
+        browser.run(f"document.querySelector('studio-tools {reached}').focus()")
+        before = browser.run(f"{STORE}.{pressed}")
+        browser.key(" ")
+        page.rest()
+        expect(f"Space on a {reached} that was reached by keys", browser.run(f"{STORE}.{pressed}") != before, True)
+    # Delete on a heading, whichever way it got the focus.
+    page.add("738")
+    flyers = lambda: len(page.state()["scene"].get("intruder", []))
+    for reach in (lambda: browser.click_on("button.flyer", 1), lambda: browser.run("document.querySelectorAll('button.flyer')[1].focus()")):
+        expect("flyers", flyers(), 2)
+        reach()
+        page.rest()
+        browser.key("Delete")
+        page.rest()
+        expect("flyers after Delete", flyers(), 1)
+        browser.key("z", CONTROL)
+        page.rest()
+    page.select(1)
+    browser.run("document.querySelector('.handle').focus()")
+    browser.key("Delete")
+    page.rest()
+    expect("of two moments", (flyers(), "at least two moments" in "".join(words_of(browser, ".notice"))), (2, True))
+    # Rows stay where they are when the checks say something.
+    rows = lambda: browser.run("[...document.querySelectorAll('studio-flyer input, studio-flyer button')].map((e) => e.getBoundingClientRect().top)")
+    before = rows()
+    checks = "document.querySelectorAll('.flyers .selected .checks li').length"
+    expect("checks", browser.run(checks), 0)
+    type_into(browser, "Size of moment 2", "9000")
+    browser.key("Enter")
+    browser.wait(checks)
+    page.rest()
+    expect("rows under a warning", rows(), before)
+    browser.key("z", CONTROL)
+    page.rest()
+    # A moment stays between those beside it.
+    times = [time_s for time_s, _ in moments_of(page.state()["scene"]["intruder"][1])]
+    type_into(browser, "Time of moment 2, s", "0")
+    browser.key("Enter")
+    page.rest()
+    expect("a time before the moment before", words_of(browser, ".expected"), [f"Expected a number from 0.033 to {round((FRAMES - 1) / 30, 3)} s, between the moments beside it."])
+    browser.key("Escape")
+    square = browser.middle("studio-height .moment", 1)
+    browser.drag(square, (square[0] - 900, square[1]))
+    page.rest()
+    expect("times by a drag", moments_of(page.state()["scene"]["intruder"][1])[1][0] > times[0], True)
+    expect("problem", page.state()["problem"], None)
+    # A handle beyond the edge of the panel stays within reach, and says so.
+    begin = browser.middle(".handle .ring", 0)
+    frame = browser.run("(() => { const b = document.querySelector('studio-picture').getBoundingClientRect(); return [b.left, b.top, b.right, b.bottom]; })()")
+    browser.drag(begin, (frame[2] + 150, frame[1] + 200))
+    page.rest()
+    ring = browser.middle(".handle.rim .ring")
+    expect("the handle in the panel", frame[0] < ring[0] < frame[2] and frame[1] < ring[1] < frame[3], True)
+    expect("words of the handle", "outside the picture" in browser.run("document.querySelector('.handle text').textContent"), True)
+    page.drag_handle(0, (200, 120))
+    near("dragged back", moments_of(page.state()["scene"]["intruder"][1])[0][1], (200, 120), 0.6)
+    browser.mouse("mouseMoved", *page.screen((100, 300)))
+    browser.wait("!document.querySelector('.pixel').hidden")
+    near("the pointer's pixel", [float(v) for v in words_of(browser, ".pixel")[0].removesuffix(" px").split(", ")], (100, 300), 1)
+    # Labels: of an aircraft at the edges of the picture, and of handles that are near one another.
+    for first, second in (((625, 100), (600, 120)), ((20, 20), (60, 30)), ((330, 465), (300, 470)), ((320, 200), (335, 200))):
+        change = [{"set": ["intruder", 1, "seen", k, "pixel"], "to": place} for k, place in enumerate((first, second))]
+        browser.run(f"airtruthStudio.studio.edit({json.dumps(change)}); airtruthStudio.studio.show(0)")
+        for size in ((1024, 700), (1600, 1000)):
+            browser.looks(size)
+            page.rest()
+            browser.wait(f"!{LABELS}.length", 5)
+    expect("time in view", words_of(browser, ".in-view")[1].startswith("In view for "), True)
+    # The gallery: by class, and as large with few hits as with all.
+    browser.key("Escape")
+    browser.key("n")
+    browser.wait("document.querySelectorAll('.card').length")
+    natural = browser.middle(".natural button")
+    browser.type("airliner")
+    browser.wait("document.querySelectorAll('.card').length && [...document.querySelectorAll('.card')].every((card) => card.textContent.includes('airliner'))")
+    browser.run("document.querySelector('studio-gallery input').select()")
+    browser.type("no such type")
+    browser.wait("!document.querySelectorAll('.card').length")
+    near("buttons of the gallery", browser.middle(".natural button"), natural, 0.5)
+    undo = page.state()["undo"]
+    browser.key("z", CONTROL)
+    page.rest()
+    expect("undo while the gallery is open", page.state()["undo"], undo)
+    expect("console", browser.errors, [])
+    server.end()
+    print("keys: of the page after the mouse, of a button after Tab; what is refused is said and given back")
+
+
 def test_film(airtruth, browser, root):
     """The rendered film and the original show one frame, and the boxes are those of it."""
     first, count = 20, 24
@@ -354,6 +536,51 @@ range_m = 250
     expect("console", browser.errors, [])
     server.end()
     print(f"film: both at one frame, from frame {first} of the clip on, and the boxes of that frame")
+
+
+def test_broken(airtruth, browser, root):
+    """A file that is no scene, one that becomes so, and no connection."""
+    flight(airtruth, root, frames=10, width=320, height=240)
+    write(os.path.join(root, "bad.toml"), "hello this is text\n")
+    server = Server(airtruth, root, "bad.toml")
+    page = Page(browser)
+    browser.open(server.address)
+    browser.wait(f"window.airtruthStudio && {STORE}.state")
+    time.sleep(0.3)
+    expect("the text of what is no scene", ("hello this is text" in words_of(browser, "studio-text pre")[0], "is not TOML" in "".join(words_of(browser, ".notice.error"))), (True, True))
+    for key in ("n", "m", "[", " ", "1", "2", "3", "4", "Delete"):
+        browser.key(key)
+    expect("dialog and playing", browser.run(f"[{STORE}.dialog, {STORE}.playing]"), [None, False])
+    expect("console", browser.errors, [])
+    server.end()
+    server = Server(airtruth, root, "flight.mp4")
+    file = os.path.join(root, "flight.toml")
+    page.open(server.address)
+    browser.key("s", CONTROL)
+    browser.wait(f"{STORE}.state.saved")
+    good = page.state()["text"]
+    opacity = "getComputedStyle(document.querySelector('studio-plan svg')).opacity"
+    for broken in (good.replace("[light]", "[light]\nsun_elevaton_deg = 1"), "[[["):
+        write(file, broken)
+        browser.wait(f"{STORE}.state.problem && {opacity} < 1")
+        expect("the words beside the name", words_of(browser, ".saved"), ["has an error"])
+        expect("flyers that are still to be seen", browser.run(f"{STORE}.state.scene.intruder.length"), 1)
+        write(file, good)
+        browser.wait(f"!{STORE}.state.problem && {opacity} === '1'")
+        page.rest()
+    expect("console", browser.errors, [])
+    # Without a connection nothing looks as if it could be saved, and the key says so.
+    browser.run("airtruthStudio.studio.edit([{ set: ['seed'], to: 5 }])")
+    page.rest()
+    server.end()
+    browser.wait(f"!{STORE}.connected")
+    save = "[...document.querySelectorAll('studio-tools button')].find((b) => b.textContent === 'Save').disabled"
+    browser.wait(save)
+    browser.key("s", CONTROL)
+    browser.wait("[...document.querySelectorAll('.notice')].some((e) => e.textContent.includes('Not done'))")
+    browser.run("airtruthStudio.studio.edit([{ set: ['seed'], to: 6 }])")
+    browser.wait("[...document.querySelectorAll('.notice.error')].some((e) => e.textContent.includes('what waits (1) is lost'))")
+    print("broken: a text that is no scene is shown as one; without a connection it is said what is done and what is not")
 
 
 def test_edits(airtruth, browser, root):
@@ -591,7 +818,7 @@ def main():
     arguments = arguments.parse_args()
     airtruth = os.path.abspath(arguments.airtruth)
     program = browser_or_skip("studio_test")
-    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "film": test_film, "edits": test_edits, "layout": test_layout,
+    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "keys": test_keys, "film": test_film, "broken": test_broken, "edits": test_edits, "layout": test_layout,
              "latency": lambda *given: test_latency(*given, arguments.drags), "monkey": lambda *given: test_monkey(*given, arguments.monkey)}
     for name, test in tests.items():
         if arguments.only not in (None, name):

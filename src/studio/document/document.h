@@ -85,7 +85,7 @@ class Document {
   std::optional<scene::Scene> scene_;
   std::string problem_;
   nlohmann::ordered_json values_;
-  nlohmann::ordered_json notes_;
+  nlohmann::ordered_json notes_ = nlohmann::ordered_json::object();
   std::vector<TablePlace> tables_;
 };
 

@@ -37,6 +37,11 @@ export interface State {
   changed_on_disk: boolean;
 }
 
+// The same as the server has it: of a text that is no TOML there is no scene.
+export interface Told extends Omit<State, 'scene'> {
+  scene: Table|null;
+}
+
 export interface Handle {
   path: Path;
   frame: number;
@@ -149,7 +154,7 @@ export interface Picture {
 
 export type ServerEvent =|{
   event: 'state';
-  state: State
+  state: Told
 }
 |{
   event: 'progress';

@@ -4,6 +4,15 @@ import {type Point, clamp, courseOf, isPlaced, radians, round, speedOf, turned, 
 
 // How a flyer's path is stated.
 export type Statement = 'moments'|'approach'|'waypoints'|'file'|'drift'|'lens';
+export const STATED: Record<Statement, string> = {
+  moments: 'by moments in the picture',
+  approach: 'by its closest approach',
+  waypoints: 'by waypoints',
+  file: 'by a path file',
+  drift: 'by a place and a velocity',
+  lens: 'on the lens',
+};
+export const TO_MOMENTS = 'State by moments in the picture';
 export type Kind = 'aircraft'|'bird'|'multirotor'|'balloon'|'glint'|'dirt'|'insect';
 
 // An intruder or a distractor of the scene.
@@ -92,6 +101,11 @@ export function momentsOf(flyer: Flyer, clip: Clip): Moment[] {
       width_px: numberOf(seen.width_px)
     };
   });
+}
+
+// The first and the last frame where a moment can be: between the two beside it.
+export function roomOf(moments: Moment[], index: number, clip: Clip): [number, number] {
+  return [(moments[index - 1]?.frame ?? -1) + 1, (moments[index + 1]?.frame ?? clip.frames) - 1];
 }
 
 // As it is written: tenths of a pixel, and four digits of a distance.
@@ -236,6 +250,16 @@ export function copyOf(flyer: Flyer, clip: Clip): Table {
 export function ownSpeed(plan: Plan, frame: number, clip: Clip): number {
   const own = velocityAt(plan, plan.own.ned, frame, clip.rate_hz);
   return own ? Math.hypot(own[0], own[1]) : 0;
+}
+
+// How long a flyer is in view, as well as the plan's frames tell.
+export function describedView({points}: Track, plan: Plan, clip: Clip): string {
+  const seen = points.filter((point) => point[5]).map(([frame]) => frame);
+  if (!seen.length) return '';
+  const step = plan.frames.length > 1 ? plan.frames[1] - plan.frames[0] : 1;
+  const frames = seen.reduce((sum, frame, k) => sum + Math.min(step, (seen[k + 1] ?? clip.frames) - frame), 0);
+  const [from_s, to_s] = [seen[0], seen[seen.length - 1]].map((frame) => round(frame / clip.rate_hz, 1));
+  return `In view for ${round(frames / clip.rate_hz, 1)} s, between ${from_s} and ${to_s} s.`;
 }
 
 export const describedApproach = (cpa: Approach) => `closest at ${round(cpa.time_s, 1)} s: ${

@@ -3,8 +3,8 @@
 import {Lost, Refused} from './connection';
 import type {Clip, State, Table, Track} from './contract';
 import {type Edit, Edits} from './edits';
-import {type Flyer, flyersOf, momentsOf, nearer, newFlyer, toMoments, withMoment} from './flyers';
-import {acrossRelative, nedAt, seenAt, turned} from './geometry';
+import {type Flyer, describedView, flyersOf, momentsOf, nearer, newFlyer, roomOf, toMoments, withMoment} from './flyers';
+import {acrossRelative, freePlace, nedAt, seenAt, turned} from './geometry';
 import {Store} from './store';
 
 type Test = () => void|Promise<void>;
@@ -223,6 +223,27 @@ tests['Flyers have names, kinds and statements'] = () => {
     ['intruder-1', 'aircraft', 'approach', 'x'], ['me', 'aircraft', 'file', 'y'],
     ['bird-1', 'bird', 'moments', '4 birds'], ['dirt-1', 'dirt', 'lens', 'dirt']
   ]);
+};
+
+tests['A moment has room between the two beside it'] = () => {
+  const moments = momentsOf(flyer({seen: [0.1, 1, 2].map((time_s) => ({time_s, pixel: [1, 1], range_m: 9}))}), CLIP);
+  same([0, 1, 2].map((k) => roomOf(moments, k, CLIP)), [[0, 29], [4, 59], [31, 149]]);
+};
+tests['A label stands in the room and beside what is there'] = () => {
+  const room: [number, number, number, number] = [0, 0, 100, 50];
+  same(freePlace([20, 10], [[90, 5], [30, 5]], room, []), [30, 5, 20, 10]);
+  same(freePlace([20, 10], [[10, 5], [60, 5]], room, [[25, 0, 10, 10]]), [60, 5, 20, 10]);
+  same(freePlace([20, 10], [[90, -5]], room, []), [80, 0, 20, 10]);
+};
+tests['How long a flyer is in view'] = () => {
+  const one = track(() => [1, 1]);
+  one.points.forEach((point) => {
+    point[5] = (point[0] >= 30 && point[0] < 60) || point[0] >= 135;
+  });
+  same(describedView(one, {frames: [0, 1]} as never, CLIP), 'In view for 1.5 s, between 1 and 5 s.');
+  one.points = one.points.filter((_, k) => k % 15 === 0);
+  same(describedView(one, {frames: [0, 15]} as never, CLIP), 'In view for 1.5 s, between 1 and 4.5 s.');
+  same(describedView({...one, points: []}, {frames: [0]} as never, CLIP), '');
 };
 
 async function run(): Promise<string[]> {

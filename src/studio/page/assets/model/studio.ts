@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Connection, Lost, Refused} from './connection';
-import type {AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State} from './contract';
+import type {AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State, Told} from './contract';
 import {type Edit, Edits, type Unsent} from './edits';
-import {type Choice, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
+import {type Choice, type Flyer, STATED, TO_MOMENTS, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
 import {type Point, clamp, seenNear} from './geometry';
 import {Pictures} from './pictures';
 import type {Store} from './store';
@@ -145,9 +145,9 @@ export class Studio {
     const {state, clip, plan, frame, selected} = this.store.now;
     const flyer = flyerAt(state, selected);
     const track = trackOf(plan, selected);
-    if (!flyer || !clip || !track || flyer.statement !== 'moments') return;
-    const seen = seenNear(track, frame);
-    if (!seen) return;
+    if (!clip || !this.hasMoments(flyer)) return;
+    const seen = track && seenNear(track, frame);
+    if (!seen) return this.store.say('info', 'The path is not known yet, or is never in the clip.');
     const {changes, index} = withMoment(flyer, clip, frame, at ?? seen.pixel, seen.range_m);
     this.edit(changes);
     this.store.put({moment: index});
@@ -156,7 +156,9 @@ export class Studio {
   removeMoment(): void {
     const {state, clip, selected, moment} = this.store.now;
     const flyer = flyerAt(state, selected);
-    if (!flyer || !clip || moment === null) return;
+    if (!clip || !this.hasMoments(flyer)) return;
+    if (moment === null)
+      return this.store.say('info', 'Choose a moment first. On the heading of a flyer, Delete deletes the flyer.');
     const moments = momentsOf(flyer, clip);
     if (moment >= moments.length) return;
     if (moments.length <= 2) {
@@ -168,11 +170,23 @@ export class Studio {
     this.store.put({moment: null});
   }
 
+  // Whether a flyer is chosen and has moments; says what to do where not.
+  private hasMoments(flyer: Flyer|null): flyer is Flyer {
+    if (!flyer)
+      this.store.say('info', 'Choose a flyer first: moments are those of its path.');
+    else if (flyer.statement === 'lens')
+      this.store.say('info', 'What is on the lens has no path.');
+    else if (flyer.statement !== 'moments')
+      this.store.say(
+          'info', `The path of ${flyer.id} is stated ${STATED[flyer.statement]}. “${TO_MOMENTS}” gives it moments.`);
+    return flyer?.statement === 'moments';
+  }
+
   // To the next or the last moment of the selected path.
   goToMoment(step: 1|- 1): void {
     const {state, clip, selected, frame} = this.store.now;
     const flyer = flyerAt(state, selected);
-    if (!flyer || !clip) return;
+    if (!clip || !this.hasMoments(flyer)) return;
     const moments = momentsOf(flyer, clip);
     const next = step > 0 ? moments.findIndex((one) => one.frame > frame) :
                             moments.length - 1 - [...moments].reverse().findIndex((one) => one.frame < frame);
@@ -214,16 +228,22 @@ export class Studio {
   }
 
   private async send(edit: ShownEdit): Promise<State> {
-    const answer = this.connection.request<{state: State}>('edit', {changes: edit.changes, merge: edit.merge});
+    const answer = this.connection.request<{state: Told}>('edit', {changes: edit.changes, merge: edit.merge});
     const {moved_ms} = edit;
     const {frame, showsAircraft} = this.store.now;
     const isShown = moved_ms !== undefined && showsAircraft;
     const change = isShown ? this.pictures.change(frame).catch(() => null) : null;
-    const {state} = await answer;
+    const state = this.known((await answer).state);
     if (change && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({state});
     const drawn = await change;
     if (isShown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - moved_ms);
     return state;
+  }
+
+  // Of a text that is no TOML the scene is that of the text before, and the text is what is to be seen.
+  private known({scene, ...state}: Told): State {
+    if (!scene) this.store.put({tab: 'text'});
+    return {...state, scene: scene ?? this.store.now.state?.scene ?? {}};
   }
 
   private measured(latency_ms: number): void {
@@ -276,6 +296,7 @@ export class Studio {
 
   // What is done to the whole text, after all edits; whether it was.
   private async whole(what: 'undo'|'redo'|'save'|'reload'|'keep'): Promise<boolean> {
+    if (!this.isConnected()) return false;
     this.wholes += 1;
     try {
       await this.edits.whenIdle();
@@ -289,8 +310,8 @@ export class Studio {
     const {state: before} = this.store.now;
     if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
     try {
-      const {state} = await this.connection.request<{state: State}>(what);
-      this.took(state);
+      const {state} = await this.connection.request<{state: Told}>(what);
+      this.took(this.known(state));
       return true;
     } catch (error) {
       this.failed(error);
@@ -299,7 +320,7 @@ export class Studio {
   }
 
   private async long(what: 'render'|'calibrate', work: () => Promise<void>): Promise<void> {
-    if (this.store.now.busy) return;
+    if (this.store.now.busy || !this.isConnected()) return;
     await this.edits.whenIdle();
     this.store.put({busy: what, progress: {of: what, done: 0, total: 0}});
     try {
@@ -311,6 +332,13 @@ export class Studio {
     }
   }
 
+  // Says where it is not: what is asked for without a connection is not done later.
+  private isConnected(): boolean {
+    const {connected} = this.store.now;
+    if (!connected) this.store.say('info', 'Not done: there is no connection to airtruth studio.');
+    return connected;
+  }
+
   private failed(error: unknown): void {
     if (error instanceof Refused)
       this.store.say('error', error.message);
@@ -320,8 +348,9 @@ export class Studio {
 
   private async opened(): Promise<void> {
     try {
-      const {file, clip, state} =
-          await this.connection.request<{file: string; clip: Clip | null; state: State}>('open');
+      const {file, clip, ...answer} =
+          await this.connection.request<{file: string; clip: Clip | null; state: Told}>('open');
+      const state = this.known(answer.state);
       if (clip) this.pictures.begin(clip);
       this.pictures.forget();
       this.store.put({
@@ -368,11 +397,11 @@ export class Studio {
     } else if (event.event === 'warning') {
       this.store.say('warning', event.line);
     } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
+      const state = this.known(event.state);
       // A text that can be used at last has a clip.
-      if (!this.store.now.clip && !event.state.problem) void this.opened();
-      const isNew =
-          event.state.revision !== this.store.now.state?.revision || event.state.text !== this.store.now.state?.text;
-      this.store.put({state: event.state});
+      if (!this.store.now.clip && !state.problem) void this.opened();
+      const isNew = state.revision !== this.store.now.state?.revision || state.text !== this.store.now.state?.text;
+      this.store.put({state});
       if (isNew) this.settle();
     }
   }

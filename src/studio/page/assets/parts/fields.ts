@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import {h} from './part';
+import {clamp} from '../model/geometry';
+
+import {h, say, text} from './part';
 
 export interface NumberOptions {
   label: string;
@@ -12,58 +14,114 @@ export interface NumberOptions {
   taken: (value: number) => void;
 }
 
-// A number with its name and unit, taken when it is entered.
+const fieldOf = new WeakMap<EventTarget, NumberField>();
+
+// A number with its name and unit, taken when it is entered. What is no number in its range is refused in words, and
+// the field has its last value again when it is left.
 export class NumberField {
   readonly element: HTMLElement;
   readonly input: HTMLInputElement;
+  private value: number|null = null;
+  private isTyped = false;
+  private words = h('span', {class: 'expected', role: 'alert', hidden: true});
+  private range: {min: number; max: number; unit: string; why: string};
 
   constructor(private options: NumberOptions) {
+    this.range = {min: options.min ?? -Infinity, max: options.max ?? Infinity, unit: options.unit, why: ''};
     this.input = h('input', {
       type: 'number',
       step: 'any',
       placeholder: options.placeholder,
       'aria-label': `${options.label}${options.unit ? `, ${options.unit}` : ''}`,
-      oninput: () => this.mark(),
-      onchange: () => {
-        if (this.mark()) options.taken(this.input.valueAsNumber);
+      oninput: () => {
+        this.isTyped = true;
+        this.mark();
       },
+      onchange: () => this.take(),
+      onblur: () => this.left(),
       onkeydown: ((event: KeyboardEvent) => this.key(event)) as EventListener,
     });
+    fieldOf.set(this.input, this);
     const unit = options.unit ? h('span', {class: 'unit', 'aria-hidden': 'true'}, options.unit) : null;
     this.element =
         h('label', {class: 'field'}, options.isLabelHidden ? null : h('span', {class: 'name'}, options.label),
-          h('span', {class: 'entry'}, this.input, unit));
+          h('span', {class: 'entry'}, this.input, unit), h('span', {}, this.words));
   }
 
-  // Whether what is entered is a number in its range. The browser would ask for whole steps as well.
+  // What is expected from now on. `why`: "between the moments beside it".
+  limit(min: number, max: number, unit = this.options.unit, why = ''): void {
+    this.range = {min, max, unit, why};
+  }
+
+  // Leaves alone what is being typed.
+  show(value: number|null): void {
+    this.value = value;
+    const isHere = document.activeElement === this.input;
+    if (isHere && (this.isTyped || (this.input.value !== '' && this.input.valueAsNumber === value))) return;
+    if (this.input.value !== this.shown) this.restore();
+  }
+
+  // As it was before it was typed in; whether that was refused.
+  restore(): boolean {
+    const wasRefused = this.input.getAttribute('aria-invalid') === 'true';
+    this.isTyped = false;
+    this.input.value = this.shown;
+    this.input.removeAttribute('aria-invalid');
+    this.words.hidden = true;
+    return wasRefused;
+  }
+
+  private get shown(): string {
+    return this.value === null ? '' : String(this.value);
+  }
+
+  private take(): void {
+    if (!this.mark() || !this.isTyped) return;
+    this.isTyped = false;
+    if (this.input.value !== '') this.options.taken(this.input.valueAsNumber);
+  }
+
+  // With a text that is refused.
+  private left(): void {
+    if (this.restore()) say(`${this.options.label}: ${this.value ?? 'nothing'} stays. ${this.expected}`);
+  }
+
+  // Whether what is entered is a number in its range, or nothing where nothing was. The browser would ask for whole
+  // steps as well.
   private mark(): boolean {
-    const value = this.input.valueAsNumber;
-    const {min = -Infinity, max = Infinity} = this.options;
-    const isGood = Number.isFinite(value) && value >= min && value <= max;
+    const {value, valueAsNumber, validity} = this.input;
+    const {min, max} = this.range;
+    const isAsBefore = value === '' && this.value === null && !validity.badInput;
+    const isGood = isAsBefore || (Number.isFinite(valueAsNumber) && valueAsNumber >= min && valueAsNumber <= max);
     this.input.setAttribute('aria-invalid', String(!isGood));
+    text(this.words, this.expected);
+    this.words.hidden = isGood;
     return isGood;
+  }
+
+  private get expected(): string {
+    const {min, max, unit, why} = this.range;
+    if (min > max) return `There is no number ${why}.`;
+    const [low, high] = [Number.isFinite(min), Number.isFinite(max)];
+    const range = low && high ? ` from ${min} to ${max}` : low ? `, ${min} or more` : high ? `, ${max} or less` : '';
+    return `Expected a number${range}${unit && (low || high ? ' ' : ' of ')}${unit}${why && `, ${why}`}.`;
   }
 
   private key(event: KeyboardEvent): void {
     const sign = {ArrowUp: 1, ArrowDown: -1}[event.key];
     if (!sign || event.ctrlKey || event.altKey) return;
     event.preventDefault();
+    const {min, max} = this.range;
     const step = sign * (this.options.step ?? 1) * (event.shiftKey ? 10 : 1);
-    this.input.value =
-        String(Number(((Number.isFinite(this.input.valueAsNumber) ? this.input.valueAsNumber : 0) + step).toFixed(3)));
-    if (this.mark()) this.options.taken(this.input.valueAsNumber);
-  }
-
-  // Leaves alone what is being typed.
-  show(value: number|null): void {
-    const shown = value === null ? '' : String(value);
-    const isTyped =
-        document.activeElement === this.input && this.input.value !== '' && this.input.valueAsNumber === value;
-    if (isTyped || this.input.value === shown) return;
-    this.input.value = shown;
-    this.input.removeAttribute('aria-invalid');
+    const from = Number.isFinite(this.input.valueAsNumber) ? this.input.valueAsNumber : 0;
+    this.input.value = String(clamp(Number((from + step).toFixed(3)), min, max));
+    this.isTyped = true;
+    this.take();
   }
 }
+
+// The field of an input as it was before it was typed in; whether what was typed had been refused.
+export const restored = (input: EventTarget|null): boolean => (input && fieldOf.get(input)?.restore()) ?? false;
 
 export interface SliderOptions {
   label: string;

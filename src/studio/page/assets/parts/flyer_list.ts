@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Track} from '../model/contract';
-import {type Flyer, flyersOf, isSame, trackOf} from '../model/flyers';
+import type {Path, Track} from '../model/contract';
+import {type Flyer, describedView, flyersOf, isSame, trackOf} from '../model/flyers';
 import type {Member} from '../model/store';
 import {FlyerPanel} from './flyer_panel';
 import {Keyed, Part, attribute, h, text} from './part';
 
 // All that flies: one button each, with what the checks say of it, and below the chosen one its numbers.
 export class FlyerList extends Part {
-  protected readonly watches: Member[] = ['state', 'plan', 'selected'];
+  protected readonly watches: Member[] = ['state', 'plan', 'selected', 'clip'];
+  private add =
+      h('button', {
+        class: 'main',
+        title: 'Add (N)',
+        onclick: () => this.studio.store.put({dialog: 'gallery', addsAt: null, replaces: null})
+      },
+        'Add aircraft, birds, drones …');
   private list = h('ul', {class: 'flyers'});
   private empty = h('p', {class: 'hint'}, 'Nothing flies yet. Add an aircraft, or double-click the picture.');
   private general = h('ul', {class: 'checks'});
@@ -16,49 +23,59 @@ export class FlyerList extends Part {
       this.list, (flyer) => this.make(flyer), (element, flyer) => this.renew(element, flyer));
 
   protected build(): void {
-    const add =
-        h('button', {
-          class: 'main',
-          title: 'Add (N)',
-          onclick: () => this.studio.store.put({dialog: 'gallery', addsAt: null, replaces: null})
-        },
-          'Add aircraft, birds, drones …');
-    this.append(add, this.empty, this.list, this.general);
+    this.append(this.add, this.empty, this.list, this.general);
   }
 
   protected update(): void {
-    const {state, plan} = this.now;
+    const {state, plan, clip} = this.now;
     const flyers = state ? flyersOf(state.scene) : [];
-    this.empty.hidden = flyers.length > 0 || !state;
+    this.add.disabled = !clip;
+    this.empty.hidden = flyers.length > 0 || !clip;
     this.items.show(flyers.map((flyer) => ({key: JSON.stringify(flyer.path), item: flyer})));
     this.general.replaceChildren(...(plan?.warnings ?? []).map((line) => h('li', {}, line)));
     if (!flyers.some((flyer) => isSame(flyer.path, this.now.selected))) this.panel.remove();
   }
 
   private make(flyer: Flyer): HTMLLIElement {
-    return h(
-        'li', {},
-        h('button', {class: 'flyer', onclick: () => this.chosen(flyer)}, h('span', {class: 'swatch'}),
-          h('span', {class: 'id'}), h('span', {class: 'title'})),
-        h('ul', {class: 'checks'}));
+    const item: HTMLLIElement =
+        h('li', {'data-path': JSON.stringify(flyer.path), onblur: () => item.removeAttribute('tabindex')},
+          h('button', {class: 'flyer', onclick: () => this.chosen(flyer, item)}, h('span', {class: 'id'}),
+            h('span', {class: 'title'})),
+          h('p', {class: 'hint in-view'}), h('ul', {class: 'checks'}));
+    return item;
   }
 
-  private chosen(flyer: Flyer): void {
+  // A heading that a pointer pressed has let go of the focus; its item takes it, for Delete.
+  private chosen(flyer: Flyer, item: HTMLLIElement): void {
+    if (!item.contains(document.activeElement)) {
+      item.tabIndex = -1;
+      item.focus({preventScroll: true});
+    }
     this.studio.select(isSame(this.now.selected, flyer.path) ? null : flyer.path);
   }
 
   private renew(element: HTMLLIElement, flyer: Flyer): void {
     const isSelected = isSame(this.now.selected, flyer.path);
     attribute(element, 'class', `colour-${flyer.colour}${isSelected ? ' selected' : ''}`);
-    const [button, checks] = [element.children[0], element.children[1]];
+    const [button, inView, checks] = ['button', '.in-view', '.checks'].map((one) => element.querySelector(one)!);
+    const {plan, clip} = this.now;
     attribute(button, 'aria-expanded', String(isSelected));
-    text(button.children[1], flyer.id);
-    text(button.children[2], flyer.title);
-    const lines = checksOf(trackOf(this.now.plan, flyer.path));
+    text(button.children[0], flyer.id);
+    text(button.children[1], flyer.title);
+    const track = trackOf(plan, flyer.path);
+    text(inView, track && plan && clip ? describedView(track, plan, clip) : '');
+    const lines = checksOf(track);
     if (checks.childElementCount !== lines.length || lines.some((line, k) => checks.children[k].textContent !== line))
       checks.replaceChildren(...lines.map((line) => h('li', {}, line)));
-    if (isSelected && this.panel.parentElement !== element) element.append(this.panel);
+    // What is said of it comes and goes below the fields.
+    if (isSelected && this.panel.parentElement !== element) inView.before(this.panel);
   }
+}
+
+// The flyer whose heading has the focus.
+export function headedBy(target: EventTarget|null): Path|null {
+  const item = target instanceof Element && target.matches('.flyers > li, button.flyer') ? target.closest('li') : null;
+  return item ? JSON.parse(item.dataset.path!) : null;
 }
 
 // What the server says of a flyer, and whether it is seen at all.

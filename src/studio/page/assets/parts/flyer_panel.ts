@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Change, Json, Path} from '../model/contract';
-import {type Flyer, type Moment, describedApproach, flyerAt, momentsOf, numberOf, tableOf, timeOf, toApproach, toMoments, trackOf, writtenRange, writtenWidth} from '../model/flyers';
+import type {Change, Clip, Json, Path, Table} from '../model/contract';
+import {type Flyer, type Moment, STATED, TO_MOMENTS, describedApproach, flyerAt, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, writtenRange, writtenWidth} from '../model/flyers';
 import type {Member} from '../model/store';
 import {NumberField, type NumberOptions, choiceField} from './fields';
 import {Part, attribute, h, text} from './part';
@@ -8,16 +8,44 @@ import {Part, attribute, h, text} from './part';
 interface KeyOptions extends Omit<NumberOptions, 'taken'> {
   key: string[];
   default: number|null;
+  limits?: (encounter: Table) => [number, number];  // that follow from other numbers
 }
+
+// Of a scene's numbers (src/scene/scene/limits.h).
+const [MOST_MISS_M, MOST_MPS, LEAST_MPS, MOST_PX] = [1e5, 1e4, 1e-3, 1e5];
+const SIZES: Record<string, [number, number, string]> = {
+  range_m: [0.1, 1e6, 'm'],
+  width_px: [0.1, 1e5, 'px']
+};
+const MISS = {
+  step: 1,
+  min: -MOST_MISS_M,
+  max: MOST_MISS_M
+};
+const climbOf = (encounter: Table) => Math.abs(numberOf(encounter.climb_mps) ?? 0);
 
 const ENCOUNTER: KeyOptions[] = [
   {key: ['encounter', 'cpa_time_s'], label: 'Closest at', unit: 's', step: 0.1, default: null},
-  {key: ['encounter', 'cpa_right_m'], label: 'Right', unit: 'm', step: 1, default: 0},
-  {key: ['encounter', 'cpa_above_m'], label: 'Above', unit: 'm', step: 1, default: 0},
-  {key: ['encounter', 'cpa_ahead_m'], label: 'Ahead', unit: 'm', step: 1, default: null, placeholder: 'follows'},
+  {key: ['encounter', 'cpa_right_m'], label: 'Right', unit: 'm', ...MISS, default: 0},
+  {key: ['encounter', 'cpa_above_m'], label: 'Above', unit: 'm', ...MISS, default: 0},
+  {key: ['encounter', 'cpa_ahead_m'], label: 'Ahead', unit: 'm', ...MISS, default: null, placeholder: 'follows'},
   {key: ['encounter', 'course_deg'], label: 'Course', unit: '°', step: 1, min: -360, max: 360, default: null},
-  {key: ['encounter', 'speed_mps'], label: 'Speed', unit: 'm/s', step: 1, min: 0.001, default: null},
-  {key: ['encounter', 'climb_mps'], label: 'Climb', unit: 'm/s', step: 0.5, default: 0},
+  {
+    key: ['encounter', 'speed_mps'],
+    label: 'Speed',
+    unit: 'm/s',
+    step: 1,
+    default: null,
+    limits: (encounter) => [Math.max(LEAST_MPS, climbOf(encounter)), MOST_MPS]
+  },
+  {
+    key: ['encounter', 'climb_mps'],
+    label: 'Climb',
+    unit: 'm/s',
+    step: 0.5,
+    default: 0,
+    limits: ({speed_mps}) => [-(numberOf(speed_mps) ?? MOST_MPS), numberOf(speed_mps) ?? MOST_MPS]
+  },
   {key: ['encounter', 'turn_rate_dps'], label: 'Turn rate', unit: '°/s', step: 0.5, min: -90, max: 90, default: 0},
 ];
 const FLOCK: KeyOptions[] = [
@@ -25,14 +53,6 @@ const FLOCK: KeyOptions[] = [
   {key: ['count'], label: 'Birds', unit: '', step: 1, min: 1, max: 200, default: 1},
   {key: ['spread_m'], label: 'Flock radius', unit: 'm', step: 1, min: 0, max: 10000, default: null},
 ];
-const PATHS: Record<Flyer['statement'], string> = {
-  moments: 'By moments in the picture',
-  approach: 'By its closest approach',
-  waypoints: 'By waypoints',
-  file: 'By a path file',
-  drift: 'By a place and a velocity',
-  lens: 'On the lens',
-};
 
 // The numbers of the selected flyer: its path in the words that it is stated in, and what flies.
 export class FlyerPanel extends Part {
@@ -54,10 +74,14 @@ export class FlyerPanel extends Part {
         JSON.stringify([flyer.path, flyer.kind, flyer.statement, moments.map((one) => one.width_px !== null)]);
     if (shape !== this.built) this.shape(flyer, moments);
     this.built = shape;
-    for (const {options, field} of this.fields) field.show(valueAt(flyer.table, options.key) ?? options.default);
-    moments.forEach((moment, k) => this.rows[k].show(moment, this.now.moment === k));
+    for (const {options, field} of this.fields) {
+      field.show(valueAt(flyer.table, options.key) ?? options.default);
+      if (options.limits) field.limit(...options.limits(tableOf(flyer.table.encounter)));
+    }
+    moments.forEach((moment, k) => this.rows[k].show(moment, this.now.moment === k, roomOf(moments, k, clip), clip));
     const track = trackOf(plan, flyer.path);
-    text(this.seenAs, track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '');
+    const approach = track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '';
+    text(this.seenAs, approach.replace(/-(0\.0+)(?!\d)/g, '$1'));
     const title = this.querySelector('.what .title');
     if (title) text(title, flyer.title);
     const name = flyer.kind === 'aircraft' ? flyer.title : flyer.kind;
@@ -80,16 +104,11 @@ export class FlyerPanel extends Part {
               h('button', {onclick: () => this.studio.store.put({dialog: 'gallery', replaces: path, addsAt: null})},
                 'Change …')),
         ...(keys.length ? [h('div', {class: 'grid'}, ...keys.map((one) => this.keyField(one)))] : []),
-        h('h3', {}, PATHS[flyer.statement]),
-        ...this.statement(flyer),
-        this.seenAs,
-        h(
-            'div',
-            {class: 'actions'},
-            h('button', {onclick: () => this.studio.duplicate(path)}, 'Duplicate'),
-            h('button', {class: 'danger', onclick: () => this.studio.remove(path)}, 'Delete'),
-            ),
-    );
+        h('h3', {}, STATED[flyer.statement].replace(/^./, (first) => first.toUpperCase())), ...this.statement(flyer),
+        h('div', {class: 'actions'}, h('button', {onclick: () => this.studio.duplicate(path)}, 'Duplicate'),
+          h('button', {class: 'danger', title: 'Delete on the heading', onclick: () => this.studio.remove(path)},
+            'Delete')),
+        this.seenAs);
   }
 
   private statement(flyer: Flyer): Node[] {
@@ -105,8 +124,7 @@ export class FlyerPanel extends Part {
     }
     const turn = flyer.statement === 'lens' ?
         [] :
-        [h('div', {class: 'actions'},
-           h('button', {onclick: () => this.restate(toMoments)}, 'State by moments in the picture'))];
+        [h('div', {class: 'actions'}, h('button', {onclick: () => this.restate(toMoments)}, TO_MOMENTS))];
     if (flyer.statement !== 'approach') return turn;
     return [h('div', {class: 'grid'}, ...ENCOUNTER.map((one) => this.keyField(one))), ...turn];
   }
@@ -218,6 +236,7 @@ class MomentRow {
     this.x = field('X', 'px', 0.1, (value) => this.setPixel(0, value));
     this.y = field('Y', 'px', 0.1, (value) => this.setPixel(1, value));
     this.size = field('Size', '', 0.1, (value) => this.set(this.unit.select.value, value));
+    for (const one of [this.x, this.y]) one.limit(-MOST_PX, MOST_PX);
     for (const {element} of [this.time, this.x, this.y]) element.querySelector('.unit')?.remove();
     const remove =
         h('button', {
@@ -234,12 +253,14 @@ class MomentRow {
               (one) => h('span', {role: 'cell'}, one)));
   }
 
-  show(moment: Moment, isChosen: boolean): void {
+  show(moment: Moment, isChosen: boolean, [first, last]: [number, number], clip: Clip): void {
     attribute(this.element, 'class', isChosen ? 'row chosen' : 'row');
+    this.time.limit(timeOf(first, clip), timeOf(last, clip), 's', 'between the moments beside it');
     this.time.show(moment.time_s);
     this.x.show(moment.pixel[0]);
     this.y.show(moment.pixel[1]);
     this.unit.select.value = moment.width_px !== null ? 'width_px' : 'range_m';
+    this.size.limit(...SIZES[this.unit.select.value]);
     this.size.show(moment.width_px ?? moment.range_m);
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
-import {type Flyer, flyersOf, isSame, momentsOf, numberOf, tableOf, trackOf} from '../model/flyers';
+import {type Flyer, flyersOf, isSame, momentsOf, numberOf, roomOf, tableOf, trackOf} from '../model/flyers';
 import {clamp, nedAt, round} from '../model/geometry';
 import {attribute, renewed, s, ui} from './part';
 import {SideView, niceStep} from './side_view';
@@ -226,8 +226,9 @@ export class HeightView extends SideView<Drag> {
     if (kind === 'moment') {
       const moments = momentsOf(flyer, clip);
       if (!moments[index]) return [];
-      const [low, high] = [moments[index - 1]?.frame ?? -1, moments[index + 1]?.frame ?? clip.frames];
-      const frame = clamp(Math.round(time_s * clip.rate_hz), low + 1, high - 1);
+      const [first, last] = roomOf(moments, index, clip);
+      if (last < first) return [];
+      const frame = clamp(Math.round(time_s * clip.rate_hz), first, last);
       this.studio.show(frame);
       return [{set: [...moments[index].path, 'time_s'], to: round(frame / clip.rate_hz, 3)}];
     }

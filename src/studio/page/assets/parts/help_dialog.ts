@@ -17,7 +17,7 @@ const KEYS: [string, string][] = [
   ['Space', 'play or pause'],
   ['[ ]', 'moment before and after'],
   ['M', 'a moment of the chosen path in this frame'],
-  ['Delete', 'remove the chosen moment'],
+  ['Delete', 'remove the chosen moment; on the heading of a flyer, the flyer'],
   ['arrows on a handle', 'move it by 1 px; with Shift 10 px'],
   ['+ − on a handle', 'nearer or farther'],
   ['N', 'add aircraft, birds, drones'],
@@ -26,7 +26,7 @@ const KEYS: [string, string][] = [
   ['Ctrl+Z, Ctrl+Shift+Z', 'undo, redo'],
   ['Ctrl+S', 'save'],
   ['R', 'render'],
-  ['Escape', 'let go'],
+  ['Escape', 'let go; in a field, its last value and back to the picture'],
 ];
 
 // Gestures and keys.

@@ -67,6 +67,7 @@ export class LightPanel extends Part {
   private use = h('button', {onclick: () => this.useMeasured()}, 'Put these values into the scene');
   private merge = '';
   private isHeld = false;
+  private isHazeMeasured = false;  // where none is stated
 
   protected build(): void {
     this.buildDome();
@@ -86,7 +87,10 @@ export class LightPanel extends Part {
           min: 1,
           max: 200,
           isLogarithmic: true,
-          shown: (km) => (km >= 200 ? 'measured' : `${round(km, 1)} km`)
+          shown: (km) =>
+              (km < 200 ? `${round(km, 1)} km` :
+                   this.isHazeMeasured ? 'measured' :
+                                         'clear')
         },
         (km) => [['air', 'extinction_per_km'], km >= 200 ? null : [1, 1, 1].map(() => round(KOSCHMIEDER / km, 4))]);
     this.append(
@@ -116,6 +120,7 @@ export class LightPanel extends Part {
           !Object.keys(tableOf(state.scene[on[0]])).some((name) => on[1].test(name));
     });
     const extinction = tableOf(state.scene.air).extinction_per_km;
+    this.isHazeMeasured = isMeasured && extinction === undefined;
     this.haze.show(
         Array.isArray(extinction) && Number(extinction[1]) > 0 ? clamp(KOSCHMIEDER / Number(extinction[1]), 1, 199) :
                                                                  200);

@@ -8,10 +8,8 @@ const INFO_MS = 5000;
 // server says.
 export class NoticeBar extends Part {
   protected readonly watches: Member[] =
-      ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'busy', 'progress'];
-  private lost = h(
-      'p', {class: 'notice error'},
-      'No connection to airtruth studio. What you do is kept and sent when it is back. If it was started again, open the address that it prints.');
+      ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'busy', 'progress', 'pending'];
+  private lost = h('p', {class: 'notice error'});
   private problem = h('p', {class: 'notice error'});
   private progress = h('p', {class: 'notice info'});
   private disk = h('p', {class: 'notice warning'});
@@ -30,8 +28,12 @@ export class NoticeBar extends Part {
   }
 
   protected update(): void {
-    const {connected, everConnected, state, planProblem, notices, busy, progress} = this.now;
+    const {connected, everConnected, state, planProblem, notices, busy, progress, pending} = this.now;
     this.lost.hidden = connected || !everConnected;
+    text(
+        this.lost,
+        `No connection to airtruth studio. What you do waits in this tab and is sent when it is back. If it was started again, open the address that it prints${
+            pending ? ` in this tab: at another port, or in another tab, what waits (${pending}) is lost` : ''}.`);
     const problem = state?.problem ?? planProblem;
     this.problem.hidden = !problem;
     text(this.problem, problem ?? '');

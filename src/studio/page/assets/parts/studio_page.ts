@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+import {isSame} from '../model/flyers';
 import type {Member, Tab} from '../model/store';
+import {restored} from './fields';
+import {headedBy} from './flyer_list';
 import {Gallery} from './gallery';
 import {HeightView} from './height_view';
 import {HelpDialog} from './help_dialog';
@@ -16,7 +19,7 @@ const TABS: Tab[] = ['flyers', 'light', 'camera', 'text'];
 
 // The whole page, and the keys that work anywhere on it.
 export class StudioPage extends Part {
-  protected readonly watches: Member[] = [];
+  protected readonly watches: Member[] = ['state', 'planProblem'];
   private picture = new PictureView();
   private time = new TimeBar();
 
@@ -26,9 +29,28 @@ export class StudioPage extends Part {
         h('main', {}, this.picture, this.time, h('div', {class: 'views'}, new PlanView(), new HeightView())),
         new SideBar(), new Gallery(), new RenderDialog(), new HelpDialog());
     window.addEventListener('keydown', (event) => this.key(event));
+    this.leaveKeysToPage();
   }
 
-  protected update(): void {}
+  // What the plan says is of an older text while the present one cannot be used.
+  protected update(): void {
+    this.classList.toggle('stale', Boolean(this.now.state?.problem ?? this.now.planProblem));
+  }
+
+  // A button that a pointer pressed does not keep the focus: Space would press it again.
+  private leaveKeysToPage(): void {
+    let isByPointer = false;
+    const letGo = (event: Event, kinds: string) => {
+      const pressed = event.target instanceof Element ? event.target.closest<HTMLElement>(kinds) : null;
+      if (isByPointer && !pressed?.closest('dialog')) pressed?.blur();
+    };
+    for (const kind of ['pointerdown', 'keydown'])
+      window.addEventListener(kind, () => {
+        isByPointer = kind === 'pointerdown';
+      }, true);
+    window.addEventListener('click', (event) => letGo(event, 'button'), true);
+    window.addEventListener('change', (event) => letGo(event, 'select, [type="checkbox"]'), true);
+  }
 
   private key(event: KeyboardEvent): void {
     const {studio} = this;
@@ -38,15 +60,22 @@ export class StudioPage extends Part {
       z: () => void (event.shiftKey ? studio.redo() : studio.undo()),
       y: () => void studio.redo()
     };
-    const command = isControl && !event.altKey ? commands[event.key.toLowerCase()] : undefined;
-    if (command) {
+    const letter = event.key.toLowerCase();
+    const command = isControl && !event.altKey ? commands[letter] : undefined;
+    if (command && (letter === 's' || !this.now.dialog)) {
       event.preventDefault();
+      if (letter === 'z' && restored(event.target)) return;
       if (event.target instanceof HTMLInputElement) event.target.blur();  // takes what is being typed first
       command();
       return;
     }
+    if (event.key === 'Escape' && !this.now.dialog && isField(event.target)) {
+      restored(event.target);
+      event.target.blur();
+      return;
+    }
     if (isControl || event.altKey || this.now.dialog || isTyping(event.target)) return;
-    if (event.target instanceof Element && event.target.matches('button, summary') &&
+    if (event.target instanceof Element && event.target.matches('button, select, [type="checkbox"]') &&
         (event.key === ' ' || event.key === 'Enter'))
       return;
     const action = this.actions(event)[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -59,7 +88,7 @@ export class StudioPage extends Part {
     const {studio, now} = this;
     const step = event.shiftKey ? 10 : 1;
     const put = (values: Parameters<typeof studio.store.put>[0]) => studio.store.put(values);
-    const isRange = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+    const isRange = isField(event.target) && !event.target.closest('.strip');
     const tabs = Object.fromEntries(TABS.map((tab, k) => [String(k + 1), () => put({tab})]));
     const arrows: Record<string, () => void> = isRange ? {} : {
       ArrowLeft: () => studio.show(now.frame - step),
@@ -74,7 +103,7 @@ export class StudioPage extends Part {
       '[': () => studio.goToMoment(-1),
       ']': () => studio.goToMoment(1),
       m: () => studio.addMoment(),
-      n: () => put({dialog: 'gallery', addsAt: null, replaces: null}),
+      n: () => now.clip && put({dialog: 'gallery', addsAt: null, replaces: null}),
       r: () => put({dialog: 'render'}),
       f: () => this.picture.fit(),
       a: () => this.picture.pan(-1, 0),
@@ -85,12 +114,25 @@ export class StudioPage extends Part {
       '=': () => this.picture.zoom(1.25),
       '-': () => this.picture.zoom(1 / 1.25),
       '?': () => put({dialog: 'help'}),
-      Delete: () => studio.removeMoment(),
-      Backspace: () => studio.removeMoment(),
+      Delete: () => this.removeAt(event.target),
+      Backspace: () => this.removeAt(event.target),
       Escape: () => (now.moment !== null ? put({moment: null}) : studio.select(null)),
     };
   }
+
+  // The flyer whose heading has the focus, or else the chosen moment.
+  private removeAt(target: EventTarget|null): void {
+    const {moment, selected} = this.now;
+    const path = headedBy(target);
+    if (path && !(moment !== null && isSame(path, selected)))
+      this.studio.remove(path);
+    else
+      this.studio.removeMoment();
+  }
 }
+
+const isField = (target: EventTarget|null): target is HTMLInputElement|HTMLSelectElement =>
+    target instanceof HTMLInputElement || target instanceof HTMLSelectElement;
 
 // Where a letter is a letter: fields of text and numbers.
 function isTyping(target: EventTarget|null): boolean {

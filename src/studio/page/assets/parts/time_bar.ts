@@ -21,6 +21,7 @@ export class TimeBar extends Part {
   private input: HTMLInputElement = h('input', {
     type: 'range',
     min: 0,
+    value: 0,
     step: 1,
     'aria-label': 'Frame shown',
     oninput: () => this.studio.show(this.input.valueAsNumber)
@@ -67,7 +68,8 @@ export class TimeBar extends Part {
 
   toggle(): void {
     const {clip, frame, playing} = this.now;
-    if (!playing && clip && frame >= clip.frames - 1) this.studio.show(0);
+    if (!clip) return;
+    if (!playing && frame >= clip.frames - 1) this.studio.show(0);
     this.studio.store.put({playing: !playing});
   }
 

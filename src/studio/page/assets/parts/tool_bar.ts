@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Member} from '../model/store';
-import {tick} from './fields';
+import {restored, tick} from './fields';
 import {Part, attribute, h, text} from './part';
 import type {PictureView} from './picture_view';
 
@@ -8,11 +8,25 @@ import type {PictureView} from './picture_view';
 export class ToolBar extends Part {
   protected readonly watches: Member[] = [
     'file', 'state', 'pending', 'connected', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'busy',
-    'progress'
+    'progress', 'tab'
   ];
+  private gaveBack = false;  // a text that was refused: that is what is undone
   private file = h('span', {class: 'file'});
   private saved = h('span', {class: 'saved', role: 'status'});
-  private undo = h('button', {title: 'Undo (Ctrl+Z)', onclick: () => void this.studio.undo()}, 'Undo');
+  private undo =
+      h('button', {
+        title: 'Undo (Ctrl+Z)',
+        onpointerdown:
+            () => {
+              this.gaveBack = restored(document.activeElement);
+            },
+        onclick:
+            () => {
+              if (!this.gaveBack) void this.studio.undo();
+              this.gaveBack = false;
+            }
+      },
+        'Undo');
   private redo = h('button', {title: 'Redo (Ctrl+Shift+Z)', onclick: () => void this.studio.redo()}, 'Redo');
   private save = h('button', {title: 'Save the scene file (Ctrl+S)', onclick: () => void this.studio.save()}, 'Save');
   private render =
@@ -46,17 +60,27 @@ export class ToolBar extends Part {
   }
 
   protected update(): void {
-    const {state, file, pending, connected, busy, progress} = this.now;
+    const {state, file, pending, connected, busy, progress, tab} = this.now;
     const name = file.split('/').pop() ?? '';
     text(this.file, name);
     attribute(this.file, 'title', file);
     document.title = `${state && !state.saved ? '• ' : ''}${name || 'airtruth studio'}`;
-    text(this.saved, !connected ? 'no connection' : !state ? '' : state.saved && !pending ? 'saved' : 'not saved');
-    this.saved.classList.toggle('open', Boolean(state && !state.saved));
-    this.undo.disabled = !state?.undo;
-    this.redo.disabled = !state?.redo;
-    this.save.disabled = !state || (state.saved && !state.changed_on_disk);
+    const isSaved = state?.saved && !pending;
+    text(
+        this.saved,
+        !connected        ? 'no connection' :
+            !state        ? '' :
+            !isSaved      ? 'not saved' :
+            state.problem ? 'has an error' :
+                            'saved');
+    this.saved.classList.toggle('open', Boolean(state && (!state.saved || state.problem)));
+    this.undo.disabled = !connected || !state?.undo;
+    this.redo.disabled = !connected || !state?.redo;
+    this.save.disabled = !connected || !state || (state.saved && !state.changed_on_disk);
     for (const {key, input} of this.ticks) input.checked = this.now[key];
+    const horizon = this.ticks.find((one) => one.key === 'showsHorizon')!.input;
+    horizon.disabled = tab === 'camera';  // which shows it
+    horizon.checked ||= horizon.disabled;
     text(
         this.render,
         busy === 'render' && progress?.total ? `Rendering ${Math.round((100 * progress.done) / progress.total)} %` :
