@@ -552,6 +552,7 @@ def test_broken(airtruth, browser, root):
         browser.key(key)
     expect("dialog and playing", browser.run(f"[{STORE}.dialog, {STORE}.playing]"), [None, False])
     expect("console", browser.errors, [])
+    browser.open("about:blank")  # a page would look for its server
     server.end()
     server = Server(airtruth, root, "flight.mp4")
     file = os.path.join(root, "flight.toml")
