@@ -550,6 +550,7 @@ def test_broken(airtruth, browser, root):
     expect("the text of what is no scene", ("hello this is text" in words_of(browser, "studio-text pre")[0], "is not TOML" in "".join(words_of(browser, ".notice.error"))), (True, True))
     for key in ("n", "m", "[", " ", "1", "2", "3", "4", "Delete"):
         browser.key(key)
+    expect("speed", browser.run("document.querySelector('studio-time select').value"), "1")
     expect("dialog and playing", browser.run(f"[{STORE}.dialog, {STORE}.playing]"), [None, False])
     expect("console", browser.errors, [])
     browser.open("about:blank")  # a page would look for its server

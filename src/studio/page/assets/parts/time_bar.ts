@@ -49,6 +49,7 @@ export class TimeBar extends Part {
 
   protected update(changed: Set<Member>): void {
     const {clip, frame, playing} = this.now;
+    this.speed.value = String(this.now.speed);
     if (!clip) return;
     attribute(this.input, 'max', clip.frames - 1);
     this.input.value = String(frame);
@@ -58,7 +59,6 @@ export class TimeBar extends Part {
     attribute(
         this.label, 'title',
         `Frame ${clip.first_frame + frame} of the video, ${frame} of the ${clip.frames} that are used`);
-    this.speed.value = String(this.now.speed);
     text(this.play, playing ? '❚❚' : '▶');
     attribute(this.play, 'aria-label', playing ? 'Pause' : 'Play');
     if (changed.has('playing') && playing) this.run();
