@@ -52,7 +52,7 @@ Clip& Stage::clip(const scene::Background& background) {
   const std::string key = text_of(background);
   if (!clip_ || key != clip_key_) {
     clip_.reset();
-    clip_.emplace(background, options_);
+    clip_ = std::make_unique<Clip>(background, options_);
     clip_key_ = key;
     last_light_.clear();
   }

@@ -91,7 +91,7 @@ class Stage {
   pipeline::Options options_;
   std::int64_t revision_ = -1;
   std::string measured_as_;  // what was measured when the scene was set up
-  std::optional<Clip> clip_;
+  std::unique_ptr<Clip> clip_;
   std::string clip_key_;
   std::string attitude_key_;
   scene::Camera camera_;  // with its attitude
