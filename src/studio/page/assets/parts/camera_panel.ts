@@ -19,8 +19,9 @@ const numbers = (value: Json|undefined, usual: number[]): number[] =>
 // The lens and the attitude of the camera; the horizon that follows from them is drawn over the frame while this is
 // shown.
 export class CameraPanel extends Part {
-  protected readonly watches: Member[] = ['state', 'plan'];
+  protected readonly watches: Member[] = ['state', 'plan', 'clip'];
   private rows: Row[] = [];
+  private used = h('p', {class: 'hint'});
   private origin = h('p', {class: 'hint'});
   private found = h('p', {class: 'hint'});
   private flight = h('p', {class: 'hint'});
@@ -61,19 +62,25 @@ export class CameraPanel extends Part {
               to: numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0]).map((old, i) => (i === k ? value : old))
             }]));
     this.append(
-        h('h2', {}, 'Lens'), h('div', {class: 'grid'}, lens), this.origin, h('h2', {}, 'Attitude in the first frame'),
-        h('div', {class: 'grid three'}, ...angles),
+        h('h2', {}, 'Clip'), this.used, h('h2', {}, 'Lens'), h('div', {class: 'grid'}, lens), this.origin,
+        h('h2', {}, 'Attitude in the first frame'), h('div', {class: 'grid three'}, ...angles),
         h('p', {class: 'hint'}, 'The line over the frame is where lens and attitude put the horizon.'), this.found,
         h('div', {class: 'actions'}, this.forget), h('h2', {}, 'Own flight'), h('div', {class: 'grid'}, height),
         h('div', {class: 'grid three'}, ...velocity), this.flight);
   }
 
   protected update(): void {
-    const {state, plan} = this.now;
+    const {state, plan, clip} = this.now;
     if (!state) return;
     const {scene, notes} = state;
     // The file's own words on where its numbers come from.
     const said = (...keys: string[]) => keys.map((key) => notes[key]).filter(Boolean).join('; ');
+    text(
+        this.used,
+        clip ?
+            `${clip.frames} frames are used, from ${(clip.first_frame / clip.rate_hz).toFixed(2)} s of the video on. ${
+                said('background.first_frame', 'background.frame_count')}` :
+            '');
     for (const {field, value} of this.rows) field.show(value(scene));
     const lens = tableOf(scene.lens);
     const hasFov = 'vertical_fov_deg' in lens;
