@@ -146,7 +146,7 @@ std::optional<Box> whole_box(const Ray& ray,
 // Moves each place until the middle of the box is at the stated pixel, and where a width is stated
 // to the range that gives it. The attitudes follow from all places, so that they are moved
 // together.
-void settle_boxes(const scene::Intruder& intruder,
+void settle_boxes(scene::Intruder intruder,
                   const World& world,
                   const projection::SilhouettePoints& aircraft,
                   std::vector<Ray>& rays) {
@@ -154,6 +154,8 @@ void settle_boxes(const scene::Intruder& intruder,
   constexpr int kMaxRounds = 200;
   // From this round on the steps are halved, for attitudes that answer to the places.
   constexpr int kDampedRound = 20;
+  // What is seen is the middle of a flock: its birds keep their places about it.
+  intruder.offset_ned_m = Vector3::Zero();
   const Ray* off = nullptr;
   for (int round = 0; round < kMaxRounds; ++round) {
     const trajectory::Path path = path_of(through_places(intruder, rays), world.camera);

@@ -182,6 +182,20 @@ TEST(Seen, TheMiddleOfTheBoxIsAtThePixelWhereverTheModelsOriginIs) {
   }
 }
 
+TEST(Seen, ABirdOfAFlockKeepsItsOffset) {
+  scene::Scene scene;
+  scene.lens.vertical_fov_deg = 50;
+  scene.intruders = {cessna(kThree), cessna(kThree)};
+  scene.intruders[1].offset_ned_m = {5, 30, -8};
+  World world = load_world(scene, {1280, 720}, {});
+  place_seen(scene, world, frames(rotation_of), {});
+  for (const double time_s : {0.5, 1.3, 4.0}) {
+    const Vector3 off = world.actors[1].path.at(time_s)->position_in_world -
+                        world.actors[0].path.at(time_s)->position_in_world;
+    EXPECT_LT((off - scene.intruders[1].offset_ned_m).norm(), 1e-6);
+  }
+}
+
 TEST(Seen, PlacingByTheMeasuredMotionMovesPathAndScene) {
   scene::Scene scene;
   scene.lens.vertical_fov_deg = 50;
