@@ -133,6 +133,16 @@ bool is_in(const Pixel& pixel, const lens::Lens& lens) {
   return setup::meets_frame({pixel.x(), pixel.y(), 0, 0}, lens.size());
 }
 
+// Whether the frame can show the actor. The box of what reaches behind the camera's plane has no
+// bounds, so that its reference point decides.
+bool shows(const setup::Moment& moment, std::size_t actor) {
+  if (!moment.search[actor]) return false;
+  if (!moment.boxes[actor].partly_unseen) return true;
+  const auto pixel =
+      projection::pixel_from_world(moment.sight, moment.states[actor]->position_in_world);
+  return pixel && is_in(*pixel, *moment.sight.lens);
+}
+
 // From the pixel of an aircraft's reference point to the middle of its box, times the range, by
 // which it shrinks; 0 where it is not seen.
 Pixel range_times_offset(const setup::Actor& actor,
@@ -213,7 +223,7 @@ class Planner {
       single.push_back({parties_[i].name, {i}, i});
       const bool is_seen =
           std::any_of(sampled_.moments.begin(), sampled_.moments.end(), [&](const auto& moment) {
-            if (moment.search[i]) return true;
+            if (shows(moment, i)) return true;
             return std::any_of(
                 parties_[i].actors.begin(), parties_[i].actors.end(), [&](std::size_t actor) {
                   return is_in_view(moment, stage_.world().actors[actor].path);
@@ -273,7 +283,7 @@ class Planner {
             pixel ? Json(hundredths(pixel->y())) : Json(),
             hundredths((place - moment.camera.position_in_world).norm()),
             box ? Json(hundredths(box->width)) : Json(),
-            moment.search[actor].has_value()};
+            shows(moment, actor)};
   }
 
   // The moments of [[intruder.seen]] as the path has them.
@@ -368,7 +378,7 @@ Json boxes_of(const Stage& stage,
               const std::vector<document::TablePlace>& tables) {
   Json result = Json::array();
   for (std::size_t i = 0; i < moment.search.size(); ++i) {
-    if (!moment.search[i] || !moment.boxes[i].box) continue;
+    if (!moment.boxes[i].box || !shows(moment, i)) continue;
     result.push_back(
         {{"table", table_at(tables, stage.scene().intruders[i].where.line)},
          {"id", stage.world().actors[i].id},

@@ -262,5 +262,20 @@ TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {
   EXPECT_NE(second.find("never in view"), std::string::npos) << second;
 }
 
+// It flies beside the camera, half before and half behind the camera's plane, where its box has no
+// bounds.
+TEST_F(OverAFlight, WhatIsBesideTheCameraIsNotInView) {
+  const scene::Scene scene =
+      scene_of(kAircraft +
+               "[intruder.encounter]\ncpa_time_s = 0.5\ncpa_right_m = 40\ncpa_above_m = 0\n"
+               "course_deg = 0\nspeed_mps = 26\n");
+  Stage stage(options());
+  stage.set(1, scene, measured_of(scene, options()));
+  const auto plan = plan_of(stage, {{"intruder", 0, scene.intruders[0].where.line}});
+  const auto& track = plan["tracks"][0];
+  for (const auto& point : track["points"]) EXPECT_FALSE(point[5].get<bool>()) << point;
+  EXPECT_NE(track["checks"].dump().find("never in view"), std::string::npos) << track["checks"];
+}
+
 }  // namespace
 }  // namespace airtruth::session

@@ -21,7 +21,7 @@ export class NoticeBar extends Part {
   protected build(): void {
     this.setAttribute('role', 'status');
     this.disk.append(
-        h('span', {}, 'The file was changed by another program.'),
+        h('span', {}, 'Another program has changed the file. If you keep yours, the next save replaces what it wrote.'),
         h('button', {onclick: () => void this.studio.reload()}, 'Take the file'),
         h('button', {onclick: () => void this.studio.keep()}, 'Keep mine'));
     this.append(this.lost, this.problem, this.disk, this.progress, this.list);
