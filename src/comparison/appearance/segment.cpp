@@ -108,8 +108,7 @@ cv::Mat silhouette_of(const cv::Mat& grey, double reach_px) {
 
 std::optional<Seen> seen_in(const image::Picture& picture, const Box& loose) {
   const double margin = std::max(4.0, std::max(loose.width, loose.height) / 4);
-  const PixelBox wide = pixels_of(
-      {loose.x - margin, loose.y - margin, loose.width + 2 * margin, loose.height + 2 * margin});
+  const PixelBox wide = pixels_of(wider(loose, margin));
   if (wide.x < 0 || wide.y < 0 || wide.right() > picture.width || wide.bottom() > picture.height)
     return std::nullopt;
   const cv::Mat mask =

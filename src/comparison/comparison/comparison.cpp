@@ -180,7 +180,7 @@ class Comparing {
   YawPitchRoll attitude_beside() const {
     const Box& box =
         std::next(boxes_.begin(), static_cast<std::ptrdiff_t>(boxes_.size() / 2))->second;
-    const auto ray = lens_->ray_from_pixel({box.x + box.width / 2, box.y + box.height / 2});
+    const auto ray = lens_->ray_from_pixel(centre_of(box));
     if (!ray) return pose_->attitude;
     const Vector3 sight = cam_from_body().conjugate() * *ray;
     const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitX(), sight);

@@ -185,7 +185,7 @@ class Comparison {
     if (!ours && centre_in_view) ++row_.without_box_ours;
     const bool whole = ours && !touches_border(*ours);
     if (whole && !is_box(frame.published)) ++row_.without_box_published;
-    if (ours) ours = spread(*ours, frame.number == 1 ? 0 : spread_px_);
+    if (ours) ours = wider(*ours, frame.number == 1 ? 0 : spread_px_);
     if (whole && is_box(frame.published) && !touches_border(frame.published))
       compare(*ours, frame.published);
     return ours;
@@ -207,10 +207,6 @@ class Comparison {
   }
 
  private:
-  static PixelBox spread(const PixelBox& box, int px) {
-    return {box.x - px, box.y - px, box.width + 2 * px, box.height + 2 * px};
-  }
-
   void compare(const PixelBox& ours, const PixelBox& published) {
     width_.push_back(published.width);
     height_.push_back(published.height);

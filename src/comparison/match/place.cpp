@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 #include "labels/projection/exact_box.h"
 
 namespace airtruth::match {
@@ -34,8 +35,7 @@ std::vector<Spot> spots_of(const RealBoxes& boxes) {
     for (std::int64_t k = frame; k < until; ++k) {
       const double t = double(k - frame) / double(until - frame);
       const Box& after = next == boxes.end() ? box : next->second;
-      const Pixel here(box.x + box.width / 2, box.y + box.height / 2);
-      const Pixel there(after.x + after.width / 2, after.y + after.height / 2);
+      const Pixel here = centre_of(box), there = centre_of(after);
       spots.push_back({k, here + t * (there - here), std::max(box.width, box.height)});
     }
   }

@@ -63,8 +63,7 @@ constexpr double kBlurShare = 0.08;  // of the box's larger side: poses fit no b
 // it, brought to a size. Empty where that leaves the picture.
 cv::Mat contrast_in(const image::Picture& picture, const Box& box, const cv::Size& size) {
   const double margin = std::max(2.0, std::max(box.width, box.height) / 4);
-  const PixelBox area =
-      pixels_of({box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin});
+  const PixelBox area = pixels_of(wider(box, margin));
   if (area.x < 0 || area.y < 0 || area.right() > picture.width || area.bottom() > picture.height)
     return {};
   image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);

@@ -6,8 +6,6 @@
 
 namespace airtruth::matching {
 
-Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
-
 double centre_distance_px(const Box& a, const Box& b) {
   return std::hypot(a.x + a.width / 2 - b.x - b.width / 2, a.y + a.height / 2 - b.y - b.height / 2);
 }

@@ -21,7 +21,6 @@
 // detection may be 30 px away.
 namespace airtruth::matching {
 
-Pixel centre_of(const Box& box);
 // Distance between the centres of two boxes.
 double centre_distance_px(const Box& a, const Box& b);
 // The largest distance from the centre of this aircraft to that of a detection that matches it.

@@ -6,6 +6,7 @@
 
 #include "evaluation/matching/boxes.h"
 #include "evaluation/statistics/bins.h"
+#include "foundation/geometry/box.h"
 
 namespace airtruth::measures {
 namespace {
@@ -34,7 +35,7 @@ std::vector<Outcome> outcomes(std::span<const evaluation::FramePair> frames,
     if (!frames[i].answer) continue;
     const Box& truth = *frames[i].truth;
     const Box& answer = *frames[i].answer;
-    const Pixel off = matching::centre_of(answer) - matching::centre_of(truth);
+    const Pixel off = centre_of(answer) - centre_of(truth);
     outcome.overlap = evaluation::overlap(truth, answer);
     outcome.centre_px = off.norm();
     outcome.normalised = std::hypot(off.x() / truth.width, off.y() / truth.height);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "foundation/base/median.h"
+#include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "labels/annotation/object_class.h"
 
@@ -43,7 +44,7 @@ struct Bearing {
 
 // docs/formats/truth.md: azimuth = atan2(x, z), elevation = atan2(-y, hypot(x, z)).
 std::optional<Bearing> bearing_of(const lens::Lens& lens, const Box& box) {
-  const auto ray = lens.ray_from_pixel({box.x + box.width / 2, box.y + box.height / 2});
+  const auto ray = lens.ray_from_pixel(centre_of(box));
   if (!ray) return std::nullopt;
   return Bearing{std::atan2(ray->x(), ray->z()),
                  std::atan2(-ray->y(), std::hypot(ray->x(), ray->z()))};

@@ -16,6 +16,7 @@
 #include "evaluation/statistics/bins.h"
 #include "evaluation/tracker_evaluation/tables.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/box.h"
 #include "picture/video/still.h"
 #include "show/drawing/boxed.h"
 #include "show/drawing/tiles.h"
@@ -33,7 +34,7 @@ constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
 // The centre of a box; a gap without one.
 Pixel centre_or_gap(const std::optional<Box>& box) {
-  return box ? matching::centre_of(*box) : Pixel(kGap, kGap);
+  return box ? centre_of(*box) : Pixel(kGap, kGap);
 }
 
 Plot curve(const Assessment& assessment, const std::string& x, double step, const auto& of) {

@@ -31,7 +31,13 @@ inline std::optional<PixelBox> intersection(const PixelBox& a, const PixelBox& b
   return PixelBox{x, y, width, height};
 }
 
+inline Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
+
 // The box with `margin_px` more on each side.
+inline Box wider(const Box& box, double margin_px) {
+  return {
+      box.x - margin_px, box.y - margin_px, box.width + 2 * margin_px, box.height + 2 * margin_px};
+}
 inline PixelBox wider(const PixelBox& box, int margin_px) {
   return {
       box.x - margin_px, box.y - margin_px, box.width + 2 * margin_px, box.height + 2 * margin_px};

@@ -13,10 +13,6 @@ namespace {
 constexpr double kBeyond = 3;  // standard deviations: of normal noise, 0.3 % lie beyond
 const double kRounding = 1 / std::sqrt(12.0);  // grey levels: the deviation of a uniform error
 
-PixelBox grown(const PixelBox& box, int by) {
-  return {box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
-}
-
 double deviation_about(const std::vector<std::uint8_t>& values, double centre, double reach) {
   double sum = 0;
   double count = 0;
@@ -34,8 +30,8 @@ double deviation_about(const std::vector<std::uint8_t>& values, double centre, d
 std::optional<double> contrast_to_noise(const Picture& picture, const PixelBox& box) {
   const PixelBox whole{0, 0, picture.width, picture.height};
   const int ring = std::max(kLeastRing_px, std::min(box.width, box.height));
-  const PixelBox gap = grown(box, 1);
-  const auto around = intersection(grown(gap, ring), whole);
+  const PixelBox gap = wider(box, 1);
+  const auto around = intersection(wider(gap, ring), whole);
   const auto inside = intersection(box, whole);
   if (!around || !inside) return std::nullopt;
   std::vector<std::uint8_t> outside;

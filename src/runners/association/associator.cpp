@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 #include "runners/association/gated_pairs.h"
 
 namespace airtruth::association {
@@ -108,7 +109,7 @@ void Associator::predict(const detector::FrameInput& frame) {
 }
 
 std::optional<Sighting> Associator::sighting_of(const Box& box) const {
-  const Pixel centre(box.x + box.width / 2, box.y + box.height / 2);
+  const Pixel centre = centre_of(box);
   const auto ray = lens_->ray_from_pixel(centre);
   const auto left = lens_->ray_from_pixel(centre - Pixel(0.5, 0));
   const auto right = lens_->ray_from_pixel(centre + Pixel(0.5, 0));

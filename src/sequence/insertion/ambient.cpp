@@ -10,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 #include "picture/render/renderer.h"
 #include "sequence/setup/from_scene.h"
@@ -89,8 +90,7 @@ std::vector<std::optional<Vector3>> rays_of(const lens::ImageSize& size,
 std::optional<PixelBox> surroundings_of(const std::optional<PixelBox>& near, int step) {
   if (!near) return std::nullopt;
   const int margin = std::max(2 * step, 2 * std::max(near->width, near->height));
-  return PixelBox{
-      near->x - margin, near->y - margin, near->width + 2 * margin, near->height + 2 * margin};
+  return wider(*near, margin);
 }
 
 // `rays`: as rays_of().

@@ -8,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/box.h"
 #include "picture/video/reader.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/frame_maker.h"
@@ -44,10 +45,7 @@ std::string picture_fault(const image::Picture& made,
   const double elsewhere = difference(made, stored, whole);
   for (const annotation::Intruder& intruder : truth.intruders) {
     if (!intruder.visible_box_px) continue;
-    const PixelBox& v = *intruder.visible_box_px;
-    const auto around = intersection(
-        {v.x - kAroundPx, v.y - kAroundPx, v.width + 2 * kAroundPx, v.height + 2 * kAroundPx},
-        whole);
+    const auto around = intersection(wider(*intruder.visible_box_px, kAroundPx), whole);
     const double here = difference(made, stored, *around);
     if (here > kTimesElsewhere * elsewhere + kLevels)
       return fmt::format(

@@ -39,16 +39,12 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
 // part, and half a pixel to spare.
 constexpr double kSearchMarginPx = 1.5;
 
-Box grown(const Box& box, double margin) {
-  return {box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin};
-}
-
 // Returns the whole frame, for an aircraft so near that a part of it has no pixel.
 Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
 
 std::optional<Box> search_box(const projection::ExactBox& exact, const lens::ImageSize& size) {
   if (!exact.box) return std::nullopt;
-  const Box box = exact.partly_unseen ? whole(size) : grown(*exact.box, kSearchMarginPx);
+  const Box box = exact.partly_unseen ? whole(size) : wider(*exact.box, kSearchMarginPx);
   if (!meets_frame(box, size)) return std::nullopt;
   return box;
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 
@@ -164,8 +165,7 @@ void settle_boxes(scene::Intruder intruder,
     for (Ray& ray : rays) {
       const auto box = whole_box(ray, path, world, aircraft);
       if (box && meets_frame({ray.seen->pixel.x(), ray.seen->pixel.y(), 0, 0}, world.lens.size())) {
-        const Pixel miss =
-            ray.seen->pixel - Pixel(box->x + 0.5 * box->width, box->y + 0.5 * box->height);
+        const Pixel miss = ray.seen->pixel - centre_of(*box);
         is_settled = is_settled && miss.norm() <= kMiddlePx;
         aim(ray, world, ray.pixel + (round < kDampedRound ? 1.0 : 0.5) * miss);
       }

@@ -26,8 +26,9 @@ FramePose steady_frame(const scene::Seen& seen);
 // within kMiddlePx, and its reference point is at the stated range: a place on a ray through the
 // lens, the measured motion of the frame and the nominal pose at that time (with a rolling shutter:
 // of its row). A bird of a flock is placed so without its offset from the flock's middle. Where the
-// stated pixel is outside the frame, or a part of the aircraft has no pixel,
-// the reference point is at the stated one: far outside the frame a box is no measure of a place.
+// stated pixel is outside the frame, or a part of the aircraft has no pixel, the reference point is
+// at the stated one: far outside the frame a box is no measure of a place. Where attitudes answer
+// so strongly to the places that the search does not settle, the middle is as near as it came.
 // Between the places the path is the natural cubic spline, and it goes on straight for an hour
 // beyond both ends.
 //

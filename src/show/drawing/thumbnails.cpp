@@ -74,9 +74,7 @@ image::Rgb8 strip(const std::vector<image::Rgb8>& pictures) {
 
 double contrast(const image::Picture& picture, const PixelBox& box) {
   const int ring = std::max(4, std::min(box.width, box.height));
-  const auto around =
-      intersection({box.x - ring, box.y - ring, box.width + 2 * ring, box.height + 2 * ring},
-                   {0, 0, picture.width, picture.height});
+  const auto around = intersection(wider(box, ring), {0, 0, picture.width, picture.height});
   if (!around) return 0;
   std::vector<std::uint8_t> outside;
   for (int y = around->y; y < around->bottom(); ++y)

@@ -11,6 +11,7 @@
 
 #include "encounter/passage/passage.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 #include "labels/projection/exact_box.h"
 #include "sequence/preview/rows.h"
 #include "sequence/setup/flyable.h"
@@ -127,8 +128,6 @@ std::map<int, std::vector<std::string>> checks_of(const Stage& stage) {
   return checks;
 }
 
-Pixel middle_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
-
 bool is_in(const Pixel& pixel, const lens::Lens& lens) {
   return setup::meets_frame({pixel.x(), pixel.y(), 0, 0}, lens.size());
 }
@@ -157,7 +156,7 @@ Pixel range_times_offset(const setup::Actor& actor,
   const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
   if (!box || !pixel) return Pixel::Zero();
   const double range_m = (state->position_in_world - camera.position_in_world).norm();
-  return is_in(middle_of(*box), *sight.lens) ? Pixel(range_m * (middle_of(*box) - *pixel))
+  return is_in(centre_of(*box), *sight.lens) ? Pixel(range_m * (centre_of(*box) - *pixel))
                                              : Pixel(Pixel::Zero());
 }
 
@@ -277,7 +276,7 @@ class Planner {
     const auto& box = moment.boxes[actor].box;
     auto pixel = projection::pixel_from_world(moment.sight, place);
     // As a moment of [[intruder.seen]] states it.
-    if (box && is_in(middle_of(*box), *moment.sight.lens)) pixel = middle_of(*box);
+    if (box && is_in(centre_of(*box), *moment.sight.lens)) pixel = centre_of(*box);
     return {moment.frame,
             pixel ? Json(hundredths(pixel->x())) : Json(),
             pixel ? Json(hundredths(pixel->y())) : Json(),
