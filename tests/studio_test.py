@@ -180,8 +180,11 @@ class Page:
         return self.browser.run(f"{STORE}.picture.boxes")
 
 
-def flight(airtruth, folder, frames=FRAMES, width=WIDTH, height=HEIGHT):
-    subprocess.run([airtruth, "--quiet", "synth", "--out", "flight.mp4", "--frames", str(frames), "--width", str(width), "--height", str(height), "--seed", "7", "--no-own-aircraft"], cwd=folder, check=True)
+def flight(airtruth, folder, frames=FRAMES, width=WIDTH, height=HEIGHT, has_encounter=True, name="flight.mp4"):
+    """A clip and, with an aircraft by its closest approach, a scene of its name."""
+    subprocess.run([airtruth, "--quiet", "synth", "--out", name, "--frames", str(frames), "--width", str(width), "--height", str(height), "--seed", "7", "--no-own-aircraft"], cwd=folder, check=True)
+    if has_encounter:
+        subprocess.run([airtruth, "--quiet", "scene", "new", name], cwd=folder, check=True)
 
 
 def near(what, got, wanted, tolerance):
@@ -212,7 +215,7 @@ def test_model(browser, source, root):
 def test_handles(airtruth, browser, root):
     """From a video to a saved scene by the mouse, and what the command line renders from it."""
     flight(airtruth, root)
-    server = Server(airtruth, root, "flight.mp4")
+    server = Server(airtruth, root, "flight.toml")
     page = Page(browser)
     page.open(server.address)
     begun = page.state()["text"]
@@ -268,6 +271,51 @@ def test_handles(airtruth, browser, root):
     subprocess.run([airtruth, "--quiet", "render", "flight.toml", "--out", "rendered"], cwd=root, check=True, stderr=subprocess.DEVNULL)
     check_rendered(root, scene, shown)
     print(f"handles: two aircraft and a flock; {sum(map(len, shown.values()))} boxes of {len(shown)} frames as rendered")
+
+
+def test_near_miss(airtruth, browser, root):
+    """From a video to an aircraft at a pixel in a frame that then passes at a stated distance, and another distance."""
+    flight(airtruth, root, has_encounter=False)
+    server = Server(airtruth, root, "flight.mp4")
+    page = Page(browser)
+    page.open(server.address)
+    expect("flyers of a begun scene", ("intruder" in page.state()["scene"], "Nothing flies yet" in "".join(words_of(browser, "studio-flyers .hint"))), (False, True))
+    expect("what is guessed", words_of(browser, "studio-flyers .hint")[0].startswith("Guessed: the lens, the height, the own speed."), True)
+    frame, pixel = 12, (250, 180)
+    browser.run(f"airtruthStudio.studio.show({frame})")
+    page.rest()
+    browser.click(*page.screen(pixel), count=2)
+    browser.wait("document.querySelector('studio-gallery dialog[open]')")
+    browser.type("738")
+    browser.wait("document.querySelectorAll('.card')[0]?.querySelector('select')?.value.includes('738')")
+    browser.click_on(".card .choose")
+    browser.wait("document.querySelectorAll('.handle').length === 2")
+    page.rest()
+    browser.click_on(".near-miss summary")
+    type_into(browser, "Miss distance, m", "80")
+    browser.key("Enter")
+    browser.run("(() => { const side = document.querySelector('.near-miss select'); side.value = 'left'; side.dispatchEvent(new Event('change')); })()")
+    browser.wait(f"{STORE}.state.motion === 'measured'", 120)
+    press_button(browser, "Fly past")
+    browser.wait(f"{STORE}.state.scene.intruder[0].encounter")
+    page.rest()
+    miss = lambda: browser.run(f"{STORE}.plan.tracks[0].cpa")
+    across = lambda: (miss()["right_m"] ** 2 + miss()["ahead_m"] ** 2) ** 0.5
+    near("the miss distance", [across(), miss()["right_m"] < 0], [80, True], 0.1)
+    expect("its field", browser.run("document.querySelector('input[aria-label=\"Miss distance, m\"]').value"), "80")
+    browser.key("s", CONTROL)
+    browser.wait(f"{STORE}.state.saved")
+    subprocess.run([airtruth, "--quiet", "render", "flight.toml", "--out", "rendered"], cwd=root, check=True, stderr=subprocess.DEVNULL)
+    with open(os.path.join(root, "rendered", "flight", "truth.jsonl"), encoding="utf-8") as file:
+        x, y, width, height = next(one for one in map(json.loads, file) if one.get("frame") == frame)["intruders"][0]["exact_box_px"]
+    near("the box in that frame", (x + width / 2, y + height / 2), pixel, BESIDE_PX)
+    type_into(browser, "Miss distance, m", "30")
+    browser.key("Enter")
+    page.rest()
+    near("another miss distance", [across(), miss()["right_m"] < 0], [30, True], 0.1)
+    expect("console", browser.errors, [])
+    server.end()
+    print("near miss: at its pixel as rendered, past at the stated distance")
 
 
 def check_rendered(root, scene, shown):
@@ -558,8 +606,6 @@ def test_broken(airtruth, browser, root):
     server = Server(airtruth, root, "flight.mp4")
     file = os.path.join(root, "flight.toml")
     page.open(server.address)
-    browser.key("s", CONTROL)
-    browser.wait(f"{STORE}.state.saved")
     good = page.state()["text"]
     opacity = "getComputedStyle(document.querySelector('studio-plan svg')).opacity"
     for broken in (good.replace("[light]", "[light]\nsun_elevaton_deg = 1"), "[[["):
@@ -657,6 +703,12 @@ def test_edits(airtruth, browser, root):
     browser.wait("[...document.querySelectorAll('.notice button')].some((b) => b.textContent === 'Take the file' && b.checkVisibility())")
     browser.click_on(".notice.warning button", 0)
     browser.wait(f"{STORE}.state.text.endsWith('# theirs\\n')")
+    # Another clip in the file is opened.
+    flight(airtruth, root, frames=20, width=320, height=240, has_encounter=False, name="other.mp4")
+    write(file, kept.replace("flight.mp4", "other.mp4"))
+    browser.wait(f"{STORE}.clip.video === 'other.mp4' && {STORE}.clip.frames === 20 && document.querySelector('.thumbs img').src.includes('other')")
+    page.rest()
+    expect("the picture's size", browser.run("(({ width, height }) => [width, height])(airtruthStudio.studio.pictures.canvas)"), [320, 240])
     expect("console", [error for error in browser.errors if "WebSocket" not in error and "ERR_CONNECTION" not in error], [])
     server.end()
     print("edits: undo to the beginning; reload, lost connection, crash and another program lose nothing")
@@ -820,7 +872,7 @@ def main():
     arguments = arguments.parse_args()
     airtruth = os.path.abspath(arguments.airtruth)
     program = browser_or_skip("studio_test")
-    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "keys": test_keys, "film": test_film, "broken": test_broken, "edits": test_edits, "layout": test_layout,
+    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "near-miss": test_near_miss, "keys": test_keys, "film": test_film, "broken": test_broken, "edits": test_edits, "layout": test_layout,
              "latency": lambda *given: test_latency(*given, arguments.drags), "monkey": lambda *given: test_monkey(*given, arguments.monkey)}
     for name, test in tests.items():
         if arguments.only not in (None, name):

@@ -48,6 +48,7 @@ std::unique_ptr<document::Document> document_of(const StudioArguments& arguments
     if (!arguments.lens.empty()) options.lens = arguments.lens;
     options.picture_rate_hz = arguments.frame_rate_hz;
     options.folder = fs::absolute(file).parent_path();
+    options.has_encounter = false;
     follow(options, context, "looking for lens and motion");
     begun = new_scene::scene_text(arguments.input, options);
     console.end_progress();

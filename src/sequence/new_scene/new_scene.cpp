@@ -356,7 +356,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       "{}\n"
       "[light]                                  # the sun, from north towards east and above the "
       "horizon\n"
-      "sun_azimuth_deg = 180\nsun_elevation_deg = 45\n\n"
+      "sun_azimuth_deg = 180\nsun_elevation_deg = 45\n"
       "{}",
       video.filename().string(),
       info.frame_count_estimate,
@@ -369,7 +369,8 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       lens.table,
       camera.table,
       profile_lines(info),
-      first_encounter(lens.lens, camera.camera, duration_s, shake_at));
+      options.has_encounter ? '\n' + first_encounter(lens.lens, camera.camera, duration_s, shake_at)
+                            : "");
 }
 
 }  // namespace airtruth::new_scene

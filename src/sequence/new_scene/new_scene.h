@@ -19,6 +19,8 @@ struct NewSceneOptions {
   std::optional<double> picture_rate_hz;
   // The folder of the scene file, to which the files in it are relative; empty: they are absolute.
   std::optional<std::filesystem::path> folder;
+  // False: nothing flies yet.
+  bool has_encounter = true;
   Warn warn;
   std::stop_token stop;
   std::function<void(std::int64_t done, std::int64_t total)> progress;

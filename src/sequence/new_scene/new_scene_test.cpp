@@ -95,6 +95,11 @@ TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
   const std::string text = scene_text(video, {});
   EXPECT_THAT(text, testing::HasSubstr("flight.srt states 24 mm"));
   EXPECT_THAT(text, testing::HasSubstr("log = "));
+  NewSceneOptions empty;
+  empty.has_encounter = false;
+  const std::string begun = scene_text(video, empty);
+  EXPECT_EQ(begun + '\n', text.substr(0, begun.size() + 1));
+  EXPECT_TRUE(scene::parse_scene(begun, folder / "flight.toml").intruders.empty());
   const scene::Scene scene = scene::parse_scene(text, folder / "flight.toml");
   const preview::Preview made = preview::preview_of(scene, {});
   const auto seen =

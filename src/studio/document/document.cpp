@@ -138,7 +138,7 @@ void Document::save() {
                 {file_.string()});
   write_file(file_, text());
   history_.file_sha256 = sha256_of(text());
-  looked_at_ = time_of(file_);
+  looked_at_ = {};  // another program may write at once: the next look reads the file
   saved_ = true;
   changed_on_disk_ = false;
   journal_.remove();

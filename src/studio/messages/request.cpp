@@ -8,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
+#include "scene/scene/limits.h"
 
 namespace airtruth::messages {
 namespace {
@@ -17,6 +18,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kMostChanges = 200;
 constexpr std::int64_t kMostFrames = 100'000'000;
 constexpr int kMostPx = 65536;
+constexpr std::int64_t kMostTables = 1'000'000;
 // A change of a scene is nested far less; deeper texts would exhaust a thread's stack.
 constexpr int kMostDepth = 32;
 constexpr std::size_t kMostWord = 200;
@@ -86,12 +88,28 @@ void take_frame(Request& request, const JsonObject& message) {
   request.crop = pixels_of({box[0], box[1], box[2], box[3]});
 }
 
+NearMiss near_miss_in(const JsonObject& message) {
+  NearMiss wanted;
+  wanted.intruder = static_cast<std::size_t>(message.whole("intruder", 0, kMostTables));
+  wanted.moment = static_cast<std::size_t>(message.whole("moment", 0, kMostTables));
+  wanted.miss_m = message.number("miss_m");
+  if (!(wanted.miss_m >= 0 && wanted.miss_m <= scene::kMiss.high))
+    message.fail("miss_m", "metres from 0 to 1e5");
+  wanted.is_right = message.truth("right");
+  wanted.speed_mps = message.number("speed_mps");
+  if (!(wanted.speed_mps >= scene::kSpeed.low && wanted.speed_mps <= scene::kSpeed.high))
+    message.fail("speed_mps", std::string(scene::kSpeed.expected));
+  return wanted;
+}
+
 std::vector<std::string> keys_of(Act act) {
   switch (act) {
     case Act::kEdit:
       return {"id", "do", "changes", "merge"};
     case Act::kFrame:
       return {"id", "do", "frame", "aircraft", "crop", "scale"};
+    case Act::kNearMiss:
+      return {"id", "do", "intruder", "moment", "miss_m", "right", "speed_mps"};
     case Act::kAircraft:
       return {"id", "do", "search"};
     default:
@@ -124,6 +142,7 @@ Request request_from(std::string_view text) {
     request.merge = word(message, "merge");
   }
   if (*act == Act::kFrame) take_frame(request, message);
+  if (*act == Act::kNearMiss) request.near_miss = near_miss_in(message);
   if (*act == Act::kAircraft) request.search = word(message, "search");
   return request;
 }

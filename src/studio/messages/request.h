@@ -24,6 +24,7 @@ enum class Act {
   kKeep,
   kFrame,
   kPlan,
+  kNearMiss,
   kAircraft,
   kCalibrate,
   kRender,
@@ -39,11 +40,22 @@ constexpr auto enum_names(Act) {
                                        {Act::kKeep, "keep"},
                                        {Act::kFrame, "frame"},
                                        {Act::kPlan, "plan"},
+                                       {Act::kNearMiss, "near_miss"},
                                        {Act::kAircraft, "aircraft"},
                                        {Act::kCalibrate, "calibrate"},
                                        {Act::kRender, "render"},
                                        {Act::kCancel, "cancel"}});
 }
+
+// A level path through a moment of an intruder and then past the own aircraft, on the right or on
+// the left of its course.
+struct NearMiss {
+  std::size_t intruder = 0;
+  std::size_t moment = 0;
+  double miss_m = 0;
+  bool is_right = true;
+  double speed_mps = 0;
+};
 
 // What a page asks for in one message: {"id": 7, "do": "...", ...}.
 struct Request {
@@ -59,6 +71,7 @@ struct Request {
   // The part of the picture that changed since the page's last picture of that frame.
   bool crops_to_change = false;
   double scale = 1;
+  NearMiss near_miss;
   // aircraft
   std::string search;
 };

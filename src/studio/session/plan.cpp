@@ -26,6 +26,9 @@ using Json = nlohmann::ordered_json;
 // Points of a drawn path, at most: one for every few pixels of the page.
 constexpr std::int64_t kMostPoints = 300;
 
+// Of the time about a stated closest approach, in which it is looked for.
+constexpr double kBesideS = 1;
+
 // Of a line over one frame.
 constexpr std::int64_t kMostLinePoints = 150;
 
@@ -248,8 +251,7 @@ class Planner {
       positions.push_back(state ? ned(state->position_in_world) : Json());
       if (state) points.push_back(point(moment, place));
     }
-    const auto closest =
-        passage::closest_approach(stage_.world().camera, actor.path, 0, stage_.duration_s());
+    const auto closest = closest_approach(stated, actor);
     Json checks = Json::array();
     if (const auto found = checks_.find(stated.where.line); found != checks_.end())
       for (const std::string& line : found->second) checks.push_back(line);
@@ -268,6 +270,18 @@ class Planner {
             {"approach", approach},
             {"violations", violations(actor)},
             {"checks", checks}};
+  }
+
+  // Of the clip, and of a time before or after it that an encounter states.
+  std::optional<passage::Approach> closest_approach(const scene::Intruder& stated,
+                                                    const setup::Actor& actor) const {
+    double begin_s = 0;
+    double end_s = stage_.duration_s();
+    if (stated.encounter) {
+      begin_s = std::min(begin_s, stated.encounter->cpa_time_s - kBesideS);
+      end_s = std::max(end_s, stated.encounter->cpa_time_s + kBesideS);
+    }
+    return passage::closest_approach(stage_.world().camera, actor.path, begin_s, end_s);
   }
 
   // [frame, x, y, range_m, width_px, visible]

@@ -25,6 +25,7 @@
 #include "studio/session/job.h"
 #include "studio/session/jpeg.h"
 #include "studio/session/measure.h"
+#include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
 #include "studio/session/stage.h"
 #include "studio/session/worker.h"
@@ -196,6 +197,10 @@ class Session::Impl {
         return show(client, std::move(request));
       case Act::kPlan:
         return on_worker(worker_, client, request.id, [this] { return plan(); });
+      case Act::kNearMiss:
+        return on_worker(worker_, client, request.id, [this, wanted = request.near_miss] {
+          return near_miss(wanted);
+        });
       case Act::kAircraft:
         return on_worker(beside_, client, request.id, [this, word = request.search] {
           return gallery_.groups(word);
@@ -300,6 +305,12 @@ class Session::Impl {
     const auto shot = snapshot();
     if (const std::string problem = set_up(*shot); !problem.empty()) throw Error(problem);
     return plan_of(stage_, shot->tables);
+  }
+
+  Json near_miss(const messages::NearMiss& wanted) {
+    const auto shot = snapshot();
+    if (const std::string problem = set_up(*shot); !problem.empty()) throw Error(problem);
+    return {{"encounter", encounter_through(stage_, shot->tables, wanted)}};
   }
 
   void show(Client client, Request request) {

@@ -110,8 +110,8 @@ void Stage::open(const scene::Scene& scene, const Measured& measured) {
       take_camera(opened, measured.calibrated.count(calibration_key(scene)) > 0);
   motion_ = measured.motion && measured.motion_key == motion_key(scene) ? measured.motion : nullptr;
   if (motion_) pipeline::place_seen(opened, *motion_, options_.stop);
-  is_complete_ =
-      has_camera && (motion_ || opened.stated.scene.motion.model == scene::MotionModel::kNone);
+  has_motion_ = motion_ || opened.stated.scene.motion.model == scene::MotionModel::kNone;
+  is_complete_ = has_camera && has_motion_;
   seen_.clear();
   for (const scene::Intruder& intruder : scene.intruders) seen_.push_back(intruder.seen);
   tone_ = setup::tone_of(opened.stated.scene.camera_model);

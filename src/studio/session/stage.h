@@ -50,6 +50,8 @@ class Stage {
   // The moments of [[intruder.seen]] as the scene states them, before they are placed.
   const std::vector<scene::Seen>& stated_seen(std::size_t actor) const { return seen_.at(actor); }
   const std::string& attitude_words() const { return attitude_words_; }
+  // True where the camera's motion is measured, or the scene has none.
+  bool has_motion() const { return has_motion_; }
   // True where all is known that render() would measure.
   bool is_complete() const { return is_complete_; }
   // Warnings of the last set() that had anything to do.
@@ -97,6 +99,7 @@ class Stage {
   scene::Camera camera_;  // with its attitude
   std::string attitude_words_;
   std::shared_ptr<const setup::MotionSource> motion_;
+  bool has_motion_ = false;
   bool is_complete_ = false;  // nothing is left to measure
   std::unique_ptr<pipeline::FrameMaker> maker_;
   std::vector<std::vector<scene::Seen>> seen_;  // by intruder

@@ -8,10 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include "encounter/passage/passage.h"
 #include "foundation/base/error.h"
 #include "sequence/pipeline/frame_by_frame.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/shared_inputs.h"
+#include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
 #include "support/flight_file.h"
 #include "support/temporary_folder.h"
@@ -260,6 +262,42 @@ TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {
   EXPECT_NE(first.find("below the ground"), std::string::npos) << first;
   const std::string second = plan["tracks"][1]["checks"].dump();
   EXPECT_NE(second.find("never in view"), std::string::npos) << second;
+}
+
+// A near miss through the second moment: the scene that the answer makes has it where it was, and
+// passes as near as asked for.
+TEST_F(OverAFlight, ANearMissGoesThroughTheMoment) {
+  using Tables = std::vector<document::TablePlace>;
+  Stage unmeasured(options());
+  unmeasured.set(1, scene_of(kSeen), {});
+  EXPECT_THROW(encounter_through(unmeasured, {{"intruder", 0, 10}}, {0, 1, 25, true, 40}), Error);
+  const auto planned = [](const std::string& text, auto&& use) {
+    const scene::Scene scene = scene_of(text);
+    Stage stage(options());
+    stage.set(1, scene, measured_of(scene, options()));
+    use(stage, Tables{{"intruder", 0, scene.intruders[0].where.line}});
+  };
+  for (const bool is_right : {true, false}) {
+    nlohmann::ordered_json encounter;
+    planned(kSeen, [&](Stage& stage, const Tables& tables) {
+      encounter = encounter_through(stage, tables, {0, 1, 25, is_right, 40});
+      EXPECT_THROW(encounter_through(stage, tables, {0, 2, 25, is_right, 40}), Error);
+      EXPECT_THROW(encounter_through(stage, tables, {1, 0, 25, is_right, 40}), Error);
+    });
+    std::string text = kAircraft + "[intruder.encounter]\n";
+    for (const auto& [key, value] : encounter.items()) text += key + " = " + value.dump() + "\n";
+    planned(text, [&](Stage& stage, const Tables& tables) {
+      const nlohmann::ordered_json track = plan_of(stage, tables)["tracks"][0];
+      EXPECT_NEAR(track["points"][36][1].get<double>(), 220, 0.1);
+      EXPECT_NEAR(track["points"][36][2].get<double>(), 130, 0.1);
+      // The clip ends before they are nearest.
+      const auto closest =
+          passage::closest_approach(stage.world().camera, stage.world().actors[0].path, 0, 60);
+      ASSERT_TRUE(closest);
+      EXPECT_NEAR(closest->horizontal_m, 25, 0.02);
+      EXPECT_EQ(closest->offset.right_m > 0, is_right);
+    });
+  }
 }
 
 // It flies beside the camera, half before and half behind the camera's plane, where its box has no

@@ -17,6 +17,7 @@ export type Change = {
 };
 
 export interface Clip {
+  video: string;
   width: number;
   height: number;
   frames: number;

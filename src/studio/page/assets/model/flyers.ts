@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Approach, Change, Clip, Json, Path, Plan, State, Table, Track} from './contract';
-import {type Point, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt} from './geometry';
+import {type Point, acrossRelative, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt} from './geometry';
 
 // How a flyer's path is stated.
 export type Statement = 'moments'|'approach'|'waypoints'|'file'|'drift'|'lens';
@@ -179,8 +179,13 @@ export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): 
     ['speed_mps', Math.max(0.1, round(speedOf(other), 1))],
     ...(climb ? ([['climb_mps', climb]] as [string, number][]) : []),
   ];
-  return [...removed(flyer), ...words.map(([key, to]): Change => ({set: [...flyer.path, 'encounter', key], to}))];
+  return byEncounter(flyer, Object.fromEntries(words));
 }
+
+// By an encounter that the server found: its numbers by their keys.
+export const byEncounter = (flyer: Flyer, encounter: Table): Change[] =>
+    [...removed(flyer),
+     ...Object.entries(encounter).map(([key, to]): Change => ({set: [...flyer.path, 'encounter', key], to}))];
 
 // What the gallery offers.
 export interface Choice {
@@ -250,6 +255,44 @@ export function copyOf(flyer: Flyer, clip: Clip): Table {
 export function ownSpeed(plan: Plan, frame: number, clip: Clip): number {
   const own = velocityAt(plan, plan.own.ned, frame, clip.rate_hz);
   return own ? Math.hypot(own[0], own[1]) : 0;
+}
+
+// Of an encounter, from the own course; head-on where it states none.
+export const statedCourse = (flyer: Flyer) => numberOf(tableOf(flyer.table.encounter).course_deg) ?? 180;
+
+// Below it the place across follows from `cpa_ahead_m`, not from `cpa_right_m`: a choice.
+const LEAST_ACROSS = 0.2;
+
+// The direction in which the closest approach of an encounter can lie, as [right, ahead] of the own course.
+export function acrossOf(flyer: Flyer, plan: Plan, clip: Clip): Point {
+  const encounter = tableOf(flyer.table.encounter);
+  const number = (key: string) => numberOf(encounter[key]) ?? 0;
+  const own_mps = ownSpeed(plan, number('cpa_time_s') * clip.rate_hz, clip);
+  return acrossRelative(own_mps, number('speed_mps'), number('climb_mps'), statedCourse(flyer));
+}
+
+export function setAcross(flyer: Flyer, across: Point, along_m: number): Change[] {
+  const isRight = Math.abs(across[0]) >= LEAST_ACROSS;
+  const [key, other] = isRight ? ['cpa_right_m', 'cpa_ahead_m'] : ['cpa_ahead_m', 'cpa_right_m'];
+  const set: Change = {set: [...flyer.path, 'encounter', key], to: round(along_m * across[isRight ? 0 : 1], 1)};
+  return other in tableOf(flyer.table.encounter) ? [{remove: [...flyer.path, 'encounter', other]}, set] : [set];
+}
+
+// Where an encounter has its closest approach, along that direction.
+function alongOf(flyer: Flyer, across: Point): number {
+  const {cpa_right_m, cpa_ahead_m} = tableOf(flyer.table.encounter);
+  const [stated, share] =
+      typeof cpa_right_m === 'number' ? [cpa_right_m, across[0]] : [numberOf(cpa_ahead_m) ?? 0, across[1]];
+  return stated === 0 ? 0 : stated / share;
+}
+
+// The horizontal miss distance of an encounter, and another one on the same side.
+export const missOf = (flyer: Flyer, plan: Plan, clip: Clip): number =>
+    Math.abs(alongOf(flyer, acrossOf(flyer, plan, clip)));
+export function withMiss(flyer: Flyer, plan: Plan, clip: Clip, miss_m: number): Change[] {
+  const across = acrossOf(flyer, plan, clip);
+  const along = alongOf(flyer, across);
+  return setAcross(flyer, across, (along || across[0]) < 0 ? -miss_m : miss_m);
 }
 
 // How long a flyer is in view, as well as the plan's frames tell.

@@ -3,7 +3,7 @@
 import {Lost, Refused} from './connection';
 import type {Clip, State, Table, Track} from './contract';
 import {type Edit, Edits} from './edits';
-import {type Flyer, describedView, flyersOf, momentsOf, nearer, newFlyer, roomOf, toMoments, withMoment} from './flyers';
+import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, toMoments, withMiss, withMoment} from './flyers';
 import {acrossRelative, freePlace, nedAt, seenAt, turned} from './geometry';
 import {Store} from './store';
 
@@ -20,6 +20,7 @@ function near(got: number, wanted: number, tolerance: number): void {
 }
 
 const CLIP: Clip = {
+  video: 'flight.mp4',
   width: 1280,
   height: 960,
   frames: 150,
@@ -168,6 +169,19 @@ tests['A place across the relative velocity'] = () => {
   same(acrossRelative(20, 40, 0, 180).map((v) => Math.round(Math.abs(v) * 1e6) / 1e6), [1, 0]);
   const [right, ahead] = acrossRelative(20, 40, 0, 90);
   near(ahead / right, 2, 1e-9);
+};
+tests['The miss distance of an encounter, and another one on its side'] = () => {
+  // At right angles from the left, 40 over 20 m/s: 30 m to the left is 60 m behind, as (1, 2) lies across.
+  const one = flyer({encounter: {cpa_time_s: 2, cpa_right_m: -30, course_deg: 90, speed_mps: 40}});
+  const ned = Array.from({length: 151}, (_, k) => [(20 * k) / 30, 0, -100]);
+  const plan = {frames: ned.map((_, k) => k), own: {ned}} as never;
+  near(missOf(one, plan, CLIP), Math.hypot(30, 60), 1e-6);
+  same(withMiss(one, plan, CLIP, 100), [{set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: -44.7}]);
+  const across = flyer({encounter: {cpa_time_s: 2, cpa_ahead_m: 0, course_deg: 180, speed_mps: 40}});
+  same(missOf(across, plan, CLIP), 0);
+  same(
+      withMiss(across, plan, CLIP, 50).map((one) => 'remove' in one || one),
+      [true, {set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: 50}]);
 };
 tests['Between the points of a track, and beyond its ends'] = () => {
   const one = track((k) => [10 * k, 100], 11);

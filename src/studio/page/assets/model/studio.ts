@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Connection, Lost, Refused} from './connection';
-import type {AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State, Told} from './contract';
+import type {AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State, Table, Told} from './contract';
 import {type Edit, Edits, type Unsent} from './edits';
-import {type Choice, type Flyer, STATED, TO_MOMENTS, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
+import {type Choice, type Flyer, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
 import {type Point, clamp, seenNear} from './geometry';
 import {Pictures} from './pictures';
 import type {Store} from './store';
@@ -16,6 +16,8 @@ interface ShownEdit extends Edit {
   moved_ms?: number;
 }
 
+const backgroundOf = (state: State) => JSON.stringify(state.scene.background ?? null);
+
 // What a user can do, on the store and over the connection.
 export class Studio {
   readonly latencies_ms: number[] = [];
@@ -27,6 +29,7 @@ export class Studio {
   private planAsked = false;
   private planStale = false;
   private isDragged = false;
+  private background = '';  // of the clip that is open
 
   constructor(readonly store: Store, readonly connection: Connection, private kept: Storage) {
     this.pictures = new Pictures(connection);
@@ -195,6 +198,22 @@ export class Studio {
     this.show(moments[next].frame);
   }
 
+  // Lets the selected path go on level from one of its moments, past the own aircraft.
+  async nearMiss(moment: number, miss_m: number, isRight: boolean, speed_mps: number): Promise<void> {
+    const {state, selected} = this.store.now;
+    const flyer = flyerAt(state, selected);
+    if (!this.hasMoments(flyer) || !this.isConnected()) return;
+    await this.edits.whenIdle();
+    try {
+      const {encounter} = await this.connection.request<{encounter: Table}>(
+          'near_miss', {intruder: flyer.path[1], moment, miss_m, right: isRight, speed_mps});
+      const now = flyerAt(this.store.now.state, flyer.path);
+      if (now?.statement === 'moments') this.edit(byEncounter(now, encounter));
+    } catch (error) {
+      this.failed(error);
+    }
+  }
+
   async search(text: string): Promise<AircraftGroup[]> {
     const {groups} = await this.connection.request<{groups: AircraftGroup[]}>('aircraft', {search: text});
     return groups;
@@ -259,7 +278,15 @@ export class Studio {
       this.store.put({notices: notices.filter((notice) => !isPast(notice.kind))});
     this.store.put(
         {state, ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? {selected: null, moment: null} : {})});
+    this.openIfOther(state);
     this.settle();
+  }
+
+  // The clip of a scene that has another one now, or that can be used at last.
+  private openIfOther(state: State): void {
+    if (state.problem || backgroundOf(state) === this.background) return;
+    this.background = backgroundOf(state);
+    void this.opened();
   }
 
   // After an edit: the paths, and the whole frame where its part was not enough, when the hand rests; both take longer
@@ -352,6 +379,7 @@ export class Studio {
           await this.connection.request<{file: string; clip: Clip | null; state: Told}>('open');
       const state = this.known(answer.state);
       if (clip) this.pictures.begin(clip);
+      this.background = clip ? backgroundOf(state) : '';
       this.pictures.forget();
       this.store.put({
         connected: true,
@@ -398,10 +426,9 @@ export class Studio {
       this.store.say('warning', event.line);
     } else if (event.state.revision >= (this.store.now.state?.revision ?? 0) || this.edits.isIdle) {
       const state = this.known(event.state);
-      // A text that can be used at last has a clip.
-      if (!this.store.now.clip && !state.problem) void this.opened();
       const isNew = state.revision !== this.store.now.state?.revision || state.text !== this.store.now.state?.text;
       this.store.put({state});
+      this.openIfOther(state);
       if (isNew) this.settle();
     }
   }

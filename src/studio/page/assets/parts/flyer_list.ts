@@ -5,6 +5,10 @@ import type {Member} from '../model/store';
 import {FlyerPanel} from './flyer_panel';
 import {Keyed, Part, attribute, h, text} from './part';
 
+// What a begun scene may have guessed, by the names of its tables and keys.
+const GUESSED: [string, string][] =
+    [['lens', 'the lens'], ['camera.position_ned_m', 'the height'], ['camera.velocity_ned_mps', 'the own speed']];
+
 // All that flies: one button each, with what the checks say of it, and below the chosen one its numbers.
 export class FlyerList extends Part {
   protected readonly watches: Member[] = ['state', 'plan', 'selected', 'clip'];
@@ -17,19 +21,25 @@ export class FlyerList extends Part {
         'Add aircraft, birds, drones …');
   private list = h('ul', {class: 'flyers'});
   private empty = h('p', {class: 'hint'}, 'Nothing flies yet. Add an aircraft, or double-click the picture.');
+  private guesses =
+      h('p', {class: 'hint', hidden: true}, h('span', {}),
+        h('button', {class: 'small', onclick: () => this.studio.store.put({tab: 'camera'})}, 'Camera'));
   private general = h('ul', {class: 'checks'});
   private panel = new FlyerPanel();
   private items = new Keyed<Flyer, HTMLLIElement>(
       this.list, (flyer) => this.make(flyer), (element, flyer) => this.renew(element, flyer));
 
   protected build(): void {
-    this.append(this.add, this.empty, this.list, this.general);
+    this.append(this.add, this.guesses, this.empty, this.list, this.general);
   }
 
   protected update(): void {
     const {state, plan, clip} = this.now;
     const flyers = state ? flyersOf(state.scene) : [];
     this.add.disabled = !clip;
+    const guessed = GUESSED.filter(([key]) => /\bguess/i.test(state?.notes[key] ?? '')).map(([, words]) => words);
+    this.guesses.hidden = !guessed.length;
+    text(this.guesses.firstElementChild!, `Guessed: ${guessed.join(', ')}. Sizes and distances are as good as that. `);
     this.empty.hidden = flyers.length > 0 || !clip;
     this.items.show(flyers.map((flyer) => ({key: JSON.stringify(flyer.path), item: flyer})));
     this.general.replaceChildren(...(plan?.warnings ?? []).map((line) => h('li', {}, line)));

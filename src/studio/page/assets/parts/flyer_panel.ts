@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Json, Path, Table} from '../model/contract';
-import {type Flyer, type Moment, STATED, TO_MOMENTS, describedApproach, flyerAt, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, writtenRange, writtenWidth} from '../model/flyers';
+import {type Flyer, type Moment, STATED, TO_MOMENTS, describedApproach, flyerAt, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withMiss, writtenRange, writtenWidth} from '../model/flyers';
+import {round, speedOf, velocityAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {NumberField, type NumberOptions, choiceField} from './fields';
+import {NearMissForm} from './near_miss_form';
 import {Part, attribute, h, text} from './part';
 
 interface KeyOptions extends Omit<NumberOptions, 'taken'> {
@@ -29,7 +31,7 @@ const ENCOUNTER: KeyOptions[] = [
   {key: ['encounter', 'cpa_right_m'], label: 'Right', unit: 'm', ...MISS, default: 0},
   {key: ['encounter', 'cpa_above_m'], label: 'Above', unit: 'm', ...MISS, default: 0},
   {key: ['encounter', 'cpa_ahead_m'], label: 'Ahead', unit: 'm', ...MISS, default: null, placeholder: 'follows'},
-  {key: ['encounter', 'course_deg'], label: 'Course', unit: '°', step: 1, min: -360, max: 360, default: null},
+  {key: ['encounter', 'course_deg'], label: 'Course', unit: '°', step: 1, min: -360, max: 360, default: 180},
   {
     key: ['encounter', 'speed_mps'],
     label: 'Speed',
@@ -60,6 +62,20 @@ export class FlyerPanel extends Part {
   private built = '';
   private fields: {options: KeyOptions; field: NumberField}[] = [];
   private rows: MomentRow[] = [];
+  private nearMiss = new NearMissForm(this.studio);
+  private miss = new NumberField({
+    label: 'Miss distance',
+    unit: 'm',
+    step: 1,
+    min: 0,
+    max: MOST_MISS_M,
+    taken:
+        (value) => {
+          const flyer = flyerAt(this.now.state, this.now.selected);
+          const {plan, clip} = this.now;
+          if (flyer && plan && clip) this.studio.edit(withMiss(flyer, plan, clip, value));
+        }
+  });
   private portrait = h('img', {alt: '', width: 56, height: 56});
   private seenAs = h('p', {class: 'hint'});
 
@@ -80,6 +96,12 @@ export class FlyerPanel extends Part {
     }
     moments.forEach((moment, k) => this.rows[k].show(moment, this.now.moment === k, roomOf(moments, k, clip), clip));
     const track = trackOf(plan, flyer.path);
+    const chosen = moments[this.now.moment ?? 0] ?? moments[0];
+    if (chosen) {
+      const velocity = plan && track && velocityAt(plan, track.ned, chosen.frame, clip.rate_hz);
+      this.nearMiss.show(flyer, moments.indexOf(chosen), chosen.time_s, velocity && speedOf(velocity));
+    }
+    if (plan && flyer.statement === 'approach') this.miss.show(round(missOf(flyer, plan, clip), 1));
     const approach = track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '';
     text(this.seenAs, approach.replace(/-(0\.0+)(?!\d)/g, '$1'));
     const title = this.querySelector('.what .title');
@@ -120,13 +142,14 @@ export class FlyerPanel extends Part {
           h('button', {title: 'At the frame shown (M)', onclick: () => this.studio.addMoment()}, 'Add a moment here'),
           flyer.kind === 'aircraft' &&
               h('button', {onclick: () => this.restate(toApproach)}, 'State by closest approach')),
+        ...(flyer.kind === 'aircraft' ? [this.nearMiss.element] : []),
       ];
     }
     const turn = flyer.statement === 'lens' ?
         [] :
         [h('div', {class: 'actions'}, h('button', {onclick: () => this.restate(toMoments)}, TO_MOMENTS))];
     if (flyer.statement !== 'approach') return turn;
-    return [h('div', {class: 'grid'}, ...ENCOUNTER.map((one) => this.keyField(one))), ...turn];
+    return [h('div', {class: 'grid'}, this.miss.element, ...ENCOUNTER.map((one) => this.keyField(one))), ...turn];
   }
 
   private keyField(options: KeyOptions): HTMLElement {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {BoxPx, Change, Clip, Ned, Plan, Table, Track} from '../model/contract';
-import {type Flyer, flyersOf, isSame, momentsOf, numberOf, ownSpeed, tableOf, trackOf, writtenRange, writtenWidth} from '../model/flyers';
-import {type Point, acrossRelative, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
+import type {BoxPx, Change, Clip, Ned, Plan, Track} from '../model/contract';
+import {type Flyer, acrossOf, flyersOf, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, writtenRange, writtenWidth} from '../model/flyers';
+import {type Point, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
 import {attribute, renewed, s, ui, wordsWidth} from './part';
 import {SideView, niceStep} from './side_view';
 
 const MARGIN_PX = 26;
 const MOST_M = 20000;  // from the own path, of what the view has room for
 const LEAST_M = 60;
-const LEAST_ACROSS = 0.2;  // below which the place across follows from `cpa_ahead_m`, not from `cpa_right_m`
 const ARROW_PX = 46;
 const LABEL_PX = 12;
 
@@ -216,7 +215,8 @@ export class PlanView extends SideView<Drag> {
           flyer, x, y, `Closest approach of ${flyer.id}: ${words}`, (event) => this.key(event, flyer, 'approach')),
     ];
     if (flyer.statement !== 'approach') return parts;
-    const course = numberOf(tableOf(flyer.table.encounter).course_deg) ?? 0;
+    parts.unshift(this.acrossLine(flyer, cpa, plan, clip));
+    const course = statedCourse(flyer);
     const angle = radians(course + cpa.ownCourse_deg - this.course_deg);
     const [tx, ty] = [x + ARROW_PX * this.px * Math.sin(angle), y - ARROW_PX * this.px * Math.cos(angle)];
     this.take(tx, ty, 7 * this.px);
@@ -235,6 +235,17 @@ export class PlanView extends SideView<Drag> {
         },
           s('title', {}, `Course ${round(course, 0)}° from the own course`)));
     return parts;
+  }
+
+  // Where the diamond can be: across the relative velocity, since elsewhere the two would not be nearest.
+  private acrossLine(flyer: Flyer, {own, ownCourse_deg}: CpaPlace, plan: Plan, clip: Clip): SVGElement {
+    const across = acrossOf(flyer, plan, clip);
+    const turn = radians(ownCourse_deg - this.course_deg);
+    const far = this.svg.clientWidth + this.svg.clientHeight;
+    const right = far * (across[0] * Math.cos(turn) + across[1] * Math.sin(turn));
+    const ahead = far * (across[1] * Math.cos(turn) - across[0] * Math.sin(turn));
+    const [x, y] = this.at(own);
+    return s('line', {class: 'across', x1: x - right, y1: y + ahead, x2: x + right, y2: y - ahead});
   }
 
   private moments(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
@@ -299,7 +310,7 @@ export class PlanView extends SideView<Drag> {
         to: round(turned(degrees(Math.atan2(right, ahead)) + this.course_deg - cpa.ownCourse_deg), 0)
       }];
     const turn = radians(cpa.ownCourse_deg - this.course_deg);
-    const across = acrossOf(flyer.table, ownSpeed(plan, cpa.frame, clip));
+    const across = acrossOf(flyer, plan, clip);
     const own = [right * Math.cos(turn) - ahead * Math.sin(turn), ahead * Math.cos(turn) + right * Math.sin(turn)];
     return setAcross(flyer, across, own[0] * across[0] + own[1] * across[1]);
   }
@@ -332,8 +343,7 @@ export class PlanView extends SideView<Drag> {
     const encounter = tableOf(flyer.table.encounter);
     if (kind === 'course') {
       this.studio.edit(
-          [{set: [...flyer.path, 'encounter', 'course_deg'], to: turned((numberOf(encounter.course_deg) ?? 0) + step)}],
-          'course-keys');
+          [{set: [...flyer.path, 'encounter', 'course_deg'], to: turned(statedCourse(flyer) + step)}], 'course-keys');
       return;
     }
     const key = 'cpa_ahead_m' in encounter && !('cpa_right_m' in encounter) ? 'cpa_ahead_m' : 'cpa_right_m';
@@ -343,23 +353,14 @@ export class PlanView extends SideView<Drag> {
   }
 }
 
-// The direction in which the closest approach of an encounter can lie, as [right, ahead] of the own course.
-function acrossOf(table: Table, own_mps: number): Point {
-  const encounter = tableOf(table.encounter);
-  const number = (key: string) => numberOf(encounter[key]) ?? 0;
-  return acrossRelative(own_mps, number('speed_mps'), number('climb_mps'), number('course_deg'));
-}
-
-function setAcross(flyer: Flyer, across: Point, along_m: number): Change[] {
-  const isRight = Math.abs(across[0]) >= LEAST_ACROSS;
-  const [key, other] = isRight ? ['cpa_right_m', 'cpa_ahead_m'] : ['cpa_ahead_m', 'cpa_right_m'];
-  const set: Change = {set: [...flyer.path, 'encounter', key], to: round(along_m * across[isRight ? 0 : 1], 1)};
-  return other in tableOf(flyer.table.encounter) ? [{remove: [...flyer.path, 'encounter', other]}, set] : [set];
+interface CpaPlace {
+  own: Ned;
+  place: Ned;
+  ownCourse_deg: number;
 }
 
 // Where the two are at their closest approach.
-function approachOf(plan: Plan, track: Track, clip: Clip): {own: Ned; place: Ned; ownCourse_deg: number; frame: number}|
-    null {
+function approachOf(plan: Plan, track: Track, clip: Clip): CpaPlace|null {
   if (!track.cpa) return null;
   const frame = track.cpa.time_s * clip.rate_hz;
   const own = nedAt(plan, plan.own.ned, frame);
@@ -371,7 +372,6 @@ function approachOf(plan: Plan, track: Track, clip: Clip): {own: Ned; place: Ned
   return {
     own,
     place: [own[0] + ahead_m * c - right_m * si, own[1] + ahead_m * si + right_m * c, own[2] - above_m],
-    ownCourse_deg,
-    frame
+    ownCourse_deg
   };
 }

@@ -96,16 +96,18 @@ export class TimeBar extends Part {
     const width = (THUMB_HEIGHT * clip.width) / clip.height;
     const count = clamp(Math.round(this.strip.clientWidth / width), 2, 40);
     const frames = Array.from({length: count}, (_, k) => Math.round(((k + 0.5) / count) * (clip.frames - 1)));
-    const shown = `${this.now.file} ${frames.join()}`;
+    const of = `${clip.video} ${clip.first_frame}`;
+    const shown = `${of} ${frames.join()}`;
     if (shown === this.shown) return;
     this.shown = shown;
     const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
-    this.thumbs.replaceChildren(...frames.map((frame) => h('img', {
-                                                alt: '',
-                                                loading: 'lazy',
-                                                draggable: 'false',
-                                                src: `/thumb?token=${token}&frame=${frame}&width=${THUMB_WIDTH}`
-                                              })));
+    this.thumbs.replaceChildren(
+        ...frames.map((frame) => h('img', {
+                        alt: '',
+                        loading: 'lazy',
+                        draggable: 'false',
+                        src: `/thumb?token=${token}&frame=${frame}&width=${THUMB_WIDTH}&of=${encodeURIComponent(of)}`
+                      })));
   }
 
   private showMarks(): void {

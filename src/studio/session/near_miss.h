@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "studio/document/document.h"
+#include "studio/messages/request.h"
+#include "studio/session/stage.h"
+
+namespace airtruth::session {
+
+// [intruder.encounter] of the intruder that goes through one of its moments, as [[intruder.seen]]
+// states it (sequence/setup/seen.h), and then past the own aircraft
+// (encounter/placement/near_miss.h). Numbers have the digits that move the box by less than a tenth
+// of a pixel. Throws Error where there is no such intruder, moment or path, or the clip's motion is
+// not known yet.
+nlohmann::ordered_json encounter_through(const Stage& stage,
+                                         const std::vector<document::TablePlace>& tables,
+                                         const messages::NearMiss& wanted);
+
+}  // namespace airtruth::session
