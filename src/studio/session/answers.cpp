@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studio/session/answers.h"
 
+#include <cmath>
+
 #include "calibration/camera_file/quantities.h"
 #include "labels/annotation/truth.h"
 
@@ -22,6 +24,8 @@ std::string ok(std::int64_t id, const Json& result) {
 std::string error(std::int64_t id, const std::string& line) {
   return text_of({{"id", id}, {"error", line}});
 }
+
+double rounded(double value, double step) { return std::round(value / step) * step; }
 
 std::string framed(const Json& header, const std::string& jpeg) {
   const std::string text = text_of(header);

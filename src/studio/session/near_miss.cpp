@@ -12,6 +12,7 @@
 #include "labels/projection/exact_box.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "studio/session/answers.h"
 
 namespace airtruth::session {
 namespace {
@@ -51,7 +52,8 @@ Try tried(const placement::NearMiss& wanted,
   intruder.times_s.clear();
   intruder.seen.clear();
   intruder.encounter = result.encounter;
-  const auto state = setup::path_of(intruder, world.camera).at(wanted.time_s);
+  const trajectory::Path path = setup::path_of(intruder, world.camera);
+  const auto state = path.at(wanted.time_s);
   check(state.has_value(), "the path of an encounter has no end");
   const auto exact = projection::exact_box(
       sight, world.actors[actor].type->silhouette, state->world_from_body_rigid(), wanted.time_s);
@@ -77,15 +79,13 @@ Vector3 moved(const projection::Sight& sight,
   return from + off.norm() * (off + by_m.x() * across[0] + by_m.y() * across[1]).normalized();
 }
 
-double to_step(double value, double step) { return std::round(value / step) * step; }
-
 nlohmann::ordered_json stated(const scene::Encounter& encounter) {
-  nlohmann::ordered_json result = {{"cpa_time_s", to_step(encounter.cpa_time_s, 1e-4)}};
-  if (encounter.cpa_right_m) result["cpa_right_m"] = to_step(*encounter.cpa_right_m, 0.01);
-  if (encounter.cpa_ahead_m) result["cpa_ahead_m"] = to_step(*encounter.cpa_ahead_m, 0.01);
-  result["cpa_above_m"] = to_step(encounter.cpa_above_m, 0.01);
-  result["course_deg"] = to_step(encounter.course_deg, 0.001);
-  result["speed_mps"] = to_step(encounter.speed_mps, 1e-3);
+  nlohmann::ordered_json result = {{"cpa_time_s", rounded(encounter.cpa_time_s, 1e-4)}};
+  if (encounter.cpa_right_m) result["cpa_right_m"] = rounded(*encounter.cpa_right_m, 0.01);
+  if (encounter.cpa_ahead_m) result["cpa_ahead_m"] = rounded(*encounter.cpa_ahead_m, 0.01);
+  result["cpa_above_m"] = rounded(encounter.cpa_above_m, 0.01);
+  result["course_deg"] = rounded(encounter.course_deg, 0.001);
+  result["speed_mps"] = rounded(encounter.speed_mps, 1e-3);
   return result;
 }
 
@@ -108,21 +108,20 @@ nlohmann::ordered_json encounter_through(const Stage& stage,
   const double time_s = stage.time_s(frame);
   const auto camera = world.camera.at(time_s);
   const auto state = world.actors[actor].path.at(time_s);
-  check(camera && state, "the paths reach their own moments");
-  const projection::Sight sight =
-      setup::sight_of(world.lens, {}, world.camera, *camera, time_s, stage.shake_at(frame));
+  const auto sight = stage.sight_at(frame);
+  check(camera && state && sight, "the paths reach their own moments");
   placement::NearMiss near_miss{.place_ned_m = state->position_in_world,
                                 .time_s = time_s,
                                 .miss_m = wanted.miss_m,
                                 .is_right = wanted.is_right,
                                 .speed_mps = wanted.speed_mps};
-  Try last = tried(near_miss, stage, actor, sight);
+  Try last = tried(near_miss, stage, actor, *sight);
   const bool is_in_frame =
       setup::meets_frame({moment.pixel.x(), moment.pixel.y(), 0, 0}, world.lens.size());
   for (int round = 0; round < kRounds && is_in_frame && last.middle; ++round) {
-    near_miss.place_ned_m =
-        moved(sight, camera->position_in_world, near_miss.place_ned_m, moment.pixel - *last.middle);
-    last = tried(near_miss, stage, actor, sight);
+    near_miss.place_ned_m = moved(
+        *sight, camera->position_in_world, near_miss.place_ned_m, moment.pixel - *last.middle);
+    last = tried(near_miss, stage, actor, *sight);
   }
   return stated(last.encounter);
 }

@@ -17,6 +17,7 @@
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
+#include "studio/session/answers.h"
 
 namespace airtruth::session {
 namespace {
@@ -32,8 +33,6 @@ constexpr double kBesideS = 1;
 // Of a line over one frame.
 constexpr std::int64_t kMostLinePoints = 150;
 
-// Of numbers that are drawn: shorter, and as exact as a screen can show.
-double rounded(double value, double step) { return std::round(value / step) * step; }
 double hundredths(double value) { return rounded(value, 0.01); }
 
 Json ned(const Vector3& p) { return {hundredths(p.x()), hundredths(p.y()), hundredths(p.z())}; }
@@ -409,23 +408,22 @@ Json lines_over(const Stage& stage,
   const setup::World& world = stage.world();
   const double time_s = stage.time_s(frame);
   const auto camera = world.camera.at(time_s);
-  if (!camera) return Json::array();
-  const projection::Sight sight = setup::sight_of(
-      world.lens, world.shutter, world.camera, *camera, time_s, stage.shake_at(frame));
+  const auto sight = stage.sight_at(frame);
+  if (!camera || !sight) return Json::array();
   const std::int64_t count = stage.frame_count();
   const std::int64_t step =
       std::max<std::int64_t>(1, (count + kMostLinePoints - 1) / kMostLinePoints);
   Json lines = Json::array();
   for (const preview::Party& party : preview::parties_of(stage.scene())) {
     const setup::Actor& actor = world.actors[party.middle];
-    const Pixel to_middle = range_times_offset(actor, sight, *camera, time_s);
+    const Pixel to_middle = range_times_offset(actor, *sight, *camera, time_s);
     Json points = Json::array();
     for (std::int64_t k = 0;; k = std::min(count - 1, k + step)) {
       const auto own = world.camera.at(stage.time_s(k));
       const auto other = actor.path.at(stage.time_s(k));
       if (own && other) {
         const Vector3 off = other->position_in_world - own->position_in_world;
-        auto pixel = projection::pixel_from_world(sight, camera->position_in_world + off);
+        auto pixel = projection::pixel_from_world(*sight, camera->position_in_world + off);
         if (pixel) *pixel += to_middle / off.norm();
         points.push_back({k,
                           pixel ? Json(rounded(pixel->x(), 0.1)) : Json(),

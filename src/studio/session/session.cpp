@@ -21,6 +21,7 @@
 #include "sequence/setup/shared_inputs.h"
 #include "studio/messages/request.h"
 #include "studio/session/answers.h"
+#include "studio/session/directions.h"
 #include "studio/session/gallery.h"
 #include "studio/session/job.h"
 #include "studio/session/jpeg.h"
@@ -353,6 +354,7 @@ class Session::Impl {
     header["boxes"] = boxes;
     header["lines"] =
         problem.empty() ? lines_over(stage_, request.frame, shot->tables) : Json::array();
+    header["directions"] = problem.empty() ? directions_over(stage_, request.frame) : Json::array();
     header["problem"] = problem.empty() ? Json() : Json(problem);
     send_picture(client, framed(header, jpeg));
     if (made && !made->exact && stage_.is_complete()) again_later(client, request);

@@ -123,6 +123,14 @@ void Stage::open(const scene::Scene& scene, const Measured& measured) {
                                                   options_.stop);
 }
 
+std::optional<projection::Sight> Stage::sight_at(std::int64_t frame) const {
+  const setup::World& seen = world();
+  const double at_s = time_s(frame);
+  const auto camera = seen.camera.at(at_s);
+  if (!camera) return std::nullopt;
+  return setup::sight_of(seen.lens, seen.shutter, seen.camera, *camera, at_s, shake_at(frame));
+}
+
 Shake Stage::shake_at(std::int64_t frame) const {
   if (!motion_ || motion_->all().empty()) return {};
   const std::int64_t last = std::ssize(motion_->all()) - 1;

@@ -42,6 +42,8 @@ class Stage {
   const setup::World& world() const { return maker_->resolved().world; }
   const scene::Scene& scene() const { return maker_->resolved().scene; }
   Shake shake_at(std::int64_t frame) const;
+  // How the camera sees in frame k; empty where its path does not reach that time.
+  std::optional<projection::Sight> sight_at(std::int64_t frame) const;
   // The time of frame k: its own where it was read, else by the rate.
   double time_s(std::int64_t frame) const;
   double duration_s() const;

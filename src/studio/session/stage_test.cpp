@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studio/session/stage.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -10,9 +11,11 @@
 
 #include "encounter/passage/passage.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/units.h"
 #include "sequence/pipeline/frame_by_frame.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/shared_inputs.h"
+#include "studio/session/directions.h"
 #include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
 #include "support/flight_file.h"
@@ -262,6 +265,33 @@ TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {
   EXPECT_NE(first.find("below the ground"), std::string::npos) << first;
   const std::string second = plan["tracks"][1]["checks"].dump();
   EXPECT_NE(second.find("never in view"), std::string::npos) << second;
+}
+
+// 10 degrees beside the axis are tan(10 deg) focal lengths, of 120 px / tan(30 deg).
+TEST_F(OverAFlight, DirectionsOfTheWorldAreMarked) {
+  Stage stage(options());
+  const scene::Scene scene = scene::parse_scene(
+      "[background]\nvideo = \"flight.mp4\"\n[lens]\nvertical_fov_deg = 60\n[camera]\n"
+      "position_ned_m = [0, 0, -300]\nattitude_yaw_pitch_roll_deg = [350, 0, 0]\n[motion]\n"
+      "model = \"none\"\n",
+      *folder_ / "scene.toml");
+  stage.set(1, scene, {});
+  const nlohmann::ordered_json marks = directions_over(stage, 3);
+  const auto expect_mark = [&](int azimuth, int elevation, double x, double y) {
+    for (const auto& mark : marks)
+      if (mark[0] == azimuth && mark[1] == elevation) {
+        EXPECT_NEAR(mark[2].get<double>(), x, 0.06);
+        EXPECT_NEAR(mark[3].get<double>(), y, 0.06);
+        return;
+      }
+    ADD_FAILURE() << azimuth << " " << elevation << " in " << marks;
+  };
+  const double off_px = 120 / std::tan(radians(30)) * std::tan(radians(10));
+  expect_mark(350, 0, 160, 120);
+  expect_mark(0, 0, 160 + off_px, 120);
+  expect_mark(340, 0, 160 - off_px, 120);
+  expect_mark(350, 10, 160, 120 - off_px);
+  EXPECT_LT(marks.size(), 60u);
 }
 
 // A near miss through the second moment: the scene that the answer makes has it where it was, and

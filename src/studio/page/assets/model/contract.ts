@@ -123,7 +123,8 @@ export interface PictureHeader {
   boxes: ExactBox[];
   // The paths as the camera of this frame would see them at other times.
   lines: {table: Path; points: LinePoint[]}[];
-  problem: string|null;  // why there is nothing in it but the clip
+  directions: [number, number, number, number][];  // of the world: azimuth and elevation in degrees, x, y
+  problem: string|null;                            // why there is nothing in it but the clip
 }
 
 export type BoxPx = [number, number, number, number];

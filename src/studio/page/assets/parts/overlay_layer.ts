@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {BoxPx, ExactBox} from '../model/contract';
+import type {BoxPx, Clip, ExactBox} from '../model/contract';
 import {flyersOf, isSame, trackOf} from '../model/flyers';
 import {freePlace, nedAt, round} from '../model/geometry';
 import type {Everything} from '../model/store';
 import {Keyed, attribute, s, text, wordsWidth} from './part';
 
-const MOTION_FRAMES = 30;
 const LABEL_PX = 13;
 
 interface Box {
@@ -16,7 +15,8 @@ interface Box {
   at: BoxPx;  // of the label
 }
 
-// What is measured or follows, drawn over the frame: boxes with range and size, the horizon, and how it moved lately.
+// What is measured or follows, drawn over the frame: boxes with range and size, the horizon, and directions of the
+// world.
 export class OverlayLayer {
   readonly element = s('g', {class: 'overlay'});
   private horizon = s('line', {class: 'horizon'});
@@ -97,23 +97,38 @@ export class OverlayLayer {
       for (const [k, name] of ['x1', 'y1', 'x2', 'y2'].entries()) attribute(this.horizon, name, line[k]);
   }
 
-  // The horizon of the frames just before, fading: how the own aircraft turned. And the own speed in words.
-  private showMotion({plan, clip, frame, showsMotion}: Readonly<Everything>): void {
+  // Directions of the world, which stay on clouds and far ground where the measured motion is right: azimuths on the
+  // row nearest the middle of the picture, elevations on the nearest column. And the own speed in words.
+  private showMotion({plan, clip, frame, showsMotion, picture}: Readonly<Everything>): void {
     this.motion.replaceChildren();
     if (!showsMotion || !plan || !clip) return;
-    const lines = plan.horizon.filter(([k]) => k <= frame && k > frame - MOTION_FRAMES);
-    lines.forEach(
-        ([, [x1, y1, x2, y2]], k) => this.motion.append(
-            s('line', {x1, y1, x2, y2, opacity: round(0.1 + (0.5 * k) / Math.max(1, lines.length), 2)})));
+    const {px} = this;
+    const marks = picture?.directions ?? [];
+    const middle = marks.reduce<typeof marks[0]|null>(
+        (best, one) => (!best || offMiddle(one, clip) < offMiddle(best, clip) ? one : best), null);
+    const arm = 6 * px;
+    for (const [azimuth, elevation, x, y] of marks) {
+      this.motion.append(s('path', {d: `M${x - arm},${y}h${2 * arm}M${x},${y - arm}v${2 * arm}`}));
+      const words = [
+        elevation === middle![1] && `${azimuth}°`,
+        azimuth === middle![0] && `${Math.abs(elevation)}° ${elevation < 0 ? 'down' : 'up'}`
+      ];
+      this.motion.append(this.words(x + 4 * px, y - 4 * px, words.filter(Boolean).join(', ')));
+    }
     const [a, b] = [nedAt(plan, plan.own.ned, frame), nedAt(plan, plan.own.ned, frame + 1)];
     if (!a || !b) return;
-    const {px} = this;
     const speed_mps = Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * clip.rate_hz;
-    const label = s('text', {x: 10 * px, y: clip.height - 10 * px, 'font-size': 13 * px});
-    label.textContent = `own speed ${round(speed_mps, 1)} m/s, height ${round(-a[2], 0)} m`;
-    this.motion.append(label);
+    this.motion.append(this.words(
+        10 * px, clip.height - 10 * px, `own speed ${round(speed_mps, 1)} m/s, height ${round(-a[2], 0)} m`));
+  }
+
+  private words(x: number, y: number, words: string): SVGTextElement {
+    return s('text', {x, y, 'font-size': LABEL_PX * this.px}, words);
   }
 }
+
+const offMiddle = ([, , x, y]: [number, number, number, number], clip: Clip) =>
+    Math.hypot(x - clip.width / 2, y - clip.height / 2);
 
 export const distance = (range_m: number) => (
     range_m < 9950 ? `${range_m < 100 ? round(range_m, 1) : Math.round(range_m)} m` : `${round(range_m / 1000, 1)} km`);
