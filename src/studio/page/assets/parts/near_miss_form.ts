@@ -43,7 +43,7 @@ export class NearMissForm {
   constructor(private studio: Studio) {
     this.element =
         h('details', {class: 'near-miss'}, h('summary', {}, 'Near miss …'), this.words,
-          h('div', {class: 'grid three'}, this.miss.element, this.side.element, this.speed.element),
+          h('div', {class: 'grid'}, this.miss.element, this.side.element, this.speed.element),
           h('div', {class: 'actions'}, h('button', {onclick: () => this.ask()}, 'Fly past')));
   }
 
