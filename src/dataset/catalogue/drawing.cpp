@@ -70,7 +70,7 @@ void draw_weather(const DrawnWeather& weather,
                   DrawnSequence& result) {
   const auto share = [&](const DrawnNumber& number, const char* key) {
     const pairing::Strata strata = strata_of(key);
-    return number.any_of.empty() ? strata.at(place, 0) : strata.middle(place, 0);
+    return number.any_of.empty() ? strata.at(place, 0) : strata.spaced(place, 0);
   };
   if (weather.visibility_m)
     result.visibility_m =
@@ -190,7 +190,7 @@ std::size_t stratified_background(const std::vector<std::size_t>& among,
   const pairing::Strata strata(
       Seed(seed).stream("background")(), static_cast<std::uint64_t>(count), 1);
   return background_at(
-      strata.middle(static_cast<std::uint64_t>(index % count), 0), among, backgrounds);
+      strata.spaced(static_cast<std::uint64_t>(index % count), 0), among, backgrounds);
 }
 
 DrawnSequence draw(const Drawn& rule,
@@ -209,7 +209,7 @@ DrawnSequence draw(const Drawn& rule,
   const auto each = static_cast<std::uint64_t>(rule.intruders.high);
   const pairing::Strata types = turn.strata(seed, "types of " + rule.name, each);
   const auto share_of_types = [&](std::int64_t k) {
-    return types.middle(turn.place * each + static_cast<std::uint64_t>(k), 0);
+    return types.spaced(turn.place * each + static_cast<std::uint64_t>(k), 0);
   };
   result.encounters.push_back(drawn_encounter(
       random, {stream("bank of sequence "), stream("path of sequence "), share_of_types(0)}, rule));

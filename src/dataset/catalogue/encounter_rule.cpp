@@ -362,7 +362,7 @@ const AircraftType& wanted_type(const EncounterRule& rule, std::uint64_t index, 
   const pairing::Strata strata(
       Seed(rule.seed).stream("types of intruder", k)(), static_cast<std::uint64_t>(rule.count), 1);
   return rule.types[static_cast<std::size_t>(
-      strata.middle(index % static_cast<std::uint64_t>(rule.count), 0) *
+      strata.spaced(index % static_cast<std::uint64_t>(rule.count), 0) *
       static_cast<double>(rule.types.size()))];
 }
 

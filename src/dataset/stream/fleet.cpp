@@ -26,7 +26,7 @@ std::vector<catalogue::AircraftType> fleet_of(const std::vector<catalogue::Aircr
         static_cast<std::uint64_t>((index + begin) / kSamplesOfAircraft) * count + slot;
     Random random = Seed(seed).stream("aircraft", number);
     const catalogue::AircraftType& type =
-        catalogue::one_at(turns.middle((every_type ? slot : number) % types.size(), 0), types);
+        catalogue::one_at(turns.spaced((every_type ? slot : number) % types.size(), 0), types);
     fleet.push_back({type.name, {catalogue::one_of(random, type.liveries)}});
   }
   return fleet;

@@ -9,7 +9,7 @@
 namespace airtruth::pairing {
 
 Strata::Strata(std::uint64_t seed, std::uint64_t count, std::size_t dimensions)
-    : seed_(seed), count_(count) {
+    : seed_(seed), count_(count), offset_(Seed(seed).stream("offset in the stratum").uniform()) {
   check(count >= 1, "there are strata");
   while (half_bits_ < 32 && (std::uint64_t{1} << (2 * half_bits_)) < count) ++half_bits_;
   for (std::size_t dimension = 0; dimension < dimensions; ++dimension) {
@@ -36,18 +36,21 @@ std::uint64_t Strata::stratum(std::uint64_t index, std::size_t dimension) const 
   return value;
 }
 
-double Strata::middle(std::uint64_t index, std::size_t dimension) const {
-  return (static_cast<double>(stratum(index, dimension)) + 0.5) / static_cast<double>(count_);
-}
-
 double Strata::at(std::uint64_t index, std::size_t dimension) const {
   const std::uint64_t place = index * keys_.size() + dimension;
-  const double within = Seed(seed_).stream("within the stratum", place).uniform();
-  const double value =
-      (static_cast<double>(stratum(index, dimension)) + within) / static_cast<double>(count_);
+  return place_of(stratum(index, dimension),
+                  Seed(seed_).stream("within the stratum", place).uniform());
+}
+
+double Strata::spaced(std::uint64_t index, std::size_t dimension) const {
+  return place_of(stratum(index, dimension), offset_);
+}
+
+double Strata::place_of(std::uint64_t stratum, double within) const {
   // The largest double below 1.
   constexpr double kLargestBelow1 = 1 - 0x1.0p-53;
-  return std::min(value, kLargestBelow1);
+  return std::min((static_cast<double>(stratum) + within) / static_cast<double>(count_),
+                  kLargestBelow1);
 }
 
 }  // namespace airtruth::pairing

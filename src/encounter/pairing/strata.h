@@ -19,19 +19,23 @@ class Strata {
 
   // Coordinate of point `index`, from 0 up to but not including 1.
   double at(std::uint64_t index, std::size_t dimension) const;
-  // The middle of the point's stratum. Of k things of equal width in the unit interval, the middles
-  // fall into each as often as into the others, within one; the points themselves may differ by
-  // two.
-  double middle(std::uint64_t index, std::size_t dimension) const;
+  // The same, with one offset from the beginning of the stratum for all points (systematic
+  // sampling). Of k things of equal width in the unit interval, such points fall into each as often
+  // as into the others, within one, and over seeds equally often; points of offsets of their own
+  // may differ by two.
+  double spaced(std::uint64_t index, std::size_t dimension) const;
   // The stratum of that coordinate, 0 to count - 1.
   std::uint64_t stratum(std::uint64_t index, std::size_t dimension) const;
 
  private:
+  double place_of(std::uint64_t stratum, double within) const;
+
   // Number of rounds of the Feistel network: a choice.
   static constexpr std::size_t kRounds = 6;
 
   std::uint64_t seed_;
   std::uint64_t count_;
+  double offset_;  // of spaced(), from 0 up to but not including 1
   unsigned half_bits_ = 1;
   std::vector<std::array<std::uint64_t, kRounds>> keys_;
 };

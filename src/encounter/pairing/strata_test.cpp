@@ -27,6 +27,28 @@ TEST(Strata, EachStratumOfEachDimensionHoldsOnePoint) {
   }
 }
 
+// Two points among three things: over seeds the middle one has its share, and no thing has both.
+TEST(Strata, SpacedPointsFallIntoAllThingsAlike) {
+  constexpr int kSeeds = 3000;
+  std::vector<int> points(3, 0);
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Strata strata(static_cast<std::uint64_t>(seed), 2, 1);
+    std::vector<int> own(3, 0);
+    for (std::uint64_t i = 0; i < 2; ++i) {
+      const double at = strata.spaced(i, 0);
+      ASSERT_GE(at, 0);
+      ASSERT_LT(at, 1);
+      ++own[static_cast<std::size_t>(std::floor(3 * at))];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_LE(own[k], 1);
+      points[k] += own[k];
+    }
+  }
+  const double sigma = std::sqrt(kSeeds * (2.0 / 3) * (1.0 / 3));
+  for (const int one : points) EXPECT_NEAR(one, 2 * kSeeds / 3.0, 4 * sigma);
+}
+
 TEST(Strata, DimensionsAreIndependent) {
   constexpr std::uint64_t kCount = 10'000;
   const Strata strata(8, kCount, 4);

@@ -19,6 +19,9 @@ std::string cell(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
+// What is nearly 0 is 0, not -0.0.
+double to_tenths(double value) { return std::round(10 * value) / 10 + 0.0; }
+
 Box around(const Box& a, const Box& b) {
   const double x = std::min(a.x, b.x);
   const double y = std::min(a.y, b.y);
@@ -146,9 +149,9 @@ std::vector<std::string> approach_lines(const setup::World& world,
                     party.name,
                     closest->distance_m,
                     closest->time_s,
-                    closest->offset.ahead_m,
-                    closest->offset.right_m,
-                    closest->offset.above_m);
+                    to_tenths(closest->offset.ahead_m),
+                    to_tenths(closest->offset.right_m),
+                    to_tenths(closest->offset.above_m));
     const bool is_seen = std::any_of(rows.begin(), rows.end(), [&](const PreviewRow& row) {
       return row.party == i && row.box_px;
     });

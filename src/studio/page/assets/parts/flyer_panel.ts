@@ -103,7 +103,7 @@ export class FlyerPanel extends Part {
     }
     if (plan && flyer.statement === 'approach') this.miss.show(round(missOf(flyer, plan, clip), 1));
     const approach = track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '';
-    text(this.seenAs, approach.replace(/-(0\.0+)(?!\d)/g, '$1'));
+    text(this.seenAs, approach);
     const title = this.querySelector('.what .title');
     if (title) text(title, flyer.title);
     const name = flyer.kind === 'aircraft' ? flyer.title : flyer.kind;
