@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "encounter/placement/near_miss.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -25,8 +26,8 @@ trajectory::State own_at(const trajectory::Path& own, double time_s) {
   return *state;
 }
 
-// The level velocity whose path relative to the own aircraft leaves it `left_m` to the left of the
-// line of sight. `off`: of the intruder from the own aircraft.
+// The horizontal velocity whose path relative to the own aircraft leaves it `left_m` to the left of
+// the line of sight. `off`: of the intruder from the own aircraft.
 Vector3 velocity_past(const Vector3& off, const Vector3& own_mps, double left_m, double speed_mps) {
   const double range_m = std::hypot(off.x(), off.y());
   if (!(std::abs(left_m) < range_m))
@@ -44,6 +45,31 @@ Vector3 velocity_past(const Vector3& off, const Vector3& own_mps, double left_m,
                     "higher speed",
                     speed_mps));
   return Vector3(own_mps.x(), own_mps.y(), 0) + closing_mps * along;
+}
+
+// The horizontal part of the miss distance.
+double beside_m(const NearMiss& wanted, double above_m) {
+  const double rest = (wanted.miss_m - above_m) * (wanted.miss_m + above_m);
+  // Its own rounding is none of the height's.
+  if (rest < -kMissM * kMissM)
+    throw Error(
+        fmt::format("the intruder passes {:.0f} m {}; expected a miss distance above that, or "
+                    "another height",
+                    std::abs(above_m),
+                    above_m > 0 ? "above" : "below"));
+  return std::sqrt(std::max(0.0, rest));
+}
+
+double ground_speed_mps(const NearMiss& wanted, double descent_mps) {
+  const double rest = (wanted.speed_mps - descent_mps) * (wanted.speed_mps + descent_mps);
+  if (!(rest > 0))
+    throw Error(
+        fmt::format("the intruder would {} at {:.0f} m/s; expected a higher speed than {}, "
+                    "or another height",
+                    descent_mps > 0 ? "descend" : "climb",
+                    std::abs(descent_mps),
+                    wanted.speed_mps));
+  return std::sqrt(rest);
 }
 
 struct Passage {
@@ -86,6 +112,7 @@ scene::Encounter stated(const Passage& passage, const Vector3& velocity_mps) {
   encounter.course_deg = degrees(
       std::remainder(std::atan2(velocity_mps.y(), velocity_mps.x()) - own_course_rad, 2 * kPi));
   encounter.speed_mps = velocity_mps.norm();
+  encounter.climb_mps = velocity_mps.z() == 0 ? 0 : -velocity_mps.z();
   return encounter;
 }
 
@@ -97,17 +124,24 @@ scene::Encounter encounter_of(const NearMiss& wanted, const trajectory::Path& ow
   const bool is_ahead = passage::offset_from(begin, off_m).ahead_m >= 0;
   const double left = wanted.is_right == is_ahead ? -1 : 1;
   Vector3 own_mps = begin.velocity_in_world_mps;  // in the mean, up to the closest approach
-  double aim_m = wanted.miss_m;
+  double descent_mps = 0;
+  double aim_m = beside_m(wanted, wanted.above_m.value_or(-off_m.z()));
   for (int round = 0; round < kMaxRounds; ++round) {
-    const Vector3 velocity_mps = velocity_past(off_m, own_mps, left * aim_m, wanted.speed_mps);
+    Vector3 velocity_mps =
+        velocity_past(off_m, own_mps, left * aim_m, ground_speed_mps(wanted, descent_mps));
+    velocity_mps.z() = descent_mps;
     const Vector3 relative_mps = velocity_mps - own_mps;
     const double guess_s = wanted.time_s - off_m.dot(relative_mps) / relative_mps.squaredNorm();
     const Passage passage = nearest(wanted, velocity_mps, guess_s, own);
-    const double error_m = wanted.miss_m - std::hypot(passage.off_m.x(), passage.off_m.y());
-    if (std::abs(error_m) <= kMissM) return stated(passage, velocity_mps);
-    aim_m += error_m;
-    own_mps = (passage.own.position_in_world - begin.position_in_world) /
-              (passage.time_s - wanted.time_s);
+    const double above_m = -passage.off_m.z();
+    const double rise_m = wanted.above_m.value_or(above_m) - above_m;
+    if (std::abs(wanted.miss_m - passage.off_m.norm()) <= kMissM && std::abs(rise_m) <= kMissM)
+      return stated(passage, velocity_mps);
+    aim_m += beside_m(wanted, wanted.above_m.value_or(above_m)) -
+             std::hypot(passage.off_m.x(), passage.off_m.y());
+    const double after_s = passage.time_s - wanted.time_s;
+    own_mps = (passage.own.position_in_world - begin.position_in_world) / after_s;
+    descent_mps -= rise_m / after_s;
   }
   throw Error(
       "no straight path from there passes at that distance, since the own aircraft turns; "

@@ -119,14 +119,14 @@ void Document::edit(const std::vector<Change>& changes, const std::string& merge
 
 void Document::undo() {
   history_.undo();
-  saved_ = false;
+  saved_ = sha256_of(text()) == history_.file_sha256;
   record([&] { journal_.undo(history_); });
   take();
 }
 
 void Document::redo() {
   history_.redo();
-  saved_ = false;
+  saved_ = sha256_of(text()) == history_.file_sha256;
   record([&] { journal_.redo(history_); });
   take();
 }

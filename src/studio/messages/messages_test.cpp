@@ -62,11 +62,12 @@ TEST(RequestText, WhatIsNoMessageIsSaid) {
   EXPECT_THAT(fault_of(R"({"id":1,"do":"edit","changes":[{"set":["a"],"to":null}]})"),
               HasSubstr("changes[0].to"));
   const auto near_miss = [](const std::string& numbers) {
-    return fault_of(R"({"id":1,"do":"near_miss","intruder":0,"moment":1,"right":true,)" + numbers);
+    return fault_of(R"({"id":1,"do":"near_miss","intruder":0,"frame":1,"right":true,)" + numbers);
   };
   EXPECT_THAT(near_miss(R"("miss_m":-1,"speed_mps":50})"), HasSubstr("miss_m"));
   EXPECT_THAT(near_miss(R"("miss_m":80,"speed_mps":0})"), HasSubstr("speed_mps"));
   EXPECT_THAT(near_miss(R"("miss_m":80})"), HasSubstr("speed_mps"));
+  EXPECT_THAT(near_miss(R"("miss_m":80,"speed_mps":50,"above_m":1e6})"), HasSubstr("above_m"));
   EXPECT_THAT(fault_of(R"({"id":1,"do":"aircraft","search":")" + std::string(500, 'a') + "\"}"),
               HasSubstr("at most 200"));
 }

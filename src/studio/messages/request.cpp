@@ -2,6 +2,7 @@
 #include "studio/messages/request.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -91,7 +92,7 @@ void take_frame(Request& request, const JsonObject& message) {
 NearMiss near_miss_in(const JsonObject& message) {
   NearMiss wanted;
   wanted.intruder = static_cast<std::size_t>(message.whole("intruder", 0, kMostTables));
-  wanted.moment = static_cast<std::size_t>(message.whole("moment", 0, kMostTables));
+  wanted.frame = message.whole("frame", 0, kMostFrames);
   wanted.miss_m = message.number("miss_m");
   if (!(wanted.miss_m >= 0 && wanted.miss_m <= scene::kMiss.high))
     message.fail("miss_m", "metres from 0 to 1e5");
@@ -99,6 +100,9 @@ NearMiss near_miss_in(const JsonObject& message) {
   wanted.speed_mps = message.number("speed_mps");
   if (!(wanted.speed_mps >= scene::kSpeed.low && wanted.speed_mps <= scene::kSpeed.high))
     message.fail("speed_mps", std::string(scene::kSpeed.expected));
+  wanted.above_m = message.maybe_number("above_m");
+  if (wanted.above_m && !(std::abs(*wanted.above_m) <= scene::kMiss.high))
+    message.fail("above_m", std::string(scene::kMiss.expected));
   return wanted;
 }
 
@@ -109,7 +113,7 @@ std::vector<std::string> keys_of(Act act) {
     case Act::kFrame:
       return {"id", "do", "frame", "aircraft", "crop", "scale"};
     case Act::kNearMiss:
-      return {"id", "do", "intruder", "moment", "miss_m", "right", "speed_mps"};
+      return {"id", "do", "intruder", "frame", "miss_m", "right", "speed_mps", "above_m"};
     case Act::kAircraft:
       return {"id", "do", "search"};
     default:

@@ -47,14 +47,15 @@ constexpr auto enum_names(Act) {
                                        {Act::kCancel, "cancel"}});
 }
 
-// A level path through a moment of an intruder and then past the own aircraft, on the right or on
-// the left of its course.
+// A straight path through the place of an intruder in a frame, and then past the own aircraft: at a
+// distance, on the right or on the left of its course, above it or, where that is empty, level.
 struct NearMiss {
   std::size_t intruder = 0;
-  std::size_t moment = 0;
+  std::int64_t frame = 0;
   double miss_m = 0;
   bool is_right = true;
   double speed_mps = 0;
+  std::optional<double> above_m;
 };
 
 // What a page asks for in one message: {"id": 7, "do": "...", ...}.

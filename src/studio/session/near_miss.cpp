@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -35,30 +36,34 @@ std::size_t actor_of(const Stage& stage,
   return static_cast<std::size_t>(found - all.begin());
 }
 
-// The intruder on the path of an encounter, in the frame of a moment.
-struct Try {
-  scene::Encounter encounter;
-  std::optional<Pixel> middle;  // of the exact box, where it is whole
-};
-
-Try tried(const placement::NearMiss& wanted,
-          const Stage& stage,
-          std::size_t actor,
-          const projection::Sight& sight) {
+// The middle of the exact box, where it is whole and in the frame.
+std::optional<Pixel> middle_of(const Stage& stage,
+                               std::size_t actor,
+                               const trajectory::Path& path,
+                               const projection::Sight& sight,
+                               double time_s) {
   const setup::World& world = stage.world();
-  Try result{placement::encounter_of(wanted, world.camera), {}};
+  const auto state = path.at(time_s);
+  if (!state) return std::nullopt;
+  const auto exact = projection::exact_box(sight,
+                                           world.actors[actor].type->silhouette,
+                                           state->world_from_body_rigid(),
+                                           time_s,
+                                           setup::twist_of(path, *state, time_s, world.shutter));
+  if (!exact.box || exact.partly_unseen) return std::nullopt;
+  const Pixel middle = centre_of(*exact.box);
+  return setup::meets_frame({middle.x(), middle.y(), 0, 0}, world.lens.size())
+             ? std::optional(middle)
+             : std::nullopt;
+}
+
+trajectory::Path path_of(const scene::Encounter& encounter, const Stage& stage, std::size_t actor) {
   scene::Intruder intruder = stage.scene().intruders[actor];
   intruder.waypoints_ned_m.clear();
   intruder.times_s.clear();
   intruder.seen.clear();
-  intruder.encounter = result.encounter;
-  const trajectory::Path path = setup::path_of(intruder, world.camera);
-  const auto state = path.at(wanted.time_s);
-  check(state.has_value(), "the path of an encounter has no end");
-  const auto exact = projection::exact_box(
-      sight, world.actors[actor].type->silhouette, state->world_from_body_rigid(), wanted.time_s);
-  if (exact.box && !exact.partly_unseen) result.middle = centre_of(*exact.box);
-  return result;
+  intruder.encounter = encounter;
+  return setup::path_of(intruder, stage.world().camera);
 }
 
 // A place beside `place`, as far from the camera, whose pixel lies `by_px` further.
@@ -86,6 +91,7 @@ nlohmann::ordered_json stated(const scene::Encounter& encounter) {
   result["cpa_above_m"] = rounded(encounter.cpa_above_m, 0.01);
   result["course_deg"] = rounded(encounter.course_deg, 0.001);
   result["speed_mps"] = rounded(encounter.speed_mps, 1e-3);
+  if (encounter.climb_mps != 0) result["climb_mps"] = rounded(encounter.climb_mps, 1e-3);
   return result;
 }
 
@@ -99,31 +105,29 @@ nlohmann::ordered_json encounter_through(const Stage& stage,
         "the clip's motion, from which the place of a pixel follows, is still measured; "
         "expected to wait until it is");
   const std::size_t actor = actor_of(stage, tables, wanted.intruder);
-  const std::vector<scene::Seen>& seen = stage.stated_seen(actor);
-  if (wanted.moment >= seen.size())
-    throw Error(fmt::format("intruder {} has no moment {}", wanted.intruder, wanted.moment));
-  const scene::Seen& moment = seen[wanted.moment];
   const setup::World& world = stage.world();
-  const auto frame = static_cast<std::int64_t>(std::llround(moment.time_s * stage.clip_rate_hz()));
-  const double time_s = stage.time_s(frame);
+  const double time_s = stage.time_s(wanted.frame);
   const auto camera = world.camera.at(time_s);
   const auto state = world.actors[actor].path.at(time_s);
-  const auto sight = stage.sight_at(frame);
-  check(camera && state && sight, "the paths reach their own moments");
+  const auto sight = stage.sight_at(wanted.frame);
+  if (!camera || !state || !sight)
+    throw Error(fmt::format("the intruder is not in the world at {:.2f} s", time_s));
+  const auto pixel = middle_of(stage, actor, world.actors[actor].path, *sight, time_s);
   placement::NearMiss near_miss{.place_ned_m = state->position_in_world,
                                 .time_s = time_s,
                                 .miss_m = wanted.miss_m,
                                 .is_right = wanted.is_right,
-                                .speed_mps = wanted.speed_mps};
-  Try last = tried(near_miss, stage, actor, *sight);
-  const bool is_in_frame =
-      setup::meets_frame({moment.pixel.x(), moment.pixel.y(), 0, 0}, world.lens.size());
-  for (int round = 0; round < kRounds && is_in_frame && last.middle; ++round) {
-    near_miss.place_ned_m = moved(
-        *sight, camera->position_in_world, near_miss.place_ned_m, moment.pixel - *last.middle);
-    last = tried(near_miss, stage, actor, *sight);
+                                .speed_mps = wanted.speed_mps,
+                                .above_m = wanted.above_m};
+  scene::Encounter encounter = placement::encounter_of(near_miss, world.camera);
+  for (int round = 0; round < kRounds && pixel; ++round) {
+    const auto middle = middle_of(stage, actor, path_of(encounter, stage, actor), *sight, time_s);
+    if (!middle) break;
+    near_miss.place_ned_m =
+        moved(*sight, camera->position_in_world, near_miss.place_ned_m, *pixel - *middle);
+    encounter = placement::encounter_of(near_miss, world.camera);
   }
-  return stated(last.encounter);
+  return stated(encounter);
 }
 
 }  // namespace airtruth::session

@@ -51,6 +51,14 @@ export interface Handle {
   width_px: number|null;
 }
 
+// A path past the own aircraft; above_m is null of a level one.
+export interface NearMiss {
+  miss_m: number;
+  right: boolean;
+  speed_mps: number;
+  above_m: number|null;
+}
+
 export interface Approach {
   time_s: number;
   right_m: number;

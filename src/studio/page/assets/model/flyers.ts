@@ -2,6 +2,10 @@
 import type {Approach, Change, Clip, Json, Path, Plan, State, Table, Track} from './contract';
 import {type Point, acrossRelative, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt} from './geometry';
 
+// Of a scene's numbers (src/scene/scene/limits.h).
+export const MOST_MISS_M = 1e5;
+export const SPEEDS_MPS: [number, number] = [1e-3, 1e4];
+
 // How a flyer's path is stated.
 export type Statement = 'moments'|'approach'|'waypoints'|'file'|'drift'|'lens';
 export const STATED: Record<Statement, string> = {
@@ -286,13 +290,30 @@ function alongOf(flyer: Flyer, across: Point): number {
   return stated === 0 ? 0 : stated / share;
 }
 
-// The horizontal miss distance of an encounter, and another one on the same side.
+// How far an encounter is above or below at its closest approach.
+const heightOf = (flyer: Flyer) => numberOf(tableOf(flyer.table.encounter).cpa_above_m) ?? 0;
+
+// The miss distance of an encounter, and another one on the same side and at the same height.
 export const missOf = (flyer: Flyer, plan: Plan, clip: Clip): number =>
-    Math.abs(alongOf(flyer, acrossOf(flyer, plan, clip)));
+    Math.hypot(alongOf(flyer, acrossOf(flyer, plan, clip)), heightOf(flyer));
+export const leastMiss = (flyer: Flyer) => Math.abs(heightOf(flyer));
 export function withMiss(flyer: Flyer, plan: Plan, clip: Clip, miss_m: number): Change[] {
   const across = acrossOf(flyer, plan, clip);
   const along = alongOf(flyer, across);
-  return setAcross(flyer, across, (along || across[0]) < 0 ? -miss_m : miss_m);
+  const beside_m = Math.sqrt(Math.max(0, miss_m ** 2 - heightOf(flyer) ** 2));
+  return setAcross(flyer, across, (along || across[0]) < 0 ? -beside_m : beside_m);
+}
+
+// Another course at the same miss distance and on the same side. `begin`: the flyer whose they are.
+export function withCourse(flyer: Flyer, plan: Plan, clip: Clip, course_deg: number, begin = flyer): Change[] {
+  const beside_m = alongOf(begin, acrossOf(begin, plan, clip));
+  const isRight = beside_m * acrossOf(begin, plan, clip)[0] >= 0;
+  const turned = {...flyer, table: {...flyer.table, encounter: {...tableOf(flyer.table.encounter), course_deg}}};
+  const across = acrossOf(turned, plan, clip);
+  return [
+    {set: [...flyer.path, 'encounter', 'course_deg'], to: course_deg},
+    ...setAcross(flyer, across, Math.abs(beside_m) * (across[0] >= 0 === isRight ? 1 : -1))
+  ];
 }
 
 // How long a flyer is in view, as well as the plan's frames tell.

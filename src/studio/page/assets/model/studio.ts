@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Connection, Lost, Refused} from './connection';
-import type {AircraftGroup, Change, Clip, MeasuredValue, Path, Plan, Rendered, ServerEvent, State, Table, Told} from './contract';
+import type {AircraftGroup, Change, Clip, MeasuredValue, NearMiss, Path, Plan, Rendered, ServerEvent, State, Table, Told} from './contract';
 import {type Edit, Edits, type Unsent} from './edits';
 import {type Choice, type Flyer, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
 import {type Point, clamp, seenNear} from './geometry';
@@ -198,17 +198,17 @@ export class Studio {
     this.show(moments[next].frame);
   }
 
-  // Lets the selected path go on level from one of its moments, past the own aircraft.
-  async nearMiss(moment: number, miss_m: number, isRight: boolean, speed_mps: number): Promise<void> {
-    const {state, selected} = this.store.now;
+  // Lets the selected path go on straight from the frame shown, past the own aircraft.
+  async nearMiss({above_m, ...wanted}: NearMiss): Promise<void> {
+    const {state, selected, frame} = this.store.now;
     const flyer = flyerAt(state, selected);
-    if (!this.hasMoments(flyer) || !this.isConnected()) return;
+    if (!flyer || !this.isConnected()) return;
     await this.edits.whenIdle();
     try {
       const {encounter} = await this.connection.request<{encounter: Table}>(
-          'near_miss', {intruder: flyer.path[1], moment, miss_m, right: isRight, speed_mps});
+          'near_miss', {intruder: flyer.path[1], frame, ...wanted, ...(above_m === null ? {} : {above_m})});
       const now = flyerAt(this.store.now.state, flyer.path);
-      if (now?.statement === 'moments') this.edit(byEncounter(now, encounter));
+      if (now) this.edit(byEncounter(now, encounter));
     } catch (error) {
       this.failed(error);
     }

@@ -12,6 +12,7 @@ export interface NumberOptions {
   isLabelHidden?: boolean;
   placeholder?: string;
   taken: (value: number) => void;
+  emptied?: () => void;  // where nothing is a value
 }
 
 const fieldOf = new WeakMap<EventTarget, NumberField>();
@@ -78,7 +79,10 @@ export class NumberField {
   private take(): void {
     if (!this.mark() || !this.isTyped) return;
     this.isTyped = false;
-    if (this.input.value !== '') this.options.taken(this.input.valueAsNumber);
+    if (this.input.value !== '')
+      this.options.taken(this.input.valueAsNumber);
+    else
+      this.options.emptied?.();
   }
 
   // With a text that is refused.
@@ -91,7 +95,7 @@ export class NumberField {
   private mark(): boolean {
     const {value, valueAsNumber, validity} = this.input;
     const {min, max} = this.range;
-    const isAsBefore = value === '' && this.value === null && !validity.badInput;
+    const isAsBefore = value === '' && (this.value === null || this.options.emptied) && !validity.badInput;
     const isGood = isAsBefore || (Number.isFinite(valueAsNumber) && valueAsNumber >= min && valueAsNumber <= max);
     this.input.setAttribute('aria-invalid', String(!isGood));
     text(this.words, this.expected);

@@ -6,8 +6,10 @@ import {FlyerPanel} from './flyer_panel';
 import {Keyed, Part, attribute, h, text} from './part';
 
 // What a begun scene may have guessed, by the names of its tables and keys.
-const GUESSED: [string, string][] =
-    [['lens', 'the lens'], ['camera.position_ned_m', 'the height'], ['camera.velocity_ned_mps', 'the own speed']];
+const GUESSED: [string, string][] = [
+  ['lens', 'the lens'], ['camera.position_ned_m', 'the height'], ['camera.velocity_ned_mps', 'the own speed'],
+  ['camera.attitude_yaw_pitch_roll_deg', 'the attitude']
+];
 
 // All that flies: one button each, with what the checks say of it, and below the chosen one its numbers.
 export class FlyerList extends Part {
@@ -37,7 +39,8 @@ export class FlyerList extends Part {
     const {state, plan, clip} = this.now;
     const flyers = state ? flyersOf(state.scene) : [];
     this.add.disabled = !clip;
-    const guessed = GUESSED.filter(([key]) => /\bguess/i.test(state?.notes[key] ?? '')).map(([, words]) => words);
+    const guessed =
+        GUESSED.filter(([key]) => /\bguess|no horizon/i.test(state?.notes[key] ?? '')).map(([, words]) => words);
     this.guesses.hidden = !guessed.length;
     text(this.guesses.firstElementChild!, `Guessed: ${guessed.join(', ')}. Sizes and distances are as good as that. `);
     this.empty.hidden = flyers.length > 0 || !clip;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Json, Path, Table} from '../model/contract';
-import {type Flyer, type Moment, STATED, TO_MOMENTS, describedApproach, flyerAt, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withMiss, writtenRange, writtenWidth} from '../model/flyers';
+import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, flyerAt, leastMiss, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
 import {round, speedOf, velocityAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {NumberField, type NumberOptions, choiceField} from './fields';
@@ -14,7 +14,8 @@ interface KeyOptions extends Omit<NumberOptions, 'taken'> {
 }
 
 // Of a scene's numbers (src/scene/scene/limits.h).
-const [MOST_MISS_M, MOST_MPS, LEAST_MPS, MOST_PX] = [1e5, 1e4, 1e-3, 1e5];
+const MOST_PX = 1e5;
+const [LEAST_MPS, MOST_MPS] = SPEEDS_MPS;
 const SIZES: Record<string, [number, number, string]> = {
   range_m: [0.1, 1e6, 'm'],
   width_px: [0.1, 1e5, 'px']
@@ -28,7 +29,7 @@ const climbOf = (encounter: Table) => Math.abs(numberOf(encounter.climb_mps) ?? 
 
 const ENCOUNTER: KeyOptions[] = [
   {key: ['encounter', 'cpa_time_s'], label: 'Closest at', unit: 's', step: 0.1, default: null},
-  {key: ['encounter', 'cpa_right_m'], label: 'Right', unit: 'm', ...MISS, default: 0},
+  {key: ['encounter', 'cpa_right_m'], label: 'Right', unit: 'm', ...MISS, default: 0, placeholder: 'follows'},
   {key: ['encounter', 'cpa_above_m'], label: 'Above', unit: 'm', ...MISS, default: 0},
   {key: ['encounter', 'cpa_ahead_m'], label: 'Ahead', unit: 'm', ...MISS, default: null, placeholder: 'follows'},
   {key: ['encounter', 'course_deg'], label: 'Course', unit: '°', step: 1, min: -360, max: 360, default: 180},
@@ -58,7 +59,7 @@ const FLOCK: KeyOptions[] = [
 
 // The numbers of the selected flyer: its path in the words that it is stated in, and what flies.
 export class FlyerPanel extends Part {
-  protected readonly watches: Member[] = ['state', 'plan', 'selected', 'moment', 'clip'];
+  protected readonly watches: Member[] = ['state', 'plan', 'selected', 'moment', 'clip', 'frame'];
   private built = '';
   private fields: {options: KeyOptions; field: NumberField}[] = [];
   private rows: MomentRow[] = [];
@@ -91,19 +92,20 @@ export class FlyerPanel extends Part {
     if (shape !== this.built) this.shape(flyer, moments);
     this.built = shape;
     for (const {options, field} of this.fields) {
-      field.show(valueAt(flyer.table, options.key) ?? options.default);
+      field.show(valueAt(flyer.table, options.key) ?? defaultOf(options, flyer));
       if (options.limits) field.limit(...options.limits(tableOf(flyer.table.encounter)));
     }
     moments.forEach((moment, k) => this.rows[k].show(moment, this.now.moment === k, roomOf(moments, k, clip), clip));
     const track = trackOf(plan, flyer.path);
-    const chosen = moments[this.now.moment ?? 0] ?? moments[0];
-    if (chosen) {
-      const velocity = plan && track && velocityAt(plan, track.ned, chosen.frame, clip.rate_hz);
-      this.nearMiss.show(flyer, moments.indexOf(chosen), chosen.time_s, velocity && speedOf(velocity));
+    const velocity = plan && track && velocityAt(plan, track.ned, this.now.frame, clip.rate_hz);
+    this.nearMiss.show(flyer, timeOf(this.now.frame, clip), velocity && speedOf(velocity));
+    if (plan && flyer.statement === 'approach') {
+      this.miss.limit(leastMiss(flyer), MOST_MISS_M, 'm', 'since it is so far above or below');
+      this.miss.show(round(missOf(flyer, plan, clip), 1));
     }
-    if (plan && flyer.statement === 'approach') this.miss.show(round(missOf(flyer, plan, clip), 1));
     const approach = track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '';
-    text(this.seenAs, approach);
+    // What the checks say already is not said twice.
+    text(this.seenAs, track?.checks.includes(approach) ? '' : approach);
     const title = this.querySelector('.what .title');
     if (title) text(title, flyer.title);
     const name = flyer.kind === 'aircraft' ? flyer.title : flyer.kind;
@@ -127,6 +129,7 @@ export class FlyerPanel extends Part {
                 'Change …')),
         ...(keys.length ? [h('div', {class: 'grid'}, ...keys.map((one) => this.keyField(one)))] : []),
         h('h3', {}, STATED[flyer.statement].replace(/^./, (first) => first.toUpperCase())), ...this.statement(flyer),
+        ...(flyer.kind === 'aircraft' ? [this.nearMiss.element] : []),
         h('div', {class: 'actions'}, h('button', {onclick: () => this.studio.duplicate(path)}, 'Duplicate'),
           h('button', {class: 'danger', title: 'Delete on the heading', onclick: () => this.studio.remove(path)},
             'Delete')),
@@ -142,7 +145,6 @@ export class FlyerPanel extends Part {
           h('button', {title: 'At the frame shown (M)', onclick: () => this.studio.addMoment()}, 'Add a moment here'),
           flyer.kind === 'aircraft' &&
               h('button', {onclick: () => this.restate(toApproach)}, 'State by closest approach')),
-        ...(flyer.kind === 'aircraft' ? [this.nearMiss.element] : []),
       ];
     }
     const turn = flyer.statement === 'lens' ?
@@ -162,6 +164,8 @@ export class FlyerPanel extends Part {
     const flyer = flyerAt(this.now.state, this.now.selected);
     if (!flyer) return;
     const to = options.key[0] === 'count' ? Math.round(value) : value;
+    const {plan, clip} = this.now;
+    if (options.key[1] === 'course_deg' && plan && clip) return this.studio.edit(withCourse(flyer, plan, clip, to));
     const changes: Change[] = [{set: [...flyer.path, ...options.key], to}];
     if (options.key[0] === 'count' && to > 1 && !('spread_m' in flyer.table))
       changes.push({set: [...flyer.path, 'spread_m'], to: 8});
@@ -226,11 +230,19 @@ export class FlyerPanel extends Part {
     return clip ? timeOf(Math.round(time_s * clip.rate_hz), clip) : time_s;
   }
 
+  showTime(time_s: number): void {
+    if (this.now.clip) this.studio.show(Math.round(time_s * this.now.clip.rate_hz));
+  }
+
   removeRow(index: number): void {
     this.studio.store.put({moment: index});
     this.studio.removeMoment();
   }
 }
+
+// Where what is ahead is stated, what is right of it follows.
+const defaultOf = (options: KeyOptions, flyer: Flyer) =>
+    options.key[1] === 'cpa_right_m' && 'cpa_ahead_m' in tableOf(flyer.table.encounter) ? null : options.default;
 
 const valueAt = (table: Json, key: string[]): number|null =>
     numberOf(key.reduce<Json|undefined>((at, name) => tableOf(at)[name], table));
@@ -255,7 +267,7 @@ class MomentRow {
   constructor(private panel: FlyerPanel, private index: number) {
     const field = (label: string, unit: string, step: number, taken: (value: number) => void) =>
         new NumberField({label: `${label} of moment ${index + 1}`, unit, step, isLabelHidden: true, taken});
-    this.time = field('Time', 's', 0.1, (value) => this.set('time_s', this.panel.frameTime(value)));
+    this.time = field('Time', 's', 0.1, (value) => this.setTime(this.panel.frameTime(value)));
     this.x = field('X', 'px', 0.1, (value) => this.setPixel(0, value));
     this.y = field('Y', 'px', 0.1, (value) => this.setPixel(1, value));
     this.size = field('Size', '', 0.1, (value) => this.set(this.unit.select.value, value));
@@ -285,6 +297,12 @@ class MomentRow {
     this.unit.select.value = moment.width_px !== null ? 'width_px' : 'range_m';
     this.size.limit(...SIZES[this.unit.select.value]);
     this.size.show(moment.width_px ?? moment.range_m);
+  }
+
+  // The picture goes with it.
+  private setTime(time_s: number): void {
+    this.set('time_s', time_s);
+    this.panel.showTime(time_s);
   }
 
   private set(key: string, to: Json): void {

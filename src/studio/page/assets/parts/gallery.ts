@@ -27,7 +27,10 @@ export class Gallery extends DialogPart {
     placeholder: 'Search: a320, cessna, ryanair, airliner …',
     'aria-label': 'Search aircraft',
     autocomplete: 'off',
-    oninput: () => this.searchSoon()
+    oninput: () => this.searchSoon(),
+    onkeydown: ((event: KeyboardEvent) => {
+               if (event.key === 'Enter') this.cards.querySelector<HTMLElement>('.choose')?.click();
+             }) as EventListener
   });
   private count = h('output', {class: 'hint'});
   private cards = h('div', {class: 'cards'});

@@ -1,65 +1,83 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Flyer} from '../model/flyers';
-import {round} from '../model/geometry';
+import type {NearMiss} from '../model/contract';
+import {type Flyer, MOST_MISS_M, SPEEDS_MPS} from '../model/flyers';
+import {clamp, round} from '../model/geometry';
 import type {Studio} from '../model/studio';
 import {NumberField, choiceField} from './fields';
 import {h, text} from './part';
 
 const USUAL_MISS_M = 100;
-const [MOST_MISS_M, LEAST_MPS, MOST_MPS] = [1e5, 1e-3, 1e4];  // of a scene's numbers (src/scene/scene/limits.h)
+const MOST_USUAL_MPS = 250;  // of an airliner; a path that is still being made may be faster
 
-// Lets a path that is stated by moments go on level from one of them, past the own aircraft at a stated distance.
+// Lets a path go on straight from the frame shown, past the own aircraft at a stated distance.
 export class NearMissForm {
   readonly element: HTMLElement;
-  private miss_m = USUAL_MISS_M;
-  private speed_mps = 0;  // 0: that of the path
-  private moment = 0;
-  private pathMps = 0;
+  private wanted: NearMiss = {miss_m: USUAL_MISS_M, right: true, speed_mps: 0, above_m: null};
+  private isSpeedStated = false;
+  private of = '';  // whose numbers these are
   private miss = new NumberField({
     label: 'Miss distance',
     unit: 'm',
     step: 10,
     min: 0,
     max: MOST_MISS_M,
-    taken:
-        (value) => {
-          this.miss_m = value;
-        }
+    taken: (value) => this.take({miss_m: value})
+  });
+  private above = new NumberField({
+    label: 'Above',
+    unit: 'm',
+    step: 10,
+    min: -MOST_MISS_M,
+    max: MOST_MISS_M,
+    placeholder: 'level',
+    taken: (value) => this.take({above_m: value}),
+    emptied: () => this.take({above_m: null})
   });
   private speed = new NumberField({
     label: 'Speed',
     unit: 'm/s',
     step: 5,
-    min: LEAST_MPS,
-    max: MOST_MPS,
+    min: SPEEDS_MPS[0],
+    max: SPEEDS_MPS[1],
     taken:
         (value) => {
-          this.speed_mps = value;
+          this.isSpeedStated = true;
+          this.take({speed_mps: value});
         }
   });
-  private side = choiceField('Passes on the', [['right', 'right'], ['left', 'left']], () => {});
+  private side = choiceField(
+      'Passes on the', [['right', 'right'], ['left', 'left']], (side) => this.take({right: side === 'right'}));
   private words = h('p', {class: 'hint'});
 
   constructor(private studio: Studio) {
-    this.element =
-        h('details', {class: 'near-miss'}, h('summary', {}, 'Near miss …'), this.words,
-          h('div', {class: 'grid'}, this.miss.element, this.side.element, this.speed.element),
-          h('div', {class: 'actions'}, h('button', {onclick: () => this.ask()}, 'Fly past')));
+    const fields = [this.miss, this.side, this.above, this.speed].map((one) => one.element);
+    this.element = h(
+        'details', {class: 'near-miss'}, h('summary', {}, 'Near miss …'), this.words,
+        h('div', {class: 'grid'}, ...fields),
+        h('div', {class: 'actions'}, h('button', {onclick: () => void this.studio.nearMiss(this.wanted)}, 'Fly past')));
   }
 
-  // `pathMps`: how fast the path is at that moment, where it is known.
-  show(flyer: Flyer, moment: number, time_s: number, pathMps: number|null): void {
-    this.moment = moment;
-    this.pathMps = pathMps ?? this.pathMps;
-    this.miss.show(this.miss_m);
-    this.speed.show(this.speed_mps || round(this.pathMps, 0) || null);
+  // `path_mps`: how fast the path is in the frame shown, where it is known.
+  show(flyer: Flyer, time_s: number, path_mps: number|null): void {
+    const of = JSON.stringify(flyer.path);
+    if (of !== this.of) {
+      this.wanted = {miss_m: USUAL_MISS_M, right: true, speed_mps: 0, above_m: null};
+      this.isSpeedStated = false;
+    }
+    this.of = of;
+    if (!this.isSpeedStated && path_mps)
+      this.wanted.speed_mps = round(clamp(path_mps, SPEEDS_MPS[0], MOST_USUAL_MPS), 0) || 1;
+    this.side.select.value = this.wanted.right ? 'right' : 'left';
+    this.miss.show(this.wanted.miss_m);
+    this.above.show(this.wanted.above_m);
+    this.speed.show(this.wanted.speed_mps || null);
     text(
         this.words,
-        `${flyer.id} stays at its pixel at ${round(time_s, 2)} s and flies level from there, past the own aircraft.`);
+        `From where it is in the frame shown, at ${round(time_s, 2)} s, ${
+            flyer.id} flies straight on, past you at that distance. Its path is then stated by its closest approach.`);
   }
 
-  private ask(): void {
-    const speed_mps = this.speed_mps || round(this.pathMps, 0);
-    if (speed_mps) void this.studio.nearMiss(this.moment, this.miss_m, this.side.select.value === 'right', speed_mps);
+  private take(part: Partial<NearMiss>): void {
+    this.wanted = {...this.wanted, ...part};
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx, Change, Clip, Ned, Plan, Track} from '../model/contract';
-import {type Flyer, acrossOf, flyersOf, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, writtenRange, writtenWidth} from '../model/flyers';
+import {type Flyer, acrossOf, flyerAt, flyersOf, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, withCourse, writtenRange, writtenWidth} from '../model/flyers';
 import {type Point, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
 import {attribute, renewed, s, ui, wordsWidth} from './part';
 import {SideView, niceStep} from './side_view';
@@ -294,8 +294,10 @@ export class PlanView extends SideView<Drag> {
     this.studio.dragging(false);
   }
 
-  private changesOf({kind, flyer, index}: Drag, to: Ground): Change[] {
-    const {plan, clip} = this.now;
+  // `begin`: the flyer as it was when the drag began.
+  private changesOf({kind, flyer: begin, index}: Drag, to: Ground): Change[] {
+    const {plan, clip, state} = this.now;
+    const flyer = flyerAt(state, begin.path) ?? begin;
     const track = trackOf(plan, flyer.path);
     if (!plan || !clip || !track) return [];
     if (kind === 'moment') return this.rangeChange(flyer, index, track, plan, clip, to);
@@ -303,12 +305,10 @@ export class PlanView extends SideView<Drag> {
     if (!cpa) return [];
     const from = this.ground(kind === 'course' ? cpa.place : cpa.own);
     const [right, ahead] = [to.right - from.right, to.ahead - from.ahead];
-    const key = (name: string) => [...flyer.path, 'encounter', name];
     if (kind === 'course')
-      return [{
-        set: key('course_deg'),
-        to: round(turned(degrees(Math.atan2(right, ahead)) + this.course_deg - cpa.ownCourse_deg), 0)
-      }];
+      return withCourse(
+          flyer, plan, clip, round(turned(degrees(Math.atan2(right, ahead)) + this.course_deg - cpa.ownCourse_deg), 0),
+          begin);
     const turn = radians(cpa.ownCourse_deg - this.course_deg);
     const across = acrossOf(flyer, plan, clip);
     const own = [right * Math.cos(turn) - ahead * Math.sin(turn), ahead * Math.cos(turn) + right * Math.sin(turn)];
@@ -342,8 +342,7 @@ export class PlanView extends SideView<Drag> {
     const step = sign * (event.shiftKey ? 10 : 1);
     const encounter = tableOf(flyer.table.encounter);
     if (kind === 'course') {
-      this.studio.edit(
-          [{set: [...flyer.path, 'encounter', 'course_deg'], to: turned(statedCourse(flyer) + step)}], 'course-keys');
+      this.studio.edit(withCourse(flyer, plan, clip, turned(statedCourse(flyer) + step)), 'course-keys');
       return;
     }
     const key = 'cpa_ahead_m' in encounter && !('cpa_right_m' in encounter) ? 'cpa_ahead_m' : 'cpa_right_m';
