@@ -146,6 +146,11 @@ std::size_t SharedInputs::kept() const {
   return types.size();
 }
 
+std::size_t SharedInputs::remembered() const {
+  const std::lock_guard lock(mutex_);
+  return slots_.size();
+}
+
 std::shared_ptr<SharedInputs::Slot> SharedInputs::slot_of(const std::string& key) {
   const std::lock_guard lock(mutex_);
   std::shared_ptr<Slot>& slot = slots_[key];
@@ -186,7 +191,8 @@ void SharedInputs::keep(Slot& slot, std::shared_ptr<const Type> type) {
 }
 
 // Drops the aircraft whose last use is longest ago until the limit holds, but none that a sequence
-// is using: dropping it would free nothing.
+// is using: dropping it would free nothing. Forgets the keys of what is not kept: drawn distractors
+// are all different, and a stream draws them without end.
 void SharedInputs::drop_unused() {
   std::map<const Type*, long> holders;
   std::size_t bytes = 0;
@@ -198,12 +204,16 @@ void SharedInputs::drop_unused() {
       if (slot->type && slot->type.use_count() == holders[slot->type.get()] &&
           (oldest == nullptr || slot->last_use < oldest->last_use))
         oldest = slot.get();
-    if (oldest == nullptr) return;
+    if (oldest == nullptr) break;
     const std::shared_ptr<const Type> dropped = oldest->type;
     bytes -= dropped->bytes;
     for (const auto& [key, slot] : slots_)
       if (slot->type == dropped) slot->type.reset();
   }
+  // A thread that loads an aircraft or waits for it holds its slot.
+  std::erase_if(slots_, [](const auto& entry) {
+    return !entry.second->type && entry.second.use_count() == 1;
+  });
 }
 
 }  // namespace airtruth::setup

@@ -57,6 +57,9 @@ class SharedInputs {
 
   // The number of aircraft that are kept now.
   std::size_t kept() const;
+  // The number of keys (aircraft in their configurations, and distractors) that it remembers: of
+  // those that are kept or that are being loaded.
+  std::size_t remembered() const;
 
  private:
   struct Slot {

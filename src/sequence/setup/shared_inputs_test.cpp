@@ -104,6 +104,18 @@ TEST_F(SharedInputsTest, WhatNoSequenceUsesIsDroppedBeyondTheLimit) {
   EXPECT_LE(shared.kept(), 1u);
 }
 
+TEST_F(SharedInputsTest, WhatIsDroppedIsForgotten) {
+  SharedInputs shared({}, 1);
+  scene::Intruder bird;
+  bird.id = "b";
+  bird.distractor.emplace();
+  for (int i = 0; i < 20; ++i) {
+    bird.distractor->size_m = 1 + 0.01 * i;
+    shared.type_of(bird, straight_at(10), {}, {});
+  }
+  EXPECT_LE(shared.remembered(), 2u);
+}
+
 TEST_F(SharedInputsTest, EveryCallPassesTheWarnings) {
   std::vector<std::string> first, second;
   SharedInputs shared;
