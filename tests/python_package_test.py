@@ -401,7 +401,8 @@ class Numbers(unittest.TestCase):
 
 
 class Detectors(unittest.TestCase):
-    """FROC, HOTA and AOT of random flights, beside the numbers of `airtruth evaluate`."""
+    """Average precision, FROC, HOTA and AOT of random flights, beside the numbers of `airtruth evaluate`, without and with regions in which
+    detections count neither way."""
 
     @classmethod
     def setUpClass(cls):
@@ -437,16 +438,38 @@ class Detectors(unittest.TestCase):
                 {"format": "airtruth labelled clip 1", "version": "1", "name": name, "imported_from": "csv", "frames": len(labels) - 1,
                  "labels": sum(len(line["labels"]) for line in labels[1:]), "categories": ["738"]}))
         pathlib.Path("mine.json").write_text(json.dumps(results))
-        output("evaluate", "detected", "mine.json", "-o", "evaluated", "--no-page")
-        with open("evaluated/detection.json") as file:
-            cls.told = json.load(file)["detectors"][0]
+        region = [0, 300, 320, 180]
+        pathlib.Path("regions.csv").write_text("sequence,first_frame,last_frame,x,y,width,height\nflight-1,,," + ",".join(map(str, region)) + "\n")
+        regions = [[region] if flight == 1 else np.empty((0, 4)) for flight in cls.columns["sequences"]]
+        cls.cases = [(cls.evaluated("evaluated"), {}), (cls.evaluated("evaluated_regions", "--ignore", "regions.csv"), {"regions": regions})]
+
+    @staticmethod
+    def evaluated(out, *options):
+        output("evaluate", "detected", "mine.json", "-o", out, "--no-page", *options)
+        with open(f"{out}/detection.json") as file:
+            return json.load(file)["detectors"][0]
 
     def taken(self, *names):
         return {name: self.columns[name] for name in names}
 
+    def test_regions_change_what_is_told(self):
+        (plain, _), (with_regions, _) = self.cases
+        for measure in ("average_precision", "froc", "aot", "tracks"):
+            self.assertNotEqual(plain[measure], with_regions[measure], measure)
+
+    def test_average_precision_is_the_programs_to_the_last_bit(self):
+        for told, regions in self.cases:
+            found = evaluate.average_precision(**self.taken("truth", "detections", "scores", "sequences"), **regions)
+            for name in ("ap", "ap_50", "ap_75", "ap_small", "ar_100", "ap_centre"):
+                self.assertEqual(getattr(found, name), told["average_precision"][name], name)
+
     def test_froc_is_the_programs_to_the_last_bit(self):
-        told = self.told["froc"]
-        found = evaluate.froc(**self.taken("truth", "detections", "scores", "sequences"), rate_hz=10)
+        for told, regions in self.cases:
+            self.check_froc(told["froc"], evaluate.froc(**self.taken("truth", "detections", "scores", "sequences"), rate_hz=10, **regions))
+        flagged = evaluate.froc([[[0, 0, 9, 9]]], [[[0, 0, 9, 9]]], [[1]], ignored=[[1]])
+        self.assertEqual([flagged.score.size, flagged.hours, flagged.false_alarms_per_hour, flagged.aircraft], [0, None, None, 0])
+
+    def check_froc(self, told, found):
         self.assertEqual([found.images, found.flights, found.hours, found.aircraft],
                          [told[name] for name in ("images", "flights", "hours", "aircraft_in_images")])
         self.assertGreater(len(told["points"]), 50)
@@ -455,25 +478,29 @@ class Detectors(unittest.TestCase):
         shares = [point["detection"] for point in told["points"]]
         self.assertEqual(found.detection.tolist(), [share["share"] for share in shares])
         self.assertEqual(np.stack([found.detection_low, found.detection_high], 1).tolist(), [share["interval_95"] for share in shares])
-        flagged = evaluate.froc([[[0, 0, 9, 9]]], [[[0, 0, 9, 9]]], [[1]], ignored=[[1]])
-        self.assertEqual([flagged.score.size, flagged.hours, flagged.false_alarms_per_hour, flagged.aircraft], [0, None, None, 0])
 
     def test_hota_is_the_programs_to_the_last_bit(self):
-        told = self.told["tracks"]["hota"]
-        found = evaluate.hota(**self.taken("truth", "truth_tracks", "detections", "tracks", "sequences"))
-        for name, values in told.items():
-            self.assertEqual([getattr(found, name), found.at_overlaps[name].tolist()], [values["mean"], values["at_overlaps"]], name)
-        self.assertEqual(set(told), set(found.at_overlaps))
+        for told, regions in self.cases:
+            told = told["tracks"]["hota"]
+            found = evaluate.hota(**self.taken("truth", "truth_tracks", "detections", "tracks", "sequences"), **regions)
+            for name, values in told.items():
+                self.assertEqual([getattr(found, name), found.at_overlaps[name].tolist()], [values["mean"], values["at_overlaps"]], name)
+            self.assertEqual(set(told), set(found.at_overlaps))
         with self.assertRaisesRegex(ValueError, "track 1 twice"):
             evaluate.hota([[[0, 0, 9, 9]] * 2], [[1, 1]], [[]], [[]])
 
     def test_aot_is_the_programs_to_the_last_bit(self):
         columns = self.taken("truth", "truth_tracks", "ranges_m", "above_horizon", "detections", "scores", "tracks", "sequences")
-        found = evaluate.aot(**columns, rate_hz=10)
-        ranks = evaluate.aot_ranks(**columns, rate_hz=10)
+        for told, regions in self.cases:
+            found = evaluate.aot(**columns, rate_hz=10, **regions)
+            self.check_aot(told, found, evaluate.aot_ranks(**columns, rate_hz=10, **regions))
+        strict = evaluate.aot(**columns, min_score=0.9)
+        self.assertTrue(strict.hfar is None and strict.score == 0.9 and strict.edr[0] <= found.edr[0])
+
+    def check_aot(self, told_of, found, ranks):
         self.assertGreater(found.edr[1], 2)
         for score, key in ((found, "aot"), (ranks[0], "aot_at_hfar_0.5"), (ranks[1], "aot_at_fppi_0.0005")):
-            told = self.told[key]
+            told = told_of[key]
             if told is None:
                 self.assertIsNone(score, key)
                 continue
@@ -481,8 +508,19 @@ class Detectors(unittest.TestCase):
                 one = getattr(score, name)
                 wanted = [value["detected"], value["total"], value["rate"] or 0] if isinstance(value, dict) else value
                 self.assertEqual(list(one) if isinstance(one, tuple) else one, wanted, name)
-        strict = evaluate.aot(**columns, min_score=0.9)
-        self.assertTrue(strict.hfar is None and strict.score == 0.9 and strict.edr[0] <= found.edr[0])
+
+    def test_flagged_aircraft_and_what_is_on_them_are_left_out(self):
+        counted, flagged, beside = [0, 0, 20, 10], [100, 0, 20, 10], [109, 0, 20, 10]
+        plain, ignored = ([counted],) * 4, ([counted, flagged],) * 4
+        hota = evaluate.hota(ignored, [[1, 2]] * 4, [[counted, beside]] * 4, [[7, 8]] * 4, ignored=[[0, 1]] * 4)
+        self.assertEqual(hota.hota, evaluate.hota(plain, [[1]] * 4, plain, [[7]] * 4).hota)
+        far = evaluate.hota(ignored, [[1, 2]] * 4, [[counted, [120, 0, 20, 10]]] * 4, [[7, 8]] * 4, ignored=[[0, 1]] * 4)
+        near = evaluate.hota(ignored, [[1, 2]] * 4, [[counted, [120, 0, 20, 10]]] * 4, [[7, 8]] * 4, ignored=[[0, 1]] * 4, centre_px=20)
+        self.assertTrue(far.hota < 1 and near.hota == 1)
+        aot = evaluate.aot(ignored, [[1, 2]] * 4, [[counted, [112, 9, 20, 10]]] * 4, [[1, 1]] * 4, ranges_m=[[300, 300]] * 4, ignored=[[0, 1]] * 4,
+                           centre_px=20)
+        self.assertEqual(aot.fppi, 0)
+        self.assertEqual(evaluate.aot_ranks(ignored, [[1, 2]] * 4, [[[112, 9, 20, 10]]] * 4, [[1]] * 4, ignored=[[0, 1]] * 4)[1], None)
 
 
 HOSTILE = [
@@ -558,17 +596,18 @@ def hostile_targets():
         "mean_of one": (lambda one: evaluate.mean_of([one]), [score]),
         "first_loss": (evaluate.first_loss, [boxes, boxes]),
         "overlap": (evaluate.overlap, [boxes, boxes]),
-        "average_precision": (lambda *a: evaluate.average_precision(*a[:3], sequences=a[3], ignored=a[4], centre_px=a[5]),
-                              [[boxes], [boxes], [[1, 1]], [0], [[0, 0]], 10]),
+        "average_precision": (lambda *a: evaluate.average_precision(*a[:3], sequences=a[3], ignored=a[4], centre_px=a[5], regions=a[6]),
+                              [[boxes], [boxes], [[1, 1]], [0], [[0, 0]], 10, [boxes]]),
         "average_precision image": (lambda *a: evaluate.average_precision([a[0]], [a[1]], [a[2]]), [boxes, boxes, [1, 1]]),
-        "froc": (lambda *a: evaluate.froc(*a[:3], sequences=a[3], ignored=a[4], rate_hz=a[5], centre_px=a[6]),
-                 [[boxes], [boxes], [[1, 1]], [0], [[0, 0]], 10, 10]),
+        "froc": (lambda *a: evaluate.froc(*a[:3], sequences=a[3], ignored=a[4], rate_hz=a[5], centre_px=a[6], regions=a[7]),
+                 [[boxes], [boxes], [[1, 1]], [0], [[0, 0]], 10, 10, [boxes]]),
         "froc image": (lambda *a: evaluate.froc([a[0]], [a[1]], [a[2]]), [boxes, boxes, [1, 1]]),
-        "hota": (lambda *a: evaluate.hota(*a[:4], sequences=a[4]), [[boxes], [[1, 2]], [boxes], [[1, 2]], [0]]),
+        "hota": (lambda *a: evaluate.hota(*a[:4], sequences=a[4], ignored=a[5], regions=a[6], centre_px=a[7]),
+                 [[boxes], [[1, 2]], [boxes], [[1, 2]], [0], [[0, 1]], [boxes], 10]),
         "hota image": (lambda *a: evaluate.hota(*([one] for one in a)), [boxes, [1, 2], boxes, [1, 2]]),
         "aot": (lambda *a: evaluate.aot(*a[:4], tracks=a[4], ranges_m=a[5], above_horizon=a[6], sequences=a[7], rate_hz=a[8], min_score=a[9],
-                                        min_track_frames=a[10]),
-                [[boxes], [[1, 2]], [boxes], [[1, 1]], [[1, 2]], [[300, 300]], [[0, 1]], [0], 10, 0.5, 0]),
+                                        min_track_frames=a[10], ignored=a[11], regions=a[12], centre_px=a[13]),
+                [[boxes], [[1, 2]], [boxes], [[1, 1]], [[1, 2]], [[300, 300]], [[0, 1]], [0], 10, 0.5, 0, [[0, 1]], [boxes], 10]),
         "aot image": (lambda *a: evaluate.aot([a[0]], [a[1]], [a[2]], [a[3]], tracks=[a[4]], ranges_m=[a[5]], above_horizon=[a[6]]),
                       [boxes, [1, 2], boxes, [1, 1], [1, 2], [300, 300], [0, 1]]),
         "aot_ranks": (lambda *a: evaluate.aot_ranks(*a[:4], rate_hz=a[4]), [[boxes], [[1, 2]], [boxes], [[1, 1]], 10]),

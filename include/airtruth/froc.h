@@ -42,6 +42,9 @@ AIRTRUTH_API FrocSequence froc_sequence(std::span<const ScoredImage> images,
                                         double duration_s,
                                         double centre_px);
 
+// For each detection of an image whether it counts neither way, by the same matching.
+AIRTRUTH_API std::vector<bool> counts_neither_way(const ScoredImage& image, double centre_px);
+
 struct FrocPoint {
   double score = 0;  // detections with this score or more
   Proportion detection;

@@ -223,6 +223,10 @@ def _flags(truth: Sequence[ArrayLike], flags: Optional[Sequence[ArrayLike]], oth
     return [np.full(len(np.asarray(one)), otherwise) for one in truth] if flags is None else flags
 
 
+def _regions(truth: Sequence[ArrayLike], regions: Optional[Sequence[ArrayLike]]) -> Sequence[ArrayLike]:
+    return [np.zeros((0, 4))] * len(truth) if regions is None else regions
+
+
 def average_precision(
     truth: Sequence[ArrayLike],
     detections: Sequence[ArrayLike],
@@ -230,21 +234,25 @@ def average_precision(
     *,
     sequences: Optional[Sequence[int]] = None,
     ignored: Optional[Sequence[ArrayLike]] = None,
+    regions: Optional[Sequence[ArrayLike]] = None,
     centre_px: float = 10,
 ) -> AveragePrecision:
     """Average precision by COCO's rules. Each argument has an item for each image: boxes of its aircraft (n x 4), boxes of its
     detections (m x 4), their scores (m).
 
     `sequences`: a number for each image, equal for those of one sequence; intervals need two sequences. `ignored`: for each image n
-    flags; a truth that is flagged counts neither way. `centre_px`: with ap_centre, a detection may lie that far from its aircraft, or
-    half of the aircraft's longer side.
+    flags; a truth that is flagged counts neither way, and is taken by one detection. `regions`: for each image boxes (k x 4) in which
+    any number of detections count neither way; `airtruth evaluate` has aircraft without a box of the labels' kind, and what ignore.csv
+    lists, as regions. `centre_px`: with ap_centre, a detection may lie that far from its aircraft, or half of the aircraft's longer side.
 
     >>> boxes = [[10, 10, 20, 10], [100, 50, 20, 10], [300, 300, 20, 10]]
     >>> ap = airtruth.evaluate.average_precision([boxes[:2]], [[boxes[0], boxes[2], boxes[1]]], [[0.9, 0.8, 0.7]])
     >>> round(ap.ap_50, 4), ap.ap_large, ap.curve_50.truths
     (0.835, None, 2)
     """
-    grouped = _by_sequence(sequences, truth=truth, ignored=_flags(truth, ignored), detections=detections, scores=scores)
+    grouped = _by_sequence(
+        sequences, truth=truth, ignored=_flags(truth, ignored), regions=_regions(truth, regions), detections=detections, scores=scores
+    )
     fields = _core.average_precision(grouped, centre_px)
     for name in ("curve_50", "curve_centre"):
         fields[name] = fields[name] and Curve(**fields[name])
@@ -258,19 +266,22 @@ def froc(
     *,
     sequences: Optional[Sequence[int]] = None,
     ignored: Optional[Sequence[ArrayLike]] = None,
+    regions: Optional[Sequence[ArrayLike]] = None,
     rate_hz: Optional[float] = None,
     centre_px: float = 10,
 ) -> Froc:
     """The free-response operating characteristic: probability of detection against false alarms, as the threshold on the score falls.
     The arguments are those of average_precision(); a detection finds the nearest aircraft within `centre_px` or half of the aircraft's
-    longer side. `rate_hz`: images a second; without it nothing is told of an hour.
+    longer side. One on a flagged aircraft alone, or with its centre in a region, is no false alarm. `rate_hz`: images a second; without it nothing is told of an hour.
 
     >>> boxes = [[10, 10, 20, 10], [100, 50, 20, 10], [300, 300, 20, 10]]
     >>> curve = airtruth.evaluate.froc([boxes[:2]], [[boxes[0], boxes[2], boxes[1]]], [[0.9, 0.8, 0.7]], rate_hz=10)
     >>> curve.score, curve.detection, curve.false_alarms_per_hour.round()
     (array([0.9, 0.8, 0.7]), array([0.5, 0.5, 1. ]), array([    0., 36000., 36000.]))
     """
-    grouped = _by_sequence(sequences, truth=truth, ignored=_flags(truth, ignored), detections=detections, scores=scores)
+    grouped = _by_sequence(
+        sequences, truth=truth, ignored=_flags(truth, ignored), regions=_regions(truth, regions), detections=detections, scores=scores
+    )
     return Froc(**_core.froc(grouped, rate_hz, centre_px))
 
 
@@ -281,18 +292,25 @@ def hota(
     tracks: Sequence[ArrayLike],
     *,
     sequences: Optional[Sequence[int]] = None,
+    ignored: Optional[Sequence[ArrayLike]] = None,
+    regions: Optional[Sequence[ArrayLike]] = None,
+    centre_px: float = 10,
 ) -> Hota:
     """Higher order tracking accuracy. Each argument has an item for each image, in the order of time: boxes of its aircraft (n x 4), the
     numbers of their tracks (n), boxes of its detections (m x 4), the numbers of their tracks (m; NaN: none, left out). A track is in an
-    image once at most. `sequences` as in average_precision().
+    image once at most. `sequences` as in average_precision(). `ignored`, `regions` and `centre_px` as in froc(): flagged aircraft, and
+    detections that froc() counts neither way, are left out.
 
     >>> box = [[10, 10, 20, 10]]
     >>> result = airtruth.evaluate.hota([box] * 4, [[1]] * 4, [box] * 4, [[7], [7], [7], [8]])
     >>> result.det_a, result.ass_a, round(result.hota, 4), result.at_overlaps["hota"].shape
     (1.0, 0.625, 0.7906, (19,))
     """
-    grouped = _by_sequence(sequences, truth=truth, truth_tracks=truth_tracks, detections=detections, tracks=tracks)
-    return Hota(**_core.hota(grouped))
+    grouped = _by_sequence(
+        sequences, truth=truth, truth_tracks=truth_tracks, ignored=_flags(truth, ignored), regions=_regions(truth, regions),
+        detections=detections, tracks=tracks,
+    )
+    return Hota(**_core.hota(grouped, centre_px))
 
 
 def aot(
@@ -305,6 +323,9 @@ def aot(
     ranges_m: Optional[Sequence[ArrayLike]] = None,
     above_horizon: Optional[Sequence[ArrayLike]] = None,
     sequences: Optional[Sequence[int]] = None,
+    ignored: Optional[Sequence[ArrayLike]] = None,
+    regions: Optional[Sequence[ArrayLike]] = None,
+    centre_px: float = 10,
     rate_hz: Optional[float] = None,
     min_score: Optional[float] = None,
     min_track_frames: int = 0,
@@ -314,6 +335,7 @@ def aot(
     tracks (m; NaN: a track of its own), the objects' ranges (n; NaN: unknown), and where they are (n; -1 below the horizon, 0 on it, 1
     above). `sequences` as in average_precision(): a sequence is a flight. `rate_hz`: images a second, for the false alarms an hour.
     `min_score`: detections with this score or more (all). `min_track_frames`: detections of tracks with fewer frames so far do not count.
+    `ignored`, `regions` and `centre_px` as in hota().
 
     >>> box, frames = [[10, 10, 20, 10]], 40
     >>> seen = airtruth.evaluate.aot([box] * frames, [[1]] * frames, [box] * frames, [[0.5]] * frames, tracks=[[7]] * frames,
@@ -321,11 +343,8 @@ def aot(
     >>> seen.edr, seen.afdr, seen.hfar
     ((1, 1, 1.0), (40, 40, 1.0), 0.0)
     """
-    return AotScore(
-        **_core.aot(
-            _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences), rate_hz, min_score, min_track_frames
-        )
-    )
+    flights = _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences, ignored, regions)
+    return AotScore(**_core.aot(flights, rate_hz, centre_px, min_score, min_track_frames))
 
 
 def aot_ranks(
@@ -338,6 +357,9 @@ def aot_ranks(
     ranges_m: Optional[Sequence[ArrayLike]] = None,
     above_horizon: Optional[Sequence[ArrayLike]] = None,
     sequences: Optional[Sequence[int]] = None,
+    ignored: Optional[Sequence[ArrayLike]] = None,
+    regions: Optional[Sequence[ArrayLike]] = None,
+    centre_px: float = 10,
     rate_hz: Optional[float] = None,
 ) -> Tuple[Optional[AotScore], Optional[AotScore]]:
     """The challenge's two ranks: aot() at the least score with at most 0.5 false tracks an hour, and with at most 0.0005 false detections
@@ -348,7 +370,8 @@ def aot_ranks(
     >>> by_hfar, by_fppi.score
     (None, 0.5)
     """
-    found = _core.aot_ranks(_flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences), rate_hz)
+    flights = _flights(truth, truth_tracks, detections, scores, tracks, ranges_m, above_horizon, sequences, ignored, regions)
+    found = _core.aot_ranks(flights, rate_hz, centre_px)
     by_hfar, by_fppi = (None if fields is None else AotScore(**fields) for fields in found)
     return by_hfar, by_fppi
 
@@ -362,10 +385,12 @@ def _flights(
     ranges_m: Optional[Sequence[ArrayLike]],
     above_horizon: Optional[Sequence[ArrayLike]],
     sequences: Optional[Sequence[int]],
+    ignored: Optional[Sequence[ArrayLike]],
+    regions: Optional[Sequence[ArrayLike]],
 ) -> List[List[Tuple[ArrayLike, ...]]]:
     return _by_sequence(
         sequences, truth=truth, truth_tracks=truth_tracks, ranges_m=_flags(truth, ranges_m, np.nan),
-        above_horizon=_flags(truth, above_horizon), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
+        above_horizon=_flags(truth, above_horizon), ignored=_flags(truth, ignored), regions=_regions(truth, regions), detections=detections, scores=scores, tracks=_flags(detections, tracks, np.nan),
     )
 
 

@@ -17,13 +17,6 @@ namespace {
 
 using namespace evaluation;
 
-// A number for each of `count` boxes.
-std::vector<double> beside(const py::handle& value, const char* what, std::size_t count) {
-  std::vector<double> numbers = list_of(value, what);
-  expect_equal(count, numbers.size(), what);
-  return numbers;
-}
-
 // The number of a track; empty for NaN.
 std::optional<std::int64_t> track_of(double number, const char* what) {
   constexpr double kMost = 9e15;
@@ -33,12 +26,30 @@ std::optional<std::int64_t> track_of(double number, const char* what) {
   return static_cast<std::int64_t>(number);
 }
 
-// Calls add(box, i) for each row that is a box.
-template <typename Add>
-void each_box(const std::vector<std::optional<Box>>& boxes, const Add& add) {
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (boxes[i]) add(*boxes[i], i);
-}
+// Of an image the truths and detections that count; the others are no boxes.
+struct Counting {
+  std::vector<std::optional<Box>> truths, detections;
+
+  // truth n x 4, ignored n, regions k x 4, detections m x 4.
+  Counting(const py::handle& truth,
+           const py::handle& ignored,
+           const py::handle& regions,
+           const py::handle& found,
+           double centre_px)
+      : truths(boxes_of(truth, "truth")), detections(boxes_of(found, "detections")) {
+    ScoredImage image{labelled_boxes(truths, ignored, regions), {}};
+    each_box(detections, [&](const Box& box, std::size_t) {
+      image.detections.push_back({box, 0});
+    });
+    const std::vector<bool> neither = counts_neither_way(image, centre_px);
+    std::size_t next = 0;
+    for (auto& truth_box : truths)
+      if (truth_box && image.truths[next++].is_ignored) truth_box.reset();
+    next = 0;
+    for (auto& detection : detections)
+      if (detection && neither[next++]) detection.reset();
+  }
+};
 
 // What one image holds, as `Image` reads it from a tuple; signals are seen.
 template <typename Image>
@@ -104,11 +115,9 @@ py::dict froc_dict(const py::list& sequences, std::optional<double> rate_hz, dou
 }
 
 // Boxes with the numbers of their tracks; those without one are left out.
-std::vector<TrackBox> track_boxes(const py::handle& boxes,
-                                  const char* what,
+std::vector<TrackBox> track_boxes(const std::vector<std::optional<Box>>& rows,
                                   const py::handle& tracks,
                                   const char* what_tracks) {
-  const auto rows = boxes_of(boxes, what);
   const std::vector<double> numbers = beside(tracks, what_tracks, rows.size());
   std::vector<TrackBox> result;
   std::set<std::int64_t> seen;
@@ -123,16 +132,20 @@ std::vector<TrackBox> track_boxes(const py::handle& boxes,
   return result;
 }
 
-// (truth n x 4, truth_tracks n, detections m x 4, tracks m).
-TrackFrame track_frame_of(const py::handle& item) {
-  const auto [truth, truth_tracks, detections, tracks] =
-      item.cast<std::tuple<py::object, py::object, py::object, py::object>>();
-  return {track_boxes(truth, "truth", truth_tracks, "truth_tracks"),
-          track_boxes(detections, "detections", tracks, "tracks")};
+// (truth n x 4, truth_tracks n, ignored n, regions k x 4, detections m x 4, tracks m).
+TrackFrame track_frame_of(const py::handle& item, double centre_px) {
+  using Object = py::object;
+  const auto [truth, truth_tracks, ignored, regions, detections, tracks] =
+      item.cast<std::tuple<Object, Object, Object, Object, Object, Object>>();
+  const Counting counting(truth, ignored, regions, detections, centre_px);
+  return {track_boxes(counting.truths, truth_tracks, "truth_tracks"),
+          track_boxes(counting.detections, tracks, "tracks")};
 }
 
-py::dict hota_dict(const py::list& sequences) {
-  const Hota hota = left_alone([frames = sequences_of(sequences, &track_frame_of)] {
+py::dict hota_dict(const py::list& sequences, double centre_px) {
+  checked_centre(centre_px);
+  const auto frame_of = [&](const py::handle& item) { return track_frame_of(item, centre_px); };
+  const Hota hota = left_alone([frames = sequences_of(sequences, frame_of)] {
     std::vector<Hota> each;
     for (const TrackFrames& sequence : frames) each.push_back(hota_of(sequence));
     return combined(each);
@@ -155,13 +168,23 @@ py::dict hota_dict(const py::list& sequences) {
   return means;
 }
 
-// (truth n x 4, truth_tracks n, ranges_m n, above_horizon n, detections m x 4, scores m, tracks m).
-AotFrame aot_frame_of(const py::handle& item) {
+// (truth n x 4, truth_tracks n, ranges_m n, above_horizon n, ignored n, regions k x 4,
+// detections m x 4, scores m, tracks m).
+AotFrame aot_frame_of(const py::handle& item, double centre_px) {
   using Object = py::object;
-  const auto [truth, truth_tracks, ranges_m, above_horizon, detections, scores, tracks] =
-      item.cast<std::tuple<Object, Object, Object, Object, Object, Object, Object>>();
+  const auto [truth,
+              truth_tracks,
+              ranges_m,
+              above_horizon,
+              ignored,
+              regions,
+              detections,
+              scores,
+              tracks] =
+      item.cast<
+          std::tuple<Object, Object, Object, Object, Object, Object, Object, Object, Object>>();
   AotFrame frame;
-  const auto truths = boxes_of(truth, "truth");
+  const auto [truths, boxes] = Counting(truth, ignored, regions, detections, centre_px);
   const std::vector<double> ids = beside(truth_tracks, "truth_tracks", truths.size());
   const std::vector<double> ranges = beside(ranges_m, "ranges_m", truths.size());
   const std::vector<double> above = beside(above_horizon, "above_horizon", truths.size());
@@ -174,7 +197,6 @@ AotFrame aot_frame_of(const py::handle& item) {
         std::isnan(ranges[i]) ? std::nullopt : std::optional(ranges[i]);
     frame.objects.push_back({*id, box, range_m, static_cast<int>(above[i])});
   });
-  const auto boxes = boxes_of(detections, "detections");
   const std::vector<double> numbers = beside(scores, "scores", boxes.size());
   const std::vector<double> of_tracks = beside(tracks, "tracks", boxes.size());
   each_box(boxes, [&](const Box& box, std::size_t i) {
@@ -208,10 +230,12 @@ struct AotInputs {
   double hours = 0;
 };
 
-AotInputs aot_inputs(const py::list& sequences, std::optional<double> rate_hz) {
+AotInputs aot_inputs(const py::list& sequences, std::optional<double> rate_hz, double centre_px) {
   checked_rate(rate_hz);
+  checked_centre(centre_px);
+  const auto frame_of = [&](const py::handle& item) { return aot_frame_of(item, centre_px); };
   AotInputs inputs;
-  for (std::vector<AotFrame>& frames : sequences_of(sequences, &aot_frame_of)) {
+  for (std::vector<AotFrame>& frames : sequences_of(sequences, frame_of)) {
     for (std::size_t i = 0; i < frames.size(); ++i) frames[i].frame = static_cast<std::int64_t>(i);
     inputs.hours += duration_s(frames.size(), rate_hz) / kSecondsPerHour;
     inputs.flights.push_back({std::move(frames)});
@@ -221,19 +245,20 @@ AotInputs aot_inputs(const py::list& sequences, std::optional<double> rate_hz) {
 
 py::dict aot(const py::list& sequences,
              std::optional<double> rate_hz,
+             double centre_px,
              std::optional<double> min_score,
              int min_track_frames) {
   const AotScore score =
-      left_alone([in = aot_inputs(sequences, rate_hz), min_score, min_track_frames] {
+      left_alone([in = aot_inputs(sequences, rate_hz, centre_px), min_score, min_track_frames] {
         return aot_score(in.flights, {min_score, in.hours, min_track_frames});
       });
   return aot_dict(score, rate_hz.has_value());
 }
 
 // (by hfar, by fppi).
-py::tuple ranks(const py::list& sequences, std::optional<double> rate_hz) {
-  const AotRanks found =
-      left_alone([in = aot_inputs(sequences, rate_hz)] { return aot_ranks(in.flights, in.hours); });
+py::tuple ranks(const py::list& sequences, std::optional<double> rate_hz, double centre_px) {
+  const AotRanks found = left_alone(
+      [in = aot_inputs(sequences, rate_hz, centre_px)] { return aot_ranks(in.flights, in.hours); });
   const auto one = [&](const std::optional<AotScore>& score) -> py::object {
     if (!score) return py::none();
     return aot_dict(*score, rate_hz.has_value());

@@ -321,21 +321,37 @@ void checked_centre(double centre_px) {
     throw py::value_error("centre_px is no finite number of 0 or more");
 }
 
+std::vector<double> beside(const py::handle& value, const char* what, std::size_t count) {
+  std::vector<double> numbers = list_of(value, what);
+  expect_equal(count, numbers.size(), what);
+  return numbers;
+}
+
+std::vector<LabelledBox> labelled_boxes(const std::vector<std::optional<Box>>& truths,
+                                        const py::handle& ignored,
+                                        const py::handle& regions) {
+  const std::vector<double> flags = beside(ignored, "truth and ignored", truths.size());
+  std::vector<LabelledBox> labelled;
+  each_box(truths, [&](const Box& box, std::size_t i) {
+    labelled.push_back({.box_px = box, .is_ignored = flags[i] != 0});
+  });
+  each_box(boxes_of(regions, "regions"), [&](const Box& box, std::size_t) {
+    labelled.push_back({.box_px = box, .is_region = true});
+  });
+  return labelled;
+}
+
 evaluation::ScoredImage scored_image_of(const py::handle& item) {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  const auto [truth, ignored, detections, scores] =
-      item.cast<std::tuple<py::object, py::object, py::object, py::object>>();
-  const auto truths = boxes_of(truth, "truth");
-  const std::vector<double> flags = list_of(ignored, "ignored");
+  const auto [truth, ignored, regions, detections, scores] =
+      item.cast<std::tuple<py::object, py::object, py::object, py::object, py::object>>();
+  ScoredImage image{labelled_boxes(boxes_of(truth, "truth"), ignored, regions), {}};
   const auto boxes = boxes_of(detections, "detections");
   const std::vector<double> numbers = finite_list_of(scores, "scores");
-  expect_equal(truths.size(), flags.size(), "truth and ignored");
   expect_equal(boxes.size(), numbers.size(), "detections and scores");
-  ScoredImage image;
-  for (std::size_t i = 0; i < truths.size(); ++i)
-    if (truths[i]) image.truths.push_back({.box_px = *truths[i], .is_ignored = flags[i] != 0});
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (boxes[i]) image.detections.push_back({*boxes[i], numbers[i]});
+  each_box(boxes, [&](const Box& box, std::size_t i) {
+    image.detections.push_back({box, numbers[i]});
+  });
   return image;
 }
 

@@ -7,15 +7,17 @@
 #include "runners/results/detections.h"
 
 namespace airtruth::evaluation {
+namespace {
 
-FrocSequence froc_sequence(std::span<const ScoredImage> images,
-                           double duration_s,
-                           double centre_px) {
+struct Matched {
   scores::TruthSequence truth;
-  truth.duration_s = duration_s;
   scores::ScoredDetections scored;
+};
+
+Matched matched(std::span<const ScoredImage> images, double centre_px) {
+  Matched result;
   for (const ScoredImage& image : images) {
-    scores::TruthFrame& frame = truth.frames.emplace_back();
+    scores::TruthFrame& frame = result.truth.frames.emplace_back();
     for (const LabelledBox& box : image.truths) {
       if (box.is_region) {
         frame.ignored_px.push_back(box.box_px);
@@ -26,12 +28,30 @@ FrocSequence froc_sequence(std::span<const ScoredImage> images,
       object.box_px = box.box_px;
       object.counts = !box.is_ignored;
     }
-    std::vector<results::Detection>& detections = scored.detections.frames.emplace_back();
+    auto& detections = result.scored.detections.frames.emplace_back();
     for (const ScoredBox& box : image.detections)
       detections.push_back({.box_px = box.box_px, .score = box.score});
   }
-  scored.matches = scores::matches_of(scored.detections, truth, centre_px);
-  return scores::froc_sequence_of(truth, scored);
+  result.scored.matches = scores::matches_of(result.scored.detections, result.truth, centre_px);
+  return result;
+}
+
+}  // namespace
+
+FrocSequence froc_sequence(std::span<const ScoredImage> images,
+                           double duration_s,
+                           double centre_px) {
+  Matched all = matched(images, centre_px);
+  all.truth.duration_s = duration_s;
+  return scores::froc_sequence_of(all.truth, all.scored);
+}
+
+std::vector<bool> counts_neither_way(const ScoredImage& image, double centre_px) {
+  std::vector<bool> result;
+  const Matched one = matched({&image, 1}, centre_px);
+  for (const scores::Match& match : one.scored.matches[0])
+    result.push_back(match.kind == scores::MatchKind::kIgnored);
+  return result;
 }
 
 }  // namespace airtruth::evaluation

@@ -20,6 +20,7 @@ TEST(FrocSequence, HoldsTheBestScoreOfEachAircraftAndWhatFindsNothing) {
   const FrocSequence sequence = froc_sequence(std::vector{image, ScoredImage{}}, 0.2, 10);
   EXPECT_EQ(sequence.best_scores, (std::vector<std::optional<double>>{0.7, {}}));
   EXPECT_EQ(sequence.false_alarm_scores, std::vector<double>{0.9});
+  EXPECT_EQ(counts_neither_way(image, 10), (std::vector{false, false, false, true, true}));
   EXPECT_EQ(sequence.images, 2);
   EXPECT_EQ(sequence.duration_s, 0.2);
   // Half of the longer side is near enough where it is more than the distance.
