@@ -4,7 +4,7 @@
 Links lead somewhere, and so does every reference to a decision or to a page of docs/ in any file of the source. A decision states
 its question, its choice and what reopens it on half a page, and the index lists it. Documents say what is, not how it came to be.
 The README is short and names every command of the program, docs/reference/commands.md is what the program's help says, the
-versions of CMakeLists.txt, CITATION.cff, CHANGELOG.md and the program agree, the paper and its data set are named and linked,
+notebook of examples/ is what its script makes, the versions of CMakeLists.txt, CITATION.cff, CHANGELOG.md and the program agree, the paper and its data set are named and linked,
 and no private idiom is left.
 """
 
@@ -132,10 +132,11 @@ def main():
         for wanted in (TITLE, DATA_SET, "CITATION.cff"):
             if wanted not in flat(files[path]):
                 faults.append(f"{path} does not hold '{wanted}'")
-    reference = [sys.executable, os.path.join(source, "docs", "reference", "make_commands.py"), airtruth, "--check"]
-    checked = subprocess.run(reference, capture_output=True, text=True)
-    if checked.returncode != 0:
-        faults.append(checked.stderr.strip())
+    for script, *arguments in (["make_commands.py", airtruth], ["make_notebook.py"]):
+        writer = [sys.executable, os.path.join(source, "docs", "reference", script), *arguments, "--check"]
+        checked = subprocess.run(writer, capture_output=True, text=True)
+        if checked.returncode != 0:
+            faults.append(checked.stderr.strip())
     if TITLE not in flat(files["CITATION.cff"]):
         faults.append("CITATION.cff does not name the paper")
     if faults:
