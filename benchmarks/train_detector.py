@@ -5,14 +5,15 @@
     python3 benchmarks/train_detector.py SET... -o aircraft.onnx [--minutes 12]
     python3 benchmarks/train_detector.py CATALOGUE.toml -o aircraft.onnx     new pictures at each step, from a training stream
 
-A stream needs the package airtruth (docs/python.md), and crops of 280 px or more in [stream] size_px. Needs python3-torch, python3-onnx and python3-opencv of Debian 12. The network is fully convolutional and sees one grey picture;
+A stream needs crops of 280 px or more in [stream] size_px. Needs the package airtruth (docs/python.md), and python3-torch, python3-onnx
+and python3-opencv of Debian 12. The network is fully convolutional and sees one grey picture;
 it answers, for every cell of 4 x 4 px, how likely an aircraft's centre lies there, where in the cell, and how large it is
 (Zhou, Wang and Kraehenbuehl 2019, "Objects as Points"). Beside aircraft.onnx it writes aircraft.json, which says how its input and
 output are to be read (docs/formats/detector-model.md). The labels are the covered boxes of the sequences' truth.
 """
 
 import argparse
-import glob
+import itertools
 import json
 import math
 import os
@@ -25,6 +26,8 @@ import numpy as np
 import torch
 from torch import nn
 from torch.nn import functional
+
+import airtruth
 
 STRIDE = 4          # px in a cell of the output
 MULTIPLE = 8        # the input's sides are multiples of it: the network halves them three times
@@ -91,32 +94,13 @@ class Frames:
         self.pictures, self.boxes, self.ignored = [], [], []
 
     def add_set(self, folder, every):
-        found = sorted(glob.glob(os.path.join(folder, "sequences", "**", "truth.jsonl"), recursive=True))
-        if not found:
-            sys.exit(f"train_detector: {folder} holds no sequences; expected the folder of `airtruth dataset build`")
-        for path in found:
-            self.add_sequence(os.path.dirname(path), every)
-
-    def add_sequence(self, folder, every):
-        name = os.path.basename(folder)
-        videos = [v for v in glob.glob(os.path.join(glob.escape(folder), glob.escape(name) + ".*"))
-                  if v.endswith((".mp4", ".mkv", ".avi"))]
-        if not videos:
-            sys.exit(f"train_detector: {folder} holds no video {name}.mp4, .mkv or .avi")
-        video = cv2.VideoCapture(videos[0])
-        with open(os.path.join(folder, "truth.jsonl"), encoding="utf-8") as lines:
-            for number, line in enumerate(lines):
-                whole, picture = video.read()
-                if not whole:
-                    sys.exit(f"train_detector: {videos[0]} ends at frame {number}, before its truth")
-                if number % every == 0:
-                    self.add(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), json.loads(line))
-
-    def add(self, picture, truth):
-        boxes, ignored = boxes_of(truth["intruders"])
-        self.pictures.append(picture)
-        self.boxes.append(boxes)
-        self.ignored.append(ignored)
+        data = airtruth.DataSet(folder)
+        for name in data.names:
+            for frame in itertools.islice(data[name], 0, None, every):
+                boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
+                self.pictures.append(grey_of(frame))
+                self.boxes.append(boxes)
+                self.ignored.append(ignored)
 
     def draw(self, with_aircraft, random):
         for _ in range(20):
@@ -135,7 +119,6 @@ class Streamed:
     next = 0  # index of the sample that is drawn next
 
     def __init__(self, catalogue, seed):
-        import airtruth
         self.stream = airtruth.Stream(pathlib.Path(catalogue), seed=seed)
 
     def draw(self, with_aircraft, random):
@@ -148,10 +131,15 @@ class Streamed:
                 break
         for some in (boxes, ignored):
             some[:, :2] -= sample.crop[:2]
-        return frame.gray, boxes, ignored
+        return grey_of(frame), boxes, ignored
 
     def words(self):
         return "a stream"
+
+
+def grey_of(frame):
+    """Luma in the full range, as `airtruth detect` shows it to the network."""
+    return frame.gray.copy() if frame.is_full_range else np.interp(frame.gray, (16, 235), (0, 255)).round().astype(np.uint8)
 
 
 def boxes_of(intruders):
@@ -349,6 +337,15 @@ def write(network, path):
     os.replace(unfinished, path)
 
 
+def frames_of(options):
+    if options.sets[0].endswith(".toml"):
+        return Streamed(options.sets[0], options.seed)
+    frames = Frames()
+    for folder in options.sets:
+        frames.add_set(folder, options.every)
+    return frames
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sets", nargs="+", metavar="SET", help="folders of `airtruth dataset build`, or one catalogue with a table [stream]")
@@ -365,14 +362,12 @@ def main():
     torch.set_num_threads(options.threads)
     cv2.setNumThreads(1)
     torch.manual_seed(options.seed)
-    if any(source.endswith(".toml") for source in options.sets):
-        if len(options.sets) > 1:
-            parser.error("a catalogue stands alone; expected one catalogue, or data sets")
-        frames = Streamed(options.sets[0], options.seed)
-    else:
-        frames = Frames()
-        for folder in options.sets:
-            frames.add_set(folder, options.every)
+    if any(source.endswith(".toml") for source in options.sets) and len(options.sets) > 1:
+        parser.error("a catalogue stands alone; expected one catalogue, or data sets")
+    try:
+        frames = frames_of(options)
+    except airtruth.Error as error:
+        sys.exit(f"train_detector: {error}")
     network = Network().to(memory_format=torch.channels_last)
     print(f"{frames.words()}, {sum(p.numel() for p in network.parameters())} parameters", flush=True)
     step = train(network, frames, options)

@@ -4,8 +4,8 @@
 Links lead somewhere, and so does every reference to a decision or to a page of docs/ in any file of the source. A decision states
 its question, its choice and what reopens it on half a page, and the index lists it. Documents say what is, not how it came to be.
 The README is short and names every command of the program, docs/reference/commands.md is what the program's help says, the
-notebook of examples/ is what its script makes, the versions of CMakeLists.txt, CITATION.cff, CHANGELOG.md and the program agree, the paper and its data set are named and linked,
-and no private idiom is left.
+notebook of examples/ is what its script makes, the versions of CMakeLists.txt, CITATION.cff, CHANGELOG.md and the program agree,
+the paper and its data set are named and linked, and no private idiom is left.
 """
 
 import os

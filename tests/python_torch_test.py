@@ -7,6 +7,7 @@ trains.
 """
 
 import doctest
+import importlib.util
 import os
 import pathlib
 import re
@@ -170,6 +171,16 @@ class Pages(unittest.TestCase):
         self.assertEqual(len(losses), 2, done.stdout)
         self.assertLess(losses[1], losses[0])
         self.assertRegex(done.stdout, r"\d+ aircraft in 160 pictures: AP at IoU 0.5 is \d\.\d+, by centre distance \d\.\d+\n$")
+
+    @unittest.skipUnless(importlib.util.find_spec("cv2"), "cv2 (Debian's python3-opencv) is not installed")
+    def test_the_training_script_takes_a_set_and_its_stream(self):
+        pathlib.Path("set.toml").write_text(TRAINING.replace("count = 100", "count = 4\nframe_count = 3").replace("[64, 64]", "[160, 120]"))
+        subprocess.run([AIRTRUTH, "dataset", "build", "set.toml", "--out", "set"], check=True, capture_output=True)
+        for source, words in (("set", r"8 frames, \d+ boxes"), ("set.toml", "a stream")):
+            done = subprocess.run([sys.executable, os.path.join(SOURCE, "benchmarks", "train_detector.py"), source, "-o", "mine.onnx", "--steps", "2",
+                                   "--batch", "4", "--every", "2"], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": PACKAGES})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, rf"^{words}, \d+ parameters\n2 steps; wrote mine.onnx\n$")
 
     def test_examples(self):
         options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The training script compiles and refuses what it cannot use: python3 train_detector_test.py
+"""The training script compiles and refuses what it cannot use: python3 train_detector_test.py PACKAGES
 
-Training itself needs torch, which is not installed where the tests run; the libraries are stood in for, so that the
-script gets as far as its arguments and its data.
+Training itself needs torch, which is not installed where the tests run (python_torch_test trains where it is); the libraries are
+stood in for, so that the script gets as far as its arguments and its data. PACKAGES is the folder that holds the package airtruth.
 """
 import os
 import py_compile
@@ -12,11 +12,12 @@ import sys
 import tempfile
 import unittest
 
+PACKAGES = os.path.abspath(sys.argv.pop())
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "benchmarks", "train_detector.py")
 WITH_STAND_INS = """
 import runpy, sys
 from unittest.mock import MagicMock
-for name in ("cv2", "numpy", "torch", "torch.nn", "torch.nn.functional"):
+for name in ("cv2", "torch", "torch.nn", "torch.nn.functional"):
     sys.modules[name] = MagicMock()
 sys.modules["torch"].nn = sys.modules["torch.nn"]
 sys.modules["torch.nn"].Module = object
@@ -27,7 +28,8 @@ runpy.run_path(script, run_name="__main__")
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, "-c", WITH_STAND_INS, SCRIPT, *arguments], capture_output=True, text=True, check=False)
+    return subprocess.run([sys.executable, "-c", WITH_STAND_INS, SCRIPT, *arguments], capture_output=True, text=True, check=False,
+                          env={**os.environ, "PYTHONPATH": PACKAGES})
 
 
 class TrainDetector(unittest.TestCase):
@@ -47,7 +49,7 @@ class TrainDetector(unittest.TestCase):
             done = run(folder, "-o", os.path.join(folder, "a.onnx"))
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-            self.assertIn("holds no sequences", done.stderr)
+            self.assertIn("holds no finished sequence", done.stderr)
             self.assertEqual(os.listdir(folder), [])
 
 
