@@ -113,7 +113,8 @@ struct Sized {
   Vector3 camera_ned_m;
   Vector3 direction;
   double size_px = 0;
-  double time_s = 0;
+  // That sets the angles of its moving parts.
+  double turned_s = 0;
 
   std::optional<Vector3> position(const projection::SilhouettePoints& silhouette,
                                   const Quaternion& world_from_body,
@@ -125,7 +126,7 @@ struct Sized {
     for (int round = 0; round < kMaxRounds; ++round) {
       const Vector3 at = raised(camera_ned_m + range_m * direction);
       const auto exact =
-          projection::exact_box(sight, silhouette, Rigid{world_from_body, at}, time_s);
+          projection::exact_box(sight, silhouette, Rigid{world_from_body, at}, turned_s);
       if (!exact.box || exact.partly_unseen) {
         // A part of the aircraft is behind the camera or beyond the lens's field.
         range_m *= 2;
@@ -220,7 +221,11 @@ void meet(scene::Scene& scene,
   setup::SharedInputs unshared;
   const auto type = (shared != nullptr ? *shared : unshared).type_of(intruder, path, {}, {});
   const projection::Sight sight = setup::sight_of(lens, {}, own, camera, meets_s, {});
-  const Sized sized{sight, camera.position_in_world, direction, *encounter.size_px, meets_s};
+  const Sized sized{sight,
+                    camera.position_in_world,
+                    direction,
+                    *encounter.size_px,
+                    meets_s + intruder.spin_time_s};
   const auto position =
       sized.position(type->silhouette, path.at(meets_s)->world_from_body, guess_m);
   if (!position)

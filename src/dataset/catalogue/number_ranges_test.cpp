@@ -298,8 +298,8 @@ class NumberRanges : public testing::Test {
 };
 
 const std::string kIntruder =
-    "[[intruder]]\naircraft = 'box.obj'\nmodel_scale = 1.5\nstart_s = 0\nyaw_deg = 80\n"
-    "pitch_deg = 1\nroll_deg = 2\n";
+    "[[intruder]]\naircraft = 'box.obj'\nmodel_scale = 1.5\nspin_time_s = 0.2\nstart_s = 0\n"
+    "yaw_deg = 80\npitch_deg = 1\nroll_deg = 2\n";
 
 // Every key of a scene, the keys that exclude each other in one or the other.
 std::vector<std::string> scenes() {

@@ -34,6 +34,14 @@ void begin_later(scene::Scene& scene, double time_s) {
   }
 }
 
+// Propellers and rotors of the intruders at places of their own: the time of a sample's first frame
+// is always 0, and models of one type share their parts.
+void turn_propellers(scene::Scene& scene, std::uint64_t seed, std::int64_t index) {
+  Random random = Seed(seed).stream("spin", static_cast<std::uint64_t>(index));
+  for (scene::Intruder& intruder : scene.intruders)
+    if (is_aircraft(intruder)) intruder.spin_time_s = random.uniform();
+}
+
 }  // namespace
 
 Planner::Planner(const catalogue::Catalogue& catalogue,
@@ -156,7 +164,11 @@ scene::Scene Planner::scene_of(const Rule& rule,
               "count", static_cast<std::uint64_t>(place.index / drawing.count))();
         drawing.types = fleet_of(rule.types, rule.seed, index, kEveryType);
         catalogue::Item item = catalogue::stream_item(catalogue_, drawing, place, rule.seed);
+        // Encounters draw their intruders when they are placed, and all others are placed by their
+        // size.
+        turn_propellers(item.scene, rule.seed, index);
         catalogue::place(item, catalogue_, files_(place.background), &shared_);
+        if (kEveryType) turn_propellers(item.scene, rule.seed, index);
         if (is_passage(drawing))
           keep_part_in_view(
               item, Seed(rule.seed).stream("part", static_cast<std::uint64_t>(place.index)));

@@ -114,15 +114,20 @@ void expect_masks(const Sample::Frame& frame,
   }
 }
 
+// The folder of a scene that render() made.
+fs::path rendered(const scene::Scene& scene, const fs::path& out) {
+  pipeline::Options how;
+  how.use_cache = false;
+  return pipeline::render(scene, out, how).folder;
+}
+
 // render() of the sample's scene, read back from its text, gives the same pictures and truth.
 void expect_as_rendered(const Stream& stream, std::int64_t index, const fs::path& out) {
   const Sample sample = stream.sample(index);
   scene::Scene scene =
       scene::parse_scene(scene::toml_from_scene(stream.scene(index)), out / "scene.toml");
   scene.output.masks = stream.has_masks();
-  pipeline::Options how;
-  how.use_cache = false;
-  const fs::path made = pipeline::render(scene, out, how).folder;
+  const fs::path made = rendered(scene, out);
   video::Reader video(made / (scene.name + ".mkv"));
   const annotation::Truth truth = annotation::read_truth(made / "truth.jsonl");
   ASSERT_EQ(sample.frames.size(), truth.frames.size());
@@ -177,6 +182,22 @@ TEST_F(StreamOfFlights, SoAreEncountersFromWhereTheyAreInView) {
   EXPECT_GE(seen, 20);
   for (const std::int64_t index : {0, 1, 2, 3})
     expect_as_rendered(stream, index, folder_->path() / "encounters");
+}
+
+TEST_F(StreamOfFlights, PropellersOfEachIntruderStandAtAPlaceOfTheirOwn) {
+  const Stream stream = stream_of(
+      background("flight3") +
+      "[[random]]\ncount = 100\naircraft = [\"Dromader/*\"]\nsize_px = [120, 150]\nazimuth_deg = "
+      "[-5, 5]\nelevation_deg = [-5, 5]\n[stream]\npicture = \"frame\"\nintruders = [2, 2]\n");
+  std::set<double> times;
+  for (std::int64_t index = 0; index < 8; ++index)
+    for (const scene::Intruder& intruder : stream.scene(index).intruders)
+      times.insert(intruder.spin_time_s);
+  EXPECT_EQ(times.size(), 16u);
+  scene::Scene scene = stream.scene(0);
+  for (scene::Intruder& intruder : scene.intruders) intruder.spin_time_s = 0;
+  video::Reader video(rendered(scene, folder_->path() / "at rest") / (scene.name + ".mkv"));
+  EXPECT_FALSE(image::identical(video.next()->picture, stream.sample(0).frames[0].picture));
 }
 
 TEST_F(StreamOfFlights, ASampleDependsOnItsIndexAndTheSeedAlone) {

@@ -20,6 +20,7 @@ void read_axes(const TableReader& table, Intruder& intruder) {
   intruder.model_up = table.choice("model_up", axes);
   intruder.model_scale = table.number("model_scale", kModelScale);
   intruder.catalogue_scale = table.number("catalogue_scale", kModelScale);
+  intruder.spin_time_s = table.number("spin_time_s", kTime).value_or(0);
   if (intruder.model_forward && intruder.model_up &&
       intruder.model_forward->back() == intruder.model_up->back())
     table.fail("model_up",
@@ -117,6 +118,7 @@ std::vector<Intruder> intruders_from(const TableReader& root) {
                                                "model_up",
                                                "model_scale",
                                                "catalogue_scale",
+                                               "spin_time_s",
                                                "waypoints_ned_m",
                                                "speed_mps",
                                                "times_s",

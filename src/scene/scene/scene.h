@@ -226,6 +226,8 @@ struct Intruder {
   std::optional<double> catalogue_scale;
   // Scale of a model file, in metres per unit.
   std::optional<double> model_scale;
+  // How long its propellers and rotors have turned when the clip begins.
+  double spin_time_s = 0;
   std::vector<Vector3> waypoints_ned_m;
   std::optional<double> speed_mps;
   std::vector<double> times_s;

@@ -45,6 +45,7 @@ aircraft = "models/plane.OBJ"
 model_forward = "-x"
 model_up = "z"
 model_scale = 0.3048
+spin_time_s = 0.25
 waypoints_ned_m = [[1, 2, 3], [4, 5, 6]]
 times_s = [0.1, 1e-3e]
 )";
@@ -240,6 +241,7 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
                                 "model_forward",
                                 "model_up",
                                 "model_scale",
+                                "spin_time_s",
                                 "waypoints_ned_m",
                                 "speed_mps",
                                 "times_s",

@@ -189,6 +189,7 @@ void add_intruder(Text& text, const Intruder& intruder) {
   text.add("model_up", intruder.model_up);
   text.add("model_scale", intruder.model_scale);
   text.add("catalogue_scale", intruder.catalogue_scale);
+  if (intruder.spin_time_s != 0) text.add("spin_time_s", intruder.spin_time_s);
   add_path(text, intruder, "intruder");
 }
 

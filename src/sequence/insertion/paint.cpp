@@ -207,8 +207,9 @@ image::Layer render_layer(const scene::Scene& scene,
   std::vector<render::Instance> instances;
   bool any = false;
   for (std::size_t i = 0; i < world.actors.size(); ++i) {
+    const setup::Actor& actor = world.actors[i];
     render::Instance instance{
-        world.actors[i].type->model.get(), {}, moment.time_s, moment.twists[i]};
+        actor.type->model.get(), {}, actor.turned_s(moment.time_s), moment.twists[i]};
     if (moment.states[i]) instance.world_from_body = moment.states[i]->world_from_body_rigid();
     any = any || moment.search[i].has_value();
     instances.push_back(instance);

@@ -110,7 +110,7 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
     moment.boxes.push_back(state ? projection::exact_box(moment.sight,
                                                          actor.type->silhouette,
                                                          state->world_from_body_rigid(),
-                                                         time_s,
+                                                         actor.turned_s(time_s),
                                                          twist)
                                  : projection::ExactBox{});
     moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));

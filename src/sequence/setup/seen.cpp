@@ -133,13 +133,14 @@ scene::Intruder through_places(const scene::Intruder& intruder, const std::vecto
 std::optional<Box> whole_box(const Ray& ray,
                              const trajectory::Path& path,
                              const World& world,
-                             const projection::SilhouettePoints& aircraft) {
+                             const projection::SilhouettePoints& aircraft,
+                             double spin_time_s) {
   const auto state = path.at(ray.frame_s);
   check(state.has_value(), "the path reaches its own moments");
   const auto exact = projection::exact_box(ray.sight,
                                            aircraft,
                                            state->world_from_body_rigid(),
-                                           ray.frame_s,
+                                           ray.frame_s + spin_time_s,
                                            twist_of(path, *state, ray.frame_s, world.shutter));
   return exact.partly_unseen ? std::nullopt : exact.box;
 }
@@ -163,7 +164,7 @@ void settle_boxes(scene::Intruder intruder,
     off = nullptr;
     bool is_settled = true;
     for (Ray& ray : rays) {
-      const auto box = whole_box(ray, path, world, aircraft);
+      const auto box = whole_box(ray, path, world, aircraft, intruder.spin_time_s);
       if (box && meets_frame({ray.seen->pixel.x(), ray.seen->pixel.y(), 0, 0}, world.lens.size())) {
         const Pixel miss = ray.seen->pixel - centre_of(*box);
         is_settled = is_settled && miss.norm() <= kMiddlePx;

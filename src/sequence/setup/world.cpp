@@ -55,7 +55,7 @@ Actor actor_of(const scene::Intruder& intruder,
       at_place(intruder.where, [&] { return types.type_of(intruder, path, warn, stop); });
   const char* object_class =
       intruder.distractor ? enum_name(intruder.distractor->kind) : annotation::kAircraft.data();
-  return {intruder.id, name_in_labels(intruder), object_class, path, type};
+  return {intruder.id, name_in_labels(intruder), object_class, path, type, intruder.spin_time_s};
 }
 
 // An aircraft that is to be seen at a width is placed by its usual length, loaded for the airspeed

@@ -41,6 +41,10 @@ struct Actor {
   std::string object_class;
   trajectory::Path path;
   std::shared_ptr<const Type> type;
+  double spin_time_s = 0;  // scene::Intruder::spin_time_s
+
+  // The time that sets the angles of its moving parts.
+  double turned_s(double time_s) const { return time_s + spin_time_s; }
 };
 
 struct World {

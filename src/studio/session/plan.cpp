@@ -153,7 +153,8 @@ Pixel range_times_offset(const setup::Actor& actor,
   const auto state = actor.path.at(time_s);
   if (!state) return Pixel::Zero();
   const auto box =
-      projection::exact_box(sight, actor.type->silhouette, state->world_from_body_rigid(), time_s)
+      projection::exact_box(
+          sight, actor.type->silhouette, state->world_from_body_rigid(), actor.turned_s(time_s))
           .box;
   const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
   if (!box || !pixel) return Pixel::Zero();
