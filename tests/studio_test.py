@@ -292,16 +292,16 @@ def test_near_miss(airtruth, browser, root):
     browser.wait("document.querySelectorAll('.handle').length === 2")
     page.rest()
     browser.click_on(".near-miss summary")
-    type_into(browser, "Miss distance, m", "80")
-    browser.key("Enter")
+    for name, value in (("Pass at, m", "80"), ("Above, m", "10")):
+        type_into(browser, name, value)
+        browser.key("Enter")
     browser.run("(() => { const side = document.querySelector('.near-miss select'); side.value = 'left'; side.dispatchEvent(new Event('change')); })()")
     browser.wait(f"{STORE}.state.motion === 'measured'", 120)
     press_button(browser, "Fly past")
     browser.wait(f"{STORE}.state.scene.intruder[0].encounter")
     page.rest()
     miss = lambda: browser.run(f"{STORE}.plan.tracks[0].cpa")
-    across = lambda: (miss()["right_m"] ** 2 + miss()["ahead_m"] ** 2) ** 0.5
-    near("the miss distance", [across(), miss()["right_m"] < 0], [80, True], 0.1)
+    near("the miss distance", [miss()["distance_m"], miss()["above_m"], miss()["right_m"] < 0], [80, 10, True], 0.1)
     expect("its field", browser.run("document.querySelector('input[aria-label=\"Miss distance, m\"]').value"), "80")
     browser.key("s", CONTROL)
     browser.wait(f"{STORE}.state.saved")
@@ -312,7 +312,20 @@ def test_near_miss(airtruth, browser, root):
     type_into(browser, "Miss distance, m", "30")
     browser.key("Enter")
     page.rest()
-    near("another miss distance", [across(), miss()["right_m"] < 0], [30, True], 0.1)
+    near("another miss distance", [miss()["distance_m"], miss()["right_m"] < 0], [30, True], 0.3)
+    type_into(browser, "Miss distance, m", "5")
+    expect("nearer than it is above", words_of(browser, ".expected"), ["Expected a number from 10 to 100000 m, since it is so far above or below."])
+    browser.key("Escape")
+    browser.click_on(".near-miss summary")
+    type_into(browser, "Course, °", "250")
+    browser.key("Enter")
+    page.rest()
+    near("on another course", [miss()["distance_m"], miss()["right_m"] < 0], [30, True], 0.5)
+    # What is undone to the file's text is saved.
+    for _ in range(3):
+        browser.key("z", CONTROL)
+        page.rest()
+    expect("saved", page.state()["saved"], True)
     expect("console", browser.errors, [])
     server.end()
     print("near miss: at its pixel as rendered, past at the stated distance")
@@ -346,7 +359,7 @@ def press_button(browser, words):
 
 def type_into(browser, name, text):
     """Another text in a number's field, not yet entered."""
-    selector = f"input[aria-label={json.dumps(name)}]"
+    selector = f"input[aria-label={json.dumps(name, ensure_ascii=False)}]"
     browser.click_on(selector)
     browser.run(f"document.querySelector({json.dumps(selector)}).select()")
     browser.type(text)

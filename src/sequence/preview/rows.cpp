@@ -19,8 +19,10 @@ std::string cell(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-// What is nearly 0 is 0, not -0.0.
-double to_tenths(double value) { return std::round(10 * value) / 10 + 0.0; }
+// "12.0 right", or "12.0 left" of a number below 0.
+std::string to_side(double value, const char* positive, const char* negative) {
+  return fmt::format("{:.1f} {}", std::abs(value), value < 0 ? negative : positive);
+}
 
 Box around(const Box& a, const Box& b) {
   const double x = std::min(a.x, b.x);
@@ -144,14 +146,13 @@ std::vector<std::string> approach_lines(const setup::World& world,
       lines.push_back(fmt::format("{}: not in the world while the clip lasts", party.name));
       continue;
     }
-    std::string line =
-        fmt::format("{}: closest {:.1f} m at {:.2f} s ({:.1f} ahead, {:.1f} right, {:.1f} above)",
-                    party.name,
-                    closest->distance_m,
-                    closest->time_s,
-                    to_tenths(closest->offset.ahead_m),
-                    to_tenths(closest->offset.right_m),
-                    to_tenths(closest->offset.above_m));
+    std::string line = fmt::format("{}: closest {:.1f} m at {:.2f} s ({}, {}, {})",
+                                   party.name,
+                                   closest->distance_m,
+                                   closest->time_s,
+                                   to_side(closest->offset.ahead_m, "ahead", "behind"),
+                                   to_side(closest->offset.right_m, "right", "left"),
+                                   to_side(closest->offset.above_m, "above", "below"));
     const bool is_seen = std::any_of(rows.begin(), rows.end(), [&](const PreviewRow& row) {
       return row.party == i && row.box_px;
     });

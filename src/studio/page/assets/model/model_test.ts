@@ -3,7 +3,7 @@
 import {Lost, Refused} from './connection';
 import type {Clip, State, Table, Track} from './contract';
 import {type Edit, Edits} from './edits';
-import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, toMoments, withMiss, withMoment} from './flyers';
+import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, toMoments, withCourse, withMiss, withMoment} from './flyers';
 import {acrossRelative, freePlace, nedAt, seenAt, turned} from './geometry';
 import {Store} from './store';
 
@@ -177,6 +177,7 @@ tests['The miss distance of an encounter, and another one on its side'] = () => 
   const plan = {frames: ned.map((_, k) => k), own: {ned}} as never;
   near(missOf(one, plan, CLIP), Math.hypot(30, 60), 1e-6);
   same(withMiss(one, plan, CLIP, 100), [{set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: -44.7}]);
+  same(withCourse(one, plan, CLIP, 180)[1], {set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: -67.1});
   const across = flyer({encounter: {cpa_time_s: 2, cpa_ahead_m: 0, course_deg: 180, speed_mps: 40}});
   same(missOf(across, plan, CLIP), 0);
   same(

@@ -36,7 +36,14 @@ export class CameraPanel extends Part {
         (value) => [{set: ['lens', 'vertical_fov_deg'], to: value}]);
     const angles = ANGLES.map(
         (label, k) => this.row(
-            {label, unit: '°', step: 0.1, min: k === 1 ? -90 : -360, max: k === 1 ? 90 : 360, placeholder: 'measured'},
+            {
+              label,
+              unit: '°',
+              step: 0.1,
+              min: k === 1 ? -90 : -360,
+              max: k === 1 ? 90 : 360,
+              placeholder: 'not stated'
+            },
             (scene) => {
               const attitude = tableOf(scene.camera).attitude_yaw_pitch_roll_deg;
               return Array.isArray(attitude) ? Number(attitude[k]) : null;

@@ -15,14 +15,8 @@ export class NearMissForm {
   private wanted: NearMiss = {miss_m: USUAL_MISS_M, right: true, speed_mps: 0, above_m: null};
   private isSpeedStated = false;
   private of = '';  // whose numbers these are
-  private miss = new NumberField({
-    label: 'Miss distance',
-    unit: 'm',
-    step: 10,
-    min: 0,
-    max: MOST_MISS_M,
-    taken: (value) => this.take({miss_m: value})
-  });
+  private miss = new NumberField(
+      {label: 'Pass at', unit: 'm', step: 10, min: 0, max: MOST_MISS_M, taken: (value) => this.take({miss_m: value})});
   private above = new NumberField({
     label: 'Above',
     unit: 'm',
@@ -45,8 +39,8 @@ export class NearMissForm {
           this.take({speed_mps: value});
         }
   });
-  private side = choiceField(
-      'Passes on the', [['right', 'right'], ['left', 'left']], (side) => this.take({right: side === 'right'}));
+  private side =
+      choiceField('On the', [['right', 'right'], ['left', 'left']], (side) => this.take({right: side === 'right'}));
   private words = h('p', {class: 'hint'});
 
   constructor(private studio: Studio) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx} from '../model/contract';
-import {frameOf} from '../model/flyers';
+import {STATED, TO_MOMENTS, flyerAt, frameOf} from '../model/flyers';
 import {type Point, clamp} from '../model/geometry';
 import type {Look, Member} from '../model/store';
 import {OverlayLayer} from './overlay_layer';
@@ -170,9 +170,25 @@ export class PictureView extends Part {
     if (this.paths.move(event)) return;
     const [dx, dy] = [after[0] - before[0], after[1] - before[1]];
     if (!dx && !dy) return;
+    if (!this.dragged) this.sayIfOnAircraft(this.pixelAt({clientX: before[0], clientY: before[1]}));
     this.dragged = true;
     const {x, y, scale} = this.look;
     this.studio.store.put({look: {scale, x: x - dx / scale, y: y - dy / scale}});
+  }
+
+  // A drag beside the handles moves the picture, also one that begins on an aircraft.
+  private sayIfOnAircraft([x, y]: Point): void {
+    const {picture, state} = this.now;
+    const on =
+        picture?.boxes.find(({box: [left, top, w, h]}) => x >= left && y >= top && x <= left + w && y <= top + h);
+    const flyer = on && flyerAt(state, on.table);
+    if (!flyer) return;
+    const has = flyer.statement === 'moments';
+    this.studio.store.say(
+        'info',
+        `${flyer.id} is moved by the handles of its path. ${
+            has ? 'M adds one in the frame shown.' :
+                  `Its path is stated ${STATED[flyer.statement]}. “${TO_MOMENTS}” gives it some.`}`);
   }
 
   private pinch(before: Point, after: Point, other: Point): void {

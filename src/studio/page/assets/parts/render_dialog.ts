@@ -37,7 +37,7 @@ export class RenderDialog extends DialogPart {
     type: 'range',
     min: 0,
     max: 100,
-    value: 50,
+    value: 10,
     step: 0.5,
     'aria-label': 'Swipe between the original and the film',
     oninput: () => this.partFilms()
