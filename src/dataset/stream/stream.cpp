@@ -16,6 +16,7 @@
 #include "dataset/stream/frames.h"
 #include "dataset/stream/plan.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
 #include "foundation/image/layer.h"
@@ -85,13 +86,19 @@ struct Stream::State {
     std::optional<Clip>& clip = clips[background];
     if (!clip) {
       const catalogue::Background& stated = catalogue.backgrounds[background];
-      if (std::holds_alternative<synthetic::FlightOptions>(stated.source) && !options.use_cache)
+      const bool is_flight = std::holds_alternative<synthetic::FlightOptions>(stated.source);
+      if (is_flight && !options.use_cache)
         throw Error("background '" + stated.name +
                         "' is a virtual flight, which a stream makes in the cache; expected a "
                         "video, or a cache",
                     stated.where);
       build::BuildOptions how;
       how.stop = options.stop;
+      // One of a training's workers makes a flight, the others find it.
+      std::optional<WaitingLock> lock_of_flight;
+      if (is_flight)
+        lock_of_flight.emplace(flights().backgrounds() / ("." + stated.name + ".lock"),
+                               options.stop);
       clip = Clip{build::prepare(stated, flights(), how), {}};
       scene::Scene scene = catalogue::scene_over(catalogue, background);
       scene.background.video = clip->files.video;

@@ -2,6 +2,7 @@
 #include "dataset/stream/stream.h"
 
 #include <fstream>
+#include <future>
 #include <set>
 #include <string>
 
@@ -141,6 +142,23 @@ void expect_as_rendered(const Stream& stream, std::int64_t index, const fs::path
               annotation::jsonl_line(truth.frames[k], truth.lens));
     expect_masks(sample.frames[k], sample.crop, truth, made);
   }
+}
+
+TEST_F(StreamOfFlights, WorkersThatNeedTheSameFlightAtOnceMakeItOnce) {
+  const std::string text =
+      "[[background]]\nname = \"made\"\nflight = { seed = 5, frame_count = 24, width = 160, "
+      "height = 120 }\nlens = { vertical_fov_deg = 60 }\n"
+      "camera = { position_ned_m = [0, 0, -300], velocity_ned_mps = [25, 0, 0] }\n";
+  pipeline::Options how = options();
+  how.use_cache = true;
+  how.cache = folder_->path() / "flights_cache";
+  const auto catalogue = catalogue_of(text + kRule + "[stream]\npicture = \"frame\"\nframes = 1\n");
+  std::vector<std::future<Sample>> samples;
+  for (int worker = 0; worker < 4; ++worker)
+    samples.push_back(
+        std::async(std::launch::async, [&] { return Stream(catalogue, 7, how).sample(0); }));
+  const Sample first = samples.front().get();
+  for (std::size_t k = 1; k < samples.size(); ++k) expect_same(samples[k].get(), first);
 }
 
 TEST_F(StreamOfFlights, SamplesAreWhatRenderMakesOfTheirScenes) {
