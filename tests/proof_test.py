@@ -237,7 +237,7 @@ class Command(InFolder):
             self.assertEqual(path.stat().st_mtime_ns, time)
         result = json.loads((self.root / "out" / "proof.json").read_text())
         for row in result["rows"]:
-            self.assertEqual(set(row["trainings"]), set(trainings.TRAININGS))
+            self.assertEqual(set(row["trainings"]), set(trainings.COMPARED))
         self.assertEqual({(row["kind"], row["ignoring"]) for row in result["rows"] if row["part"] == "all"},
                          {(kind, ignoring) for kind in ("airplane", "helicopter") for ignoring in (False, True)})
         self.assertIn("plain matte, without realism", (self.root / "out" / "proof.md").read_text())
@@ -249,6 +249,18 @@ class Command(InFolder):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(words, done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_the_network_that_ships_is_written_and_detects(self):
+        ground_real(self.root / "real")
+        done = self.run_proof("out", "--set", "ground-real=real", "--only", "shipped", "--seeds", "1", "--steps", "4", "--frames", "4", "--negatives", "2",
+                              "--batch", "2", "--every", "2", "--draws", "0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        made = self.root / "out" / "trainings" / "shipped-1" / "aircraft.onnx"
+        self.assertLessEqual(made.stat().st_size, 1_000_000)
+        done = subprocess.run([AIRTRUTH, "detect", self.root / "real" / "birds" / "V_BIRD_001.mkv", "-d", f"onnx:{made}", "-o", self.root / "found"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("in 4 frames", done.stdout)
 
 
 if __name__ == "__main__":

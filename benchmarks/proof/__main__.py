@@ -88,7 +88,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="the sets that can be read, with their licences")
     parser.add_argument("--train-on", default="ground-real", metavar="NAME", help="the set whose camera is known (%(default)s)")
     parser.add_argument("--catalogue", help="composites of this catalogue with a table [stream], in place of the one over the set's own clips")
-    parser.add_argument("--only", type=lambda text: text.split(","), default=list(trainings.TRAININGS), metavar="NAME,...",
+    parser.add_argument("--only", type=lambda text: text.split(","), default=trainings.COMPARED, metavar="NAME,...",
                         help="of " + ", ".join(trainings.TRAININGS))
     parser.add_argument("--seeds", type=whole(1), default=3, help="trainings of each kind (%(default)s)")
     parser.add_argument("--steps", type=whole(1), help="of each training (800 unless --minutes is given)")

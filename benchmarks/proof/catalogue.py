@@ -11,6 +11,12 @@ SIZE_PX = (5, 90)
 # Degrees from the boresight. A camera that watches the sky has its ground in the lower third: most aircraft are above it.
 ELEVATION_IN_SKY_DEG, ELEVATION_ANYWHERE_DEG = (-1.5, 5.5), (-5, 5)
 SKY_OF_TEN = 9
+FLIGHT_SKY_OF_TEN = 6
+FIRST_FLIGHT_SEED = 301
+# Width and height in px, vertical field of view in degrees, altitude in m, cloud cover, azimuth and elevation of the sun in degrees.
+FLIGHTS = [(640, 480, 45, 150, 0.3, 140, 45), (640, 480, 30, 400, 0.6, 260, 20), (854, 480, 40, 800, 0.1, 180, 60), (960, 720, 35, 250, 0.9, 90, 30),
+           (640, 512, 25, 60, 0.5, 20, 50), (1280, 960, 60, 300, 0.4, 320, 35), (854, 480, 50, 120, 0.8, 200, 15), (640, 480, 60, 600, 0.2, 60, 70),
+           (960, 720, 30, 90, 0.0, 110, 25), (640, 480, 35, 500, 1.0, 300, 55), (1280, 960, 40, 200, 0.7, 240, 40), (640, 512, 45, 700, 0.5, 160, 65)]
 # Kind: samples of a hundred, and what flies it. Types made in code and types of flightgear-data-ai; none is chosen by a measured clip.
 MIX = {
     "airliner": (34, ["733/*", "738/*", "757/*", "A319/*", "A320/*", "A332/*", "CR7/*", "E90/*", "AT7/*"]),
@@ -35,11 +41,38 @@ def backgrounds_of(clips, realism):
     return tables
 
 
-def of_clips(clips, realism):
-    """A catalogue with a table [stream] as a dict, for airtruth.Stream. `realism`: the table of every background; None: the plain matte."""
-    rules = [{"name": f"{kind}-{where}-{{index}}", "count": count * share, "frame_count": 10, "aircraft": names, "size_px": list(SIZE_PX),
-              "azimuth_deg": [-7, 7], "elevation_deg": list(elevation), "bank_deg": "type", "start": "random"}
-             for kind, (count, names) in MIX.items()
-             for where, share, elevation in (("sky", SKY_OF_TEN, ELEVATION_IN_SKY_DEG), ("anywhere", 10 - SKY_OF_TEN, ELEVATION_ANYWHERE_DEG))]
-    return {"name": "proof", "seed": 1, "background": backgrounds_of(clips, realism), "random": rules,
+def rules_of(azimuth_deg, in_sky_deg, anywhere_deg, sky_of_ten):
+    return [{"name": f"{kind}-{where}-{{index}}", "count": count * share, "frame_count": 10, "aircraft": names, "size_px": list(SIZE_PX),
+             "azimuth_deg": list(azimuth_deg), "elevation_deg": list(elevation), "bank_deg": "type", "start": "random"}
+            for kind, (count, names) in MIX.items()
+            for where, share, elevation in (("sky", sky_of_ten, in_sky_deg), ("anywhere", 10 - sky_of_ten, anywhere_deg)) if share]
+
+
+def streamed(name, backgrounds, rules):
+    """A catalogue with a table [stream] as a dict, for airtruth.Stream."""
+    return {"name": name, "seed": 1, "background": backgrounds, "random": rules,
             "stream": {"picture": "frame", "intruders": [1, 2], "reuse": 4, "memory_mb": 400}}
+
+
+def of_clips(clips, realism):
+    """`realism`: the table of every background; None: the plain matte."""
+    return streamed("proof", backgrounds_of(clips, realism), rules_of((-7, 7), ELEVATION_IN_SKY_DEG, ELEVATION_ANYWHERE_DEG, SKY_OF_TEN))
+
+
+def flights_of(realism):
+    """Virtual flights of many lenses, heights, clouds and suns; the own aircraft is in view of the wider ones."""
+    tables = []
+    for index, (width, height, fov_deg, altitude_m, cloud_cover, azimuth_deg, elevation_deg) in enumerate(FLIGHTS):
+        table = {"name": f"flight-{index}", "lens": {"vertical_fov_deg": fov_deg},
+                 "flight": {"seed": FIRST_FLIGHT_SEED + index, "frame_count": 20, "width": width, "height": height, "cloud_cover": cloud_cover,
+                            "altitude_m": altitude_m},
+                 "camera": {"position_ned_m": [0, 0, -altitude_m], "velocity_ned_mps": [25, 0, 0]},
+                 "light": {"sun_azimuth_deg": azimuth_deg, "sun_elevation_deg": elevation_deg}}
+        if realism:
+            table["realism"] = realism
+        tables.append(table)
+    return tables
+
+
+def of_flights(realism):
+    return streamed("flights", flights_of(realism), rules_of((-14, 14), (-1, 9), (-9, 9), FLIGHT_SKY_OF_TEN))

@@ -39,7 +39,7 @@ def whole_rows(rows):
         text += f"\n### {words_of(row)}\n\n| trained on | AP by centre | recall at 0.1 false alarms an image | at 1 | AP of each seed |\n|---|---|---|---|---|\n"
         for name, one in row["trainings"].items():
             seeds = ", ".join(number(value) for value in one["ap"]["seeds"])
-            text += f"| {trainings.TRAININGS[name][0]} | {shown(one['ap'])} | {shown(one['recall_0.1'])} | {shown(one['recall_1'])} | {seeds} |\n"
+            text += f"| {trainings.TRAININGS[name].words} | {shown(one['ap'])} | {shown(one['recall_0.1'])} | {shown(one['recall_1'])} | {seeds} |\n"
         ratios = "; ".join(f"{name} {shown(ratio)}" for name, ratio in row["ratios"].items())
         text += f"\nRatios of AP: {ratios}.\n" if ratios else ""
     return text
@@ -51,7 +51,7 @@ def part_rows(rows):
         return ""
     names = list(rows[0]["trainings"])
     text = "\n## By size and horizon: AP by centre; recall at 0.1 and at 1 false alarm an image\n\n| set | kind | part | aircraft | "
-    text += " | ".join(trainings.TRAININGS[name][0] for name in names) + " |\n|---|---|---|---:|" + "---|" * len(names) + "\n"
+    text += " | ".join(trainings.TRAININGS[name].words for name in names) + " |\n|---|---|---|---:|" + "---|" * len(names) + "\n"
     for row in rows:
         cells = ["{}; {}, {}".format(*(number(row["trainings"][name][key]["value"]) for key in ("ap", "recall_0.1", "recall_1"))) for name in names]
         text += f"| {row['set']} | {row['kind']} | {row['part']} | {row['aircraft']} | " + " | ".join(cells) + " |\n"
@@ -65,7 +65,7 @@ def error_rows(errors):
         for name, one in row["trainings"].items():
             kinds = ", ".join(f"{what} {count}" for what, count in sorted(one["by"].items(), key=lambda pair: -pair[1])) or "-"
             others = "count neither way" if row["ignoring"] else "are false alarms"
-            text += (f"| {row['set']} | {row['kind']} | {others} | {trainings.TRAININGS[name][0]} | {one['misses']} of {row['aircraft']} | "
+            text += (f"| {row['set']} | {row['kind']} | {others} | {trainings.TRAININGS[name].words} | {one['misses']} of {row['aircraft']} | "
                      f"{one['false_alarms']} | {kinds} | {one['large']} |\n")
     return text
 
@@ -120,7 +120,7 @@ def look_rows(images, found, reals, arguments):
             if row.key["part"] == "all" and (row.key["ignoring"] or not row.key["clips_without"])]
     names = list(found)
     text = ("\n## By look: recall at 0.1 false alarms an image, first seed\n\n| set | kind | parts beside the background | aircraft | "
-            + " | ".join(trainings.TRAININGS[name][0] for name in names) + " |\n|---|---|---|---:|" + "---:|" * len(names) + "\n")
+            + " | ".join(trainings.TRAININGS[name].words for name in names) + " |\n|---|---|---|---:|" + "---:|" * len(names) + "\n")
     for row in rows:
         answers = measure.answers_to(row, found, arguments)
         missed = {name: {(image.clip, image.index, id(thing)) for image, thing in measure.errors_at(row, answers[name][0], 0.1)[0]} for name in names}

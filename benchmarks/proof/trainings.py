@@ -6,12 +6,14 @@ and multirotors without one, the same steps and the same seed.
 """
 
 import argparse
+import dataclasses
 import json
 import os
 import pathlib
 import time
 import warnings
 import zlib
+from typing import Callable
 
 import airtruth
 import cv2
@@ -32,6 +34,7 @@ PASTE_TRIES = 20
 LEAST_SCORE = 0.02
 MOST_DETECTIONS = 30  # of a frame
 NMS_OVERLAP = 0.3
+SHIPPED_SCORE, SHIPPED_CONFIDENT_SCORE = 0.3, 0.5
 THREADS = 1  # the same sums on every machine
 
 
@@ -64,9 +67,10 @@ class Material:
             yield grey, boxes[~large], np.concatenate([boxes[large], frame.ignored.astype(np.float32)])
 
     def without(self):
-        """Frames of birds and multirotors, which are background."""
+        """Frames of birds and multirotors, which are background, with the boxes of these."""
         if self.negatives is None:
-            self.negatives = [grey for grey, _ in self.drawn(self.background_clips, self.options.negatives)]
+            self.negatives = [(grey, np.array([one.box for one in frame.objects], np.float32).reshape(-1, 4))
+                              for grey, frame in self.drawn(self.background_clips, self.options.negatives)]
         return self.negatives
 
     def realism(self):
@@ -86,13 +90,6 @@ class Material:
         return airtruth.Stream(text, seed=seed, threads=1)
 
 
-def add(frames, grey, boxes, ignored, times=1):
-    for _ in range(times):
-        frames.pictures.append(grey)
-        frames.boxes.append(boxes)
-        frames.ignored.append(ignored)
-
-
 def samples(stream, count):
     """(sample's last frame, boxes, ignored) of the first so many."""
     with warnings.catch_warnings():
@@ -105,17 +102,20 @@ def samples(stream, count):
 
 def real(material, frames, seed):
     for one in material.with_aircraft(material.options.frames):
-        add(frames, *one)
+        frames.add(*one)
+
+
+def add_samples(frames, stream, count):
+    for frame, boxes, ignored in samples(stream, count):
+        frames.add(frame.gray.copy(), boxes, ignored)
 
 
 def composites(material, frames, seed):
-    for frame, boxes, ignored in samples(material.stream(True, seed), material.options.frames):
-        add(frames, frame.gray.copy(), boxes, ignored)
+    add_samples(frames, material.stream(True, seed), material.options.frames)
 
 
 def matte(material, frames, seed):
-    for frame, boxes, ignored in samples(material.stream(False, seed), material.options.frames):
-        add(frames, frame.gray.copy(), boxes, ignored)
+    add_samples(frames, material.stream(False, seed), material.options.frames)
 
 
 def cut_and_paste(material, frames, seed):
@@ -124,7 +124,7 @@ def cut_and_paste(material, frames, seed):
     dice = np.random.default_rng(seed)
     below = material.without()
     for frame, boxes, _ in samples(material.stream(False, seed, masks=True), material.options.frames):
-        picture = below[dice.integers(len(below))].copy()
+        picture = below[dice.integers(len(below))][0].copy()
         pasted = []
         mask = frame.masks.max(axis=0) > 127 if len(frame.masks) else None
         for box in boxes.astype(int):
@@ -139,22 +139,40 @@ def cut_and_paste(material, frames, seed):
             under = picture[place[0]:place[0] + height, place[1]:place[1] + width]
             under[shape] = np.clip(patch * dice.uniform(*PASTE_GAIN), 0, 255)[shape]
             pasted.append((place[1], place[0], width, height))
-        add(frames, picture, np.array(pasted, np.float32).reshape(-1, 4), np.zeros((0, 4), np.float32))
+        frames.add(picture, np.array(pasted, np.float32).reshape(-1, 4))
 
 
 def mixed(material, frames, seed):
     composites(material, frames, seed)
     for one in material.with_aircraft(max(1, material.options.frames // TENTH)):
-        add(frames, *one, times=REPEATED)
+        for _ in range(REPEATED):
+            frames.add(*one)
+
+
+def shipped(material, frames, seed):
+    """Composites over the clips, and half as many over virtual flights: other horizons, ground below, an own aircraft in view."""
+    composites(material, frames, seed)
+    add_samples(frames, airtruth.Stream(catalogue.of_flights(REALISM), seed=seed, threads=1), material.options.frames // 2)
+
+
+@dataclasses.dataclass
+class Training:
+    words: str
+    frames: Callable     # adds the frames with aircraft
+    network: type = train_detector.Network
+    others: bool = False  # whether crops are drawn about birds and multirotors, too
+    ships: bool = False   # whether the network is written for `airtruth detect`
 
 
 TRAININGS = {
-    "real": ("real clips of the camera", real),
-    "composites": ("composites from the stream", composites),
-    "matte": ("plain matte, without realism", matte),
-    "cut-and-paste": ("cut and paste, nothing matched", cut_and_paste),
-    "mixed": ("composites and a tenth of the real", mixed),
+    "real": Training("real clips of the camera", real),
+    "composites": Training("composites from the stream", composites),
+    "matte": Training("plain matte, without realism", matte),
+    "cut-and-paste": Training("cut and paste, nothing matched", cut_and_paste),
+    "mixed": Training("composites and a tenth of the real", mixed),
+    "shipped": Training("the network that ships", shipped, train_detector.FastNetwork, others=True, ships=True),
 }
+COMPARED = [name for name, training in TRAININGS.items() if not training.ships]
 
 
 def options_of(folder, options, seed):
@@ -171,7 +189,8 @@ def written(path, value):
 
 def stated(name, options, seed):
     """What a training that is there already must have been made with."""
-    rules = f"{zlib.crc32(json.dumps(catalogue.of_clips([], None)).encode()):08x}"
+    text = json.dumps(catalogue.of_clips([], None)) + (json.dumps(catalogue.of_flights(None)) if TRAININGS[name].ships else "")
+    rules = f"{zlib.crc32(text.encode()):08x}"
     return {"frames": options.frames, "negatives": options.negatives, "batch": options.batch, "steps": options.steps,
             "minutes": None if options.steps else options.minutes, "seed": seed, "train_on": options.train_on,
             "catalogue": "" if name == "real" else str(options.catalogue or f"of this command, {rules}")}
@@ -184,7 +203,8 @@ def network_of(name, seed, material, options):
     weights, record = folder / "network.pt", folder / "training.json"
     torch.set_num_threads(THREADS)
     torch.manual_seed(seed)
-    network = train_detector.Network().to(memory_format=torch.channels_last)
+    training = TRAININGS[name]
+    network = training.network().to(memory_format=torch.channels_last)
     if record.exists():
         known = json.loads(record.read_text(encoding="utf-8"))
         if known["stated"] != stated(name, options, seed):
@@ -194,15 +214,17 @@ def network_of(name, seed, material, options):
         return network
     begun = time.process_time()
     frames = train_detector.Frames()
-    TRAININGS[name][1](material, frames, seed)
-    for grey in material.without():
-        add(frames, grey, np.zeros((0, 4), np.float32), np.zeros((0, 4), np.float32))
+    training.frames(material, frames, seed)
+    for grey, others in material.without():
+        frames.add(grey, train_detector.NO_BOXES, others=others if training.others else train_detector.NO_BOXES)
     made = time.process_time()
     print(f"{name}, seed {seed}: {frames.words()}, made in {made - begun:.0f} s", flush=True)
     loop = options_of(folder, options, seed)
     steps = train_detector.train(network, frames, loop)
     torch.save(network.state_dict(), str(weights) + ".part")
     os.replace(str(weights) + ".part", weights)
+    if training.ships:
+        train_detector.write(network, str(folder / "aircraft.onnx"), SHIPPED_SCORE, SHIPPED_CONFIDENT_SCORE)
     written(record, {"stated": stated(name, options, seed), "words": frames.words(), "steps": steps, "made_s": made - begun,
                      "trained_s": time.process_time() - made})
     checkpoint = pathlib.Path(train_detector.checkpoint_of(loop))
@@ -238,7 +260,7 @@ class Detector:
 
 def detections_in(detector, grey):
     """Boxes (n x 4) and scores of a picture, as docs/formats/detector-model.md reads the answer."""
-    multiple, stride = train_detector.MULTIPLE, train_detector.STRIDE
+    multiple, stride = detector.network.MULTIPLE, train_detector.STRIDE
     height, width = (-(-side // multiple) * multiple for side in grey.shape)
     whole = cv2.copyMakeBorder(grey, 0, height - grey.shape[0], 0, width - grey.shape[1], cv2.BORDER_REPLICATE)
     pixels = torch.from_numpy(whole.astype(np.float32) / 255)[None, None].to(memory_format=torch.channels_last)
