@@ -11,7 +11,6 @@ SIZE_PX = (5, 90)
 # Degrees from the boresight. A camera that watches the sky has its ground in the lower third: most aircraft are above it.
 ELEVATION_IN_SKY_DEG, ELEVATION_ANYWHERE_DEG = (-1.5, 5.5), (-5, 5)
 SKY_OF_TEN = 9
-FLIGHT_SKY_OF_TEN = 6
 FIRST_FLIGHT_SEED = 301
 # Width and height in px, vertical field of view in degrees, altitude in m, cloud cover, azimuth and elevation of the sun in degrees.
 FLIGHTS = [(640, 480, 45, 150, 0.3, 140, 45), (640, 480, 30, 400, 0.6, 260, 20), (854, 480, 40, 800, 0.1, 180, 60), (960, 720, 35, 250, 0.9, 90, 30),
@@ -75,4 +74,4 @@ def flights_of(realism):
 
 
 def of_flights(realism):
-    return streamed("flights", flights_of(realism), rules_of((-14, 14), (-1, 9), (-9, 9), FLIGHT_SKY_OF_TEN))
+    return streamed("flights", flights_of(realism), rules_of((-14, 14), (0, 9), (-9, 9), 10))

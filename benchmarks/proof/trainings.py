@@ -34,7 +34,7 @@ PASTE_TRIES = 20
 LEAST_SCORE = 0.02
 MOST_DETECTIONS = 30  # of a frame
 NMS_OVERLAP = 0.3
-SHIPPED_SCORE, SHIPPED_CONFIDENT_SCORE = 0.3, 0.5
+SHIPPED_SCORE, SHIPPED_CONFIDENT_SCORE = 0.4, 0.5
 THREADS = 1  # the same sums on every machine
 
 
@@ -67,10 +67,9 @@ class Material:
             yield grey, boxes[~large], np.concatenate([boxes[large], frame.ignored.astype(np.float32)])
 
     def without(self):
-        """Frames of birds and multirotors, which are background, with the boxes of these."""
+        """Frames of birds and multirotors, which are background."""
         if self.negatives is None:
-            self.negatives = [(grey, np.array([one.box for one in frame.objects], np.float32).reshape(-1, 4))
-                              for grey, frame in self.drawn(self.background_clips, self.options.negatives)]
+            self.negatives = [grey for grey, _ in self.drawn(self.background_clips, self.options.negatives)]
         return self.negatives
 
     def realism(self):
@@ -124,7 +123,7 @@ def cut_and_paste(material, frames, seed):
     dice = np.random.default_rng(seed)
     below = material.without()
     for frame, boxes, _ in samples(material.stream(False, seed, masks=True), material.options.frames):
-        picture = below[dice.integers(len(below))][0].copy()
+        picture = below[dice.integers(len(below))].copy()
         pasted = []
         mask = frame.masks.max(axis=0) > 127 if len(frame.masks) else None
         for box in boxes.astype(int):
@@ -150,18 +149,17 @@ def mixed(material, frames, seed):
 
 
 def shipped(material, frames, seed):
-    """Composites over the clips, and half as many over virtual flights: other horizons, ground below, an own aircraft in view."""
+    """Composites over the clips, and a quarter as many over virtual flights: clouds, ground below, an own aircraft in view."""
     composites(material, frames, seed)
-    add_samples(frames, airtruth.Stream(catalogue.of_flights(REALISM), seed=seed, threads=1), material.options.frames // 2)
+    add_samples(frames, airtruth.Stream(catalogue.of_flights(REALISM), seed=seed, threads=1), material.options.frames // 4)
 
 
 @dataclasses.dataclass
 class Training:
     words: str
-    frames: Callable     # adds the frames with aircraft
+    frames: Callable  # adds the frames with aircraft
     network: type = train_detector.Network
-    others: bool = False  # whether crops are drawn about birds and multirotors, too
-    ships: bool = False   # whether the network is written for `airtruth detect`
+    ships: bool = False  # whether the network is written for `airtruth detect`
 
 
 TRAININGS = {
@@ -170,7 +168,7 @@ TRAININGS = {
     "matte": Training("plain matte, without realism", matte),
     "cut-and-paste": Training("cut and paste, nothing matched", cut_and_paste),
     "mixed": Training("composites and a tenth of the real", mixed),
-    "shipped": Training("the network that ships", shipped, train_detector.FastNetwork, others=True, ships=True),
+    "shipped": Training("the network that ships", shipped, train_detector.FastNetwork, ships=True),
 }
 COMPARED = [name for name, training in TRAININGS.items() if not training.ships]
 
@@ -215,8 +213,8 @@ def network_of(name, seed, material, options):
     begun = time.process_time()
     frames = train_detector.Frames()
     training.frames(material, frames, seed)
-    for grey, others in material.without():
-        frames.add(grey, train_detector.NO_BOXES, others=others if training.others else train_detector.NO_BOXES)
+    for grey in material.without():
+        frames.add(grey, train_detector.NO_BOXES)
     made = time.process_time()
     print(f"{name}, seed {seed}: {frames.words()}, made in {made - begun:.0f} s", flush=True)
     loop = options_of(folder, options, seed)
@@ -260,7 +258,7 @@ class Detector:
 
 def detections_in(detector, grey):
     """Boxes (n x 4) and scores of a picture, as docs/formats/detector-model.md reads the answer."""
-    multiple, stride = detector.network.MULTIPLE, train_detector.STRIDE
+    multiple, stride = train_detector.MULTIPLE, train_detector.STRIDE
     height, width = (-(-side // multiple) * multiple for side in grey.shape)
     whole = cv2.copyMakeBorder(grey, 0, height - grey.shape[0], 0, width - grey.shape[1], cv2.BORDER_REPLICATE)
     pixels = torch.from_numpy(whole.astype(np.float32) / 255)[None, None].to(memory_format=torch.channels_last)
