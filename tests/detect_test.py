@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import struct
 import sys
 import unittest
@@ -13,6 +14,7 @@ from program import Case, made, path, read, run, write
 
 WIDTH, HEIGHT, COUNT = 320, 240, 30
 CLIENTS = EXAMPLE = ""
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "network-detector")
 HELLO = """echo '{"hello":{"protocol":1,"samples":"gray","frames":"shared_memory"}}'; """
 LOOP = HELLO + """while read -r line; do case "$line" in '{"frame":'*) k=${line#*:}; k=${k%%,*}; if [ $k -lt 3 ]; then echo "{\\"frame\\":$k,\\"detections\\":[]}"; else SAY; fi;; '{"quit"'*) exit 0;; esac; done"""
 ODD = {
@@ -169,6 +171,88 @@ class OverAVideo(Case):
     def test_its_name_is_that_of_its_file(self):
         made("detect", "otb/one/img", "-d", "cmo", "--frame-rate", "25", "-o", "video")
         self.assertEqual(sorted(os.listdir(path("video", "cmo"))), ["detector.json", "img.detections.json", "img.json", "img.txt"])
+
+
+def boxes_of_truth(file):
+    """The covered boxes of every frame."""
+    frames = [json.loads(line)["intruders"] for line in read(file).splitlines()]
+    return [[one["covered_box_px"] for one in intruders if one["state"] == "visible" and one.get("covered_box_px")] for intruders in frames]
+
+
+def is_on(box, found):
+    """Whether the middle of what was found lies in the box."""
+    x, y = found[0] + found[2] / 2, found[1] + found[3] / 2
+    return box[0] <= x <= box[0] + box[2] and box[1] <= y <= box[1] + box[3]
+
+
+SCENE = """name = "one"
+[background]
+video = "clip.mkv"
+[lens]
+vertical_fov_deg = 40
+[camera]
+position_ned_m = [0, 0, -300]
+[motion]
+model = "none"
+[[intruder]]
+aircraft = "c172/news"
+waypoints_ned_m = [[250, -30, -335], [250, 30, -335]]
+speed_mps = 50
+[[intruder]]
+aircraft = "738/738-ANA"
+waypoints_ned_m = [[700, 60, -420], [700, 160, -420]]
+speed_mps = 120
+"""
+
+
+class ShippedNetwork(Case):
+    """The network of data/network-detector, on a virtual flight in a clear sky with a light aircraft and an airliner, which no training saw."""
+
+    FRAMES = 12
+    MOST_BYTES = 1_000_000
+
+    @classmethod
+    def setUpClass(cls):
+        made("synth", "-o", "clip.mkv", "--width", "640", "--height", "480", "--frames", str(cls.FRAMES), "--no-own-aircraft", "--clouds", "0",
+             "--fov", "40", "--altitude", "300")
+        write("scene.toml", SCENE)
+        made("render", "scene.toml", "--out", ".", "--no-cache")
+        cls.truth = boxes_of_truth("one/truth.jsonl")
+
+    def found(self, folder):
+        """The boxes found in every frame, from 0."""
+        lines = [[float(v) for v in line.split(",")] for line in read(folder, "network", "one.txt").splitlines()]
+        return [[(line[2] - 1, line[3] - 1, line[4], line[5]) for line in lines if line[0] == frame + 1] for frame in range(self.FRAMES)]
+
+    def test_its_weights_are_at_most_a_megabyte(self):
+        self.assertLessEqual(os.path.getsize(os.path.join(DATA, "aircraft.onnx")), self.MOST_BYTES)
+
+    def test_it_is_what_detects_where_none_is_named_and_finds_aircraft_and_little_else(self):
+        made("detect", "one/one.mp4", "-o", "shipped")
+        self.assertEqual(os.listdir(path("shipped")), ["network"])
+        found = self.found("shipped")
+        wanted = sum(map(len, self.truth))
+        self.assertEqual(wanted, 2 * self.FRAMES)
+        hit = sum(any(is_on(box, one) for one in some) for boxes, some in zip(self.truth, found) for box in boxes)
+        others = sum(not any(is_on(box, one) for box in boxes) for boxes, some in zip(self.truth, found) for one in some)
+        self.assertGreaterEqual(hit, 0.9 * wanted)
+        self.assertLessEqual(others, self.FRAMES // 2)
+        record = json.loads(read("shipped", "network", "detector.json"))
+        self.assertEqual((record["detector"], sorted(record["files"])), ("network", ["aircraft.json", "aircraft.onnx"]))
+        made("detect", "one/one.mp4", "-d", "network=onnx:" + os.path.join(DATA, "aircraft.onnx"), "-o", "named")
+        self.assertEqual(self.found("named"), found)
+
+    def test_it_is_found_in_the_layout_of_an_installation(self):
+        children = [name for name in os.listdir(program.built()) if name.startswith("airtruth-")]
+        for name, place in (("airtruth", "bin"), *((name, "libexec/airtruth") for name in children)):
+            os.makedirs(path("prefix", place), exist_ok=True)
+            shutil.copy(os.path.join(program.built(), name), path("prefix", place, name))
+        detect = lambda out: run("detect", "one/one.mp4", "-o", out, at=path("prefix", "bin", "airtruth"))
+        self.assert_refused(detect("without"), "network-detector/aircraft.onnx, is not there")
+        shutil.copytree(DATA, path("prefix", "share", "airtruth", "data", "network-detector"))
+        done = detect("installed")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"in {self.FRAMES} frames", done.stdout)
 
 
 class Refusals(Case):

@@ -56,6 +56,9 @@ SCENE
 "$airtruth" render "$place/scene.toml" --out "$place" --no-cache >"$place/render.log" 2>&1 || { cat "$place/render.log"; fail "render"; }
 [ -s "$place/one/one.mp4" ] || fail "render: no video"
 
+"$airtruth" detect "$place/one/one.mp4" -o "$place/found" >"$place/detect.log" 2>&1 || { cat "$place/detect.log"; fail "detect"; }
+[ -s "$place/found/network/one.json" ] || fail "detect: the network that ships gave no results"
+
 if [ -z "$installed" ] && ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
   echo "installed_test: the Python package was not tried, for want of python3-numpy"
 else

@@ -32,8 +32,14 @@ def read(*names):
         return file.read()
 
 
-def run(*arguments):
-    return subprocess.run([_airtruth, *arguments], cwd=_root, capture_output=True, text=True, errors="replace", timeout=HANG_S)
+def built():
+    """The folder of the program and its children."""
+    return os.path.dirname(_airtruth)
+
+
+def run(*arguments, at=None):
+    """`at`: a copy of the program in place of itself."""
+    return subprocess.run([at or _airtruth, *arguments], cwd=_root, capture_output=True, text=True, errors="replace", timeout=HANG_S)
 
 
 def made(*arguments):

@@ -73,6 +73,7 @@ void run_detect(Detect arguments, Context& context) {
   if (!arguments.lens.empty()) options.lens = arguments.lens;
   if (!arguments.mask.empty()) options.mask = arguments.mask;
   options.association = association_of(arguments);
+  if (options.detectors.empty()) options.detectors = {runs::kShippedDetector};
   follow(options, context, "detecting", "done");
   check_output_folder(arguments.out);
   for (const runs::DetectSummary& summary : runs::detect(arguments.source, arguments.out, options))
@@ -86,13 +87,13 @@ void add_options(CLI::App& command, Detect& arguments) {
                   arguments.source,
                   "A data set, made or imported; or a video or folder of images")
       ->required();
-  command
-      .add_option("--detector,-d",
-                  options.detectors,
-                  fmt::format("One or more of {}, {}; NAME=DETECTOR names its results",
-                              fmt::join(runs::detector_names(), ", "),
-                              fmt::join(runs::detector_forms(), ", ")))
-      ->required();
+  command.add_option(
+      "--detector,-d",
+      options.detectors,
+      fmt::format("One or more of {}, {}; NAME=DETECTOR names its results (default: {})",
+                  fmt::join(runs::detector_names(), ", "),
+                  fmt::join(runs::detector_forms(), ", "),
+                  runs::kShippedDetector));
   command
       .add_option("--out,-o",
                   arguments.out,

@@ -2,12 +2,14 @@
 #include "foundation/lazy_library/lazy_library.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "foundation/lazy_library/places.h"
 
 namespace airtruth::lazy_library {
 namespace {
@@ -34,6 +36,19 @@ TEST(LazyLibrary, IsNamedWhereItIsNotThere) {
   EXPECT_THAT(reason_of({"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"}, "fabs"),
               testing::AllOf(testing::HasSubstr("no-such.so, the tested part, cannot be loaded"),
                              testing::HasSubstr("set AIRTRUTH_TEST_LATE to it")));
+}
+
+TEST(Places, OfAChildAndOfDataAreBesideTheProgramFirstAndThenInItsPrefix) {
+  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const auto children = places_of("child");
+  const auto data = data_places_of("of/data.txt");
+  ASSERT_GE(children.size(), 3u);
+  ASSERT_GE(data.size(), 3u);
+  EXPECT_EQ(children[0], own / "child");
+  EXPECT_EQ(children[1], own.parent_path() / "libexec/airtruth/child");
+  EXPECT_EQ(data[0], own / "of/data.txt");
+  EXPECT_EQ(data[1], own.parent_path() / "share/airtruth/data/of/data.txt");
+  EXPECT_TRUE(data.back().string().ends_with("share/airtruth/data/of/data.txt"));
 }
 
 }  // namespace

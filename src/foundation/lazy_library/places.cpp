@@ -8,27 +8,36 @@
 namespace airtruth::lazy_library {
 namespace {
 
-// The place where a shared library holds this code, in PREFIX/lib or, as on Debian, in
-// PREFIX/lib/x86_64-linux-gnu. It is empty in a program, whose name need not be a path.
-std::vector<fs::path> beside_library(const char* name) {
+// The places where a shared library holds this code, in PREFIX/lib or, as on Debian, in
+// PREFIX/lib/x86_64-linux-gnu. There are none in a program, whose name need not be a path.
+std::vector<fs::path> beside_library(const fs::path& below_prefix) {
   Dl_info info{};
   if (::dladdr(reinterpret_cast<const void*>(&places_of), &info) == 0) return {};
   const fs::path library = info.dli_fname;
   if (!library.is_absolute()) return {};
   const fs::path folder = library.parent_path().lexically_normal();
-  const fs::path place = fs::path("libexec") / "airtruth" / name;
-  return {folder.parent_path() / place, folder.parent_path().parent_path() / place};
+  return {folder.parent_path() / below_prefix, folder.parent_path().parent_path() / below_prefix};
+}
+
+std::vector<fs::path> places_below(const fs::path& in_prefix,
+                                   const fs::path& installed,
+                                   const char* name) {
+  std::error_code ignored;
+  const fs::path own = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  std::vector<fs::path> places = beside_library(in_prefix / name);
+  places.insert(places.begin(), {own / name, own.parent_path() / in_prefix / name});
+  places.push_back(installed / name);
+  return places;
 }
 
 }  // namespace
 
 std::vector<fs::path> places_of(const char* name) {
-  std::error_code ignored;
-  const fs::path own = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  std::vector<fs::path> places = beside_library(name);
-  places.insert(places.begin(), {own / name, own.parent_path() / "libexec" / "airtruth" / name});
-  places.push_back(fs::path(AIRTRUTH_LIBEXEC_FOLDER) / name);
-  return places;
+  return places_below("libexec/airtruth", AIRTRUTH_LIBEXEC_FOLDER, name);
+}
+
+std::vector<fs::path> data_places_of(const char* name) {
+  return places_below("share/airtruth/data", AIRTRUTH_DATA_FOLDER, name);
 }
 
 }  // namespace airtruth::lazy_library

@@ -11,4 +11,8 @@ namespace airtruth::lazy_library {
 // PREFIX/lib, or in the configured place of installation.
 std::vector<std::filesystem::path> places_of(const char* name);
 
+// The same for a file of data/, such as "network-detector/aircraft.onnx", with
+// ../share/airtruth/data for ../libexec/airtruth.
+std::vector<std::filesystem::path> data_places_of(const char* name);
+
 }  // namespace airtruth::lazy_library

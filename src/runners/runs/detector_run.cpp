@@ -43,7 +43,7 @@ Json settings_of(const association::AssociationOptions& association) {
 // The command without the folder of its files, which are known by their content.
 std::string recorded(const std::string& command) {
   const std::vector<fs::path> files = files_of(command);
-  if (files.empty()) return command;
+  if (files.empty() || command == kShippedDetector) return command;
   return command.substr(0, command.find(':') + 1) + files.front().filename().string();
 }
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
+#include "foundation/lazy_library/places.h"
 #include "runners/classical/classical.h"
 #include "runners/detector/external.h"
 #include "runners/network/model_description.h"
@@ -20,6 +22,7 @@ namespace {
 
 constexpr std::string_view kExec = "exec:";
 constexpr std::string_view kNetwork = "onnx:";
+constexpr const char* kShippedModel = "network-detector/aircraft.onnx";
 
 // "exec" for exec:COMMAND: two of them need names. "aircraft" for onnx:models/aircraft.onnx.
 std::string usual_name(const std::string& command) {
@@ -29,14 +32,35 @@ std::string usual_name(const std::string& command) {
   return stem.empty() ? scheme : stem;
 }
 
+std::filesystem::path shipped_model() {
+  std::error_code ignored;
+  for (const std::filesystem::path& place : lazy_library::data_places_of(kShippedModel))
+    if (std::filesystem::is_regular_file(place, ignored)) return place;
+  throw Error(
+      fmt::format("the network that ships, {}, is not there; install airtruth whole, or "
+                  "name another: onnx:MODEL.onnx",
+                  kShippedModel));
+}
+
+// Of a network, empty for other detectors.
+std::optional<std::filesystem::path> model_of(std::string_view command) {
+  if (command == kShippedDetector) return shipped_model();
+  if (!command.starts_with(kNetwork)) return std::nullopt;
+  return command.substr(kNetwork.size());
+}
+
 }  // namespace
 
-std::vector<std::string> detector_names() { return classical::classical_names(); }
+std::vector<std::string> detector_names() {
+  std::vector<std::string> names = classical::classical_names();
+  names.insert(names.begin(), kShippedDetector);
+  return names;
+}
 
 std::vector<std::filesystem::path> files_of(std::string_view command) {
-  if (!command.starts_with(kNetwork)) return {};
-  const std::filesystem::path model = command.substr(kNetwork.size());
-  return {model, network::description_path(model)};
+  const auto model = model_of(command);
+  if (!model) return {};
+  return {*model, network::description_path(*model)};
 }
 
 std::vector<std::string> detector_forms() {
@@ -66,10 +90,9 @@ std::unique_ptr<detector::Detector> make_detector(std::string_view command,
     return detector::make_external({program, options.start_s, options.answer_s, options.stop});
   }
   if (auto classical = classical::make_classical(command)) return classical;
-  if (command.starts_with(kNetwork)) {
-    const std::filesystem::path model = command.substr(kNetwork.size());
-    if (model.empty()) throw Error("'onnx:' names no file; expected onnx:MODEL.onnx");
-    return network::make_network_detector(model, {options.threads, options.stop});
+  if (const auto model = model_of(command)) {
+    if (model->empty()) throw Error("'onnx:' names no file; expected onnx:MODEL.onnx");
+    return network::make_network_detector(*model, {options.threads, options.stop});
   }
   const std::string scheme(command.substr(0, command.find(':')));
   const bool has_scheme = scheme.size() < command.size();

@@ -21,6 +21,9 @@ struct DetectorOptions {
   std::stop_token stop;
 };
 
+// The network that ships in data/network-detector.
+inline constexpr const char* kShippedDetector = "network";
+
 // The names of the built-in detectors.
 std::vector<std::string> detector_names();
 // The forms of the others, with what they are, for --help and errors.
@@ -37,6 +40,7 @@ struct DetectorName {
 DetectorName named_detector(const std::string& text);
 
 // The files beside the command that decide a detector's answers: a network and its description.
+// Throws Error where the network that ships is not there.
 std::vector<std::filesystem::path> files_of(std::string_view command);
 
 // Throws Error for what is no detector.
