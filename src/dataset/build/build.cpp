@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -44,8 +43,7 @@ class Work {
        const catalogue::Folder& folder,
        const BuildOptions& options)
       : catalogue_(catalogue), folder_(folder), options_(options), expansion_(catalogue) {
-    jobs_ = options.jobs > 0 ? options.jobs
-                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    jobs_ = options.jobs > 0 ? options.jobs : usable_processors();
   }
 
   BuildSummary run() {
@@ -172,7 +170,7 @@ class Work {
 
   void make(catalogue::Item& item) {
     pipeline::Options how = run_options();
-    how.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / jobs_);
+    how.threads = std::max(1, usable_processors() / jobs_);
     how.warn = [&](const std::string& message) {
       const std::lock_guard lock(mutex_);
       if (is_said(item.background, message))

@@ -8,9 +8,19 @@
 #include <thread>
 #include <vector>
 
+#include <sched.h>
+
 #include "foundation/base/error.h"
 
 namespace airtruth {
+
+int usable_processors() {
+  cpu_set_t usable;
+  CPU_ZERO(&usable);
+  // It fails on machines with more processors than the set has places for.
+  if (::sched_getaffinity(0, sizeof usable, &usable) == 0) return std::max(1, CPU_COUNT(&usable));
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
 
 // These are plain threads and not tasks of oneTBB. A job may wait for a tracker in a child process,
 // or limit oneTBB while it renders; even then as many jobs run as the user asked for
@@ -43,8 +53,7 @@ void in_parallel(std::size_t count,
     }
   };
   {
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    const std::size_t wanted = jobs > 0 ? static_cast<std::size_t>(jobs) : cores;
+    const auto wanted = static_cast<std::size_t>(jobs > 0 ? jobs : usable_processors());
     std::vector<std::jthread> threads;
     for (std::size_t k = 0; k < std::min(wanted, count); ++k) threads.emplace_back(work);
   }

@@ -8,9 +8,14 @@
 
 namespace airtruth {
 
-// Calls each(0) to each(count - 1) on `jobs` threads (0: one per core). After the first failure the
-// other threads finish their current calls, and the function rethrows the failure. It throws
-// Interrupted after a stop. It calls `progress` after each finished call, one call at a time.
+// How many processors this process may use, 1 or more: those that taskset or a cluster's scheduler
+// left it.
+int usable_processors();
+
+// Calls each(0) to each(count - 1) on `jobs` threads (0: one a usable processor). After the first
+// failure the other threads finish their current calls, and the function rethrows the failure. It
+// throws Interrupted after a stop. It calls `progress` after each finished call, one call at a
+// time.
 void in_parallel(std::size_t count,
                  int jobs,
                  const std::function<void(std::size_t)>& each,

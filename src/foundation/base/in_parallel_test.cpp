@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include "foundation/base/error.h"
 
@@ -22,6 +23,21 @@ bool reaches(const std::atomic<int>& count, int wanted) {
     std::this_thread::yield();
   }
   return true;
+}
+
+TEST(InParallel, ProcessorsAreThoseThatTheProcessMayUse) {
+  cpu_set_t before, one;
+  ASSERT_EQ(::sched_getaffinity(0, sizeof before, &before), 0);
+  EXPECT_EQ(usable_processors(), CPU_COUNT(&before));
+  CPU_ZERO(&one);
+  for (int k = 0; k < CPU_SETSIZE; ++k)
+    if (CPU_ISSET(k, &before)) {
+      CPU_SET(k, &one);
+      break;
+    }
+  ASSERT_EQ(::sched_setaffinity(0, sizeof one, &one), 0);
+  EXPECT_EQ(usable_processors(), 1);
+  ::sched_setaffinity(0, sizeof before, &before);
 }
 
 TEST(InParallel, MakesEachCallOnceAndCountsThem) {

@@ -8,7 +8,6 @@
 #include <new>
 #include <span>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,6 +15,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/in_parallel.h"
 #include "foundation/image/cuts.h"
 #include "picture/video/libav.h"
 #include "picture/video/media_file.h"
@@ -200,9 +200,7 @@ void Reader::State::open_input() {
 void Reader::State::open_codec() {
   const AVStream& stream = *input->streams[stream_index];
   codec = decoder_of(stream, path);
-  codec->thread_count = options.threads > 0
-                            ? options.threads
-                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  codec->thread_count = options.threads > 0 ? options.threads : usable_processors();
   codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
   codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
   if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;

@@ -10,11 +10,11 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/in_parallel.h"
 #include "foundation/base/text.h"
 #include "foundation/sandbox/child.h"
 #include "foundation/sandbox/confine.h"
@@ -31,7 +31,7 @@ using namespace airtruth::network;
 // Bound of a message from the parent; the largest is a model (network_detector.cpp).
 constexpr std::size_t kMaxMessageBytes = std::size_t{1} << 30;
 // No more threads are started than there are processors.
-const int kMostThreads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+const int kMostThreads = usable_processors();
 // Bound of the memory of a stranger's network, beside that of its threads.
 constexpr unsigned long kMemoryBytes = 4ul << 30;
 // A thread reserves addresses for its stack (8 MiB) and its heap (128 MiB).

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <set>
 #include <span>
-#include <thread>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
@@ -274,7 +273,7 @@ class Following {
 
 // The threads of each of `jobs` sequences at a time.
 int threads_of(const DetectOptions& options) {
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / options.jobs);
+  return std::max(1, usable_processors() / options.jobs);
 }
 
 class DetectorRun {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Approach, Change, Clip, Json, Path, Plan, State, Table, Track} from './contract';
-import {type Point, acrossRelative, clamp, courseOf, isPlaced, radians, round, speedOf, turned, velocityAt} from './geometry';
+import {type Point, clamp, courseOf, isPlaced, radians, relativeOf, round, speedOf, turned, velocityAt} from './geometry';
 
 // Of a scene's numbers (src/scene/scene/limits.h).
 export const MOST_MISS_M = 1e5;
@@ -267,52 +267,66 @@ export const statedCourse = (flyer: Flyer) => numberOf(tableOf(flyer.table.encou
 // Below it the place across follows from `cpa_ahead_m`, not from `cpa_right_m`: a choice.
 const LEAST_ACROSS = 0.2;
 
-// The direction in which the closest approach of an encounter can lie, as [right, ahead] of the own course.
-export function acrossOf(flyer: Flyer, plan: Plan, clip: Clip): Point {
-  const encounter = tableOf(flyer.table.encounter);
-  const number = (key: string) => numberOf(encounter[key]) ?? 0;
-  const own_mps = ownSpeed(plan, number('cpa_time_s') * clip.rate_hz, clip);
-  return acrossRelative(own_mps, number('speed_mps'), number('climb_mps'), statedCourse(flyer));
+// Where the closest approach of an encounter can lie, in [right, ahead] of the own course: at any distance along
+// `across`, which is across the relative velocity. `back` is the part along that velocity, which follows from the
+// height where the two do not stay at one height.
+export interface Across {
+  across: Point;
+  back: Point;
 }
 
-export function setAcross(flyer: Flyer, across: Point, along_m: number): Change[] {
+export function acrossOf(flyer: Flyer, plan: Plan, clip: Clip): Across {
+  const encounter = tableOf(flyer.table.encounter);
+  const number = (key: string) => numberOf(encounter[key]) ?? 0;
+  const frame = number('cpa_time_s') * clip.rate_hz;
+  const [climb_mps, own] = [number('climb_mps'), velocityAt(plan, plan.own.ned, frame, clip.rate_hz)];
+  const relative = relativeOf(ownSpeed(plan, frame, clip), number('speed_mps'), climb_mps, statedCourse(flyer));
+  const length = Math.hypot(...relative);
+  if (length < 1e-6) return {across: [1, 0], back: [0, 0]};
+  const back = (-heightOf(flyer) * (climb_mps + (own?.[2] ?? 0))) / length ** 2;
+  return {across: [-relative[1] / length, relative[0] / length], back: [back * relative[0], back * relative[1]]};
+}
+
+export function setAcross(flyer: Flyer, {across, back}: Across, along_m: number): Change[] {
   const isRight = Math.abs(across[0]) >= LEAST_ACROSS;
   const [key, other] = isRight ? ['cpa_right_m', 'cpa_ahead_m'] : ['cpa_ahead_m', 'cpa_right_m'];
-  const set: Change = {set: [...flyer.path, 'encounter', key], to: round(along_m * across[isRight ? 0 : 1], 1)};
+  const axis = isRight ? 0 : 1;
+  const set: Change = {set: [...flyer.path, 'encounter', key], to: round(along_m * across[axis] + back[axis], 1)};
   return other in tableOf(flyer.table.encounter) ? [{remove: [...flyer.path, 'encounter', other]}, set] : [set];
 }
 
-// Where an encounter has its closest approach, along that direction.
-function alongOf(flyer: Flyer, across: Point): number {
+function alongOf(flyer: Flyer, {across, back}: Across): number {
   const {cpa_right_m, cpa_ahead_m} = tableOf(flyer.table.encounter);
-  const [stated, share] =
-      typeof cpa_right_m === 'number' ? [cpa_right_m, across[0]] : [numberOf(cpa_ahead_m) ?? 0, across[1]];
-  return stated === 0 ? 0 : stated / share;
+  const axis = cpa_ahead_m !== undefined && cpa_right_m === undefined ? 1 : 0;
+  const rest = (numberOf(axis ? cpa_ahead_m : cpa_right_m) ?? 0) - back[axis];
+  return Math.abs(rest) < 1e-9 ? 0 : rest / across[axis];
 }
 
-// How far an encounter is above or below at its closest approach.
 const heightOf = (flyer: Flyer) => numberOf(tableOf(flyer.table.encounter).cpa_above_m) ?? 0;
 
-// The miss distance of an encounter, and another one on the same side and at the same height.
-export const missOf = (flyer: Flyer, plan: Plan, clip: Clip): number =>
-    Math.hypot(alongOf(flyer, acrossOf(flyer, plan, clip)), heightOf(flyer));
-export const leastMiss = (flyer: Flyer) => Math.abs(heightOf(flyer));
+// The miss distance of an encounter, the least that it can have at its height, and another one on the same side.
+export function missOf(flyer: Flyer, plan: Plan, clip: Clip): {miss_m: number; least_m: number} {
+  const where = acrossOf(flyer, plan, clip);
+  const least_m = Math.hypot(heightOf(flyer), ...where.back);
+  return {miss_m: Math.hypot(alongOf(flyer, where), least_m), least_m};
+}
 export function withMiss(flyer: Flyer, plan: Plan, clip: Clip, miss_m: number): Change[] {
-  const across = acrossOf(flyer, plan, clip);
-  const along = alongOf(flyer, across);
-  const beside_m = Math.sqrt(Math.max(0, miss_m ** 2 - heightOf(flyer) ** 2));
-  return setAcross(flyer, across, (along || across[0]) < 0 ? -beside_m : beside_m);
+  const where = acrossOf(flyer, plan, clip);
+  const along_m = Math.sqrt(Math.max(0, miss_m ** 2 - missOf(flyer, plan, clip).least_m ** 2));
+  return setAcross(flyer, where, (alongOf(flyer, where) || where.across[0]) < 0 ? -along_m : along_m);
 }
 
 // Another course at the same miss distance and on the same side. `begin`: the flyer whose they are.
 export function withCourse(flyer: Flyer, plan: Plan, clip: Clip, course_deg: number, begin = flyer): Change[] {
-  const beside_m = alongOf(begin, acrossOf(begin, plan, clip));
-  const isRight = beside_m * acrossOf(begin, plan, clip)[0] >= 0;
-  const turned = {...flyer, table: {...flyer.table, encounter: {...tableOf(flyer.table.encounter), course_deg}}};
-  const across = acrossOf(turned, plan, clip);
+  const before = acrossOf(begin, plan, clip);
+  const isRight = alongOf(begin, before) * before.across[0] >= 0;
+  const turned: Flyer = {...flyer, table: {...flyer.table, encounter: {...tableOf(flyer.table.encounter), course_deg}}};
+  const {across, back} = acrossOf(turned, plan, clip);
+  const {miss_m} = missOf(begin, plan, clip);
+  const along_m = Math.sqrt(Math.max(0, miss_m ** 2 - heightOf(flyer) ** 2 - Math.hypot(...back) ** 2));
   return [
     {set: [...flyer.path, 'encounter', 'course_deg'], to: course_deg},
-    ...setAcross(flyer, across, Math.abs(beside_m) * (across[0] >= 0 === isRight ? 1 : -1))
+    ...setAcross(flyer, {across, back}, across[0] >= 0 === isRight ? along_m : -along_m)
   ];
 }
 

@@ -102,12 +102,8 @@ export function velocityAt(plan: Plan, ned: (Ned|null)[], frame: number, rate_hz
 export const courseOf = (velocity: Ned) => degrees(Math.atan2(velocity[1], velocity[0]));
 export const speedOf = (velocity: Ned) => Math.hypot(...velocity);
 
-// The horizontal direction in which a closest approach can lie, as [right, ahead] of the own course: across the
-// relative velocity.
-export function acrossRelative(own_mps: number, speed_mps: number, climb_mps: number, course_deg: number): Point {
+// The horizontal velocity of an encounter's aircraft relative to the own one, as [right, ahead] of the own course.
+export function relativeOf(own_mps: number, speed_mps: number, climb_mps: number, course_deg: number): Point {
   const ground = Math.sqrt(Math.max(0, speed_mps * speed_mps - climb_mps * climb_mps));
-  const right = ground * Math.sin(radians(course_deg));
-  const ahead = ground * Math.cos(radians(course_deg)) - own_mps;
-  const length = Math.hypot(right, ahead);
-  return length < 1e-6 ? [1, 0] : [-ahead / length, right / length];
+  return [ground * Math.sin(radians(course_deg)), ground * Math.cos(radians(course_deg)) - own_mps];
 }

@@ -4,7 +4,7 @@ import {Lost, Refused} from './connection';
 import type {Clip, State, Table, Track} from './contract';
 import {type Edit, Edits} from './edits';
 import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, toMoments, withCourse, withMiss, withMoment} from './flyers';
-import {acrossRelative, freePlace, nedAt, seenAt, turned} from './geometry';
+import {freePlace, nedAt, seenAt, turned} from './geometry';
 import {Store} from './store';
 
 type Test = () => void|Promise<void>;
@@ -164,22 +164,26 @@ tests['Listeners are told once of all that changed'] = async () => {
   await turn();
   same(told, [['frame', 'playing']]);
 };
-tests['A place across the relative velocity'] = () => {
-  // Head-on it is abeam; at right angles ahead is right times the intruder's speed over the own.
-  same(acrossRelative(20, 40, 0, 180).map((v) => Math.round(Math.abs(v) * 1e6) / 1e6), [1, 0]);
-  const [right, ahead] = acrossRelative(20, 40, 0, 90);
-  near(ahead / right, 2, 1e-9);
-};
 tests['The miss distance of an encounter, and another one on its side'] = () => {
   // At right angles from the left, 40 over 20 m/s: 30 m to the left is 60 m behind, as (1, 2) lies across.
   const one = flyer({encounter: {cpa_time_s: 2, cpa_right_m: -30, course_deg: 90, speed_mps: 40}});
   const ned = Array.from({length: 151}, (_, k) => [(20 * k) / 30, 0, -100]);
   const plan = {frames: ned.map((_, k) => k), own: {ned}} as never;
-  near(missOf(one, plan, CLIP), Math.hypot(30, 60), 1e-6);
+  near(missOf(one, plan, CLIP).miss_m, Math.hypot(30, 60), 1e-6);
   same(withMiss(one, plan, CLIP, 100), [{set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: -44.7}]);
   same(withCourse(one, plan, CLIP, 180)[1], {set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: -67.1});
+  // Head-on at 60 m/s, 30 m above and climbing at 10 m/s it is nearest 30 * 10 / 60 m before it is abeam.
+  const climbs = flyer({
+    encounter:
+        {cpa_time_s: 2, cpa_right_m: 40, cpa_above_m: 30, course_deg: 180, speed_mps: Math.hypot(40, 10), climb_mps: 10}
+  });
+  near(missOf(climbs, plan, CLIP).miss_m, Math.hypot(40, 30, 5), 1e-6);
+  near(missOf(climbs, plan, CLIP).least_m, Math.hypot(30, 5), 1e-6);
+  same(
+      withMiss(climbs, plan, CLIP, Math.hypot(20, 30, 5)),
+      [{set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: 20}]);
   const across = flyer({encounter: {cpa_time_s: 2, cpa_ahead_m: 0, course_deg: 180, speed_mps: 40}});
-  same(missOf(across, plan, CLIP), 0);
+  same(missOf(across, plan, CLIP), {miss_m: 0, least_m: 0});
   same(
       withMiss(across, plan, CLIP, 50).map((one) => 'remove' in one || one),
       [true, {set: ['intruder', 0, 'encounter', 'cpa_right_m'], to: 50}]);

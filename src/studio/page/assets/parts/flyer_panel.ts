@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Json, Path, Table} from '../model/contract';
-import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, flyerAt, leastMiss, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
+import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, flyerAt, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
 import {round, speedOf, velocityAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {NumberField, type NumberOptions, choiceField} from './fields';
@@ -100,8 +100,9 @@ export class FlyerPanel extends Part {
     const velocity = plan && track && velocityAt(plan, track.ned, this.now.frame, clip.rate_hz);
     this.nearMiss.show(flyer, timeOf(this.now.frame, clip), velocity && speedOf(velocity));
     if (plan && flyer.statement === 'approach') {
-      this.miss.limit(leastMiss(flyer), MOST_MISS_M, 'm', 'since it is so far above or below');
-      this.miss.show(round(missOf(flyer, plan, clip), 1));
+      const {miss_m, least_m} = missOf(flyer, plan, clip);
+      this.miss.limit(round(least_m, 1), MOST_MISS_M, 'm', 'since it is so far above or below');
+      this.miss.show(round(miss_m, 1));
     }
     const approach = track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '';
     // What the checks say already is not said twice.

@@ -239,7 +239,7 @@ export class PlanView extends SideView<Drag> {
 
   // Where the diamond can be: across the relative velocity, since elsewhere the two would not be nearest.
   private acrossLine(flyer: Flyer, {own, ownCourse_deg}: CpaPlace, plan: Plan, clip: Clip): SVGElement {
-    const across = acrossOf(flyer, plan, clip);
+    const {across} = acrossOf(flyer, plan, clip);
     const turn = radians(ownCourse_deg - this.course_deg);
     const far = this.svg.clientWidth + this.svg.clientHeight;
     const right = far * (across[0] * Math.cos(turn) + across[1] * Math.sin(turn));
@@ -310,9 +310,10 @@ export class PlanView extends SideView<Drag> {
           flyer, plan, clip, round(turned(degrees(Math.atan2(right, ahead)) + this.course_deg - cpa.ownCourse_deg), 0),
           begin);
     const turn = radians(cpa.ownCourse_deg - this.course_deg);
-    const across = acrossOf(flyer, plan, clip);
+    const where = acrossOf(flyer, plan, clip);
+    const {across} = where;
     const own = [right * Math.cos(turn) - ahead * Math.sin(turn), ahead * Math.cos(turn) + right * Math.sin(turn)];
-    return setAcross(flyer, across, own[0] * across[0] + own[1] * across[1]);
+    return setAcross(flyer, where, own[0] * across[0] + own[1] * across[1]);
   }
 
   // Along the line of sight: farther is smaller.
