@@ -48,7 +48,7 @@ std::optional<Pixel> middle_of(const Stage& stage,
   const auto exact = projection::exact_box(sight,
                                            world.actors[actor].type->silhouette,
                                            state->world_from_body_rigid(),
-                                           time_s,
+                                           world.actors[actor].turned_s(time_s),
                                            setup::twist_of(path, *state, time_s, world.shutter));
   if (!exact.box || exact.partly_unseen) return std::nullopt;
   const Pixel middle = centre_of(*exact.box);
