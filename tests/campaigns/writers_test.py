@@ -2,13 +2,15 @@
 """Two, three and eight runs that write the same outputs at once: every success is a whole result of one of them, and nothing
 half-made stays: python3 writers_test.py AIRTRUTH [--rounds N] [--only COMMAND] [--seconds S]
 
-Each run of a command has other options, so that its result tells whose it is. The results are made alone first."""
+Each run of a command has other options, so that its result tells whose it is. The results are made alone first.
+SIGTERM ends it after the round, with the counts."""
 
 import argparse
 import itertools
 import os
 import random
 import shutil
+import signal
 import sys
 import tempfile
 import time
@@ -141,8 +143,10 @@ def main():
         wanted = {name: words for name, words in commands(given.airtruth, data).items() if given.only in name}
         known = {}
         counts = {name: [0, 0, 0] for name in wanted}
+        is_ended = []
+        signal.signal(signal.SIGTERM, lambda *_: is_ended.append(True))
         for number in itertools.count():
-            if number == given.rounds or time.monotonic() - begun > given.seconds:
+            if number == given.rounds or time.monotonic() - begun > given.seconds or is_ended:
                 break
             for name, words_of in wanted.items():
                 try:
