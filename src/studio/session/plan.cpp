@@ -33,6 +33,9 @@ constexpr double kBesideS = 1;
 // Of a line over one frame.
 constexpr std::int64_t kMostLinePoints = 150;
 
+// Of what has no parallax.
+constexpr double kFarAwayM = 1e7;
+
 double hundredths(double value) { return rounded(value, 0.01); }
 
 Json ned(const Vector3& p) { return {hundredths(p.x()), hundredths(p.y()), hundredths(p.z())}; }
@@ -87,7 +90,6 @@ bool is_in_view(const setup::Moment& moment, const trajectory::Path& path) {
 std::optional<std::array<double, 4>> horizon_in(const setup::Moment& moment) {
   // Directions around the compass.
   constexpr int kDirections = 72;
-  constexpr double kFar_m = 1e7;
   const Vector3 own = moment.camera.position_in_world;
   const lens::ImageSize size = moment.sight.lens->size();
   std::optional<std::pair<double, Pixel>> left, right;  // by the angle from the camera's axis
@@ -97,7 +99,7 @@ std::optional<std::array<double, 4>> horizon_in(const setup::Moment& moment) {
     const double angle = i * kPi / kDirections;
     const double azimuth = heading + angle;
     const auto pixel = projection::pixel_from_world(
-        moment.sight, own + kFar_m * Vector3(std::cos(azimuth), std::sin(azimuth), 0));
+        moment.sight, own + kFarAwayM * Vector3(std::cos(azimuth), std::sin(azimuth), 0));
     if (!pixel || std::abs(pixel->x() - size.width / 2.0) > 2 * size.width ||
         std::abs(pixel->y() - size.height / 2.0) > 2 * size.height)
       continue;
@@ -170,6 +172,18 @@ Json cpa_of(const std::optional<passage::Approach>& closest) {
           {"above_m", hundredths(closest->offset.above_m)},
           {"ahead_m", hundredths(closest->offset.ahead_m)},
           {"distance_m", hundredths(closest->distance_m)}};
+}
+
+// Steps between marks, in degrees, and how many of a step are across the picture at most.
+constexpr int kStepsDeg[] = {1, 2, 5, 10, 15, 30};
+constexpr double kMostAcross = 8;
+// Of the picture's width: beyond this angle from the axis nothing is in it. Its diagonal is
+// shorter.
+constexpr double kReach = 1;
+int step_deg(double view_deg) {
+  for (const int step : kStepsDeg)
+    if (view_deg <= kMostAcross * step) return step;
+  return kStepsDeg[std::size(kStepsDeg) - 1];
 }
 
 class Planner {
@@ -436,6 +450,29 @@ Json lines_over(const Stage& stage,
                      {"points", points}});
   }
   return lines;
+}
+
+Json directions_over(const Stage& stage, std::int64_t frame) {
+  Json marks = Json::array();
+  const auto sight = stage.sight_at(frame);
+  if (!sight) return marks;
+  const double view_deg = sight->lens->horizontal_fov_deg();
+  const int step = step_deg(view_deg);
+  const Rigid world_from_cam = sight->cam_from_world.inverse();
+  const Vector3 axis = world_from_cam.rotation * Vector3(0, 0, 1);
+  const double least = std::cos(radians(std::min(180.0, kReach * view_deg)));
+  for (int elevation = -90 + step; elevation < 90; elevation += step)
+    for (int azimuth = 0; azimuth < 360; azimuth += step) {
+      const double a = radians(azimuth);
+      const double e = radians(elevation);
+      const Vector3 direction(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), -std::sin(e));
+      if (direction.dot(axis) < least) continue;
+      const auto pixel =
+          projection::pixel_from_world(*sight, world_from_cam.translation + kFarAwayM * direction);
+      if (pixel && setup::meets_frame({pixel->x(), pixel->y(), 0, 0}, sight->lens->size()))
+        marks.push_back({azimuth, elevation, rounded(pixel->x(), 0.1), rounded(pixel->y(), 0.1)});
+    }
+  return marks;
 }
 
 }  // namespace airtruth::session

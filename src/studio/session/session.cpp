@@ -21,7 +21,6 @@
 #include "sequence/setup/shared_inputs.h"
 #include "studio/messages/request.h"
 #include "studio/session/answers.h"
-#include "studio/session/directions.h"
 #include "studio/session/gallery.h"
 #include "studio/session/job.h"
 #include "studio/session/jpeg.h"

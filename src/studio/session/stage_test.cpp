@@ -15,7 +15,6 @@
 #include "sequence/pipeline/frame_by_frame.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/shared_inputs.h"
-#include "studio/session/directions.h"
 #include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
 #include "support/flight_file.h"
