@@ -297,7 +297,8 @@ def test_near_miss(airtruth, browser, root):
         browser.key("Enter")
     browser.run("(() => { const side = document.querySelector('.near-miss select'); side.value = 'left'; side.dispatchEvent(new Event('change')); })()")
     browser.wait(f"{STORE}.state.motion === 'measured'", 120)
-    press_button(browser, "Fly past")
+    expect("what was typed stays", browser.run("[...document.querySelectorAll('.near-miss input')].map((e) => e.value).slice(0, 2)"), ["80", "10"])
+    browser.click_on(".near-miss button")
     browser.wait(f"{STORE}.state.scene.intruder[0].encounter")
     page.rest()
     miss = lambda: browser.run(f"{STORE}.plan.tracks[0].cpa")
@@ -557,7 +558,7 @@ range_m = 250
     expect("problem", page.state()["problem"], None)
     page.rest()
     browser.key("r")
-    expect("where it will be", "will be in film below the folder of --out" in words_of(browser, "studio-render .hint")[0], True)
+    expect("where it will be", "will be in out/film, as" in words_of(browser, "studio-render .hint")[0], True)
     press_button(browser, "Render the clip")
     browser.wait(f"{STORE}.film && document.querySelectorAll('studio-render video')[1].readyState >= 2", 120)
     browser.run(numbered_clip.READ_NUMBER + """

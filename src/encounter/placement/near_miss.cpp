@@ -52,11 +52,11 @@ double beside_m(const NearMiss& wanted, double above_m) {
   const double rest = (wanted.miss_m - above_m) * (wanted.miss_m + above_m);
   // Its own rounding is none of the height's.
   if (rest < -kMissM * kMissM)
-    throw Error(
-        fmt::format("the intruder passes {:.0f} m {}; expected a miss distance above that, or "
-                    "another height",
-                    std::abs(above_m),
-                    above_m > 0 ? "above" : "below"));
+    throw Error(fmt::format(
+        "the intruder passes {:.0f} m {}; expected a miss distance of more than that, or "
+        "another height",
+        std::abs(above_m),
+        above_m > 0 ? "above" : "below"));
   return std::sqrt(std::max(0.0, rest));
 }
 

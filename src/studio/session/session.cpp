@@ -276,10 +276,12 @@ class Session::Impl {
   Json clip_facts() {
     const auto shot = snapshot();
     // A text that was never a scene: the page shows its problem.
-    if (shot->background.video.empty()) return {{"file", document_file_}, {"clip", nullptr}};
+    if (shot->background.video.empty())
+      return {{"file", document_file_}, {"clip", nullptr}, {"out", options_.out.string()}};
     Clip& clip = stage_.clip(shot->background);
     const video::StreamInfo& info = clip.info();
     Json result = {{"file", document_file_},
+                   {"out", options_.out.string()},
                    {"clip",
                     {{"video", shot->background.video.filename().string()},
                      {"width", info.width},

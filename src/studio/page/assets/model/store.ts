@@ -34,6 +34,7 @@ export interface Everything {
   connected: boolean;
   everConnected: boolean;
   file: string;
+  out: string;  // the folder of rendered videos
   clip: Clip|null;
   state: State|null;
   plan: Plan|null;
@@ -70,6 +71,7 @@ const beginning: Everything = {
   connected: false,
   everConnected: false,
   file: '',
+  out: '',
   clip: null,
   state: null,
   plan: null,

@@ -375,8 +375,8 @@ export class Studio {
 
   private async opened(): Promise<void> {
     try {
-      const {file, clip, ...answer} =
-          await this.connection.request<{file: string; clip: Clip | null; state: Told}>('open');
+      const {file, clip, out, ...answer} =
+          await this.connection.request<{file: string; clip: Clip | null; out: string; state: Told}>('open');
       const state = this.known(answer.state);
       if (clip) this.pictures.begin(clip);
       this.background = clip ? backgroundOf(state) : '';
@@ -386,6 +386,7 @@ export class Studio {
         everConnected: true,
         file,
         clip,
+        out,
         state,
         frame: clamp(this.store.now.frame, 0, (clip?.frames ?? 1) - 1)
       });

@@ -112,10 +112,9 @@ export class RenderDialog extends DialogPart {
                           '');
     text(
         this.where,
-        film ?
-            `The film and its truth are in ${film.folder}` :
-            `The film, its boxes and its truth will be in ${
-                name} below the folder of --out (“out” where the studio was started without it), as \`airtruth render\` writes them. What is there is replaced.`);
+        film ? `The film and its truth are in ${film.folder}` :
+               `The film, its boxes and its truth will be in ${this.now.out}/${
+                   name}, as \`airtruth render\` writes them. What is there is replaced.`);
     this.film.hidden = !film || isRendering;
     if (film && film !== this.shown) this.load(film);
     if (dialog !== 'render') this.pause();
