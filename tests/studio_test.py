@@ -474,6 +474,12 @@ def test_keys(airtruth, browser, root):
     page.rest()
     expect("a time before the moment before", words_of(browser, ".expected"), [f"Expected a number from {round(times[0] + 1 / 30, 3)} to {round((FRAMES - 1) / 30, 3)} s, between the moments beside it."])
     browser.key("Escape")
+    # Its frame comes with a time that is left by Tab.
+    time_s = round(times[1] - 5 / 30, 3)
+    type_into(browser, "Time of moment 2, s", str(time_s))
+    browser.key("Tab")
+    page.rest()
+    expect("the frame of a time that was entered", browser.run(f"{STORE}.frame"), round(30 * time_s))
     square = browser.middle("studio-height .moment", 1)
     browser.drag(square, (square[0] - 900, square[1]))
     page.rest()

@@ -19,9 +19,9 @@ std::string cell(const std::optional<double>& value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
-// "12.0 right", or "12.0 left" of a number below 0.
+// "12.0 right", or "12.0 left" of a number below 0; what is 0.0 is right.
 std::string to_side(double value, const char* positive, const char* negative) {
-  return fmt::format("{:.1f} {}", std::abs(value), value < 0 ? negative : positive);
+  return fmt::format("{:.1f} {}", std::abs(value), value <= -0.05 ? negative : positive);
 }
 
 Box around(const Box& a, const Box& b) {

@@ -284,7 +284,7 @@ class MomentRow {
           '×');
     const size = h('span', {class: 'size'}, this.size.element, this.unit.select);
     this.element =
-        h('div', {class: 'row', role: 'row', onfocusin: () => this.panel.choose(index)},
+        h('div', {class: 'row', role: 'row', onfocusin: ((event: FocusEvent) => this.entered(event)) as EventListener},
           ...[this.time.element, this.x.element, this.y.element, size, remove].map(
               (one) => h('span', {role: 'cell'}, one)));
   }
@@ -304,6 +304,11 @@ class MomentRow {
   private setTime(time_s: number): void {
     this.set('time_s', time_s);
     this.panel.showTime(time_s);
+  }
+
+  // From outside the row; within it a time that was just entered is the one to be shown.
+  private entered(event: FocusEvent): void {
+    if (!this.element.contains(event.relatedTarget as Node | null)) this.panel.choose(this.index);
   }
 
   private set(key: string, to: Json): void {
