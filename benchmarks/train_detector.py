@@ -23,7 +23,6 @@ import time
 
 import cv2
 import numpy as np
-import onnx
 import torch
 from torch import nn
 from torch.nn import functional
@@ -328,21 +327,13 @@ def train(network, frames, options):
     return step
 
 
-def of_any_size(path):
-    """The exporter states the size that it was shown, which onnxruntime then insists on; no operation depends on it."""
-    model = onnx.load(path)
-    for value in (*model.graph.input, *model.graph.output):
-        for axis, name in ((2, "height"), (3, "width")):
-            value.type.tensor_type.shape.dim[axis].dim_param = f"{value.name}_{name}"
-    onnx.save(model, path)
-
-
 def write(network, path, score_threshold=0.2, confident_score=0.4):
     name = os.path.splitext(path)[0]
     unfinished = path + ".part"
+    names = ["grey", "heat", "offset", "size"]
     torch.onnx.export(ForExport(network), torch.zeros(1, 1, 480, 640), unfinished, opset_version=11,
-                      input_names=["grey"], output_names=["heat", "offset", "size"])
-    of_any_size(unfinished)
+                      input_names=names[:1], output_names=names[1:],
+                      dynamic_axes={name: {2: f"{name}_height", 3: f"{name}_width"} for name in names})  # onnxruntime refuses other sizes else
     description = {
         "format": "airtruth detector model 1",
         "input": {"layout": "grey", "scale": 1 / 255, "fit": "frame", "multiple_px": MULTIPLE},
