@@ -14,6 +14,7 @@
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 #include "studio/session/answers.h"
+#include "studio/session/plan.h"
 
 namespace airtruth::session {
 namespace {
@@ -25,12 +26,10 @@ constexpr int kRounds = 6;
 std::size_t actor_of(const Stage& stage,
                      const std::vector<document::TablePlace>& tables,
                      std::size_t intruder) {
-  const auto table = std::find_if(tables.begin(), tables.end(), [&](const auto& place) {
-    return place.array == "intruder" && place.index == intruder;
-  });
+  const nlohmann::ordered_json wanted = {"intruder", intruder};
   const auto& all = stage.scene().intruders;
   const auto found = std::find_if(all.begin(), all.end(), [&](const scene::Intruder& one) {
-    return table != tables.end() && one.where.line == table->line;
+    return table_at(tables, one.where.line) == wanted;
   });
   if (found == all.end()) throw Error(fmt::format("there is no intruder {}", intruder));
   return static_cast<std::size_t>(found - all.begin());

@@ -174,12 +174,11 @@ Json cpa_of(const std::optional<passage::Approach>& closest) {
           {"distance_m", hundredths(closest->distance_m)}};
 }
 
-// Steps between marks, in degrees, and how many of a step are across the picture at most.
+// Steps between marks, in degrees, and how many of them are along the picture's longer side at
+// most.
 constexpr int kStepsDeg[] = {1, 2, 5, 10, 15, 30};
 constexpr double kMostAcross = 8;
-// Of the picture's width: beyond this angle from the axis nothing is in it. Its diagonal is
-// shorter.
-constexpr double kReach = 1;
+
 int step_deg(double view_deg) {
   for (const int step : kStepsDeg)
     if (view_deg <= kMostAcross * step) return step;
@@ -456,12 +455,18 @@ Json directions_over(const Stage& stage, std::int64_t frame) {
   Json marks = Json::array();
   const auto sight = stage.sight_at(frame);
   if (!sight) return marks;
-  const double view_deg = sight->lens->horizontal_fov_deg();
+  const double view_deg =
+      std::max(sight->lens->horizontal_fov_deg(), sight->lens->vertical_fov_deg());
   const int step = step_deg(view_deg);
   const Rigid world_from_cam = sight->cam_from_world.inverse();
   const Vector3 axis = world_from_cam.rotation * Vector3(0, 0, 1);
-  const double least = std::cos(radians(std::min(180.0, kReach * view_deg)));
-  for (int elevation = -90 + step; elevation < 90; elevation += step)
+  // Farther from the axis nothing is in the picture: half of its diagonal is narrower than its
+  // longer side.
+  const double reach_deg = std::min(180.0, view_deg);
+  const double least = std::cos(radians(reach_deg));
+  const double axis_deg = degrees(std::asin(std::clamp(-axis.z(), -1.0, 1.0)));
+  for (int elevation = -90 + step; elevation < 90; elevation += step) {
+    if (std::abs(elevation - axis_deg) > reach_deg) continue;
     for (int azimuth = 0; azimuth < 360; azimuth += step) {
       const double a = radians(azimuth);
       const double e = radians(elevation);
@@ -472,6 +477,7 @@ Json directions_over(const Stage& stage, std::int64_t frame) {
       if (pixel && setup::meets_frame({pixel->x(), pixel->y(), 0, 0}, sight->lens->size()))
         marks.push_back({azimuth, elevation, rounded(pixel->x(), 0.1), rounded(pixel->y(), 0.1)});
     }
+  }
   return marks;
 }
 
