@@ -340,8 +340,10 @@ class Session::Impl {
     std::optional<Stage::Picture> made;
     Json boxes = Json::array();
     if (request.aircraft && problem.empty()) {
-      made = stage_.picture(
-          request.frame, exact, [this] { return worker_.is_wanted_for(Urgency::kPlan); });
+      // Each request has its answer, so only the exact picture that follows it can wait.
+      made = stage_.picture(request.frame, exact, [this, exact] {
+        return exact && worker_.is_wanted_for(Urgency::kPlan);
+      });
       if (!made) return again_later(client, request);
       boxes = boxes_of(stage_, made->moment, shot->tables);
     }

@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -204,6 +205,21 @@ TEST_F(OfASession, TheNewestFrameReplacesThoseThatWait) {
     dropped += answers_[id].empty() ? 0 : 1;
   }
   EXPECT_GE(dropped, 15);
+}
+
+// Requests that come while the one before is drawn, as those of a hand that drags do.
+TEST_F(OfASession, EachFrameThatIsAskedForIsAnswered) {
+  for (int round = 0; round < 10; ++round) {
+    frame({{"frame", 0}});
+    std::vector<std::int64_t> ids;
+    for (int k = 6; k < 24; k += 6) {
+      ids.push_back(send("frame", {{"frame", k}}));
+      std::this_thread::sleep_for(std::chrono::milliseconds(round));
+    }
+    EXPECT_TRUE(wait_for([&] { return pictures_.count(ids.back()) > 0; }));
+    for (const std::int64_t id : ids)
+      EXPECT_EQ(answers_[id].size() + (pictures_[id].empty() ? 0 : 1), 1u) << id;
+  }
 }
 
 TEST_F(OfASession, AfterTheFirstPictureTheExactOneFollows) {
