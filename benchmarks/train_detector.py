@@ -238,10 +238,11 @@ class Targets:
 
 def loss_of(network, batch):
     pixels, targets = batch
-    logits, offset, size = network(torch.from_numpy(pixels).to(memory_format=torch.channels_last))  # a fifth faster on the CPU
+    device = next(network.parameters()).device
+    logits, offset, size = network(torch.from_numpy(pixels).to(device, memory_format=torch.channels_last))  # a fifth faster on the CPU
     logits = logits[:, 0]
-    heat = torch.from_numpy(np.stack([t.heat for t in targets]))
-    weight = torch.from_numpy(np.stack([t.weight for t in targets]))
+    heat = torch.from_numpy(np.stack([t.heat for t in targets])).to(device)
+    weight = torch.from_numpy(np.stack([t.weight for t in targets])).to(device)
     # Penalty-reduced focal loss: Law and Deng 2018, equation 1, with alpha 2 and beta 4.
     p = torch.sigmoid(logits)
     at_peak = (heat == 1).float()
@@ -252,9 +253,9 @@ def loss_of(network, batch):
     index = [(n, *place) for n, t in enumerate(targets) for place in t.places]
     if not index:
         return focal
-    n, rows, columns = (torch.tensor(i) for i in zip(*index))
-    told_offset = torch.tensor([o for t in targets for o in t.offsets], dtype=torch.float32)
-    told_size = torch.tensor([s for t in targets for s in t.sizes], dtype=torch.float32)
+    n, rows, columns = (torch.tensor(i, device=device) for i in zip(*index))
+    told_offset = torch.tensor([o for t in targets for o in t.offsets], dtype=torch.float32, device=device)
+    told_size = torch.tensor([s for t in targets for s in t.sizes], dtype=torch.float32, device=device)
     return (focal + functional.l1_loss(offset[n, :, rows, columns], told_offset)
             + functional.l1_loss(size[n, :, rows, columns], told_size))
 

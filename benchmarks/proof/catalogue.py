@@ -50,7 +50,7 @@ def rules_of(azimuth_deg, in_sky_deg, anywhere_deg, sky_of_ten):
 def streamed(name, backgrounds, rules):
     """A catalogue with a table [stream] as a dict, for airtruth.Stream."""
     return {"name": name, "seed": 1, "background": backgrounds, "random": rules,
-            "stream": {"picture": "frame", "intruders": [1, 2], "reuse": 4, "memory_mb": 400}}
+            "stream": {"picture": "frame", "intruders": [1, 2], "reuse": 2, "memory_mb": 400}}
 
 
 def of_clips(clips, realism):

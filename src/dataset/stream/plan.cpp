@@ -2,6 +2,7 @@
 #include "dataset/stream/plan.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -23,6 +24,21 @@ constexpr std::int64_t kFramesInDoubt = 2;
 // Where a sequence of the rule is longer than a sample.
 bool is_passage(const catalogue::Drawn& rule) { return rule.approach.has_value(); }
 bool is_passage(const catalogue::EncounterRule&) { return true; }
+
+const std::vector<std::size_t>& backgrounds_of(
+    const std::variant<catalogue::Drawn, catalogue::EncounterRule>& drawing) {
+  return std::visit(
+      [](const auto& one) -> const auto& { return one.backgrounds; }, drawing);
+}
+
+// How much of a rule is over `background`.
+double share_of(std::size_t background,
+                const std::vector<std::size_t>& among,
+                const std::vector<catalogue::Background>& all) {
+  double sum = 0;
+  for (const std::size_t place : among) sum += all[place].weight;
+  return std::count(among.begin(), among.end(), background) > 0 ? all[background].weight / sum : 0;
+}
 
 // The scene of what happens from `time_s` on. Its paths are those of [[random]] and
 // [[encounter_model]].
@@ -94,30 +110,38 @@ void Planner::check_backgrounds(const std::vector<std::size_t>& places) const {
   }
 }
 
-// A rule as often as it has sequences.
-const Planner::Rule& Planner::drawn_rule(Random& random) const {
-  const auto count_of = [](const Rule& rule) {
-    return std::visit([](const auto& drawing) { return drawing.count; }, rule.drawing);
-  };
-  std::int64_t all = 0;
-  for (const Rule& rule : rules_) all += count_of(rule);
-  auto left = static_cast<std::int64_t>(random.uniform() * static_cast<double>(all));
-  for (const Rule& rule : rules_) {
-    if (left < count_of(rule)) return rule;
-    left -= count_of(rule);
+const Planner::Rule& Planner::drawn_rule(Random random,
+                                         const std::function<double(const Rule&)>& share_of) const {
+  std::vector<double> shares;
+  for (const Rule& rule : rules_)
+    shares.push_back(share_of(rule) *
+                     static_cast<double>(std::visit(
+                         [](const auto& drawing) { return drawing.count; }, rule.drawing)));
+  double left = random.uniform() * std::accumulate(shares.begin(), shares.end(), 0.0);
+  std::size_t last = 0;  // of those that may be drawn: sums are rounded
+  for (std::size_t k = 0; k < rules_.size(); ++k) {
+    if (shares[k] > 0) last = k;
+    left -= shares[k];
+    if (left < 0) break;
   }
-  return rules_.back();
+  return rules_[last];
+}
+
+const Planner::Rule& Planner::rule_over(std::size_t background, std::int64_t index) const {
+  return drawn_rule(
+      Seed(seed_).stream("rule", static_cast<std::uint64_t>(index)), [&](const Rule& rule) {
+        return share_of(background, backgrounds_of(rule.drawing), catalogue_.backgrounds);
+      });
 }
 
 Planner::Run Planner::run_of(std::int64_t number) const {
   Random random = Seed(seed_).stream("run", static_cast<std::uint64_t>(number));
-  Run run{&drawn_rule(random), 0, 0, 1};
+  const Rule& rule =
+      drawn_rule(Seed(seed_).stream("rule of run", static_cast<std::uint64_t>(number)),
+                 [](const Rule&) { return 1.0; });
+  Run run;
   run.background = catalogue::background_at(
-      random.uniform(),
-      std::visit(
-          [](const auto& drawing) -> const auto& { return drawing.backgrounds; },
-          run.rule->drawing),
-      catalogue_.backgrounds);
+      random.uniform(), backgrounds_of(rule.drawing), catalogue_.backgrounds);
   const catalogue::Background& background = catalogue_.backgrounds[run.background];
   const catalogue::BackgroundFiles& files = files_(run.background);
   if (files.frames <= 0)
@@ -139,7 +163,7 @@ Planned Planner::at(std::int64_t index) const {
   const std::int64_t first_frame = run.first_frame + place.step % run.frames;
   const std::int64_t samples_of_run = kRunFrames * catalogue_.stream.reuse;
   Planned planned{
-      scene_of(*run.rule,
+      scene_of(rule_over(run.background, index),
                {run.background, first_frame, place.run * samples_of_run + place.sample_of_run},
                index),
       run.background,

@@ -46,9 +46,8 @@ class Planner {
     std::vector<catalogue::AircraftType> types;
     std::uint64_t seed = 1;
   };
-  // The frames that a run of samples is over, and the rule that they are drawn by.
+  // The frames that a run of samples is over.
   struct Run {
-    const Rule* rule = nullptr;
     std::size_t background = 0;
     std::int64_t first_frame = 0;  // in the video
     std::int64_t frames = 1;       // at which a sample may begin
@@ -56,8 +55,11 @@ class Planner {
 
   Drawing checked(const catalogue::Rule& rule) const;
   void check_backgrounds(const std::vector<std::size_t>& places) const;
-  const Rule& drawn_rule(Random& random) const;
+  // Any rule as often as it has sequences, where `share_of` is 1 for all.
+  const Rule& drawn_rule(Random random, const std::function<double(const Rule&)>& share_of) const;
   Run run_of(std::int64_t number) const;
+  // Of a sample over that background.
+  const Rule& rule_over(std::size_t background, std::int64_t index) const;
   scene::Scene scene_of(const Rule& rule,
                         const catalogue::StreamPlace& place,
                         std::int64_t index) const;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/stream/stream.h"
 
+#include <cmath>
 #include <fstream>
 #include <future>
+#include <map>
 #include <set>
 #include <string>
 
@@ -25,7 +27,7 @@ namespace {
 
 using testing::HasSubstr;
 TEST(Places, LanesTakeTurnsAndAFrameIsUsedOftenBeforeTheNext) {
-  const Place later = place_of(8 * 64 * 8 + 3, 8);  // the lanes' first runs are over
+  const Place later = place_of(8 * kRunFrames * 8 + 3, 8);  // the lanes' first runs are over
   EXPECT_EQ(place_of(9, 8).run, 1);
   EXPECT_EQ(place_of(9, 8).step, 0);
   EXPECT_EQ(place_of(9, 8).sample_of_run, 1);
@@ -200,6 +202,33 @@ TEST_F(StreamOfFlights, SoAreEncountersFromWhereTheyAreInView) {
   EXPECT_GE(seen, 20);
   for (const std::int64_t index : {0, 1, 2, 3})
     expect_as_rendered(stream, index, folder_->path() / "encounters");
+}
+
+TEST_F(StreamOfFlights, WhatIsPutOverARunIsDrawnForEachSampleByTheCountsOfTheRules) {
+  const auto rule = [](const std::string& name, int count, const std::string& more) {
+    return "[[random]]\nname = \"" + name + "{index}\"\ncount = " + std::to_string(count) +
+           "\naircraft = [\"" + name + "/*\"]\n" + more;
+  };
+  const Stream stream = stream_of(
+      background("flight3") + background("flight4", "weight = 3\n") + rule("738", 30, "") +
+      rule("c172", 10, "backgrounds = [\"flight3\"]\n") + "[stream]\nreuse = 1\n");
+  constexpr int kSamples = 4096;  // of 256 whole runs
+  int of_c172 = 0;
+  int over_3 = 0;
+  std::map<std::int64_t, std::set<bool>> of_run_over_3;
+  for (std::int64_t index = 0; index < kSamples; ++index) {
+    const scene::Scene scene = stream.scene(index);
+    const bool is_c172 = scene.intruders.at(0).aircraft.starts_with("c172/");
+    const bool is_over_3 = scene.background.video.filename() == "flight3.mp4";
+    EXPECT_TRUE(is_over_3 || !is_c172);
+    of_c172 += is_c172 ? 1 : 0;
+    over_3 += is_over_3 ? 1 : 0;
+    if (is_over_3) of_run_over_3[place_of(index, 1).run].insert(is_c172);
+  }
+  // Four standard deviations of independent runs, and of independent samples.
+  EXPECT_NEAR(over_3, (0.25 + 0.75 / 4) * kSamples, 4 * 0.5 * std::sqrt(256.0) * 16);
+  EXPECT_NEAR(of_c172, over_3 * 0.25 / (0.25 + 0.75 / 4), 4 * std::sqrt(0.25 * over_3));
+  for (const auto& [run, kinds] : of_run_over_3) EXPECT_EQ(kinds.size(), 2u) << run;
 }
 
 TEST_F(StreamOfFlights, PropellersOfEachIntruderStandAtAPlaceOfTheirOwn) {
