@@ -27,6 +27,7 @@ sys.path[:0] = [PACKAGES, PROOF, os.path.join(SOURCE, "benchmarks")]
 import measure
 import sets
 import splits
+import tight
 import trainings
 
 WIDTH, HEIGHT = 320, 288
@@ -109,6 +110,41 @@ class Readers(InFolder):
         self.assertEqual(greys[0].shape, (HEIGHT, WIDTH))
         x, y, w, h = boxes[2]
         self.assertLess(greys[1][y + h // 2, x + w // 2], greys[1][5, 5])
+
+    def test_ground_real_finds_tight_boxes_in_the_pictures_where_none_are_given(self):
+        """A rectangle of known sides within a loose box of two and a half times its size. In frame 4 nothing is there, in frame 6 it is twice as long."""
+        boxes = [(60 + 4 * k, 80 + 2 * k, 24, 10) for k in range(12)]
+        drawn = {**dict(enumerate(boxes)), 4: None, 6: (boxes[6][0] - 12, boxes[6][1], 48, 10)}
+        frames = []
+        for box in drawn.values():
+            sky = picture(0, 0, 0, 0)
+            if box is not None:
+                x, y, width, height = box
+                sky[y:y + height, x:x + width] = 40
+            frames.append(sky)
+        write_video(self.root / "V_HELICOPTER_001.avi", frames)
+        loose = [(x - 18, y - 8, 60, 26) for x, y, _, _ in boxes]
+        write(self.root / "V_HELICOPTER_001.csv", "frame,x,y,w,h\n" + "".join(f"{k},{x + 1},{y + 1},{w},{h}\n" for k, (x, y, w, h) in enumerate(loose)))
+        clip = self.read("ground-real")["V_HELICOPTER_001"]
+        self.assertEqual([frame.number for frame in clip.frames], list(range(12)))
+        for frame in clip.frames:
+            if frame.number in (4, 6):
+                self.assertEqual(len(frame.objects), 0)
+                self.assertEqual(frame.ignored.tolist(), [list(loose[frame.number])])
+            else:
+                self.assertEqual(([one.kind for one in frame.objects], len(frame.ignored)), (["helicopter"], 0))
+                x, y, width, height = frame.objects[0].box
+                left, top, w, h = boxes[frame.number]
+                numpy.testing.assert_allclose((x, y, x + width, y + height), (left, top, left + w, top + h), atol=1)
+
+    def test_a_tight_box_is_none_where_the_loose_box_does_not_hold_the_aircraft(self):
+        sky = numpy.full((60, 60), 150, numpy.uint8)
+        tight_box = lambda *loose: tight.tight_box(sky, numpy.array(loose, float))
+        self.assertIsNone(tight_box(10, 10, 40, 30))
+        sky[20:28, 5:30] = 40  # it begins left of the loose box
+        self.assertIsNone(tight_box(10, 10, 40, 30))
+        self.assertEqual(tight_box(-4, 10, 54, 30).tolist(), [5, 20, 25, 8])  # a loose box that reaches out of the picture
+        self.assertIsNone(tight_box(58, 58, 2, 2))
 
     def test_clips_with_boxes_beside_them(self):
         write_video(self.root / "flight.avi", [picture(50, 50, 20, 8)] * 3)

@@ -10,6 +10,7 @@ the first pixel at (0, 0). A kind is "airplane", "helicopter", "multirotor", "ua
 import csv
 import dataclasses
 import fnmatch
+import functools
 import pathlib
 import re
 from typing import Callable, Optional
@@ -17,6 +18,8 @@ from typing import Callable, Optional
 import airtruth
 import cv2
 import numpy as np
+
+import tight
 
 VIDEOS = (".mp4", ".avi", ".mov", ".mkv", ".m4v", ".mpg")
 PICTURES = (".png", ".jpg", ".jpeg")
@@ -136,9 +139,24 @@ def boxes_in(path, origin):
     return boxes
 
 
-# The set of Svanstrom and others, from a zoom camera on the ground, with an own folder `tight` beside it: its own boxes are two to three times as
-# large as the aircraft. A frame without a tight box has its loose one as a region that counts neither way.
+# The set of Svanstrom and others, from a zoom camera on the ground. Its own boxes are two to three times as large as the aircraft: those of the
+# aircraft themselves are in a folder `tight` beside the clips, or are found in the pictures. A frame without one has its loose box as a region that
+# counts neither way.
 KINDS_BY_NAME = {"AIRPLANE": "airplane", "HELICOPTER": "helicopter", "BIRD": "bird", "DRONE": "multirotor"}
+
+
+class LooseClip(Clip):
+    """A clip with loose boxes alone. Its pictures are read where its frames are asked for."""
+
+    def __init__(self, name, video, kind, loose):
+        self.name, self.video, self.kind, self.loose = name, video, kind, loose
+
+    @functools.cached_property
+    def frames(self):
+        found = tight.tight_boxes(self.loose, self.grey([Frame(number, []) for number in sorted(self.loose)]))
+        return [Frame(number, [Object(box, self.kind) for box in found[number] if box is not None],
+                      np.array([loose for loose, box in zip(boxes, found[number]) if box is None]).reshape(-1, 4))
+                for number, boxes in sorted(self.loose.items())]
 
 
 def read_ground_real(root):
@@ -153,11 +171,12 @@ def read_ground_real(root):
         if kind in ("bird", "multirotor"):
             frames = [Frame(number, [Object(box, kind) for box in boxes]) for number, boxes in sorted(loose.items())]
         elif video.stem not in tight_files:
-            frames = [Frame(number, [], np.array(boxes)) for number, boxes in sorted(loose.items())]
+            clips.append(LooseClip(video.stem, video, kind, loose))
+            continue
         else:
-            tight = boxes_in(tight_files[video.stem], 0)
-            frames = [Frame(number, [Object(box, kind) for box in tight.get(number, [])],
-                            np.zeros((0, 4)) if number in tight else np.array(loose[number])) for number in sorted(set(loose) | set(tight))]
+            known = boxes_in(tight_files[video.stem], 0)
+            frames = [Frame(number, [Object(box, kind) for box in known.get(number, [])],
+                            np.zeros((0, 4)) if number in known else np.array(loose[number])) for number in sorted(set(loose) | set(known))]
         clips.append(Clip(video.stem, video, frames))
     return clips
 
@@ -279,7 +298,7 @@ def read_drone_vs_bird(root):
 
 
 SOURCES = {
-    "ground-real": Source("Drone-detection-dataset (Svanstrom, Englund, Alonso-Fernandez 2021), video in visible light, with tight boxes", "CC0 1.0",
+    "ground-real": Source("Drone-detection-dataset (Svanstrom, Englund, Alonso-Fernandez 2021), video in visible light", "CC0 1.0",
                           "github.com/DroneDetectionThesis/Drone-detection-dataset", ("airplane", "helicopter"), read_ground_real, "ground-zoom"),
     "boxed": Source("clips with boxes beside them (data/real-aircraft names two)", "that of the clips", "-", ("airplane",), read_boxed),
     "aot": Source("Airborne Object Tracking (Amazon Prime Air 2021)", "CDLA-Permissive-1.0", "registry.opendata.aws/airborne-object-tracking",
