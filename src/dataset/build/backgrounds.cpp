@@ -69,7 +69,7 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
   files.width = info.width;
   files.height = info.height;
   files.frame_rate_hz = info.frame_rate.value();
-  files.frames = info.frame_count_estimate;
+  files.frames = end_of(background, info.frame_count_estimate);
   files.log_start = log_start(background, files.video);
   return files;
 }

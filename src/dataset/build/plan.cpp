@@ -177,9 +177,11 @@ class Planner {
   }
 
   std::int64_t frames_of(const catalogue::Item& item, const Facts& facts) const {
-    if (item.frame_count > 0) return item.frame_count;
-    const std::int64_t first_frame = catalogue_.backgrounds[item.background].first_frame;
-    return std::max<std::int64_t>(0, facts.frames - first_frame);
+    const catalogue::Background& background = catalogue_.backgrounds[item.background];
+    const std::int64_t left =
+        std::max<std::int64_t>(0, end_of(background, facts.frames) - background.first_frame);
+    if (item.frame_count == 0) return left;
+    return background.frame_count && left > 0 ? std::min(item.frame_count, left) : item.frame_count;
   }
 
   // Why an intruder cannot fly its path, or has none; "" where it can.

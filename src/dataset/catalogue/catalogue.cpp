@@ -56,6 +56,7 @@ Background background_from(const TableReader& table) {
   }
   background.mask = table.path("mask");
   background.first_frame = table.whole("first_frame", 0, kMost).value_or(0);
+  background.frame_count = table.whole("frame_count", 1, kMost);
   background.frame_rate_hz = table.number("frame_rate_hz", scene::kFrameRate_hz);
   const scene::Limits weight{.expected = "a weight from 0.001 to 1e6", .low = 0.001, .high = 1e6};
   background.weight = table.number("weight", weight).value_or(background.weight);
@@ -151,6 +152,7 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
                                                                          "flight",
                                                                          "mask",
                                                                          "first_frame",
+                                                                         "frame_count",
                                                                          "frame_rate_hz",
                                                                          "weight",
                                                                          "lens",
@@ -223,6 +225,12 @@ StreamTable stream_in(const TableReader& root) {
 }
 
 }  // namespace
+
+std::int64_t end_of(const Background& background, std::int64_t frames) {
+  if (!background.frame_count) return frames;
+  const std::int64_t end = background.first_frame + *background.frame_count;
+  return frames > 0 ? std::min(frames, end) : end;
+}
 
 Catalogue read_catalogue(const fs::path& file) {
   return parse_catalogue(read_file(file, scene::kLargestToml), file);

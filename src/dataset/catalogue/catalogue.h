@@ -33,6 +33,8 @@ struct Background {
   // The mask of a video; a flight brings its own.
   std::optional<fs::path> mask;
   std::int64_t first_frame = 0;
+  // Frames that are used, from first_frame on; empty: to the video's end.
+  std::optional<std::int64_t> frame_count;
   // Of numbered pictures, which state none.
   std::optional<double> frame_rate_hz;
   scene::Lens lens;
@@ -46,6 +48,10 @@ struct Background {
   double weight = 1;
   Where where;
 };
+
+// Where the part of a video of so many frames (0: unknown) ends that the background uses, counted
+// from the video's first frame; 0: unknown.
+std::int64_t end_of(const Background& background, std::int64_t frames);
 
 struct Aircraft {
   std::string name;  // name in this catalogue

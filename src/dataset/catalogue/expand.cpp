@@ -286,6 +286,8 @@ void place(Item& item,
     placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
   const std::int64_t left = files.frames - placed.first_frame;
+  if (background.frame_count && left > 0)
+    placed.frame_count = std::min(placed.frame_count.value_or(left), left);
   if (left > 0) clip.frames = clip.frames > 0 ? std::min(clip.frames, left) : left;
   if (clip.frames == 0) clip.frames = kProvisionalFrames;
   const lens::ImageSize size{files.width, files.height};

@@ -401,7 +401,8 @@ TEST_F(NumberRanges, OfACatalogue) {
   };
   const auto read = [](const std::string& text, bool) { parse_catalogue(text, root_ / "in.toml"); };
   const std::string video =
-      "[[background]]\nname = 'sky'\nvideo = 'sky.mkv'\nmask = 'm.png'\nfirst_frame = 0\n"
+      "[[background]]\nname = 'sky'\nvideo = 'sky.mkv'\nmask = 'm.png'\nfirst_frame = "
+      "0\nframe_count = 60\n"
       "lens = { vertical_fov_deg = 60 }\n[[random]]\nname = 'r{index}'\ncount = 2\n"
       "frame_count = 2\naircraft = ['738/738-Ryanair']\n";
   const std::string by_range =

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "dataset/catalogue/drawing.h"
 #include "dataset/catalogue/meeting.h"
 #include "dataset/stream/fleet.h"
@@ -20,6 +22,10 @@ namespace {
 
 // A container may state a frame or two more than it holds.
 constexpr std::int64_t kFramesInDoubt = 2;
+
+// Where the background of a run states a frame_count that is shorter than the run, the run goes on
+// over others: hundreds of samples of one frame would follow each other else.
+std::int64_t part_number(std::int64_t run, std::int64_t part) { return run * kRunFrames + part; }
 
 // Where a sequence of the rule is longer than a sample.
 bool is_passage(const catalogue::Drawn& rule) { return rule.approach.has_value(); }
@@ -134,11 +140,11 @@ const Planner::Rule& Planner::rule_over(std::size_t background, std::int64_t ind
       });
 }
 
-Planner::Run Planner::run_of(std::int64_t number) const {
-  Random random = Seed(seed_).stream("run", static_cast<std::uint64_t>(number));
+Planner::Run Planner::run_of(std::int64_t number, std::int64_t part) const {
+  const auto of_part = static_cast<std::uint64_t>(part_number(number, part));
   const Rule& rule =
-      drawn_rule(Seed(seed_).stream("rule of run", static_cast<std::uint64_t>(number)),
-                 [](const Rule&) { return 1.0; });
+      drawn_rule(Seed(seed_).stream("rule of run", of_part), [](const Rule&) { return 1.0; });
+  Random random = Seed(seed_).stream("run", of_part);
   Run run;
   run.background = catalogue::background_at(
       random.uniform(), backgrounds_of(rule.drawing), catalogue_.backgrounds);
@@ -148,8 +154,16 @@ Planner::Run Planner::run_of(std::int64_t number) const {
     throw Error(
         files.video.string() + " does not state how many frames it has; expected a file that does",
         background.where);
+  if (background.frame_count && *background.frame_count < catalogue_.stream.frames)
+    throw Error(fmt::format("background '{}' has a frame_count of {}; expected the {} frames of a "
+                            "sample, or more",
+                            background.name,
+                            *background.frame_count,
+                            catalogue_.stream.frames),
+                background.where);
+  const std::int64_t doubtful = background.frame_count ? 0 : kFramesInDoubt;
   const std::int64_t places = std::max<std::int64_t>(
-      1, files.frames - kFramesInDoubt - background.first_frame - catalogue_.stream.frames + 1);
+      1, files.frames - doubtful - background.first_frame - catalogue_.stream.frames + 1);
   run.frames = std::min(kRunFrames, places);
   run.first_frame =
       background.first_frame +
@@ -159,7 +173,10 @@ Planner::Run Planner::run_of(std::int64_t number) const {
 
 Planned Planner::at(std::int64_t index) const {
   const Place place = place_of(index, catalogue_.stream.reuse);
-  const Run run = run_of(place.run);
+  Run run = run_of(place.run, 0);
+  const bool is_part = catalogue_.backgrounds[run.background].frame_count.has_value();
+  const std::int64_t part = is_part ? place.step / run.frames : 0;
+  if (part > 0) run = run_of(place.run, part);
   const std::int64_t first_frame = run.first_frame + place.step % run.frames;
   const std::int64_t samples_of_run = kRunFrames * catalogue_.stream.reuse;
   Planned planned{
@@ -167,7 +184,7 @@ Planned Planner::at(std::int64_t index) const {
                {run.background, first_frame, place.run * samples_of_run + place.sample_of_run},
                index),
       run.background,
-      place.run};
+      part_number(place.run, part)};
   // The samples of one frame share their motion, and with it their seed.
   const std::uint64_t seed_of_run =
       Seed(seed_).stream("seeds of run", static_cast<std::uint64_t>(place.run))();

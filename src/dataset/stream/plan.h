@@ -19,7 +19,7 @@ namespace airtruth::stream {
 struct Planned {
   scene::Scene scene;
   std::size_t background = 0;
-  std::int64_t run = 0;
+  std::int64_t run = 0;  // a number of its own for each part of a run
 };
 
 // A sample of [[random]] is a sequence of the rule that is as long as the sample; its meeting
@@ -57,7 +57,8 @@ class Planner {
   void check_backgrounds(const std::vector<std::size_t>& places) const;
   // Any rule as often as it has sequences, where `share_of` is 1 for all.
   const Rule& drawn_rule(Random random, const std::function<double(const Rule&)>& share_of) const;
-  Run run_of(std::int64_t number) const;
+  // Of several parts where the background of the first is shorter than a run.
+  Run run_of(std::int64_t number, std::int64_t part) const;
   // Of a sample over that background.
   const Rule& rule_over(std::size_t background, std::int64_t index) const;
   scene::Scene scene_of(const Rule& rule,

@@ -92,6 +92,42 @@ class StreamOfFlights : public testing::Test {
   static inline test_support::TemporaryFolder* folder_ = nullptr;
 };
 
+TEST_F(StreamOfFlights, ABackgroundsPartIsAllThatItsSamplesShow) {
+  const std::string small = "[stream]\nsize_px = [64, 64]\n";
+  const Stream part =
+      stream_of(small + background("flight3", "first_frame = 5\nframe_count = 3\n") + kRule);
+  std::set<std::int64_t> seen;
+  for (int i = 0; i < 40; ++i) seen.insert(part.sample(i * 16).first_frame);
+  EXPECT_EQ(seen, (std::set<std::int64_t>{5, 6, 7}));
+  EXPECT_EQ(stream_of(small + background("flight3", "first_frame = 23\nframe_count = 1\n") + kRule)
+                .sample(0)
+                .first_frame,
+            23);
+  const Stream longer =
+      stream_of(small + "frames = 4\n" + background("flight3", "frame_count = 3\n") + kRule);
+  EXPECT_THAT([&] { longer.sample(0); },
+              testing::ThrowsMessage<Error>(
+                  testing::HasSubstr("has a frame_count of 3; expected the 4 frames")));
+}
+
+// A run goes on over other backgrounds where one frame of its first is all that is used.
+TEST_F(StreamOfFlights, AShortPartDoesNotStayForAWholeRun) {
+  std::string frames_of_two = "[stream]\nsize_px = [64, 64]\n";
+  for (const std::string frame : {"1", "5", "9", "13", "17"})
+    for (const std::string flight : {"flight3", "flight4"}) {
+      std::string one = background(flight, "first_frame = " + frame + "\nframe_count = 1\n");
+      frames_of_two += one.replace(one.find(flight), flight.size(), flight + "-" + frame);
+    }
+  const Stream frames = stream_of(frames_of_two + kRule);
+  std::set<std::string> shown;
+  for (int step = 0; step < 24; ++step) {
+    const Sample sample = frames.sample(step * kLanes * 8);  // one lane's next frames
+    EXPECT_THAT(sample.background, testing::EndsWith("-" + std::to_string(sample.first_frame)));
+    shown.insert(sample.background);
+  }
+  EXPECT_GE(shown.size(), 6u);
+}
+
 void expect_same(const Sample& a, const Sample& b) {
   EXPECT_EQ(a.background, b.background);
   EXPECT_EQ(a.first_frame, b.first_frame);
