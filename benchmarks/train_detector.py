@@ -4,6 +4,7 @@
 
     python3 benchmarks/train_detector.py SET... -o aircraft.onnx [--minutes 12]
     python3 benchmarks/train_detector.py CATALOGUE.toml -o aircraft.onnx     new pictures at each step, from a training stream
+    python3 benchmarks/train_detector.py SET... -o better.onnx --negatives VIDEO --mine-with onnx:aircraft.onnx
 
 A stream needs crops of 280 px or more in [stream] size_px. Needs the package airtruth (docs/python.md), and python3-torch, python3-onnx
 and python3-opencv of Debian 12. The network is fully convolutional and sees one grey picture;
@@ -33,6 +34,7 @@ STRIDE = 4          # px in a cell of the output
 MULTIPLE = 8        # the input's sides are multiples of it: the network halves them three times
 CROP = 192          # px: side of the square that a training step sees; twice the largest aircraft that it learns
 MIN_SIGMA = 0.7     # cells: width of the peak of the smallest aircraft, so that a peak is wider than its sampling
+NEGATIVE_PX = 280   # px: side of the picture about a false alarm; a crop that is scaled by 0.7 fits into it
 MOST_PX = 128       # px: aircraft that are longer are left out of training
 NO_BOXES = np.zeros((0, 4), np.float32)
 
@@ -145,6 +147,29 @@ class Streamed:
 
     def words(self):
         return "a stream"
+
+
+class WithNegatives:
+    """The same, and crops about what a detector takes for an aircraft in videos without one: a half of the crops that show no aircraft."""
+
+    def __init__(self, frames, videos, detector):
+        self.frames, self.pictures = frames, []
+        for video in videos:
+            for frame, alarms in airtruth.mine(video, detector=detector).frames():
+                grey = grey_of(frame)
+                for alarm in alarms:
+                    x, y, width, height = alarm.around(np.minimum(NEGATIVE_PX, grey.shape[::-1]), frame)
+                    self.pictures.append(grey[y:y + height, x:x + width].copy())
+
+    next = property(lambda self: getattr(self.frames, "next", 0), lambda self, value: setattr(self.frames, "next", value))
+
+    def draw(self, with_aircraft, random):
+        if with_aircraft or not self.pictures or random.random() < 0.5:
+            return self.frames.draw(with_aircraft, random)
+        return self.pictures[random.integers(len(self.pictures))], NO_BOXES, NO_BOXES
+
+    def words(self):
+        return f"{self.frames.words()}, {len(self.pictures)} mined false alarms"
 
 
 def grey_of(frame):
@@ -276,7 +301,8 @@ def checkpoint_of(options):
 
 def given(options):
     """What a training that goes on must have in common with its beginning."""
-    return [[os.path.abspath(folder) for folder in options.sets], options.every, options.batch, options.seed]
+    return [[os.path.abspath(folder) for folder in options.sets], options.every, options.batch, options.seed,
+            *([[os.path.abspath(video) for video in options.negatives], options.mine_with] if getattr(options, "negatives", None) else [])]
 
 
 def done(options, step, spent):
@@ -351,6 +377,11 @@ def write(network, path, score_threshold=0.2, confident_score=0.4):
 
 
 def frames_of(options):
+    frames = sets_of(options)
+    return WithNegatives(frames, options.negatives, options.mine_with) if options.negatives else frames
+
+
+def sets_of(options):
     if options.sets[0].endswith(".toml"):
         return Streamed(options.sets[0], options.seed)
     frames = Frames()
@@ -362,6 +393,8 @@ def frames_of(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sets", nargs="+", metavar="SET", help="folders of `airtruth dataset build`, or one catalogue with a table [stream]")
+    parser.add_argument("--negatives", nargs="+", default=[], metavar="VIDEO", help="videos in which nothing flies: what a detector finds there is learned as background")
+    parser.add_argument("--mine-with", default="network", metavar="DETECTOR", help="the detector, as of `airtruth detect` (default network); onnx:aircraft.onnx is the one that was trained before")
     parser.add_argument("-o", "--output", required=True, help="the ONNX file; a .json is written beside it, and until then every half minute of training a .checkpoint, from which the same command goes on")
     parser.add_argument("--minutes", type=float, default=12, help="processor time to train for, on each thread (default 12)")
     parser.add_argument("--steps", type=int, help="train for so many steps instead, whatever they take")

@@ -16,6 +16,7 @@ import os
 import pathlib
 import pickle
 import re
+import shlex
 import shutil
 import signal
 import struct
@@ -37,12 +38,12 @@ sys.path.insert(0, PACKAGES)
 import numpy as np
 
 import airtruth
-from airtruth import _core, evaluate
+from airtruth import _core, _show, evaluate
 
 if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
     np.set_printoptions(legacy="1.25")  # the examples show numbers without their types
 
-MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "_calibrate", "_encounters", "evaluate")
+MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_mine", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "_calibrate", "_encounters", "evaluate")
 SCENE = """name = "across"
 [background]
 video = "clip.mkv"
@@ -693,6 +694,103 @@ class Clips(unittest.TestCase):
                 airtruth.calibrate("clip.mkv", **arguments)
         with self.assertRaisesRegex(airtruth.Error, "no clip"):
             airtruth.calibrate([])
+
+
+def write_sky(folder, bright):
+    """Numbered pictures of a flat grey sky with one bright pixel each: (x, y, level) of each frame."""
+    os.makedirs(folder)
+    for number, (x, y, level) in enumerate(bright):
+        rgb = np.full((120, 160, 3), 100, np.uint8)
+        rgb[y, x] = level
+        pathlib.Path(folder, f"{number:04}.png").write_bytes(_show._png(rgb))
+
+
+BRIGHTEST = f"exec:{sys.executable} {shlex.quote(os.path.join(SOURCE, 'clients', 'brightest_detector.py'))}"  # boxes of 5 x 5 px; the score is the level / 255
+
+
+class Mined(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # One thing in frames 0 to 19, brightest in frame 7, and another at another place from frame 20 on, brightest in frame 25.
+        cls.bright = [(30, 40, 250 if k == 7 else 240) for k in range(20)] + [(120, 80, 235 if k == 25 else 230) for k in range(20, 30)]
+        write_sky("sky", cls.bright)
+
+    def mine(self, folder, **arguments):
+        return airtruth.mine(folder, detector=BRIGHTEST, frame_rate_hz=25, **arguments)
+
+    def check(self, mined, frames):
+        self.assertEqual([alarm.frame for alarm in mined.alarms], frames)
+        for alarm in mined.alarms:
+            x, y, level = self.bright[alarm.frame]
+            self.assertEqual(alarm.box.tolist(), [x - 2, y - 2, 5, 5])
+            self.assertAlmostEqual(alarm.score, level / 255, places=5)
+
+    def test_a_thing_counts_once_in_so_many_frames_by_its_best(self):
+        self.check(self.mine("sky"), [7, 25])
+        self.check(self.mine("sky", every=5), [7, 0, 12, 17, 25, 20])
+        self.check(self.mine("sky", every=5, count=3), [7, 0, 12])
+        self.check(self.mine("sky", min_score=0.93), [7])
+        self.assertEqual(len(self.mine("sky", every=1, count=None).alarms), 30)
+
+    def test_what_moves_is_one_thing_by_its_track(self):
+        write_sky("moving", [(40 + k, 60, 200 + k) for k in range(30)])
+        self.assertEqual([alarm.frame for alarm in self.mine("moving").alarms], [29])
+
+    def test_pictures_are_those_of_the_video_about_the_box(self):
+        mined = self.mine("sky", every=5)
+        whole = list(airtruth.VideoReader("sky"))
+        grey = mined.crops((21, 31), channels="gray")
+        for alarm, picture, colour in zip(mined.alarms, grey, mined.crops((21, 31))):
+            x, y, _ = self.bright[alarm.frame]
+            self.assertTrue(np.array_equal(picture, whole[alarm.frame].gray[y - 15:y + 16, x - 10:x + 11]))
+            self.assertTrue(np.array_equal(colour, whole[alarm.frame].rgb[y - 15:y + 16, x - 10:x + 11]))
+            self.assertEqual(alarm.time_s, alarm.frame / 25)
+        self.assertEqual(mined.crops((160, 120)).shape, (6, 120, 160, 3))
+        self.assertEqual([(frame.index, len(alarms)) for frame, alarms in mined.frames()], [(k, 1) for k in (0, 7, 12, 17, 20, 25)])
+        for arguments in (((161, 20),), ((0, 20),), ((20, 20), "hsv"), ((20,),)):
+            self.assertRaises(ValueError, mined.crops, *arguments)
+
+    def test_backgrounds_make_composites_of_those_frames_alone(self):
+        mined = self.mine("sky", every=5)
+        tables = mined.backgrounds({"name": "home", "lens": {"vertical_fov_deg": 60}, "motion": {"model": "none"},
+                                    "camera": {"position_ned_m": [0, 0, -300]}})
+        self.assertEqual([table["name"] for table in tables], ["home-7", "home-0", "home-12", "home-17", "home-25", "home-20"])
+        stream = airtruth.Stream({"stream": {"size_px": [64, 64]}, "background": tables,
+                                  "random": [{"count": 9, "aircraft": ["c172/*"], "size_px": [8, 20]}]})
+        self.assertEqual({stream[k].first_frame for k in range(24)} | {stream[64 * k].first_frame for k in range(24)}, {0, 7, 12, 17, 20, 25})
+        self.assertAlmostEqual(sum(table["weight"] for table in tables), 1)
+        two = mined.backgrounds({"name": "home", "lens": {"vertical_fov_deg": 60}, "motion": {"model": "none"}, "camera": {"position_ned_m": [0, 0, -300]}}, 2)
+        self.assertEqual([(table["first_frame"], table["frame_count"]) for table in two[:2]], [(7, 2), (0, 2)])
+        rules = [{"name": f"{start}-{{index}}", "count": 1, "frame_count": 5, "start": start, "aircraft": ["c172/*"], "size_px": [8, 20]} for start in ("first", "random")]
+        pathlib.Path("mined.toml").write_text(airtruth.toml_of({"background": two[4:5], "random": rules}))
+        output("dataset", "build", "mined.toml", "--out", "mined")
+        data = airtruth.DataSet("mined")
+        self.assertEqual(len(data.names), 2)
+        for name in data.names:  # frames 25 and 26, in which the second thing is there and the first is not
+            levels = [(int(frame.gray[80, 120]), int(frame.gray[40, 30])) for frame in data[name]]
+            self.assertEqual(len(levels), 2, name)
+            self.assertTrue(all(second > first + 30 for second, first in levels), levels)
+
+    def test_an_empty_sky_gives_none(self):
+        write_sky("empty", [(0, 0, 100)] * 4)
+        mined = airtruth.mine("empty", frame_rate_hz=25)
+        self.assertEqual((mined.alarms, mined.backgrounds({}), list(mined.frames()), mined.crops((20, 10)).shape), ([], [], [], (0, 10, 20, 3)))
+
+    def test_what_cannot_be_mined_is_said_in_a_line(self):
+        for arguments, words in ((("none.mp4",), "none.mp4: does not exist"), (("-none.mp4",), "does not exist"), (("sky", "nothing"), "there is no detector 'nothing'"),
+                                 (("sky", "exec:false"), "the detector ended with status 1"), (("sky", "onnx:no.onnx"), "no.onnx")):
+            with self.assertRaisesRegex(airtruth.Error, words) as caught:
+                airtruth.mine(arguments[0], detector=arguments[1] if len(arguments) > 1 else "cmo", frame_rate_hz=25)
+            self.assertEqual(len(str(caught.exception).splitlines()), 1)
+        with self.assertRaisesRegex(airtruth.Error, "numbered pictures, which state no rate"):
+            airtruth.mine("sky")
+        for arguments in ({"every": 0}, {"count": 0}):
+            self.assertRaises(ValueError, airtruth.mine, "sky", **arguments)
+        os.environ["AIRTRUTH_PROGRAM"] = "/nothing/airtruth"
+        try:
+            self.assertRaisesRegex(airtruth.Error, "/nothing/airtruth: No such file", airtruth.mine, "sky")
+        finally:
+            del os.environ["AIRTRUTH_PROGRAM"]
 
 
 class Flights(unittest.TestCase):

@@ -53,5 +53,39 @@ class TrainDetector(unittest.TestCase):
             self.assertEqual(os.listdir(folder), [])
 
 
+class Negatives(unittest.TestCase):
+    def test_half_of_the_crops_without_an_aircraft_are_about_false_alarms(self):
+        code = WITH_STAND_INS.replace('run_name="__main__")', 'run_name="script")').replace("runpy.run_path", "script = runpy.run_path") + """
+import pathlib
+import numpy as np
+import airtruth
+from airtruth import _show
+sky = np.full((300, 400, 3), 100, np.uint8)
+sky[200, 300] = 250
+pathlib.Path("0000.png").write_bytes(_show._png(sky))
+asked = []
+def mine(video, detector):
+    asked.append((video, detector))
+    return airtruth.HardNegatives(pathlib.Path("."), detector, [airtruth.FalseAlarm(0, 0.0, np.array([298.0, 198.0, 5.0, 5.0]), 0.9)])
+airtruth.mine = mine
+frames = script["Frames"]()
+frames.add(np.zeros((290, 290), np.uint8), script["NO_BOXES"])
+mixed = script["WithNegatives"](frames, ["a.mp4", "b.mp4"], "onnx:first.onnx")
+assert asked == [("a.mp4", "onnx:first.onnx"), ("b.mp4", "onnx:first.onnx")], asked
+for picture in mixed.pictures:  # moved into the frame: its right and lower edges are those of the frame
+    assert picture.shape == (280, 280) and np.argwhere(picture > 200).tolist() == [[180, 180]], np.argwhere(picture > 200)
+dice = np.random.default_rng(1)
+drawn = [mixed.draw(False, dice) for _ in range(400)]
+mined = sum(picture.shape == (280, 280) for picture, _, _ in drawn)
+assert 160 < mined < 240 and all(len(boxes) == 0 for _, boxes, _ in drawn), mined
+assert all(mixed.draw(True, dice)[0].shape == (290, 290) for _ in range(20))
+assert mixed.words().endswith("2 mined false alarms")
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, "-c", code, SCRIPT], capture_output=True, text=True, check=False, cwd=folder,
+                                  env={**os.environ, "PYTHONPATH": PACKAGES})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

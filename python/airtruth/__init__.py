@@ -22,6 +22,7 @@ from ._error import Error
 from ._frames import Encounter, Frame, FrameTruth, Intruder, Volume
 from ._labels import Clip, Label, LabelledFrame, convert_labels, read_labels
 from ._lens import Lens
+from ._mine import FalseAlarm, HardNegatives, mine
 from ._motion import GyroAgreement, Motion, motion
 from ._render import Rendering, render
 from ._source import toml_of
@@ -33,6 +34,7 @@ __all__ = [
     "Stream", "Sample",
     "DataSet", "Sequence", "VideoReader", "VideoInfo", "Lens",
     "motion", "Motion", "GyroAgreement",
+    "mine", "HardNegatives", "FalseAlarm",
     "calibrate", "Calibration", "Measured", "camera_profiles", "CameraProfile",
     "aircraft", "Aircraft", "left_out_aircraft", "show_aircraft", "AircraftModel",
     "sample_encounters", "Encounters",
