@@ -3,40 +3,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
-#include "scene/trajectory/path_impl.h"
 #include "scene/trajectory/spline.h"
 
 namespace airtruth::trajectory {
+
+// The interface of every kind of path. Path calls at() only with times from start_s() to end_s().
+struct Path::Impl {
+  virtual ~Impl() = default;
+  virtual double start_s() const = 0;
+  virtual double end_s() const = 0;
+  virtual State at(double time_s) const = 0;
+};
+
 namespace {
 
-// Standard gravity (3rd CGPM, 1901).
 // Below this horizontal speed, in metres a second, the velocity defines no heading.
 constexpr double kHorizontalMps = 1e-6;
 // Points that are nearer to each other are the same.
 constexpr double kSamePointM = 1e-6;
 // Largest coordinate, in metres. It keeps squares and lengths far from overflow.
 constexpr double kFarthestM = 1e9;
-
-std::string text_of(const Vector3& p) {
-  char text[96];
-  std::snprintf(text, sizeof text, "[%g, %g, %g]", p.x(), p.y(), p.z());
-  return text;
-}
-
-std::string text_of(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
 
 bool has_heading(const Vector3& v) {
   return std::hypot(v.x(), v.y()) > std::max(kHorizontalMps, 1e-9 * v.norm());
@@ -48,7 +45,7 @@ bool has_heading(const Vector3& v) {
 class KeptHeadings {
  public:
   // The spline must outlive it.
-  explicit KeptHeadings(const CubicSpline<Vector3>& spline)
+  explicit KeptHeadings(const CubicSpline& spline)
       : spline_(spline), step_((spline.end() - spline.begin()) / kSteps) {}
   double deg_at(double u) const {
     std::call_once(once_, [this] { look(); });
@@ -72,7 +69,7 @@ class KeptHeadings {
     for (const auto& yaw : defined) yaw_deg_.push_back(kept_deg = yaw.value_or(kept_deg));
   }
 
-  const CubicSpline<Vector3>& spline_;
+  const CubicSpline& spline_;
   double step_;
   mutable std::once_flag once_;
   mutable std::vector<double> yaw_deg_;
@@ -116,6 +113,7 @@ State state_along(const Vector3& position,
       position, velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated);
 }
 
+// Neighbouring points may be equal: the object then stands still.
 class AtTimes : public Path::Impl {
  public:
   AtTimes(std::vector<double> times, std::vector<Vector3> points, const AttitudeOverride& stated)
@@ -127,8 +125,50 @@ class AtTimes : public Path::Impl {
   }
 
  private:
-  CubicSpline<Vector3> spline_;
+  CubicSpline spline_;
   KeptHeadings kept_;
+  AttitudeOverride stated_;
+};
+
+double unwrapped(double angle_deg, double before_deg) {
+  return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
+}
+
+// The angles of all samples, without turns by 360 degrees from one to the next in yaw and roll.
+std::vector<Vector3> unwrapped_angles(const Samples& samples) {
+  std::vector<Vector3> angles = samples.angles_deg;
+  angles.resize(samples.times_s.size(), Vector3::Zero());
+  for (std::size_t i = 1; i < angles.size(); ++i)
+    for (const int axis : {0, 2}) angles[i][axis] = unwrapped(angles[i][axis], angles[i - 1][axis]);
+  return angles;
+}
+
+// Position and its derivatives follow the samples. Angles follow the samples where they state them
+// and the path elsewhere.
+class Sampled : public Path::Impl {
+ public:
+  Sampled(const Samples& samples, const AttitudeOverride& stated)
+      : along_(samples.times_s, samples.positions_ned_m, stated),
+        angles_(samples.times_s, unwrapped_angles(samples)),
+        has_angle_(samples.has_angle),
+        stated_(stated) {}
+  double start_s() const override { return angles_.begin(); }
+  double end_s() const override { return angles_.end(); }
+  State at(double t) const override {
+    State state = along_.at(t);
+    YawPitchRoll attitude = yaw_pitch_roll(state.world_from_body);
+    const Vector3 angle = angles_.at(t, 0);
+    if (has_angle_[0] && !stated_.yaw_deg) attitude.yaw_deg = angle[0];
+    if (has_angle_[1] && !stated_.pitch_deg) attitude.pitch_deg = angle[1];
+    if (has_angle_[2] && !stated_.roll_deg) attitude.roll_deg = angle[2];
+    state.world_from_body = world_from_body(attitude);
+    return state;
+  }
+
+ private:
+  AtTimes along_;
+  CubicSpline angles_;
+  std::array<bool, 3> has_angle_;
   AttitudeOverride stated_;
 };
 
@@ -204,7 +244,7 @@ class AtSpeed : public Path::Impl {
     return u;
   }
 
-  CubicSpline<Vector3> spline_;
+  CubicSpline spline_;
   KeptHeadings kept_;
   double speed_;
   AttitudeOverride stated_;
@@ -293,15 +333,19 @@ class Displaced : public Path::Impl {
 
 void check_waypoints(std::span<const Vector3> points) {
   if (points.size() < 2)
-    throw Error("waypoints_ned_m has " + std::to_string(points.size()) +
-                "; expected at least two waypoints");
+    throw Error(
+        fmt::format("waypoints_ned_m has {}; expected at least two waypoints", points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!(points[i].cwiseAbs().maxCoeff() <= kFarthestM) || !points[i].allFinite())
-      throw Error("waypoint " + std::to_string(i + 1) + " is " + text_of(points[i]) +
-                  "; expected finite numbers within 1e9 m");
+      throw Error(fmt::format("waypoint {} is [{:g}]; expected finite numbers within 1e9 m",
+                              i + 1,
+                              fmt::join(points[i], ", ")));
     if (i > 0 && (points[i] - points[i - 1]).norm() < kSamePointM)
-      throw Error("waypoints " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                  " are the same point " + text_of(points[i]) + "; expected different points");
+      throw Error(
+          fmt::format("waypoints {} and {} are the same point [{:g}]; expected different points",
+                      i,
+                      i + 1,
+                      fmt::join(points[i], ", ")));
   }
 }
 
@@ -323,7 +367,7 @@ Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
                      const AttitudeOverride& attitude) {
   check_waypoints(waypoints_ned_m);
   if (!std::isfinite(speed_mps) || speed_mps <= 0)
-    throw Error("speed_mps is " + text_of(speed_mps) + "; expected a positive number");
+    throw Error(fmt::format("speed_mps is {:g}; expected a positive number", speed_mps));
   // The knots are the cumulative chord lengths.
   std::vector<double> knots = {0};
   for (std::size_t i = 1; i < waypoints_ned_m.size(); ++i)
@@ -340,14 +384,20 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
                      const AttitudeOverride& attitude) {
   check_waypoints(waypoints_ned_m);
   if (times_s.size() != waypoints_ned_m.size())
-    throw Error("times_s has " + std::to_string(times_s.size()) + " numbers for " +
-                std::to_string(waypoints_ned_m.size()) + " waypoints; expected one each");
+    throw Error(fmt::format("times_s has {} numbers for {} waypoints; expected one each",
+                            times_s.size(),
+                            waypoints_ned_m.size()));
   for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const std::string name = "times_s[" + std::to_string(i) + "] = " + text_of(times_s[i]);
-    if (!std::isfinite(times_s[i])) throw Error(name + " is not finite; expected a number");
+    if (!std::isfinite(times_s[i]))
+      throw Error(
+          fmt::format("times_s[{}] = {:g} is not finite; expected a number", i, times_s[i]));
     if (i > 0 && !(times_s[i] - times_s[i - 1] >= kShortestStep_s))
-      throw Error(name + " is not after times_s[" + std::to_string(i - 1) +
-                  "] = " + text_of(times_s[i - 1]) + "; expected times that increase");
+      throw Error(fmt::format(
+          "times_s[{}] = {:g} is not after times_s[{}] = {:g}; expected times that increase",
+          i,
+          times_s[i],
+          i - 1,
+          times_s[i - 1]));
   }
   return Path(std::make_shared<AtTimes>(
       std::vector<double>(times_s.begin(), times_s.end()),
@@ -365,10 +415,8 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
   return Path(std::make_shared<Steady>(flight, attitude));
 }
 
-std::shared_ptr<const Path::Impl> path_through(std::vector<double> times_s,
-                                               std::vector<Vector3> positions,
-                                               const AttitudeOverride& attitude) {
-  return std::make_shared<AtTimes>(std::move(times_s), std::move(positions), attitude);
+Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude) {
+  return Path(std::make_shared<Sampled>(samples, attitude));
 }
 
 Path displaced(const Path& path, const Vector3& offset_ned_m) {

@@ -8,16 +8,16 @@ namespace {
 
 // Second derivatives at the knots: the tridiagonal system of a continuous slope, solved by Thomas's
 // algorithm.
-template <typename Point>
-std::vector<Point> second_derivatives(const std::vector<double>& t, const std::vector<Point>& p) {
+std::vector<Vector3> second_derivatives(const std::vector<double>& t,
+                                        const std::vector<Vector3>& p) {
   const std::size_t n = p.size();
-  std::vector<Point> m(n, Point::Zero());
+  std::vector<Vector3> m(n, Vector3::Zero());
   if (n < 3) return m;
   std::vector<double> upper(n, 0.0);
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double before = t[i] - t[i - 1];
     const double after = t[i + 1] - t[i];
-    const Point right = 6.0 * ((p[i + 1] - p[i]) / after - (p[i] - p[i - 1]) / before);
+    const Vector3 right = 6.0 * ((p[i + 1] - p[i]) / after - (p[i] - p[i - 1]) / before);
     const double pivot = 2.0 * (before + after) - before * upper[i - 1];
     upper[i] = after / pivot;
     m[i] = (right - before * m[i - 1]) / pivot;
@@ -28,14 +28,12 @@ std::vector<Point> second_derivatives(const std::vector<double>& t, const std::v
 
 }  // namespace
 
-template <typename Point>
-CubicSpline<Point>::CubicSpline(std::vector<double> knots, std::vector<Point> points)
+CubicSpline::CubicSpline(std::vector<double> knots, std::vector<Vector3> points)
     : knots_(std::move(knots)),
       points_(std::move(points)),
       curvature_(second_derivatives(knots_, points_)) {}
 
-template <typename Point>
-Point CubicSpline<Point>::at(double u, int derivative) const {
+Vector3 CubicSpline::at(double u, int derivative) const {
   u = std::clamp(u, begin(), end());
   const auto after = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, u);
   const auto i = static_cast<std::size_t>(after - knots_.begin()) - 1;
@@ -50,7 +48,5 @@ Point CubicSpline<Point>::at(double u, int derivative) const {
   return a * points_[i] + b * points_[i + 1] +
          h * h / 6.0 * ((a * a * a - a) * curvature_[i] + (b * b * b - b) * curvature_[i + 1]);
 }
-
-template class CubicSpline<Vector3>;
 
 }  // namespace airtruth::trajectory

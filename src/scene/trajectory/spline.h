@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "foundation/geometry/transform.h"
@@ -10,25 +9,22 @@ namespace airtruth::trajectory {
 
 // A natural cubic spline (C2, second derivative 0 at both ends) through points at strictly
 // increasing knots. Two points make a straight line. Source: de Boor (1978), chapter IV.
-template <typename Point>
 class CubicSpline {
  public:
-  CubicSpline(std::vector<double> knots, std::vector<Point> points);
+  CubicSpline(std::vector<double> knots, std::vector<Vector3> points);
 
   // The value (derivative 0) or the derivative 1 or 2 at u. A u outside the knots' range is clamped
   // to it.
-  Point at(double u, int derivative) const;
+  Vector3 at(double u, int derivative) const;
   double begin() const { return knots_.front(); }
   double end() const { return knots_.back(); }
   const std::vector<double>& knots() const { return knots_; }
 
  private:
   std::vector<double> knots_;
-  std::vector<Point> points_;
+  std::vector<Vector3> points_;
   // Second derivatives at the knots.
-  std::vector<Point> curvature_;
+  std::vector<Vector3> curvature_;
 };
-
-extern template class CubicSpline<Vector3>;
 
 }  // namespace airtruth::trajectory
