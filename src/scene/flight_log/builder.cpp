@@ -49,14 +49,6 @@ bool are_in_reach(const Fix& a, const Fix& b) {
   return distance_m <= kScatterM + kFastestMps * std::abs(b.time_s - a.time_s);
 }
 
-// True where the record follows the one before in time; counts it otherwise.
-template <typename Record>
-bool follows(FlightLog& log, const std::vector<Record>& records, double time_s) {
-  if (records.empty() || time_s > records.back().time_s) return true;
-  ++log.left_out;
-  return false;
-}
-
 }  // namespace
 
 std::string fault_of(const Fix& fix) {
@@ -98,21 +90,30 @@ void leave_out(FlightLog& log, const std::string& fault, const Where& where) {
   if (log.first_fault.empty()) log.first_fault = to_string(where) + ": " + fault;
 }
 
+namespace {
+
+template <typename Record>
+void add(FlightLog& log, std::vector<Record>& records, const Record& record, const Where& where) {
+  if (const std::string fault = fault_of(record); !fault.empty())
+    return leave_out(log, fault, where);
+  if (records.empty() || record.time_s > records.back().time_s)
+    records.push_back(record);
+  else
+    ++log.left_out;
+}
+
+}  // namespace
+
 void add_fix(FlightLog& log, const Fix& fix, const Where& where) {
-  if (const std::string fault = fault_of(fix); !fault.empty()) return leave_out(log, fault, where);
-  if (follows(log, log.fixes, fix.time_s)) log.fixes.push_back(fix);
+  add(log, log.fixes, fix, where);
 }
 
 void add_attitude(FlightLog& log, const Attitude& attitude, const Where& where) {
-  if (const std::string fault = fault_of(attitude); !fault.empty())
-    return leave_out(log, fault, where);
-  if (follows(log, log.attitudes, attitude.time_s)) log.attitudes.push_back(attitude);
+  add(log, log.attitudes, attitude, where);
 }
 
 void add_rates(FlightLog& log, const Rates& rates, const Where& where) {
-  if (const std::string fault = fault_of(rates); !fault.empty())
-    return leave_out(log, fault, where);
-  if (follows(log, log.rates, rates.time_s)) log.rates.push_back(rates);
+  add(log, log.rates, rates, where);
 }
 
 namespace {

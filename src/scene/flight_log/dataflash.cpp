@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ArduPilot DataFlash logs (.bin). Source: ArduPilot developer documentation, "Log File Format" and
 // the list of log messages: FMT describes every other message; POS, GPS, ATT, IMU are read.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -23,51 +24,45 @@ constexpr std::size_t kHeadBytes = 3;
 constexpr std::size_t kFormatBytes = 89;  // head, type, length, name[4], format[16], labels[64]
 constexpr double kStatusFix3d = 3;        // GPS.Status
 
-// The bytes and the factor of one letter of a format.
+// A letter of a format: the bytes of its values and, of numbers, how one is read.
 struct Letter {
-  std::size_t size = 0;
+  char letter;
+  std::size_t size;
   double scale = 1;
+  double (*number)(std::string_view bytes, std::size_t at) = nullptr;
 };
 
-std::optional<Letter> letter_of(char c) {
-  switch (c) {
-    case 'b':
-    case 'B':
-    case 'M':
-      return Letter{1};
-    case 'h':
-    case 'H':
-    case 'g':
-      return Letter{2};
-    case 'i':
-    case 'I':
-    case 'f':
-    case 'n':
-      return Letter{4};
-    case 'c':
-    case 'C':
-      return Letter{2, 0.01};
-    case 'e':
-    case 'E':
-      return Letter{4, 0.01};
-    case 'L':
-      return Letter{4, 1e-7};
-    case 'd':
-    case 'q':
-    case 'Q':
-      return Letter{8};
-    case 'N':
-      return Letter{16};
-    case 'Z':
-    case 'a':
-      return Letter{64};
-    default:
-      return std::nullopt;
-  }
+template <typename T>
+constexpr Letter letter_of_numbers(char letter, double scale = 1) {
+  return {letter, sizeof(T), scale, [](std::string_view bytes, std::size_t at) {
+            return static_cast<double>(little_endian<T>(bytes, at));
+          }};
 }
 
+constexpr auto kLetters = std::to_array<Letter>({letter_of_numbers<std::int8_t>('b'),
+                                                 letter_of_numbers<std::uint8_t>('B'),
+                                                 letter_of_numbers<std::uint8_t>('M'),
+                                                 letter_of_numbers<std::int16_t>('h'),
+                                                 letter_of_numbers<std::uint16_t>('H'),
+                                                 letter_of_numbers<std::int16_t>('c', 0.01),
+                                                 letter_of_numbers<std::uint16_t>('C', 0.01),
+                                                 letter_of_numbers<std::int32_t>('i'),
+                                                 letter_of_numbers<std::uint32_t>('I'),
+                                                 letter_of_numbers<std::int32_t>('e', 0.01),
+                                                 letter_of_numbers<std::uint32_t>('E', 0.01),
+                                                 letter_of_numbers<std::int32_t>('L', 1e-7),
+                                                 letter_of_numbers<std::int64_t>('q'),
+                                                 letter_of_numbers<std::uint64_t>('Q'),
+                                                 letter_of_numbers<float>('f'),
+                                                 letter_of_numbers<double>('d'),
+                                                 {'g', 2},
+                                                 {'n', 4},
+                                                 {'N', 16},
+                                                 {'Z', 64},
+                                                 {'a', 64}});
+
 struct MessageColumn {
-  char letter = 0;
+  const Letter* letter = nullptr;
   std::size_t at = 0;
 };
 struct Kind {
@@ -88,10 +83,10 @@ std::optional<Kind> kind_of(std::string_view body) {
   std::string_view labels = until_zero(body.substr(22, 64));
   std::size_t at = kHeadBytes;
   for (const char c : letters) {
-    const auto letter = letter_of(c);
-    if (!letter || labels.empty()) return std::nullopt;
+    const auto letter = std::ranges::find(kLetters, c, &Letter::letter);
+    if (letter == kLetters.end() || labels.empty()) return std::nullopt;
     const std::size_t comma = std::min(labels.find(','), labels.size());
-    kind.columns[std::string(labels.substr(0, comma))] = {c, at};
+    kind.columns[std::string(labels.substr(0, comma))] = {letter, at};
     labels.remove_prefix(std::min(comma + 1, labels.size()));
     at += letter->size;
   }
@@ -99,37 +94,8 @@ std::optional<Kind> kind_of(std::string_view body) {
 }
 
 double number_at(std::string_view message, const MessageColumn& column) {
-  const double scale = letter_of(column.letter)->scale;
-  switch (column.letter) {
-    case 'b':
-      return little_endian<std::int8_t>(message, column.at);
-    case 'B':
-    case 'M':
-      return little_endian<std::uint8_t>(message, column.at);
-    case 'h':
-    case 'c':
-      return scale * little_endian<std::int16_t>(message, column.at);
-    case 'H':
-    case 'C':
-      return scale * little_endian<std::uint16_t>(message, column.at);
-    case 'i':
-    case 'e':
-    case 'L':
-      return scale * little_endian<std::int32_t>(message, column.at);
-    case 'I':
-    case 'E':
-      return scale * little_endian<std::uint32_t>(message, column.at);
-    case 'f':
-      return little_endian<float>(message, column.at);
-    case 'd':
-      return little_endian<double>(message, column.at);
-    case 'q':
-      return static_cast<double>(little_endian<std::int64_t>(message, column.at));
-    case 'Q':
-      return static_cast<double>(little_endian<std::uint64_t>(message, column.at));
-    default:
-      return NAN;
-  }
+  const Letter& letter = *column.letter;
+  return letter.number != nullptr ? letter.scale * letter.number(message, column.at) : NAN;
 }
 
 class DataFlashReader {

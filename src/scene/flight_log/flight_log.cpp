@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/flight_log/flight_log.h"
 
+#include <array>
+
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "scene/flight_log/builder.h"
@@ -27,21 +29,9 @@ FlightLog read_by_format(std::string_view content, const std::string& file) {
 }  // namespace
 
 const char* name(Format format) {
-  switch (format) {
-    case Format::kDjiSubtitles:
-      return "DJI subtitles";
-    case Format::kGpmf:
-      return "GoPro GPMF";
-    case Format::kUlog:
-      return "PX4 ULog";
-    case Format::kDataFlash:
-      return "ArduPilot DataFlash";
-    case Format::kGpx:
-      return "GPX";
-    case Format::kCsv:
-      return "CSV";
-  }
-  return "";
+  constexpr std::array kNames = {
+      "DJI subtitles", "GoPro GPMF", "PX4 ULog", "ArduPilot DataFlash", "GPX", "CSV"};
+  return kNames[static_cast<std::size_t>(format)];
 }
 
 FlightLog parse_flight_log(std::string_view content, const std::filesystem::path& name) {
