@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bit>
+#include <cstring>
 #include <string>
 #include <string_view>
 
@@ -26,5 +28,14 @@ FlightLog from_gpx(std::string_view text, const std::string& file);
 // yaw_deg,pitch_deg,roll_deg together; rate_x_radps,rate_y_radps,rate_z_radps together.
 bool is_csv(std::string_view content);
 FlightLog from_csv(std::string_view text, const std::string& file);
+
+// The number of type T at byte `at`, stored with its lowest byte first. `bytes` must hold it.
+template <typename T>
+T little_endian(std::string_view bytes, std::size_t at) {
+  static_assert(std::endian::native == std::endian::little);
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
 
 }  // namespace airtruth::flight_log

@@ -13,7 +13,6 @@
 #include "foundation/base/error.h"
 #include "scene/flight_log/builder.h"
 #include "scene/flight_log/formats.h"
-#include "scene/flight_log/little_endian.h"
 
 namespace airtruth::flight_log {
 namespace {
