@@ -8,6 +8,9 @@
 #include <system_error>
 #include <utility>
 
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+
 namespace airtruth {
 namespace {
 
@@ -55,6 +58,28 @@ void Unfinished::finish(const std::function<void()>& step) {
   step();
   all.undo.erase(number_);
   number_ = 0;
+}
+
+PartFile::PartFile(std::filesystem::path file)
+    : file_(std::move(file)),
+      part_(part_path(file_)),
+      out_(part_, std::ios::binary),
+      unfinished_(Unfinished::path(part_)) {}
+
+PartFile::~PartFile() {
+  std::error_code ignored;
+  if (!is_finished_) std::filesystem::remove(part_, ignored);
+}
+
+void PartFile::check_written() const {
+  if (!out_) throw Error("cannot be written: is the disk full?", {file_.string()});
+}
+
+void PartFile::finish() {
+  out_.close();
+  check_written();
+  unfinished_.finish([&] { std::filesystem::rename(part_, file_); });
+  is_finished_ = true;
 }
 
 void undo_unfinished() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 
 namespace airtruth {
@@ -34,6 +35,29 @@ class Unfinished {
 
  private:
   std::uint64_t number_ = 0;
+};
+
+// A file that is written piece by piece: it grows under part_path(file) (files.h), and finish()
+// gives it its name. One that is destroyed before is removed.
+class PartFile {
+ public:
+  explicit PartFile(std::filesystem::path file);
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  std::ofstream& out() { return out_; }
+  // The name under which it grows.
+  const std::filesystem::path& part() const { return part_; }
+  // Throw Error where it could not be written.
+  void check_written() const;
+  void finish();
+
+ private:
+  std::filesystem::path file_, part_;
+  std::ofstream out_;
+  Unfinished unfinished_;
+  bool is_finished_ = false;
 };
 
 // Undoes everything that is unfinished, the newest first. It gives up after 0.3 s where another

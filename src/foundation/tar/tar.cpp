@@ -140,23 +140,15 @@ class Reader {
 
 }  // namespace
 
-Writer::Writer(fs::path file)
-    : file_(std::move(file)),
-      out_(part_path(file_), std::ios::binary),
-      unfinished_(Unfinished::path(part_path(file_))) {
-  if (!out_) throw Error("cannot be written", {file_.string()});
-}
-
-Writer::~Writer() {
-  std::error_code ignored;
-  if (!is_finished_) fs::remove(part_path(file_), ignored);
+Writer::Writer(const fs::path& file) : file_(file) {
+  if (!file_.out()) throw Error("cannot be written", {file.string()});
 }
 
 void Writer::add(const std::string& name, std::string_view bytes) {
   check(bytes.size() < std::uint64_t{8} << 30, "ustar's sizes are of 11 octal digits");
   if (name.size() > kName.size) put("pax", pax_record(name), 'x');
   put(name, bytes, '0');
-  if (!out_) throw Error("cannot be written: is the disk full?", {file_.string()});
+  file_.check_written();
 }
 
 void Writer::put(const std::string& name, std::string_view bytes, char type) {
@@ -171,19 +163,16 @@ void Writer::put(const std::string& name, std::string_view bytes, char type) {
   tar::put(block, kMagic, std::string_view("ustar\00000", 8));
   tar::put(block, kChecksum, fmt::format("{:06o}", checksum_of(block)) + '\0' + ' ');
   const std::string padding(padding_of(bytes.size()), '\0');
-  out_.write(block.data(), kBlock);
-  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out_.write(padding.data(), static_cast<std::streamsize>(padding.size()));
+  file_.out().write(block.data(), kBlock);
+  file_.out().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file_.out().write(padding.data(), static_cast<std::streamsize>(padding.size()));
   bytes_ += static_cast<std::int64_t>(kBlock + bytes.size() + padding.size());
 }
 
 void Writer::finish() {
   const std::string end(2 * kBlock, '\0');
-  out_.write(end.data(), static_cast<std::streamsize>(end.size()));
-  out_.close();
-  if (!out_) throw Error("cannot be written: is the disk full?", {file_.string()});
-  unfinished_.finish([&] { fs::rename(part_path(file_), file_); });
-  is_finished_ = true;
+  file_.out().write(end.data(), static_cast<std::streamsize>(end.size()));
+  file_.finish();
 }
 
 void each_file(

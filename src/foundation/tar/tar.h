@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -17,12 +16,8 @@ namespace airtruth::tar {
 // The bytes of a file in an archive: the same names and bytes give the same archive.
 class Writer {
  public:
-  // The archive grows under part_path(file). Throws Error where that cannot be opened.
-  explicit Writer(fs::path file);
-  // Removes an archive that was not finished.
-  ~Writer();
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
+  // Throws Error where the file cannot be opened. An archive that is not finished is removed.
+  explicit Writer(const fs::path& file);
 
   // `name`: a relative path. At most 8 GiB of bytes.
   void add(const std::string& name, std::string_view bytes);
@@ -34,11 +29,8 @@ class Writer {
  private:
   void put(const std::string& name, std::string_view bytes, char type);
 
-  fs::path file_;
-  std::ofstream out_;
-  Unfinished unfinished_;
+  PartFile file_;
   std::int64_t bytes_ = 0;
-  bool is_finished_ = false;
 };
 
 // Calls visit(name, bytes) for the files of an archive whose names end in `ending`, in their order.

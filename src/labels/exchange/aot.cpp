@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -68,19 +67,10 @@ class AotWriter : public Writer {
   AotWriter(fs::path root, const WriteOptions& options) : root_(std::move(root)) {
     for (const std::string& part : options.parts) {
       fs::create_directories(file_of(part).parent_path());
-      unfinished_.emplace(part, Unfinished::path(part_path(file_of(part))));
-      files_[part].open(part_path(file_of(part)), std::ios::binary);
-      files_[part] << "{\"metadata\":{\"description\":\"made by airtruth\"},\n\"samples\":{";
+      files_.try_emplace(part, file_of(part)).first->second.out()
+          << "{\"metadata\":{\"description\":\"made by airtruth\"},\n\"samples\":{";
     }
   }
-
-  // A failed run leaves no half-written file.
-  ~AotWriter() override {
-    std::error_code ignored;
-    for (const auto& [part, file] : files_) fs::remove(part_path(file_of(part)), ignored);
-  }
-  AotWriter(const AotWriter&) = delete;
-  AotWriter& operator=(const AotWriter&) = delete;
 
   std::vector<fs::path> images(const Clip& clip, const std::string& part) const override {
     std::vector<fs::path> files;
@@ -103,20 +93,17 @@ class AotWriter : public Writer {
                   {"time_origin_ns", kTimeOriginNs}};
     if (times.is_rate_nominal) about["fps_is_nominal"] = true;
     if (times.are_nominal) about["time_is_nominal"] = true;
-    std::ofstream& file = files_.at(part);
-    file << (any_[part] ? ",\n" : "\n") << Json(clip.name).dump() << ":"
-         << Json{{"metadata", about}, {"entities", entities}}.dump();
+    PartFile& file = files_.at(part);
+    file.out() << (any_[part] ? ",\n" : "\n") << Json(clip.name).dump() << ":"
+               << Json{{"metadata", about}, {"entities", entities}}.dump();
     any_[part] = true;
-    if (!file) throw Error("cannot be written: is the disk full?", {file_of(part).string()});
+    file.check_written();
   }
 
   void finish() override {
     for (auto& [part, file] : files_) {
-      file << "}}\n";
-      file.close();
-      if (!file) throw Error("cannot be written: is the disk full?", {file_of(part).string()});
-      const fs::path whole = file_of(part);
-      unfinished_.at(part).finish([&] { fs::rename(part_path(whole), whole); });
+      file.out() << "}}\n";
+      file.finish();
     }
   }
 
@@ -166,8 +153,7 @@ class AotWriter : public Writer {
   }
 
   fs::path root_;
-  std::map<std::string, std::ofstream> files_;
-  std::map<std::string, Unfinished> unfinished_;
+  std::map<std::string, PartFile> files_;
   std::map<std::string, bool> any_;
 };
 
@@ -231,7 +217,7 @@ class FlightReader {
       const auto above = entity.object("labels").maybe_number("is_above_horizon");
       if (above && *above != 0) label.above_horizon = *above > 0;
     }
-    add_label(frame.labels, label, clip_.width, clip_.height, left_out_, entity.place());
+    add_label(frame.labels, label, clip_, left_out_, entity.place());
   }
 
   // Pictures belong to frames by img_name.

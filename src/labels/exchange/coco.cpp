@@ -236,8 +236,10 @@ using Json = nlohmann::ordered_json;
 
 // The lists of one part, which grow clip by clip and become a JSON file at the end.
 struct Lists {
-  std::ofstream images;
-  std::ofstream annotations;
+  explicit Lists(const fs::path& file)
+      : images(file.string() + ".images"), annotations(file.string() + ".annotations") {}
+
+  PartFile images, annotations;  // never finished: they are removed at the end
   Json videos = Json::array();
   std::int64_t next_image = 1;
   std::int64_t next_annotation = 1;
@@ -257,26 +259,8 @@ class CocoWriter : public FolderWriter {
  public:
   CocoWriter(const fs::path& root, const WriteOptions& options) : FolderWriter(root, options) {
     fs::create_directories(folder());
-    for (const std::string& part : options.parts) {
-      Lists& lists = parts_[part];
-      for (const char* what : {"images", "annotations"})
-        lists_on_disk_.push_back(Unfinished::path(list(part, what)));
-      lists.images.open(list(part, "images"), std::ios::binary);
-      lists.annotations.open(list(part, "annotations"), std::ios::binary);
-    }
+    for (const std::string& part : options.parts) parts_.try_emplace(part, whole(part));
   }
-
-  // A failed run leaves no half-written file either.
-  ~CocoWriter() override {
-    std::error_code ignored;
-    for (const auto& [part, lists] : parts_) {
-      fs::remove(list(part, "images"), ignored);
-      fs::remove(list(part, "annotations"), ignored);
-      fs::remove(part_path(whole(part)), ignored);
-    }
-  }
-  CocoWriter(const CocoWriter&) = delete;
-  CocoWriter& operator=(const CocoWriter&) = delete;
 
   void add(const Clip& clip, const std::string& part) override {
     Lists& lists = parts_.at(part);
@@ -288,18 +272,17 @@ class CocoWriter : public FolderWriter {
     about["length"] = clip.frames.size();
     lists.videos.push_back(about);
     for (std::size_t i = 0; i < clip.frames.size(); ++i) add_frame(clip, i, video, lists);
-    if (!lists.images || !lists.annotations)
-      throw Error("cannot be written: is the disk full?", {folder().string()});
+    expect_written(lists);
   }
 
   void finish() override {
     for (auto& [part, lists] : parts_) {
-      lists.images.close();
-      lists.annotations.close();
-      if (!lists.images || !lists.annotations)
-        throw Error("cannot be written: is the disk full?", {folder().string()});
+      lists.images.out().close();
+      lists.annotations.out().close();
+      expect_written(lists);
       write(part, lists);
     }
+    parts_.clear();
   }
 
  private:
@@ -311,8 +294,9 @@ class CocoWriter : public FolderWriter {
   fs::path whole(const std::string& part) const {
     return folder() / ("instances_" + part + ".json");
   }
-  fs::path list(const std::string& part, const std::string& what) const {
-    return folder() / ("." + part + "." + what + ".part");
+  void expect_written(Lists& lists) const {
+    if (!lists.images.out() || !lists.annotations.out())
+      throw Error("cannot be written: is the disk full?", {folder().string()});
   }
   std::string file_name(const Clip& clip, std::size_t i) const {
     return clip.name + "/" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension;
@@ -327,7 +311,7 @@ class CocoWriter : public FolderWriter {
                   {"video_id", video},
                   {"frame_id", i}};
     put(image, "time_s", frame.time_s);
-    lists.images << (id > 1 ? ",\n" : "") << image.dump();
+    lists.images.out() << (id > 1 ? ",\n" : "") << image.dump();
     for (const Label& label : frame.labels) {
       const Box& b = label.box_px;
       const std::int64_t number = lists.next_annotation++;
@@ -344,7 +328,7 @@ class CocoWriter : public FolderWriter {
           {"iscrowd", label.object_class == kIgnore ? 1 : 0}};
       each_known(
           label, "visibility", [&](const char* key, const auto& value) { put(json, key, value); });
-      lists.annotations << (number > 1 ? ",\n" : "") << json.dump();
+      lists.annotations.out() << (number > 1 ? ",\n" : "") << json.dump();
     }
   }
 
@@ -356,26 +340,18 @@ class CocoWriter : public FolderWriter {
            {"name", category},
            {"supercategory",
             std::string(annotation::class_of_category(category).value_or(annotation::kAircraft))}});
-    const fs::path file = whole(part);
-    Unfinished unfinished = Unfinished::path(part_path(file));
-    {
-      std::ofstream out(part_path(file), std::ios::binary);
-      out << "{\"info\":{\"description\":\"made by airtruth; segmentations are "
-          << segmentations(lists)
-          << "\"},"
-             "\n\"licenses\":[],\n\"categories\":"
-          << categories.dump() << ",\n\"videos\":" << lists.videos.dump() << ",\n\"images\":[";
-      append(out, list(part, "images"));
-      out << "],\n\"annotations\":[";
-      append(out, list(part, "annotations"));
-      out << "]}\n";
-      if (!out.flush()) throw Error("cannot be written: is the disk full?", {file.string()});
-    }
-    unfinished.finish([&] { fs::rename(part_path(file), file); });
-    // The file is flushed at once: an export must be complete before its writer ends, and nothing
-    // clears a killed one later.
-    fs::remove(list(part, "images"));
-    fs::remove(list(part, "annotations"));
+    PartFile file(whole(part));
+    std::ofstream& out = file.out();
+    out << "{\"info\":{\"description\":\"made by airtruth; segmentations are "
+        << segmentations(lists)
+        << "\"},"
+           "\n\"licenses\":[],\n\"categories\":"
+        << categories.dump() << ",\n\"videos\":" << lists.videos.dump() << ",\n\"images\":[";
+    append(out, lists.images);
+    out << "],\n\"annotations\":[";
+    append(out, lists.annotations);
+    out << "]}\n";
+    file.finish();
   }
 
   static const char* segmentations(const Lists& lists) {
@@ -386,13 +362,12 @@ class CocoWriter : public FolderWriter {
                  "are known, else the boxes as polygons";
   }
 
-  static void append(std::ofstream& out, const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
+  static void append(std::ofstream& out, const PartFile& file) {
+    std::ifstream in(file.part(), std::ios::binary);
     if (in.peek() != std::ifstream::traits_type::eof()) out << in.rdbuf();
   }
 
   std::map<std::string, Lists> parts_;
-  std::vector<Unfinished> lists_on_disk_;
 };
 
 }  // namespace

@@ -330,12 +330,7 @@ class TrackReader {
   }
 
   void put(const Label& label, std::size_t place) {
-    add_label(clip_.frames.at(place).labels,
-              label,
-              clip_.width,
-              clip_.height,
-              in_.left_out,
-              file_.string());
+    add_label(clip_.frames.at(place).labels, label, clip_, in_.left_out, file_.string());
   }
 
   // Pictures belong to frames by the <image> that names them, or else by the number in their names.
@@ -386,12 +381,7 @@ Clips read_images(const fs::path& file,
       Label label =
           label_of(xml, shape, shape.attribute("label").value(), std::ssize(picture.labels) + 1);
       label.box_px = *box;
-      add_label(picture.labels,
-                std::move(label),
-                picture.width,
-                picture.height,
-                in.left_out,
-                file.string());
+      add_label(picture.labels, std::move(label), picture, in.left_out, file.string());
     }
     subsets[subset].push_back(std::move(picture));
   }

@@ -26,18 +26,6 @@ LabelledFrame& frame_at(Clip& clip, std::size_t number) {
   return clip.frames[number];
 }
 
-void add_label(std::vector<Label>& labels,
-               Label label,
-               int width,
-               int height,
-               LeftOut& left_out,
-               const std::string& place) {
-  if (is_in_picture(label.box_px, width, height))
-    labels.push_back(std::move(label));
-  else
-    left_out.add(kOutside, place);
-}
-
 void append(Clips& clips, Clips more) {
   std::move(more.begin(), more.end(), std::back_inserter(clips));
 }

@@ -65,14 +65,19 @@ LabelledFrame& frame_at(Clip& clip, std::size_t number);
 // Why a label is left out whose box has no area or lies outside the picture.
 inline constexpr const char* kOutside = "boxes that are empty or outside their image";
 
-// Adds a label to those of a picture of that size (0: unknown); `place` says where a label stands
-// that is left out.
+// Adds a label to those of a picture, whose size is that of the clip or the LabelledPicture (0:
+// unknown); `place` says where a label stands that is left out.
+template <typename Sized>
 void add_label(std::vector<Label>& labels,
                Label label,
-               int width,
-               int height,
+               const Sized& of,
                LeftOut& left_out,
-               const std::string& place);
+               const std::string& place) {
+  if (is_in_picture(label.box_px, of.width, of.height))
+    labels.push_back(std::move(label));
+  else
+    left_out.add(kOutside, place);
+}
 
 // Moves clips to the end of a list.
 void append(Clips& clips, Clips more);

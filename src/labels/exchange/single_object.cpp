@@ -223,12 +223,8 @@ class SequenceReader {
       label.track = track;
       label.category = category_;
       label.box_px = *box;
-      add_label(frame.labels,
-                label,
-                clip_.width,
-                clip_.height,
-                in_.left_out,
-                to_string(Where{file.string(), line.number}));
+      add_label(
+          frame.labels, label, clip_, in_.left_out, to_string(Where{file.string(), line.number}));
     }
   }
 

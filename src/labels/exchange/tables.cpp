@@ -57,8 +57,7 @@ Clips read_evision(const Reading& in) {
       if (number > kMaxFrames)
         throw Error("frame_" + std::to_string(number + 1) + " is beyond any clip", {file.string()});
       // Numbers that the file skips are frames without any information.
-      while (std::ssize(clip.frames) < number)
-        clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
+      if (number > 0) frame_at(clip, static_cast<std::size_t>(number) - 1);
       LabelledFrame labelled{std::ssize(clip.frames), std::nullopt, {}};
       if (frame && frame->rect_px.width > 0 && frame->rect_px.height > 0) {
         const PixelBox& r = frame->rect_px;
@@ -142,9 +141,7 @@ Clips read_csv(const Reading& in) {
         throw Error(fmt::format("has {} columns; expected {}", n.size(), columns.text), where);
       const auto i = whole_in(n[columns.frame], 0, kMaxFrames);
       if (!i) throw Error("the frame is no whole number from 0 on", where);
-      while (std::ssize(clip.frames) <= *i)
-        clip.frames.push_back({std::ssize(clip.frames), std::nullopt, {}});
-      LabelledFrame& frame = clip.frames[static_cast<std::size_t>(*i)];
+      LabelledFrame& frame = frame_at(clip, static_cast<std::size_t>(*i));
       Box box{n[columns.x], n[columns.y], n[columns.third], n[columns.fourth]};
       if (columns.are_corners) {
         box.width -= box.x;
@@ -176,22 +173,13 @@ std::string cell(const std::optional<bool>& value) { return !value ? "" : *value
 class TableWriter : public FolderWriter {
  public:
   TableWriter(const fs::path& root, const WriteOptions& options)
-      : FolderWriter(root, options),
-        unfinished_(Unfinished::path(part_path(file()))),
-        out_(part_path(file()), std::ios::binary) {
+      : FolderWriter(root, options), file_(root / "frames.csv"), out_(file_.out()) {
     out_ << "part,sequence,frame,time_s,track,category,class,box_px_x,box_px_y,box_px_width,"
             "box_px_height,visible,occluded,truncated,range_m,above_horizon,contrast_to_noise,"
             "area_px";
     for (const std::string& column : options.columns) out_ << ',' << csv_cell(column);
     out_ << "\n";
   }
-  // A failed run leaves no half-written file either.
-  ~TableWriter() override {
-    std::error_code ignored;
-    fs::remove(part_path(file()), ignored);
-  }
-  TableWriter(const TableWriter&) = delete;
-  TableWriter& operator=(const TableWriter&) = delete;
 
   void add(const Clip& clip, const std::string& part) override {
     for (const LabelledFrame& frame : clip.frames)
@@ -210,18 +198,13 @@ class TableWriter : public FolderWriter {
       }
   }
 
-  void finish() override {
-    out_.close();
-    if (!out_) throw Error("cannot be written: is the disk full?", {file().string()});
-    unfinished_.finish([&] { fs::rename(part_path(file()), file()); });
-  }
+  void finish() override { file_.finish(); }
 
  private:
-  fs::path file() const { return root_ / "frames.csv"; }
   fs::path image(const Clip&, const std::string&, std::size_t) const override { return {}; }
 
-  Unfinished unfinished_;
-  std::ofstream out_;
+  PartFile file_;
+  std::ofstream& out_;
 };
 
 }  // namespace

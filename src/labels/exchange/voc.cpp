@@ -156,12 +156,7 @@ LabelledPicture read_picture(const fs::path& file,
     const double x = xml.number(box, "xmin") - 1;
     const double y = xml.number(box, "ymin") - 1;
     label.box_px = {x, y, xml.number(box, "xmax") - x, xml.number(box, "ymax") - y};
-    add_label(picture.labels,
-              std::move(label),
-              picture.width,
-              picture.height,
-              in.left_out,
-              file.string());
+    add_label(picture.labels, std::move(label), picture, in.left_out, file.string());
   }
   return picture;
 }

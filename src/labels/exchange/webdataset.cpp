@@ -93,7 +93,7 @@ void add(const JsonDocument& json, std::map<std::string, Clip>& clips, LeftOut& 
   clip.frame_rate_hz = rate_of(json.maybe_number("frame_rate_hz"));
   LabelledFrame frame{json.whole("frame", 0, kMaxFrames), json.maybe_number("time_s"), {}};
   for (const JsonObject& label : json.objects("labels"))
-    add_label(frame.labels, label_of_json(label), clip.width, clip.height, left_out, label.place());
+    add_label(frame.labels, label_of_json(label), clip, left_out, label.place());
   clip.frames.push_back(std::move(frame));
 }
 

@@ -217,8 +217,7 @@ class YoloReader {
     }
     add_label(picture.labels,
               std::move(label),
-              picture.width,
-              picture.height,
+              picture,
               in_.left_out,
               file.string() + ":" + std::to_string(line.number));
   }
