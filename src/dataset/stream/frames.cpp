@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "dataset/stream/places.h"
+#include "dataset/stream/plan.h"
 #include "foundation/base/error.h"
 #include "foundation/image/cuts.h"
 

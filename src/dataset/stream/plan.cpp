@@ -12,8 +12,7 @@
 
 #include "dataset/catalogue/drawing.h"
 #include "dataset/catalogue/meeting.h"
-#include "dataset/stream/fleet.h"
-#include "dataset/stream/places.h"
+#include "encounter/pairing/strata.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
 
@@ -64,7 +63,47 @@ void turn_propellers(scene::Scene& scene, std::uint64_t seed, std::int64_t index
     if (is_aircraft(intruder)) intruder.spin_time_s = random.uniform();
 }
 
+// How many aircraft a rule flies at a time, and for how many samples each does. A livery takes as
+// long to load as tens of samples take to draw, and the hundreds of a catalogue are too many for
+// memory. One aircraft changes every 512 samples. Chosen.
+constexpr std::size_t kFleet = 16;
+constexpr std::int64_t kSamplesOfAircraft = 8192;
+
+// The aircraft of `types` that fly in sample `index`: types take turns, and a livery of each is
+// drawn. All of them where they are no more than kFleet. With `every_type`, one of each type where
+// there are more types than that.
+std::vector<catalogue::AircraftType> fleet_of(const std::vector<catalogue::AircraftType>& types,
+                                              std::uint64_t seed,
+                                              std::int64_t index,
+                                              bool every_type) {
+  std::size_t liveries = 0;
+  for (const catalogue::AircraftType& type : types) liveries += type.liveries.size();
+  if (liveries <= kFleet) return types;
+  const std::size_t count = every_type ? std::max(kFleet, types.size()) : kFleet;
+  const pairing::Strata turns(Seed(seed).stream("turns of types")(), types.size(), 1);
+  std::vector<catalogue::AircraftType> fleet;
+  for (std::size_t slot = 0; slot < count; ++slot) {
+    const auto begin =
+        static_cast<std::int64_t>(slot) * kSamplesOfAircraft / static_cast<std::int64_t>(count);
+    const auto number =
+        static_cast<std::uint64_t>((index + begin) / kSamplesOfAircraft) * count + slot;
+    Random random = Seed(seed).stream("aircraft", number);
+    const catalogue::AircraftType& type =
+        catalogue::one_at(turns.spaced((every_type ? slot : number) % types.size(), 0), types);
+    fleet.push_back({type.name, {catalogue::one_of(random, type.liveries)}});
+  }
+  return fleet;
+}
+
 }  // namespace
+
+Place place_of(std::int64_t index, std::int64_t reuse) {
+  const std::int64_t samples_of_run = kRunFrames * reuse;
+  const std::int64_t turn = index / kLanes;  // of the lanes
+  const std::int64_t lane = index % kLanes;
+  return {
+      turn / samples_of_run * kLanes + lane, turn % samples_of_run / reuse, turn % samples_of_run};
+}
 
 Planner::Planner(const catalogue::Catalogue& catalogue,
                  std::uint64_t seed,

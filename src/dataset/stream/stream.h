@@ -16,7 +16,7 @@
 #include "sequence/pipeline/options.h"
 
 // Labelled pictures of a catalogue without end, made when they are asked for.
-// A sample is a sequence of [stream] `frames` frames (plan.h) at the place of its index (places.h).
+// A sample is a sequence of [stream] `frames` frames at the place of its index (plan.h).
 // It depends on the catalogue, the seed and its index alone. It is made by the stages of a run
 // (sequence/pipeline/frame_maker.h), so render() of scene() gives the same pictures and truth.
 namespace airtruth::stream {

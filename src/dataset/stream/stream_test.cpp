@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "dataset/stream/places.h"
+#include "dataset/stream/plan.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/annotation/truth.h"
