@@ -8,7 +8,7 @@
 #include <airtruth/labels.h>
 
 #include "dataset/sequences/labels_of_truth.h"
-#include "dataset/sequences/sequence_folders.h"
+#include "dataset/sequences/layout.h"
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"
 

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "dataset/sequences/sequence_folders.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "support/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/sequences/labels_of_truth.h"
-#include "dataset/sequences/sequence_folders.h"
+#include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/annotation/truth.h"

@@ -14,7 +14,7 @@
 
 #include "camera/lens/calibration_file.h"
 #include "dataset/labelled/labelled_set.h"
-#include "dataset/sequences/sequence_folders.h"
+#include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
