@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "dataset/build/build.h"
-#include "dataset/build/check.h"
+#include "dataset/build/inputs.h"
 #include "dataset/build/plan.h"
 #include "dataset/build/slurm.h"
 #include "dataset/build/verify.h"

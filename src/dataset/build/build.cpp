@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include <airtruth/version.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "dataset/build/backgrounds.h"
-#include "dataset/build/check.h"
-#include "dataset/build/manifest.h"
+#include "dataset/build/inputs.h"
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
@@ -22,12 +22,16 @@
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
+#include "foundation/json/json_object.h"
+#include "foundation/json/or_null.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // Sequences that are put in the order of their aircraft at a time: enough for dozens of each of a
 // hundred types, in bounded memory.
@@ -232,6 +236,72 @@ class Work {
   BuildSummary summary_;
 };
 
+// Writes one line per failure. The file is removed where nothing failed.
+void write_failures(const fs::path& file, const std::vector<Failure>& failures) {
+  std::error_code ignored;
+  if (failures.empty()) {
+    fs::remove(file, ignored);
+    return;
+  }
+  std::string text;
+  for (const Failure& failure : failures)
+    text += Json{{"name", failure.name}, {"reason", failure.reason}}.dump(
+                -1, ' ', false, Json::error_handler_t::replace) +
+            "\n";
+  write_file(file, text);
+}
+
+constexpr std::int64_t kLinesInAFile = 10'000;  // chosen
+
+Json manifest_line(const catalogue::Folder& folder, const catalogue::Item& item) {
+  const JsonDocument record(folder.sequence(item) / "sequence.json");
+  const JsonObject summary = record.object("summary");
+  Json line = {
+      {"index", item.index},
+      {"name", item.name},
+      {"folder", fs::relative(folder.sequence(item), folder.root).string()},
+      {"frames", summary.count("frames")},
+      {"frames_with_an_intruder_visible", summary.count("frames_with_an_intruder_visible")}};
+  if (record.has("weather")) line["weather"] = record.value("weather");
+  line["weight"] = or_null(record.maybe_number("weight"));
+  line["outputs"] = record.value("outputs");
+  return line;
+}
+
+// Writes manifest/*.jsonl and, last, dataset.json. Returns false and writes neither where a
+// sequence of the catalogue is missing. Memory does not grow with the number of sequences. The
+// bytes do not depend on the number of workers.
+bool write_manifest(const catalogue::Catalogue& catalogue, const catalogue::Folder& folder) {
+  const catalogue::Expansion expansion(catalogue);
+  for (std::int64_t i = 0; i < expansion.size(); ++i)
+    if (!folder.holds(expansion.at(i))) return false;
+  fs::create_directories(folder.manifest());
+  Json files = Json::array();
+  std::int64_t frames = 0;
+  for (std::int64_t first = 0; first < expansion.size(); first += kLinesInAFile) {
+    std::string text;
+    for (std::int64_t i = first; i < std::min(expansion.size(), first + kLinesInAFile); ++i) {
+      const Json line = manifest_line(folder, expansion.at(i));
+      frames += line.at("frames").get<std::int64_t>();
+      text += line.dump() + "\n";
+    }
+    const fs::path file = folder.manifest() / fmt::format("{:05}.jsonl", first / kLinesInAFile);
+    write_file(file, text);
+    files.push_back(
+        {{"name", fs::relative(file, folder.root).string()}, {"sha256", sha256_of(text)}});
+  }
+  const Json record = {{"format", "airtruth dataset 1"},
+                       {"version", kVersion},
+                       {"name", catalogue.name},
+                       {"seed", catalogue.seed},
+                       {"catalogue_sha256", sha256_of(catalogue.text)},
+                       {"sequences", expansion.size()},
+                       {"frames", frames},
+                       {"manifest", files}};
+  write_file(folder.record(), record.dump(2) + "\n");
+  return true;
+}
+
 }  // namespace
 
 BuildSummary build_set(const catalogue::Catalogue& given,
@@ -245,7 +315,7 @@ BuildSummary build_set(const catalogue::Catalogue& given,
   const catalogue::Catalogue catalogue = with_videos(given, options.videos);
   check_sources(catalogue);
   const catalogue::Folder folder = catalogue::open_folder(catalogue, out, options.max_in_a_folder);
-  const catalogue::FolderLock lock(
+  const RunLock lock = catalogue::lock_of(
       folder, options.shares > 1 ? Sharing::kShared : Sharing::kAlone, options.warn);
   BuildSummary summary = Work(catalogue, folder, options).run();
   write_failures(folder.failed(options.share, options.shares), summary.failures);
@@ -258,7 +328,7 @@ BuildSummary build_set(const catalogue::Catalogue& given,
 bool finish(const fs::path& root) {
   const catalogue::Folder folder{root};
   const catalogue::Catalogue catalogue = catalogue::read_catalogue(folder.catalogue());
-  const catalogue::FolderLock lock(folder, Sharing::kAlone);
+  const RunLock lock = catalogue::lock_of(folder, Sharing::kAlone);
   return write_manifest(catalogue, folder);
 }
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "dataset/build/build.h"
-#include "dataset/build/check.h"
+#include "dataset/build/inputs.h"
 #include "dataset/build/verify.h"
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/error.h"
@@ -262,7 +262,7 @@ TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   EXPECT_THAT(error_of_build(other), HasSubstr("catalogue"));
   EXPECT_EQ(error_of_build(catalogue), "no error");
   // While another process is at work in it: flock() counts two openings of one file as two.
-  const catalogue::FolderLock elsewhere(catalogue::Folder{root_ / "set"}, Sharing::kAlone);
+  const RunLock elsewhere = catalogue::lock_of(catalogue::Folder{root_ / "set"}, Sharing::kAlone);
   EXPECT_THAT(error_of_build(catalogue), HasSubstr("at work"));
 }
 

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "dataset/build/backgrounds.h"
+#include "dataset/build/inputs.h"
 #include "dataset/labelled/labelled_set.h"
 #include "foundation/base/error.h"
 #include "scene/scene/camera_keys.h"
@@ -59,11 +59,7 @@ class Planner {
 
   void add(catalogue::Item& item) {
     const Facts& facts = facts_of(item.background);
-    const catalogue::Draws draws = catalogue::draw_in_view(item,
-                                                           {.width = facts.width,
-                                                            .height = facts.height,
-                                                            .frame_rate_hz = facts.frame_rate_hz,
-                                                            .log_start = facts.log_start});
+    const catalogue::Draws draws = catalogue::draw_in_view(item, facts.files);
     plan_.draws += draws.drawn;
     plan_.never_in_view += draws.unseen;
     const std::int64_t frames = frames_of(item, facts);
@@ -79,7 +75,7 @@ class Planner {
       if (encounter.size_px) plan_.sizes_px.add(*encounter.size_px);
       if (encounter.range_m) plan_.ranges_m.add(*encounter.range_m);
     }
-    const double rate_hz = facts.frame_rate_hz > 0 ? facts.frame_rate_hz : 30;
+    const double rate_hz = facts.files.frame_rate_hz > 0 ? facts.files.frame_rate_hz : 30;
     fly(item, frames > 0 ? static_cast<double>(frames - 1) / rate_hz : 1e9);
   }
 
@@ -144,13 +140,9 @@ class Planner {
 
   // Of a background.
   struct Facts {
-    std::int64_t frames = 0;
-    double frame_rate_hz = 0;
+    catalogue::BackgroundFiles files;  // without the files themselves
     // Pixels of a frame relative to 1280x960.
     double size = 1;
-    int width = 0;
-    int height = 0;
-    catalogue::LogStart log_start;
     std::int64_t moved_frames = 0;  // whose motion is measured for all sequences
   };
 
@@ -158,15 +150,12 @@ class Planner {
   const Facts& facts_of(std::size_t i) {
     if (facts_[i]) return *facts_[i];
     const catalogue::Background& background = catalogue_.backgrounds[i];
-    const video::StreamInfo info = stream_of(background);
-    Facts& facts = facts_[i].emplace(Facts{info.frame_count_estimate,
-                                           info.frame_rate.value(),
-                                           double(info.width) * info.height / kUsualPixels,
-                                           info.width,
-                                           info.height});
+    Facts& facts = facts_[i].emplace();
+    take_facts(stream_of(background), facts.files);
+    facts.size = double(facts.files.width) * facts.files.height / kUsualPixels;
     if (const auto* video = std::get_if<fs::path>(&background.source))
-      facts.log_start = log_start(background, *video);
-    const double whole = static_cast<double>(facts.frames) * facts.size;
+      facts.files.log_start = log_start(background, *video);
+    const double whole = static_cast<double>(facts.files.frames) * facts.size;
     if (std::holds_alternative<synthetic::FlightOptions>(background.source))
       plan_.core_s += whole * kCosts.flown;
     if (pipeline::needs_calibration(catalogue::scene_over(catalogue_, i))) {
@@ -179,7 +168,7 @@ class Planner {
   std::int64_t frames_of(const catalogue::Item& item, const Facts& facts) const {
     const catalogue::Background& background = catalogue_.backgrounds[item.background];
     const std::int64_t left =
-        std::max<std::int64_t>(0, end_of(background, facts.frames) - background.first_frame);
+        std::max<std::int64_t>(0, end_of(background, facts.files.frames) - background.first_frame);
     if (item.frame_count == 0) return left;
     return background.frame_count && left > 0 ? std::min(item.frame_count, left) : item.frame_count;
   }

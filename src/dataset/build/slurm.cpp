@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
-#include "dataset/build/check.h"
+#include "dataset/build/inputs.h"
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"

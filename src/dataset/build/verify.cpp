@@ -47,7 +47,7 @@ catalogue::Catalogue catalogue_of(const catalogue::Folder& folder) {
 
 bool is_at_work(const catalogue::Folder& folder) {
   try {
-    const catalogue::FolderLock lock(folder, Sharing::kAlone);
+    const RunLock lock = catalogue::lock_of(folder, Sharing::kAlone);
     return false;
   } catch (const Error&) {
     return true;
@@ -69,10 +69,12 @@ class Check {
 
   VerifyResult run() {
     ++result_.sequences;
-    if (fs::exists(folder_ / "sequence.json"))
+    if (fs::exists(folder_ / "sequence.json")) {
       whole();
-    else
-      missing();
+    } else {
+      ++result_.not_there;
+      fault("is not there");
+    }
     return std::move(result_);
   }
 
@@ -86,11 +88,6 @@ class Check {
     } catch (const Error& error) {
       fault(error.what());
     }
-  }
-
-  void missing() {
-    ++result_.not_there;
-    fault("is not there");
   }
 
   void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }

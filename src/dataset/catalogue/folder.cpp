@@ -47,11 +47,9 @@ Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_
   return folder;
 }
 
-FolderLock::FolderLock(const Folder& folder, Sharing sharing, const Warn& to)
-    : lock_(folder.root / ".lock",
-            folder.root,
-            to,
-            sharing,
-            "another build is at work in this folder") {}
+RunLock lock_of(const Folder& folder, Sharing sharing, const Warn& to) {
+  return {
+      folder.root / ".lock", folder.root, to, sharing, "another build is at work in this folder"};
+}
 
 }  // namespace airtruth::catalogue

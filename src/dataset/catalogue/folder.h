@@ -49,14 +49,8 @@ Folder open_folder(const Catalogue& catalogue,
 
 // A lock that is held during a build; the kernel releases it when the process ends. Workers that
 // each make their own share hold it together (`shared`); a whole build holds it alone.
-class FolderLock {
- public:
-  // Throws Error where another process holds it. Where the file system has no locks that is not
-  // seen, and said.
-  FolderLock(const Folder& folder, Sharing sharing, const Warn& to = {});
-
- private:
-  RunLock lock_;
-};
+// Throws Error where another process holds it. Where the file system has no locks that is not seen,
+// and said.
+RunLock lock_of(const Folder& folder, Sharing sharing, const Warn& to = {});
 
 }  // namespace airtruth::catalogue

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
-#include "dataset/build/backgrounds.h"
+#include "dataset/build/inputs.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/stream/frames.h"
 #include "dataset/stream/plan.h"

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "dataset/build/inputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "aircraft/fleet/fleet.h"
+#include "dataset/catalogue/expand.h"
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "picture/video/reader.h"
+#include "picture/video/still.h"
+#include "sequence/demo/virtual_flight.h"
+#include "sequence/insertion/masks.h"
+#include "sequence/pipeline/resolved_scene.h"
+#include "sequence/setup/from_scene.h"
+#include "sequence/setup/level_camera.h"
+#include "sequence/setup/world.h"
+
+namespace airtruth::build {
+namespace {
+
+// Flight options with the sun and the lens of the background.
+synthetic::FlightOptions flight_over(const catalogue::Background& background,
+                                     synthetic::FlightOptions flight) {
+  flight.sun_azimuth_deg = background.light.sun_azimuth_deg;
+  flight.sun_elevation_deg = background.light.sun_elevation_deg;
+  flight.lens = setup::lens_of(background.lens, {flight.width, flight.height});
+  return flight;
+}
+
+catalogue::BackgroundFiles fly(const catalogue::Background& background,
+                               const synthetic::FlightOptions& wanted,
+                               const catalogue::Folder& folder,
+                               const BuildOptions& options) {
+  const fs::path stem = folder.backgrounds() / background.name;
+  catalogue::BackgroundFiles files;
+  files.video = stem.string() + ".mp4";
+  files.mask = stem.string() + ".mask.png";
+  // The video is the last file that appears.
+  if (fs::exists(files.video)) return files;
+  fs::create_directories(folder.backgrounds());
+  const synthetic::Flight flight(flight_over(background, wanted));
+  write_file(stem.string() + ".csv", synthetic::csv_from_flight(flight));
+  video::write_still(*files.mask, insertion::picture_of(flight.own_aircraft()));
+  demo::VirtualFlightOptions how;
+  how.stop = options.stop;
+  how.progress = [&](std::int64_t done, std::int64_t total) {
+    if (options.progress) options.progress({done, total, "flying " + background.name});
+  };
+  demo::write_flight(flight, files.video, how);
+  return files;
+}
+
+catalogue::BackgroundFiles files_of(const catalogue::Background& background,
+                                    const catalogue::Folder& folder,
+                                    const BuildOptions& options) {
+  catalogue::BackgroundFiles files;
+  if (const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source))
+    return fly(background, *flight, folder, options);
+  files.video = std::get<fs::path>(background.source);
+  files.mask = background.mask;
+  return files;
+}
+
+}  // namespace
+
+catalogue::BackgroundFiles prepare(const catalogue::Background& background,
+                                   const catalogue::Folder& folder,
+                                   const BuildOptions& options) {
+  catalogue::BackgroundFiles files = files_of(background, folder, options);
+  take_facts(video::Reader(files.video, {.picture_rate_hz = background.frame_rate_hz, .threads = 1})
+                 .info(),
+             files);
+  files.frames = end_of(background, files.frames);
+  files.log_start = log_start(background, files.video);
+  return files;
+}
+
+void take_facts(const video::StreamInfo& info, catalogue::BackgroundFiles& files) {
+  files.width = info.width;
+  files.height = info.height;
+  files.frame_rate_hz = info.frame_rate.value();
+  files.frames = info.frame_count_estimate;
+}
+
+catalogue::LogStart log_start(const catalogue::Background& background, const fs::path& video) {
+  if (!background.camera.log) return {};
+  scene::Camera camera = background.camera;
+  camera.clip_start_s = video::time_of_first_frame_s(
+      video, {.first_frame = background.first_frame, .picture_rate_hz = background.frame_rate_hz});
+  return {camera.clip_start_s, setup::level_attitude(camera)};
+}
+
+video::StreamInfo stream_of(const catalogue::Background& background) {
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  if (flight == nullptr)
+    return video::Reader(std::get<fs::path>(background.source),
+                         {.picture_rate_hz = background.frame_rate_hz, .threads = 1})
+        .info();
+  video::StreamInfo info;
+  info.width = flight->width;
+  info.height = flight->height;
+  info.frame_rate = {static_cast<int>(std::lround(1000 * flight->frame_rate_hz)), 1000};
+  info.frame_count_estimate = flight->frame_count;
+  return info;
+}
+
+namespace {
+
+void check_aircraft(const catalogue::Aircraft& aircraft) {
+  try {
+    fleet::aircraft_file(aircraft.aircraft);
+  } catch (const Error& error) {
+    throw Error(error.message(), aircraft.where);
+  }
+}
+
+void check_video(const catalogue::Background& background) {
+  const auto* video = std::get_if<fs::path>(&background.source);
+  // The reader checks a pattern of numbered images.
+  if (video != nullptr && video->string().find('%') == std::string::npos && !fs::exists(*video))
+    throw Error("the video of background '" + background.name + "', " + video->string() +
+                    ", does not exist",
+                background.where);
+}
+
+// Checks mask, lens, camera file and path of a background. Each sequence decides how much of the
+// clip it uses, and the camera's path must cover only that part.
+void check_background(const catalogue::Catalogue& catalogue, std::size_t place) {
+  const catalogue::Background& background = catalogue.backgrounds[place];
+  check_video(background);
+  scene::Scene scene = catalogue::scene_over(catalogue, place);
+  if (std::holds_alternative<fs::path>(background.source)) scene.background.mask = background.mask;
+  video::StreamInfo info = stream_of(background);
+  info.frame_count_estimate = 0;  // unknown
+  pipeline::check_scene(scene, info);
+}
+
+// The names of one rule differ by construction, but names of two rules may coincide. Hashes are
+// compared because a million names must cost no more than eight bytes each.
+void check_names(const catalogue::Catalogue& catalogue) {
+  if (catalogue.rules.size() < 2) return;
+  const catalogue::Expansion expansion(catalogue);
+  std::vector<std::size_t> hashes;
+  hashes.reserve(static_cast<std::size_t>(expansion.size()));
+  const std::hash<std::string> hash;
+  for (std::int64_t i = 0; i < expansion.size(); ++i) hashes.push_back(hash(expansion.at(i).name));
+  std::vector<std::size_t> sorted = hashes;
+  std::sort(sorted.begin(), sorted.end());
+  const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
+  if (twin == sorted.end()) return;
+  const auto first = std::find(hashes.begin(), hashes.end(), *twin);
+  const auto second = std::find(first + 1, hashes.end(), *twin);
+  const std::string name = expansion.at(first - hashes.begin()).name;
+  if (expansion.at(second - hashes.begin()).name == name)
+    throw Error("two sequences are named '" + name + "'", {catalogue.file.string()});
+}
+
+}  // namespace
+
+void check_sources(const catalogue::Catalogue& catalogue) {
+  for (const catalogue::Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
+  for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i) check_background(catalogue, i);
+  check_names(catalogue);
+}
+
+catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
+                                 const std::map<std::string, fs::path>& videos) {
+  for (const auto& [name, video] : videos) {
+    const auto replaced = std::find_if(
+        catalogue.backgrounds.begin(),
+        catalogue.backgrounds.end(),
+        [&, n = name](const catalogue::Background& background) { return background.name == n; });
+    if (replaced == catalogue.backgrounds.end())
+      throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
+    replaced->source = video;
+    replaced->mask.reset();
+    std::erase_if(replaced->occluders, [](const scene::Occluder& one) { return one.mask; });
+  }
+  return catalogue;
+}
+
+}  // namespace airtruth::build
