@@ -17,7 +17,7 @@
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
-#include "scene/scene/choices.h"
+#include "scene/scene/scene.h"
 #include "sequence/setup/motion_source.h"
 #include "show/motion_plot/motion_plot.h"
 #include "show/plot/gnuplot.h"

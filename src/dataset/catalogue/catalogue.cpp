@@ -7,7 +7,7 @@
 
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/files.h"
-#include "scene/scene/parse_encounter.h"
+#include "scene/scene/parse_intruder.h"
 #include "scene/scene/tables.h"
 
 namespace airtruth::catalogue {
@@ -146,20 +146,12 @@ Product product_from(const TableReader& table, const Catalogue& catalogue) {
 
 // The parts from which sequences are made: backgrounds, aircraft and trajectories.
 void add_parts(const TableReader& root, Catalogue& catalogue) {
-  for (const TableReader& table : root.tables("background",
-                                              scene::with_camera_tables({"name",
-                                                                         "video",
-                                                                         "flight",
-                                                                         "mask",
-                                                                         "first_frame",
-                                                                         "frame_count",
-                                                                         "frame_rate_hz",
-                                                                         "weight",
-                                                                         "lens",
-                                                                         "camera",
-                                                                         "motion",
-                                                                         "light"},
-                                                                        {"realism", "occluder"})))
+  for (const TableReader& table : root.tables(
+           "background",
+           scene::with_camera_tables(
+               scene::keys("name video flight mask first_frame frame_count frame_rate_hz weight "
+                           "lens camera motion light"),
+               {"realism", "occluder"})))
     catalogue.backgrounds.push_back(background_from(table));
   for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
     catalogue.aircraft.push_back(
@@ -238,26 +230,13 @@ Catalogue read_catalogue(const fs::path& file) {
 
 Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   const toml::table parsed = scene::parsed_toml(text, file.string());
-  const TableReader root(parsed,
-                         "a catalogue",
-                         file.string(),
-                         {"name",
-                          "seed",
-                          "background",
-                          "aircraft",
-                          "trajectory",
-                          "sequence",
-                          "product",
-                          "random",
-                          "encounter_model",
-                          "distractor",
-                          "negatives",
-                          "truth",
-                          "render",
-                          "composite",
-                          "output",
-                          "stream",
-                          "slurm"});
+  const TableReader root(
+      parsed,
+      "a catalogue",
+      file.string(),
+      scene::keys("name seed background aircraft trajectory sequence product random "
+                  "encounter_model distractor negatives truth render composite output "
+                  "stream slurm"));
   Catalogue catalogue;
   catalogue.file = file;
   catalogue.text = text;

@@ -29,72 +29,38 @@ constexpr Limits kSpotSpeed{
     .expected = "[low, high] in pixels a second from 1 to 1e6", .low = 1, .high = 1e6};
 constexpr Limits kOpacity{.expected = "[low, high] from 0.01 to 1", .low = 0.01, .high = 1};
 
-const TableReader::Keys kAirKeys = {"size_m",
-                                    "range_m",
-                                    "size_px",
-                                    "azimuth_deg",
-                                    "elevation_deg",
-                                    "heading_deg",
-                                    "climb_deg",
-                                    "speed_mps",
-                                    "flock",
-                                    "spread_m"};
+const TableReader::Keys kAirKeys = scene::keys(
+    "size_m range_m size_px azimuth_deg elevation_deg heading_deg climb_deg "
+    "speed_mps flock spread_m");
 const TableReader::Keys kBirdKeys = {"plumage", "glide"};
 const TableReader::Keys kLensKeys = {"spot_px", "opacity", "speed_px_s"};
 
 // The values of a rule that states its kind and nothing else: gull to eagle, a toy to a freight
 // carrier, a party's to a weather station's balloon.
 DistractorRule usual_rule(DistractorKind kind) {
-  DistractorRule rule;
+  using enum DistractorKind;
+  // A balloon is risen by helium at 1 to 5 m/s and carried by the wind.
+  static const std::map<DistractorKind, DistractorRule> kUsual = {
+      {kBird, {.size_m = {0.6, 2.2}, .climb_deg = {-5, 5}, .speed_mps = {8, 18}}},
+      {kMultirotor, {.size_m = {0.3, 1.2}, .climb_deg = {-10, 10}, .speed_mps = {0.5, 18}}},
+      {kBalloon, {.size_m = {0.25, 2}, .climb_deg = {15, 60}, .speed_mps = {2, 9}}},
+      {kGlint, {.spot_px = {40, 200}, .opacity = {0.1, 0.4}}},
+      {kDirt, {.spot_px = {20, 120}, .opacity = {0.15, 0.5}}},
+      {kInsect, {.spot_px = {8, 30}, .opacity = {0.4, 0.8}, .speed_px_s = {600, 4000}}}};
+  DistractorRule rule = kUsual.at(kind);
   rule.kind = kind;
-  rule.plumages = {shapes::Plumage::kGull,
-                   shapes::Plumage::kDark,
-                   shapes::Plumage::kBrown,
-                   shapes::Plumage::kGrey};
-  switch (kind) {
-    case DistractorKind::kBird:
-      rule.size_m = {0.6, 2.2};
-      rule.speed_mps = {8, 18};
-      rule.climb_deg = {-5, 5};
-      break;
-    case DistractorKind::kMultirotor:
-      rule.size_m = {0.3, 1.2};
-      rule.speed_mps = {0.5, 18};
-      rule.climb_deg = {-10, 10};
-      break;
-    case DistractorKind::kBalloon:
-      // Risen by helium at 1 to 5 m/s and carried by the wind.
-      rule.size_m = {0.25, 2};
-      rule.speed_mps = {2, 9};
-      rule.climb_deg = {15, 60};
-      break;
-    case DistractorKind::kGlint:
-      rule.spot_px = {40, 200};
-      rule.opacity = {0.1, 0.4};
-      break;
-    case DistractorKind::kDirt:
-      rule.spot_px = {20, 120};
-      rule.opacity = {0.15, 0.5};
-      break;
-    case DistractorKind::kInsect:
-      rule.spot_px = {8, 30};
-      rule.opacity = {0.4, 0.8};
-      rule.speed_px_s = {600, 4000};
-      break;
-  }
   return rule;
 }
 
 void read_air(const TableReader& table, DistractorRule& rule) {
-  refuse_keys(table, kLensKeys, enum_name(rule.kind));
+  table.refuse(kLensKeys, enum_name(rule.kind));
   read_range(table, "size_m", kBodySize, rule.size_m);
   read_place(table, rule.place);
   read_range(table, "climb_deg", scene::kPitch, rule.climb_deg);
   read_range(table, "speed_mps", scene::kSpeed, rule.speed_mps);
   rule.flock = whole_range(table, "flock", scene::kMaxFlock).value_or(rule.flock);
   read_range(table, "spread_m", kSpreadM, rule.spread_m);
-  if (rule.kind != DistractorKind::kBird)
-    return refuse_keys(table, kBirdKeys, enum_name(rule.kind));
+  if (rule.kind != DistractorKind::kBird) return table.refuse(kBirdKeys, enum_name(rule.kind));
   read_range(table, "glide", scene::kShare, rule.glide);
   const auto words = table.texts("plumage");
   if (!words) return;
@@ -111,12 +77,12 @@ void read_air(const TableReader& table, DistractorRule& rule) {
 }
 
 void read_lens(const TableReader& table, DistractorRule& rule) {
-  refuse_keys(table, kAirKeys, enum_name(rule.kind));
-  refuse_keys(table, kBirdKeys, enum_name(rule.kind));
+  table.refuse(kAirKeys, enum_name(rule.kind));
+  table.refuse(kBirdKeys, enum_name(rule.kind));
   read_range(table, "spot_px", kSpotPx, rule.spot_px);
   read_range(table, "opacity", kOpacity, rule.opacity);
   if (rule.kind != DistractorKind::kInsect)
-    return refuse_keys(table, {"speed_px_s"}, enum_name(rule.kind));
+    return table.refuse({"speed_px_s"}, enum_name(rule.kind));
   read_range(table, "speed_px_s", kSpotSpeed, rule.speed_px_s);
 }
 

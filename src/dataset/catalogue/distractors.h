@@ -40,7 +40,10 @@ struct DistractorRule {
   WholeRange flock;
   Range spread_m{3, 15};
   // Birds.
-  std::vector<shapes::Plumage> plumages;
+  std::vector<shapes::Plumage> plumages{shapes::Plumage::kGull,
+                                        shapes::Plumage::kDark,
+                                        shapes::Plumage::kBrown,
+                                        shapes::Plumage::kGrey};
   Range glide{0, 0.7};
   // On the lens; diameter (evenly in the logarithm), alpha, and the speed of insects.
   Range spot_px;

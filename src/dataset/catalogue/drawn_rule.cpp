@@ -11,6 +11,7 @@
 #include "dataset/catalogue/catalogue.h"
 #include "dataset/catalogue/drawing.h"
 #include "foundation/base/error.h"
+#include "scene/scene/parse_intruder.h"
 
 namespace airtruth::catalogue {
 namespace {
@@ -142,15 +143,7 @@ DrawnSeen seen_from(const TableReader& table) {
 
 std::optional<DrawnApproach> drawn_approach_in(const TableReader& rule) {
   if (!rule.has("encounter")) return std::nullopt;
-  const TableReader table = rule.table("encounter",
-                                       {"cpa_time_s",
-                                        "cpa_right_m",
-                                        "cpa_above_m",
-                                        "cpa_ahead_m",
-                                        "course_deg",
-                                        "speed_mps",
-                                        "climb_mps",
-                                        "turn_rate_dps"});
+  const TableReader table = rule.table("encounter", scene::kEncounterKeys);
   DrawnApproach drawn;
   drawn.where = table.where();
   drawn.cpa_time_s = number_in(table, "cpa_time_s", scene::kTime);
@@ -194,14 +187,9 @@ std::vector<DrawnSeen> drawn_seen_in(const TableReader& rule) {
 }
 
 void read_paths(const TableReader& table, Drawn& drawn) {
-  const TableReader::Keys meeting = {"range_m",
-                                     "size_px",
-                                     "azimuth_deg",
-                                     "elevation_deg",
-                                     "speed_mps",
-                                     "heading_deg",
-                                     "climb_deg",
-                                     "bank_deg"};
+  const TableReader::Keys meeting = scene::keys(
+      "range_m size_px azimuth_deg elevation_deg speed_mps heading_deg "
+      "climb_deg bank_deg");
   table.exclude("encounter", {"seen"});
   table.exclude("encounter", meeting);
   table.exclude("seen", meeting);
@@ -323,11 +311,10 @@ std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalog
   std::vector<Drawn> result;
   for (const TableReader& table : root.tables(
            "random",
-           {"name",          "count",        "frame_count", "backgrounds",     "aircraft",
-            "range_m",       "size_px",      "azimuth_deg", "elevation_deg",   "speed_mps",
-            "heading_deg",   "climb_deg",    "bank_deg",    "sun_azimuth_deg", "sun_elevation_deg",
-            "time_of_day_h", "latitude_deg", "day_of_year", "negatives",       "intruders",
-            "start",         "encounter",    "seen",        "weather"}))
+           scene::keys("name count frame_count backgrounds aircraft range_m size_px azimuth_deg "
+                       "elevation_deg speed_mps heading_deg climb_deg bank_deg sun_azimuth_deg "
+                       "sun_elevation_deg time_of_day_h latitude_deg day_of_year negatives "
+                       "intruders start encounter seen weather")))
     result.push_back(drawn_from(table, catalogue));
   return result;
 }

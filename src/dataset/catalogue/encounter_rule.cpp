@@ -37,12 +37,7 @@ constexpr const char* kGeometric = "geometric";
 constexpr std::int64_t kMaxFrames = 86'000;
 // The rate for which the closest approach is drawn where the rule states no time.
 constexpr double kUsualRateHz = 30;
-constexpr Limits kMiss{.expected = "metres from -1e5 to 1e5", .low = -1e5, .high = 1e5};
-constexpr Limits kCourse{.expected = "degrees from -360 to 360", .low = -360, .high = 360};
-constexpr Limits kHorizontalSpeed{
-    .expected = "metres a second from 0 to 1000", .low = 0, .high = 1000};
 constexpr Limits kClimb{.expected = "metres a second from -300 to 300", .low = -300, .high = 300};
-constexpr Limits kTurnRate{.expected = "degrees a second from -90 to 90", .low = -90, .high = 90};
 constexpr Limits kShareOfBin{.expected = "a share from 0 to 1e9", .low = 0, .high = 1e9};
 
 // A number, or the edges of bins; with the shares of the bins at `shares_key`, if that is not "".
@@ -97,15 +92,15 @@ void read_geometry(const TableReader& table, EncounterRule& rule) {
   if (geometry.cpa_time_s.low() < 0 || geometry.cpa_time_s.high() > rule.length_s)
     table.fail("cpa_time_s",
                fmt::format("cpa_time_s is outside of the clip; expected 0 to {} s", rule.length_s));
-  geometry.hmd_m = distribution_in(table, "hmd_m", "hmd_shares", kMiss, geometry.hmd_m);
-  geometry.vmd_m = distribution_in(table, "vmd_m", "vmd_shares", kMiss, geometry.vmd_m);
-  geometry.course_deg = distribution_in(table, "course_deg", "", kCourse, geometry.course_deg);
+  geometry.hmd_m = distribution_in(table, "hmd_m", "hmd_shares", scene::kMiss, geometry.hmd_m);
+  geometry.vmd_m = distribution_in(table, "vmd_m", "vmd_shares", scene::kMiss, geometry.vmd_m);
+  geometry.course_deg = distribution_in(table, "course_deg", "", scene::kTurn, geometry.course_deg);
   rule.states_speed = table.has("speed_mps");
   geometry.speed_mps =
-      distribution_in(table, "speed_mps", "", kHorizontalSpeed, geometry.speed_mps);
+      distribution_in(table, "speed_mps", "", scene::kOwnSpeed, geometry.speed_mps);
   geometry.climb_mps = distribution_in(table, "climb_mps", "", kClimb, geometry.climb_mps);
   geometry.turn_rate_dps =
-      distribution_in(table, "turn_rate_dps", "", kTurnRate, geometry.turn_rate_dps);
+      distribution_in(table, "turn_rate_dps", "", scene::kTurnRate, geometry.turn_rate_dps);
 }
 
 void read_model(const TableReader& table, const Catalogue& catalogue, EncounterRule& rule) {
@@ -151,10 +146,10 @@ EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   const auto kind = table.choice("kind", {kBayes, kGeometric});
   if (!kind) throw Error("has no kind; expected \"bayes\" or \"geometric\"", table.where());
   if (*kind == kBayes) {
-    refuse_keys(table, {"course_deg", "speed_mps", "climb_mps", "turn_rate_dps"}, kBayes);
+    table.refuse({"course_deg", "speed_mps", "climb_mps", "turn_rate_dps"}, kBayes);
     read_model(table, catalogue, rule);
   } else {
-    refuse_keys(table, {"model", "domains", "airspaces", "altitude_ft"}, kGeometric);
+    table.refuse({"model", "domains", "airspaces", "altitude_ft"}, kGeometric);
   }
   return rule;
 }
@@ -181,13 +176,11 @@ fs::path kept_model(const fs::path& folder, const fs::path& model_file) {
 
 std::vector<EncounterRule> encounter_rules(const TableReader& root, const Catalogue& catalogue) {
   std::vector<EncounterRule> rules;
-  for (const TableReader& table :
-       root.tables("encounter_model",
-                   {"name",          "kind",      "model",      "count",         "frame_count",
-                    "backgrounds",   "aircraft",  "domains",    "airspaces",     "altitude_ft",
-                    "cpa_time_s",    "hmd_m",     "hmd_shares", "vmd_m",         "vmd_shares",
-                    "course_deg",    "speed_mps", "climb_mps",  "turn_rate_dps", "negatives",
-                    "two_intruders", "in_view",   "seen_s"}))
+  for (const TableReader& table : root.tables(
+           "encounter_model",
+           scene::keys("name kind model count frame_count backgrounds aircraft domains airspaces "
+                       "altitude_ft cpa_time_s hmd_m hmd_shares vmd_m vmd_shares course_deg "
+                       "speed_mps climb_mps turn_rate_dps negatives two_intruders in_view seen_s")))
     rules.push_back(rule_from(table, catalogue));
   refuse_same_files(rules);
   return rules;

@@ -32,6 +32,14 @@ constexpr int kTurnMargin = 8;
 // Number of steps: it bounds the time of a turn.
 constexpr int kMaxTurnSteps = 100'000;
 
+// Returns the meeting moment in seconds on the clip's clock. Where the encounter has a size, the
+// moment is the time of a frame, so that the truth of that frame has the size.
+double meeting_s(const Encounter& encounter, const DrawnClip& clip) {
+  if (!encounter.size_px) return encounter.meeting_share * clip.duration_s();
+  return std::floor(encounter.meeting_share * static_cast<double>(clip.frames)) /
+         clip.frame_rate_hz;
+}
+
 Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_from_camera_body) {
   const double azimuth = radians(encounter.azimuth_deg);
   const double elevation = radians(encounter.elevation_deg);
@@ -173,12 +181,6 @@ scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::
   intruder.speed_mps = encounter.speed_mps;
   intruder.where = rule.where;
   return intruder;
-}
-
-double meeting_s(const Encounter& encounter, const DrawnClip& clip) {
-  if (!encounter.size_px) return encounter.meeting_share * clip.duration_s();
-  return std::floor(encounter.meeting_share * static_cast<double>(clip.frames)) /
-         clip.frame_rate_hz;
 }
 
 void lay_path(scene::Intruder& intruder,

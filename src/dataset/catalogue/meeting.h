@@ -25,10 +25,6 @@ struct DrawnClip {
 // Returns intruder k (from 0) of a sequence with id, aircraft and speed; it has no path yet.
 scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::size_t k);
 
-// Returns the meeting moment in seconds on the clip's clock. Where the encounter has a size, the
-// moment is the time of a frame, so that the truth of that frame has the size.
-double meeting_s(const Encounter& encounter, const DrawnClip& clip);
-
 // Gives the intruder the path of an encounter that states a closest approach or what is seen.
 // Returns false, and changes nothing, for any other encounter.
 bool lay_stated_path(scene::Intruder& intruder, const Encounter& encounter, const DrawnClip& clip);

@@ -29,14 +29,6 @@ void expect_parts(const TableReader& table,
   }
 }
 
-void refuse_keys(const TableReader& table,
-                 const std::vector<std::string_view>& keys,
-                 const char* kind) {
-  for (const std::string_view key : keys)
-    if (table.has(key))
-      table.fail(key, fmt::format("{} has no effect with kind = \"{}\"", key, kind));
-}
-
 Range range_in(const TableReader& table, std::string_view key, const scene::Limits& limits) {
   const auto values = table.tuple(key, {limits, limits});
   if ((*values)[0] > (*values)[1])

@@ -78,11 +78,6 @@ void expect_parts(const scene::TableReader& table,
                   const std::string& pattern,
                   const std::vector<std::string>& known);
 
-// Throws Error for a key that has no effect with this kind.
-void refuse_keys(const scene::TableReader& table,
-                 const std::vector<std::string_view>& keys,
-                 const char* kind);
-
 // Both ends belong to the range.
 struct Range {
   double low = 0;

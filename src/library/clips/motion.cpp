@@ -7,7 +7,7 @@
 #include "foundation/geometry/transform.h"
 #include "library/pictures/run_options.h"
 #include "library/records/lens_state.h"
-#include "scene/scene/choices.h"
+#include "scene/scene/scene.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/motion_source.h"
 

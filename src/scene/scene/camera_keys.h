@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -191,34 +189,15 @@ inline constexpr auto kCameraModelKeys = std::to_array<CameraKey>({
                 "own curve"},
 });
 
-namespace detail {
-inline constexpr auto kMeasuredCount = static_cast<std::size_t>(
-    std::count_if(kCameraModelKeys.begin(), kCameraModelKeys.end(), [](const CameraKey& key) {
-      return key.is_measured();
-    }));
-template <std::size_t... kPlaces>
-consteval std::array<CameraKey, kMeasuredCount> measured_keys(
-    std::index_sequence<kPlaces...> /*count*/) {
-  std::array<std::size_t, kMeasuredCount> at{};
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < kCameraModelKeys.size(); ++i)
-    if (kCameraModelKeys[i].is_measured()) at[count++] = i;
-  return {{kCameraModelKeys[at[kPlaces]]...}};
-}
-}  // namespace detail
-
-// The keys that calibration can measure on a clip: those that may be "auto".
-inline constexpr std::array<CameraKey, detail::kMeasuredCount> kCameraKeys =
-    detail::measured_keys(std::make_index_sequence<detail::kMeasuredCount>());
-
-// Calls visit(name, member of each model) for every key of kCameraKeys, in its order.
+// Calls visit(name, member of each model) for every key that calibration can measure on a clip:
+// those that may be "auto".
 template <typename Visit, typename... Models>
 void for_each_camera_key(const Visit& visit, Models&... models) {
-  for (const CameraKey& key : kCameraKeys)
+  for (const CameraKey& key : kCameraModelKeys)
     std::visit(
         [&]<typename Member>(Member member) {
           if constexpr (!std::is_same_v<Member, CameraKey::Direction>)
-            visit(key.name, models.*member...);
+            if (key.is_measured()) visit(key.name, models.*member...);
         },
         key.member);
 }

@@ -71,15 +71,8 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
       file.string(),
       with_camera_tables(
           {"name", "seed", "weight", "background", "lens", "camera", "motion", "light"},
-          {"weather",
-           "realism",
-           "intruder",
-           "distractor",
-           "occluder",
-           "truth",
-           "render",
-           "composite",
-           "output"}));
+          keys("weather realism intruder distractor occluder truth render composite "
+               "output")));
   Scene scene;
   scene.file = file;
   scene.name = name_of(root, file);

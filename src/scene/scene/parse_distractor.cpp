@@ -16,22 +16,10 @@ namespace {
 
 constexpr const char* kTitle = "[[distractor]]";
 const TableReader::Keys kBirdKeys = {"plumage", "aspect_ratio", "flap_hz", "flap_phase", "glide"};
-const TableReader::Keys kAirKeys = {"size_m",
-                                    "position_ned_m",
-                                    "velocity_ned_mps",
-                                    "count",
-                                    "spread_m",
-                                    "offset_ned_m",
-                                    "path_file",
-                                    "encounter",
-                                    "seen",
-                                    "start_s",
-                                    "yaw_deg",
-                                    "pitch_deg",
-                                    "roll_deg",
-                                    "waypoints_ned_m",
-                                    "speed_mps",
-                                    "times_s"};
+const TableReader::Keys kAirKeys = keys(
+    "size_m position_ned_m velocity_ned_mps count spread_m offset_ned_m "
+    "path_file encounter seen start_s yaw_deg pitch_deg roll_deg "
+    "waypoints_ned_m speed_mps times_s");
 const TableReader::Keys kLensKeys = {
     "pixel", "velocity_px_s", "size_px", "length_px", "softness", "opacity", "begin_s", "end_s"};
 
@@ -55,13 +43,6 @@ TableReader::Keys all_keys() {
   return keys;
 }
 
-// A key that has no effect is refused.
-void refuse(const TableReader& table, const TableReader::Keys& keys, DistractorKind kind) {
-  for (const std::string_view key : keys)
-    if (table.has(key))
-      table.fail(key, fmt::format("{} has no effect with kind = \"{}\"", key, enum_name(kind)));
-}
-
 std::array<double, 3> colour_in(const TableReader& table,
                                 const char* key,
                                 const std::array<double, 3>& otherwise) {
@@ -81,15 +62,15 @@ Distractor distractor_in(const TableReader& table, DistractorKind kind) {
     one.flap_phase = table.number("flap_phase", kStrokes).value_or(one.flap_phase);
     one.glide = table.number("glide", kShare).value_or(one.glide);
   } else {
-    refuse(table, kBirdKeys, kind);
+    table.refuse(kBirdKeys, enum_name(kind));
   }
   if (kind == DistractorKind::kBird)
-    refuse(table, {"colour"}, kind);
+    table.refuse({"colour"}, enum_name(kind));
   else
     one.colour = colour_in(table, "colour", one.colour);
   one.arm_colour = colour_in(table, "arm_colour", one.colour);
   if (kind != DistractorKind::kMultirotor) {
-    refuse(table, {"rotors", "arm_colour"}, kind);
+    table.refuse({"rotors", "arm_colour"}, enum_name(kind));
   } else if (const auto rotors = table.whole("rotors", 4, 8)) {
     if (*rotors % 2 != 0)
       table.fail("rotors", fmt::format("rotors is {}; expected 4, 6 or 8", *rotors));
@@ -108,8 +89,8 @@ void read_drift(const TableReader& table, Intruder& intruder) {
 }
 
 Intruder intruder_from(const TableReader& table, DistractorKind kind) {
-  refuse(table, kLensKeys, kind);
-  refuse(table, {"along"}, kind);
+  table.refuse(kLensKeys, enum_name(kind));
+  table.refuse({"along"}, enum_name(kind));
   Intruder intruder;
   intruder.where = table.where();
   intruder.aircraft = enum_name(kind);
@@ -147,7 +128,7 @@ void read_place(const TableReader& table, LensMark& mark) {
                             enum_name(mark.kind)),
                 table.where());
   if (follows_sun) {
-    refuse(table, {"velocity_px_s"}, mark.kind);
+    table.refuse({"velocity_px_s"}, enum_name(mark.kind));
     mark.along = table.number("along", kAlong).value_or(mark.along);
   } else if (table.has("along")) {
     table.fail("along", "along is for a glint that follows the sun, without a pixel");
@@ -157,9 +138,9 @@ void read_place(const TableReader& table, LensMark& mark) {
 }
 
 LensMark mark_from(const TableReader& table, DistractorKind kind) {
-  refuse(table, kAirKeys, kind);
-  refuse(table, kBirdKeys, kind);
-  refuse(table, {"rotors"}, kind);
+  table.refuse(kAirKeys, enum_name(kind));
+  table.refuse(kBirdKeys, enum_name(kind));
+  table.refuse({"rotors"}, enum_name(kind));
   LensMark mark = usual_mark(kind);
   mark.where = table.where();
   read_place(table, mark);

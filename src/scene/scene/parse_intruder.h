@@ -12,6 +12,18 @@ namespace airtruth::scene {
 // intruder-2 and so on.
 std::vector<Intruder> intruders_from(const TableReader& root);
 
+inline const TableReader::Keys kEncounterKeys = keys(
+    "cpa_time_s cpa_right_m cpa_above_m cpa_ahead_m course_deg speed_mps "
+    "climb_mps turn_rate_dps");
+
+// The table `encounter` of an intruder or a trajectory. Throws Error where it climbs faster than it
+// flies.
+Encounter encounter_in(const TableReader& parent);
+
+// The tables [[seen]] of an intruder or a trajectory; empty where there are none. Throws Error for
+// a single one and for times that do not increase.
+std::vector<Seen> seen_in(const TableReader& parent);
+
 // The keys of a path and of an attitude in the table of an intruder or a distractor, whose title is
 // "[[intruder]]" or "[[distractor]]".
 void read_path(const TableReader& table, const char* title, Intruder& intruder);

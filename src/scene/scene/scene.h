@@ -11,9 +11,9 @@
 #include "camera/lens/lens.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
-#include "scene/scene/choices.h"
 #include "scene/scene/distractor.h"
 
 // A scene file as a value: what the user wrote, with types and ranges checked, and before any other
@@ -38,6 +38,58 @@
 // starts at the pixel (640 - 625.5 * 40 / 800, 480) = (608.7, 480), reaches the image's centre
 // after 1 s and ends after 2 s.
 namespace airtruth::scene {
+
+// The choices that a scene file states as a word: each is an enum with the words of the file. The
+// words stand in no other place. lens::ModelKind and Readout are choices of [lens] and [shutter].
+
+// [motion] model: how the camera's shake is modelled. kAuto means kRotation, and kHomography for
+// the compositing method kChromaKey.
+enum class MotionModel { kAuto, kRotation, kHomography, kNone };
+
+constexpr auto enum_names(MotionModel) {
+  return std::to_array<EnumName<MotionModel>>({{MotionModel::kAuto, "auto"},
+                                               {MotionModel::kRotation, "rotation"},
+                                               {MotionModel::kHomography, "homography"},
+                                               {MotionModel::kNone, "none"}});
+}
+
+// [motion] reference: the pose against which shake is measured.
+enum class MotionReference { kFirstFrame, kSmoothed };
+
+constexpr auto enum_names(MotionReference) {
+  return std::to_array<EnumName<MotionReference>>(
+      {{MotionReference::kFirstFrame, "first_frame"}, {MotionReference::kSmoothed, "smoothed"}});
+}
+
+// [composite] method: how a rendered aircraft is put into the frame.
+enum class CompositeMethod { kMatte, kChromaKey };
+
+constexpr auto enum_names(CompositeMethod) {
+  return std::to_array<EnumName<CompositeMethod>>(
+      {{CompositeMethod::kMatte, "matte"}, {CompositeMethod::kChromaKey, "chroma-key"}});
+}
+
+// [output] video: the format of the written video; kPng is a folder of pictures.
+enum class OutputVideo { kMp4, kMkv, kAvi, kPng };
+
+constexpr auto enum_names(OutputVideo) {
+  return std::to_array<EnumName<OutputVideo>>({{OutputVideo::kMp4, "mp4"},
+                                               {OutputVideo::kMkv, "mkv"},
+                                               {OutputVideo::kAvi, "avi"},
+                                               {OutputVideo::kPng, "png"}});
+}
+
+// [output] encoder: who encodes H.264. kAuto is the machine's hardware where it has one of the
+// others, else kX264, which alone gives the same bytes on every machine.
+enum class OutputEncoder { kX264, kAuto, kNvenc, kVaapi, kQsv };
+
+constexpr auto enum_names(OutputEncoder) {
+  return std::to_array<EnumName<OutputEncoder>>({{OutputEncoder::kX264, "x264"},
+                                                 {OutputEncoder::kAuto, "auto"},
+                                                 {OutputEncoder::kNvenc, "nvenc"},
+                                                 {OutputEncoder::kVaapi, "vaapi"},
+                                                 {OutputEncoder::kQsv, "qsv"}});
+}
 
 // [background]: the onboard video and the range of its frames that is rendered.
 struct Background {

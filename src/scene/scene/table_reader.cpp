@@ -75,6 +75,16 @@ std::string element_name(std::string_view key, std::size_t i) {
 
 }  // namespace
 
+TableReader::Keys keys(std::string_view words) {
+  TableReader::Keys result;
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find(' '), words.size());
+    result.push_back(words.substr(0, end));
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return result;
+}
+
 bool is_plain_file_name(std::string_view name) {
   return !name.empty() && name.size() <= 200 && name != "." && name != ".." &&
          name.find('/') == std::string_view::npos && !has_control_character(name);
@@ -361,6 +371,11 @@ void TableReader::exclude(std::string_view key, const Keys& others) const {
     throw Error(fmt::format("{} and {} exclude each other; keep one of them", key, other),
                 where(other));
   }
+}
+
+void TableReader::refuse(const Keys& keys, std::string_view kind) const {
+  for (const std::string_view key : keys)
+    if (has(key)) fail(key, fmt::format("{} has no effect with kind = \"{}\"", key, kind));
 }
 
 namespace {

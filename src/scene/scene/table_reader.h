@@ -83,6 +83,8 @@ class TableReader {
 
   // Throws where the table holds both `key` and any of `others`.
   void exclude(std::string_view key, const Keys& others) const;
+  // Throws where the table holds any of the keys, which have no effect with this kind.
+  void refuse(const Keys& keys, std::string_view kind) const;
   [[noreturn]] void fail(std::string_view key, std::string_view message) const;
   // The place of element i of the array at `key`.
   Where where(std::string_view key, std::size_t i) const;
@@ -106,6 +108,9 @@ class TableReader {
   std::string file_;
   std::vector<std::string> keys_;
 };
+
+// Keys from one text, with blanks between them: keys("name seed weight").
+TableReader::Keys keys(std::string_view words);
 
 // True where a file in any folder could have this name: it is not empty, not "." and not "..", and
 // holds no slash and no control character.

@@ -103,13 +103,10 @@ void read_log(const TableReader& table, Camera& camera) {
 }  // namespace
 
 Camera camera_in(const TableReader& parent, const Motion& motion) {
-  const TableReader table = parent.table("camera",
-                                         {"position_ned_m",
-                                          "velocity_ned_mps",
-                                          "attitude_yaw_pitch_roll_deg",
-                                          "path_file",
-                                          "log",
-                                          "log_offset_s"});
+  const TableReader table =
+      parent.table("camera",
+                   keys("position_ned_m velocity_ned_mps attitude_yaw_pitch_roll_deg path_file "
+                        "log log_offset_s"));
   Camera camera;
   camera.where = table.where();
   table.exclude("path_file", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg"});
@@ -206,13 +203,10 @@ Realism realism_in(const TableReader& parent) {
 }
 
 Light light_in(const TableReader& parent) {
-  const TableReader table = parent.table("light",
-                                         {"sun_azimuth_deg",
-                                          "sun_elevation_deg",
-                                          "exposure",
-                                          "sky_colour",
-                                          "ground_colour",
-                                          "ground_albedo"});
+  const TableReader table =
+      parent.table("light",
+                   keys("sun_azimuth_deg sun_elevation_deg exposure sky_colour ground_colour "
+                        "ground_albedo"));
   table.exclude("ground_colour", {"ground_albedo"});
   Light light;
   light.where = table.where();

@@ -34,6 +34,16 @@ motion::FrameMotion reference_at(const video::Frame& frame, bool is_rotation = f
   return reference;
 }
 
+// Samples of a video's own gyroscope (a GoPro's telemetry); empty where the video has none.
+std::vector<gyro::GyroSample> gyro_of(const fs::path& video) {
+  std::vector<gyro::GyroSample> gyro;
+  for (const video::TelemetryPacket& packet : video::read_telemetry(video))
+    for (const gyro::GyroSample& sample :
+         gyro::gyro_from_gpmf(packet.bytes, packet.begin_s, packet.end_s))
+      gyro.push_back(sample);
+  return gyro;
+}
+
 // Replaces rotations that could not be measured by the gyroscope's, where the gyroscope agrees with
 // the measured ones. Returns how well it fits. Returns empty and changes nothing where it does not
 // agree.
@@ -234,15 +244,6 @@ motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
 
 void MotionSource::store() {
   if (!against_first_.empty()) motion::store(cache_, key_, std::move(against_first_));
-}
-
-std::vector<gyro::GyroSample> gyro_of(const fs::path& video) {
-  std::vector<gyro::GyroSample> gyro;
-  for (const video::TelemetryPacket& packet : video::read_telemetry(video))
-    for (const gyro::GyroSample& sample :
-         gyro::gyro_from_gpmf(packet.bytes, packet.begin_s, packet.end_s))
-      gyro.push_back(sample);
-  return gyro;
 }
 
 std::vector<motion::FrameMotion> measure_motion(video::Reader reader,

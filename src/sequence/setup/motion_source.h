@@ -17,7 +17,6 @@
 #include "foundation/disk_cache/disk_cache.h"
 #include "foundation/image/layer.h"
 #include "picture/video/reader.h"
-#include "scene/scene/choices.h"
 #include "scene/scene/scene.h"
 
 // Provides the homography of each frame from one of three sources: the cache, a preceding pass over
@@ -144,9 +143,6 @@ ClipMotion clip_motion(const fs::path& video, const ClipMotionOptions& options);
 // The scene's motion model with kAuto resolved: kRotation, since a scene states its lens, but
 // kHomography for kChromaKey, which is the paper's method.
 scene::MotionModel motion_model(const scene::Scene& scene);
-
-// Samples of a video's own gyroscope (a GoPro's telemetry); empty where the video has none.
-std::vector<gyro::GyroSample> gyro_of(const fs::path& video);
 
 // Measures the motion of a whole clip against its first frame, as a rotation where a lens is given.
 // Calls `seen` after each frame. Throws Interrupted on stop. The index of a long video takes as
