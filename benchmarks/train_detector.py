@@ -322,7 +322,7 @@ def train(network, frames, options):
     optimiser = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-4)
     before, step, mean = 0.0, 0, None
     if os.path.exists(checkpoint_of(options)):
-        state = torch.load(checkpoint_of(options), weights_only=True)
+        state = torch.load(checkpoint_of(options), map_location="cpu", weights_only=True)
         if state["given"] != given(options):
             sys.exit(f"{checkpoint_of(options)} is of a training on other sets, or with another --every, --batch or --seed; remove it to begin anew")
         network.load_state_dict(state["network"])
@@ -401,10 +401,13 @@ def main():
     parser.add_argument("--every", type=int, default=2, help="take every n-th frame (default 2): neighbours are alike")
     parser.add_argument("--batch", type=int, default=24, help="crops in a step (default 24)")
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--device", choices=("cpu", "cuda"), default="cpu", help="what PyTorch trains on (default cpu)")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     if not options.output.endswith(".onnx"):
         parser.error(f"the output is {options.output}; expected a name that ends in .onnx")
+    if options.device == "cuda" and not torch.cuda.is_available():
+        parser.error("--device cuda: PyTorch finds no such device here")
     torch.set_num_threads(options.threads)
     cv2.setNumThreads(1)
     torch.manual_seed(options.seed)
@@ -414,10 +417,10 @@ def main():
         frames = frames_of(options)
     except airtruth.Error as error:
         sys.exit(f"train_detector: {error}")
-    network = Network().to(memory_format=torch.channels_last)
+    network = Network().to(options.device, memory_format=torch.channels_last)
     print(f"{frames.words()}, {sum(p.numel() for p in network.parameters())} parameters", flush=True)
     step = train(network, frames, options)
-    write(network, options.output)
+    write(network.to("cpu"), options.output)
     if os.path.exists(checkpoint_of(options)):
         os.remove(checkpoint_of(options))
     print(f"{step} steps; wrote {options.output}")

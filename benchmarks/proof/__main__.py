@@ -54,6 +54,8 @@ def run(arguments):
         return
     if not arguments.out or not arguments.sets:
         raise Refused("say where to, and which sets; ./dev proof OUT --set ground-real=FOLDER")
+    if arguments.device == "cuda" and not trainings.torch.cuda.is_available():
+        raise Refused("--device cuda: PyTorch finds no such device here")
     unknown = [name for name in arguments.only if name not in trainings.TRAININGS]
     if unknown:
         raise Refused(f"no training '{unknown[0]}'; there are {', '.join(trainings.TRAININGS)}")
@@ -96,6 +98,7 @@ def main():
     parser.add_argument("--frames", type=whole(1), default=1600, help="with aircraft that each training sees (%(default)s)")
     parser.add_argument("--negatives", type=whole(1), default=800, help="frames without an aircraft, the same for all (%(default)s)")
     parser.add_argument("--batch", type=whole(1), default=24, help="crops in a step (%(default)s)")
+    parser.add_argument("--device", choices=("cpu", "cuda"), default="cpu", help="what PyTorch trains on (%(default)s)")
     parser.add_argument("--every", type=whole(1), default=10, help="measure on every n-th labelled frame of a clip (%(default)s)")
     parser.add_argument("--draws", type=whole(0), default=200, help="of clips for the intervals (%(default)s)")
     parser.add_argument("--held-back", nargs="*", metavar="CLIP", help="measure the clips held back, or these of them, instead of those looked at")
