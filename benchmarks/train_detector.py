@@ -56,13 +56,13 @@ class Residual(nn.Module):
 class Network(nn.Module):
     """Grey pictures (n, 1, h, w) in 0..1 to heat (n, 1, h/4, w/4) as logits, offset (n, 2, ...) in cells, log of size in px."""
 
-    def __init__(self, fine=24, coarse=48):
+    def __init__(self, half=12, fine=24, coarse=48, dilations=(1, 2, 4)):
         super().__init__()
-        self.to_2 = block(1, 12, stride=2)
-        self.to_4 = block(12, fine, stride=2)
+        self.to_2 = block(1, half, stride=2)
+        self.to_4 = block(half, fine, stride=2)
         self.fine = Residual(fine)
         self.to_8 = block(fine, coarse, stride=2)
-        self.context = nn.Sequential(*[Residual(coarse, dilation) for dilation in (1, 2, 4)])
+        self.context = nn.Sequential(*[Residual(coarse, dilation) for dilation in dilations])
         self.narrow = nn.Conv2d(coarse, fine, 1)
         self.joined = Residual(fine)
         self.head = nn.Conv2d(fine, fine, 3, padding=1)
@@ -81,10 +81,10 @@ class Network(nn.Module):
 
 
 class FastNetwork(Network):
-    """The same with fewer channels, in half the time."""
+    """The same with fewer channels and layers, in a quarter of the time."""
 
     def __init__(self):
-        super().__init__(fine=16, coarse=32)
+        super().__init__(half=8, fine=8, coarse=32, dilations=(2, 4))
 
 
 class ForExport(nn.Module):

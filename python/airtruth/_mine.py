@@ -220,7 +220,7 @@ def mine(
     The video must not show an aircraft: it would be learned as background. airtruth.Error for a file that cannot be read, for an unknown
     detector and one that fails; ValueError for a number out of range. Ctrl-C ends the work.
 
-    >>> airtruth.mine("clip.mkv").alarms
+    >>> airtruth.mine("clip.mkv", min_score=0.9).alarms
     []
     >>> mined = airtruth.mine("clip.mkv", detector="cmo", every=6, count=3)
     >>> [alarm.score for alarm in mined.alarms] == sorted((alarm.score for alarm in mined.alarms), reverse=True)
