@@ -205,7 +205,7 @@ class NumberRanges : public testing::Test {
     for (const auto& [path, key] : keys.numbers) {
       for (std::size_t place = 0; place < key.limits.size(); ++place) {
         const scene::Limits& limits = key.limits[place];
-        EXPECT_TRUE(limits.low >= -1e9 && limits.high <= 1e9 && limits.low < limits.high) << path;
+        EXPECT_TRUE(limits.low >= -1e12 && limits.high <= 1e12 && limits.low < limits.high) << path;
         EXPECT_FALSE(limits.without_low) << path << ": a number as small as can be is let in";
         std::vector<Number> numbers = hostile_numbers(base.is_slow);
         add_bounds(numbers, limits);
