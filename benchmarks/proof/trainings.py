@@ -202,13 +202,13 @@ def network_of(name, seed, material, options):
     torch.set_num_threads(THREADS)
     torch.manual_seed(seed)
     training = TRAININGS[name]
-    network = training.network().to(options.device, memory_format=torch.channels_last)
+    network = training.network().to(memory_format=torch.channels_last)
     if record.exists():
         known = json.loads(record.read_text(encoding="utf-8"))
         if known["stated"] != stated(name, options, seed):
             raise Refused(f"{folder} was trained otherwise ({known['stated']}); give another OUT or remove it")
-        network.load_state_dict(torch.load(weights, map_location="cpu"))
-        return network.to("cpu").eval()
+        network.load_state_dict(torch.load(weights))
+        return network.eval()
     begun = time.process_time()
     frames = train_detector.Frames()
     training.frames(material, frames, seed)
@@ -217,7 +217,7 @@ def network_of(name, seed, material, options):
     made = time.process_time()
     print(f"{name}, seed {seed}: {frames.words()}, made in {made - begun:.0f} s", flush=True)
     loop = options_of(folder, options, seed)
-    steps = train_detector.train(network, frames, loop)
+    steps = train_detector.train(network.to(options.device), frames, loop)
     network.to("cpu")
     torch.save(network.state_dict(), str(weights) + ".part")
     os.replace(str(weights) + ".part", weights)

@@ -156,10 +156,10 @@ void Planner::check_backgrounds(const std::vector<std::size_t>& places) const {
 }
 
 const Planner::Rule& Planner::drawn_rule(Random random,
-                                         const std::function<double(const Rule&)>& share_of) const {
+                                         const std::function<double(const Rule&)>& share) const {
   std::vector<double> shares;
   for (const Rule& rule : rules_)
-    shares.push_back(share_of(rule) *
+    shares.push_back(share(rule) *
                      static_cast<double>(std::visit(
                          [](const auto& drawing) { return drawing.count; }, rule.drawing)));
   double left = random.uniform() * std::accumulate(shares.begin(), shares.end(), 0.0);

@@ -78,8 +78,8 @@ class Planner {
 
   Drawing checked(const catalogue::Rule& rule) const;
   void check_backgrounds(const std::vector<std::size_t>& places) const;
-  // Any rule as often as it has sequences, where `share_of` is 1 for all.
-  const Rule& drawn_rule(Random random, const std::function<double(const Rule&)>& share_of) const;
+  // Any rule as often as it has sequences, where `share` is 1 for all.
+  const Rule& drawn_rule(Random random, const std::function<double(const Rule&)>& share) const;
   // Of several parts where the background of the first is shorter than a run.
   Run run_of(std::int64_t number, std::int64_t part) const;
   // Of a sample over that background.
