@@ -131,7 +131,7 @@ class Cutout {
   Cutout(const Mesh& mesh, const Triangle& triangle)
       : mesh_(mesh),
         material_(mesh.materials[triangle.material]),
-        texture_(mesh.textures[static_cast<std::size_t>(material_.texture)]),
+        texture_(*mesh.textures[static_cast<std::size_t>(material_.texture)]),
         vertex_(triangle.vertex) {
     float texels = 1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -223,7 +223,7 @@ class Cutout {
 bool has_cutouts(const Mesh& mesh, const Triangle& triangle) {
   const Material& material = mesh.materials[triangle.material];
   return material.texture >= 0 &&
-         mesh.textures[static_cast<std::size_t>(material.texture)].has_translucency;
+         mesh.textures[static_cast<std::size_t>(material.texture)]->has_translucency;
 }
 
 bool less(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {

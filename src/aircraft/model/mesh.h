@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "aircraft/model/finish.h"
@@ -41,6 +43,23 @@ struct Texture {
   // Whether the alpha of any texel is below kOpaque.
   bool has_translucency = false;
   bool operator==(const Texture&) const = default;
+};
+
+// A texture that several meshes may hold. Two are equal if their texels are.
+class SharedTexture {
+ public:
+  // Not explicit: a mesh takes a texture as it is.
+  SharedTexture(Texture texture) : texture_(std::make_shared<const Texture>(std::move(texture))) {}
+
+  const Texture& operator*() const { return *texture_; }
+  const Texture* operator->() const { return texture_.get(); }
+  const Texture* get() const { return texture_.get(); }
+  bool operator==(const SharedTexture& other) const {
+    return texture_ == other.texture_ || *texture_ == *other.texture_;
+  }
+
+ private:
+  std::shared_ptr<const Texture> texture_;
 };
 
 // The opacity from which on a surface counts as opaque: 250 / 255, because painting and packing
@@ -113,7 +132,7 @@ struct Mesh {
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector2f> uvs;
   std::vector<Material> materials;
-  std::vector<Texture> textures;
+  std::vector<SharedTexture> textures;
   std::vector<Part> parts;
 
   std::size_t triangle_count() const;

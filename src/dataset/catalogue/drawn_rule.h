@@ -72,6 +72,8 @@ struct DrawnWeather {
 struct AircraftType {
   std::string name;
   std::vector<std::string> liveries;  // names of `airtruth aircraft list`
+
+  bool operator==(const AircraftType&) const = default;
 };
 
 // The sun at a random time of day, at a given place and on a given day (drawing.h).

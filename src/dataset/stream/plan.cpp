@@ -63,36 +63,20 @@ void turn_propellers(scene::Scene& scene, std::uint64_t seed, std::int64_t index
     if (is_aircraft(intruder)) intruder.spin_time_s = random.uniform();
 }
 
-// How many aircraft a rule flies at a time, and for how many samples each does. A livery takes as
-// long to load as tens of samples take to draw, and the hundreds of a catalogue are too many for
-// memory. One aircraft changes every 512 samples. Chosen.
-constexpr std::size_t kFleet = 16;
-constexpr std::int64_t kSamplesOfAircraft = 8192;
+// A livery takes as long to load as tens of samples take to draw, and the hundreds of a catalogue
+// are too many for memory. So rules with the same types share a fleet, a fleet flies kMostOfFleet
+// aircraft at a time, or fewer where there are many fleets, and one aircraft of all fleets changes
+// every kSamplesOfChange samples. Chosen: kMostAircraft of 8 MB, a large livery, fit into
+// setup::SharedInputs::kMaxKeptBytes.
+constexpr std::size_t kMostOfFleet = 16;
+constexpr std::size_t kLeastOfFleet = 4;
+constexpr std::size_t kMostAircraft = 64;
+constexpr std::size_t kSamplesOfChange = 512;
 
-// The aircraft of `types` that fly in sample `index`: types take turns, and a livery of each is
-// drawn. All of them where they are no more than kFleet. With `every_type`, one of each type where
-// there are more types than that.
-std::vector<catalogue::AircraftType> fleet_of(const std::vector<catalogue::AircraftType>& types,
-                                              std::uint64_t seed,
-                                              std::int64_t index,
-                                              bool every_type) {
+std::size_t liveries_of(const std::vector<catalogue::AircraftType>& types) {
   std::size_t liveries = 0;
   for (const catalogue::AircraftType& type : types) liveries += type.liveries.size();
-  if (liveries <= kFleet) return types;
-  const std::size_t count = every_type ? std::max(kFleet, types.size()) : kFleet;
-  const pairing::Strata turns(Seed(seed).stream("turns of types")(), types.size(), 1);
-  std::vector<catalogue::AircraftType> fleet;
-  for (std::size_t slot = 0; slot < count; ++slot) {
-    const auto begin =
-        static_cast<std::int64_t>(slot) * kSamplesOfAircraft / static_cast<std::int64_t>(count);
-    const auto number =
-        static_cast<std::uint64_t>((index + begin) / kSamplesOfAircraft) * count + slot;
-    Random random = Seed(seed).stream("aircraft", number);
-    const catalogue::AircraftType& type =
-        catalogue::one_at(turns.spaced((every_type ? slot : number) % types.size(), 0), types);
-    fleet.push_back({type.name, {catalogue::one_of(random, type.liveries)}});
-  }
-  return fleet;
+  return liveries;
 }
 
 }  // namespace
@@ -111,16 +95,58 @@ Planner::Planner(const catalogue::Catalogue& catalogue,
                  setup::SharedInputs& shared)
     : catalogue_(catalogue), seed_(seed), files_(std::move(files)), shared_(shared) {
   for (const catalogue::Rule& given : catalogue.rules) {
-    Rule rule{checked(given), {}, 1};
+    Rule rule{checked(given), 0, 1};
     std::visit(
         [&](auto& drawing) {
           check_backgrounds(drawing.backgrounds);
-          rule.types = std::exchange(drawing.types, {});
+          constexpr bool kEncounters =
+              std::is_same_v<std::decay_t<decltype(drawing)>, catalogue::EncounterRule>;
+          // An encounter's track needs a type that flies it.
+          rule.fleet = fleet_with({std::exchange(drawing.types, {}), kEncounters});
           rule.seed = Seed(seed).stream(drawing.name)();
         },
         rule.drawing);
     rules_.push_back(std::move(rule));
   }
+  std::size_t aircraft = 0;
+  for (const Fleet& fleet : fleets_) aircraft += aircraft_at_a_time(fleet);
+  samples_of_aircraft_ = static_cast<std::int64_t>(kSamplesOfChange * aircraft);
+}
+
+std::size_t Planner::fleet_with(Fleet fleet) {
+  const auto same = std::find_if(fleets_.begin(), fleets_.end(), [&](const Fleet& other) {
+    return other.types == fleet.types && other.every_type == fleet.every_type;
+  });
+  if (same != fleets_.end()) return static_cast<std::size_t>(same - fleets_.begin());
+  fleets_.push_back(std::move(fleet));
+  return fleets_.size() - 1;
+}
+
+std::size_t Planner::aircraft_at_a_time(const Fleet& fleet) const {
+  const std::size_t most = std::clamp(kMostAircraft / fleets_.size(), kLeastOfFleet, kMostOfFleet);
+  const std::size_t count = fleet.every_type ? std::max(most, fleet.types.size()) : most;
+  return std::min(count, liveries_of(fleet.types));
+}
+
+// Types take turns, and a livery of each is drawn.
+std::vector<catalogue::AircraftType> Planner::flying(const Fleet& fleet, std::int64_t index) const {
+  const std::size_t count = aircraft_at_a_time(fleet);
+  if (liveries_of(fleet.types) <= count) return fleet.types;
+  const auto number_of_fleet = static_cast<std::uint64_t>(&fleet - fleets_.data());
+  const std::uint64_t seed = Seed(seed_).stream("fleet", number_of_fleet)();
+  const pairing::Strata turns(Seed(seed).stream("turns of types")(), fleet.types.size(), 1);
+  std::vector<catalogue::AircraftType> types;
+  for (std::size_t slot = 0; slot < count; ++slot) {
+    const auto begin =
+        static_cast<std::int64_t>(slot) * samples_of_aircraft_ / static_cast<std::int64_t>(count);
+    const auto number =
+        static_cast<std::uint64_t>((index + begin) / samples_of_aircraft_) * count + slot;
+    Random random = Seed(seed).stream("aircraft", number);
+    const std::size_t turn = (fleet.every_type ? slot : number) % fleet.types.size();
+    const catalogue::AircraftType& type = catalogue::one_at(turns.spaced(turn, 0), fleet.types);
+    types.push_back({type.name, {catalogue::one_of(random, type.liveries)}});
+  }
+  return types;
 }
 
 Planner::Drawing Planner::checked(const catalogue::Rule& rule) const {
@@ -237,18 +263,17 @@ scene::Scene Planner::scene_of(const Rule& rule,
                                std::int64_t index) const {
   return std::visit(
       [&](auto drawing) {
-        // An encounter's track needs a type that flies it.
-        constexpr bool kEveryType = std::is_same_v<decltype(drawing), catalogue::EncounterRule>;
-        if constexpr (kEveryType)
+        constexpr bool kEncounters = std::is_same_v<decltype(drawing), catalogue::EncounterRule>;
+        if constexpr (kEncounters)
           drawing.seed = Seed(rule.seed).stream(
               "count", static_cast<std::uint64_t>(place.index / drawing.count))();
-        drawing.types = fleet_of(rule.types, rule.seed, index, kEveryType);
+        drawing.types = flying(fleets_[rule.fleet], index);
         catalogue::Item item = catalogue::stream_item(catalogue_, drawing, place, rule.seed);
         // Encounters draw their intruders when they are placed, and all others are placed by their
         // size.
         turn_propellers(item.scene, rule.seed, index);
         catalogue::place(item, catalogue_, files_(place.background), &shared_);
-        if (kEveryType) turn_propellers(item.scene, rule.seed, index);
+        if (kEncounters) turn_propellers(item.scene, rule.seed, index);
         if (is_passage(drawing))
           keep_part_in_view(
               item, Seed(rule.seed).stream("part", static_cast<std::uint64_t>(place.index)));

@@ -63,10 +63,15 @@ class Planner {
 
  private:
   using Drawing = std::variant<catalogue::Drawn, catalogue::EncounterRule>;
-  // A rule without its types, of which it flies a few at a time (fleet_of).
+  // The types of one rule or several, of which a few fly at a time.
+  struct Fleet {
+    std::vector<catalogue::AircraftType> types;
+    bool every_type = false;  // at least one of each type at a time
+  };
+  // A rule without its types, which are those of a fleet.
   struct Rule {
     Drawing drawing;
-    std::vector<catalogue::AircraftType> types;
+    std::size_t fleet = 0;
     std::uint64_t seed = 1;
   };
   // The frames that a run of samples is over.
@@ -77,6 +82,10 @@ class Planner {
   };
 
   Drawing checked(const catalogue::Rule& rule) const;
+  // The number of the fleet of these types, which is new if no rule before has it.
+  std::size_t fleet_with(Fleet fleet);
+  std::size_t aircraft_at_a_time(const Fleet& fleet) const;
+  std::vector<catalogue::AircraftType> flying(const Fleet& fleet, std::int64_t index) const;
   void check_backgrounds(const std::vector<std::size_t>& places) const;
   // Any rule as often as it has sequences, where `share` is 1 for all.
   const Rule& drawn_rule(Random random, const std::function<double(const Rule&)>& share) const;
@@ -93,7 +102,10 @@ class Planner {
   std::uint64_t seed_;
   std::function<const catalogue::BackgroundFiles&(std::size_t)> files_;
   setup::SharedInputs& shared_;
+  std::vector<Fleet> fleets_;
   std::vector<Rule> rules_;
+  // For how many samples an aircraft of a fleet flies.
+  std::int64_t samples_of_aircraft_ = 1;
 };
 
 }  // namespace airtruth::stream

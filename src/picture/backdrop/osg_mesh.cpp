@@ -115,8 +115,8 @@ double radius(const model::Mesh& mesh) {
 
 std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const model::Mesh& mesh, float anisotropy) {
   std::vector<osg::ref_ptr<osg::Texture2D>> textures;
-  for (const model::Texture& texture : mesh.textures)
-    textures.push_back(osg_texture(texture, anisotropy));
+  for (const model::SharedTexture& texture : mesh.textures)
+    textures.push_back(osg_texture(*texture, anisotropy));
   return textures;
 }
 

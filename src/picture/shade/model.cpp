@@ -70,7 +70,7 @@ RTCScene scene_of(RTCDevice device, const model::Mesh& mesh, const model::Part& 
 float density(const model::Mesh& mesh, const model::Triangle& triangle) {
   const int texture = mesh.materials[triangle.material].texture;
   if (texture < 0) return 0;
-  const auto& finest = mesh.textures[static_cast<std::size_t>(texture)].finest;
+  const auto& finest = mesh.textures[static_cast<std::size_t>(texture)]->finest;
   const auto& [a, b, c] = triangle.vertex;
   const Eigen::Vector2f p = mesh.uvs[b] - mesh.uvs[a];
   const Eigen::Vector2f q = mesh.uvs[c] - mesh.uvs[a];

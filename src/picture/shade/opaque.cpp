@@ -108,7 +108,8 @@ Opacity opacity_of(const model::Mesh& mesh, const model::Triangle& triangle) {
   const model::Material& material = mesh.materials[triangle.material];
   const auto& [a, b, c] = triangle.vertex;
   const model::Texture* texture =
-      material.texture < 0 ? nullptr : &mesh.textures[static_cast<std::size_t>(material.texture)];
+      material.texture < 0 ? nullptr
+                           : mesh.textures[static_cast<std::size_t>(material.texture)].get();
   if (texture == nullptr || !texture->has_translucency)
     return material.opacity >= model::kOpaque ? Opacity::kOpaque : Opacity::kEven;
   const auto [least, most] = alphas_within(*texture, {mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]});

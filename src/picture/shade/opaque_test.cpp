@@ -91,7 +91,9 @@ TEST(Even, IsATriangleWhoseTexelsAreAlike) {
 
 TEST(Even, IsATriangleWithoutATranslucentTexture) {
   model::Mesh mesh = mesh_of({V(1, 1), V(12, 1), V(12, 15)});
-  mesh.textures[0].has_translucency = false;
+  model::Texture texture = *mesh.textures[0];
+  texture.has_translucency = false;
+  mesh.textures[0] = std::move(texture);
   EXPECT_NE(opacities(mesh)[0][0], Opacity::kVaries);
   mesh.materials[0].texture = -1;
   EXPECT_NE(opacities(mesh)[0][0], Opacity::kVaries);

@@ -86,7 +86,7 @@ TriangleTexture::TriangleTexture(const model::Mesh& mesh, const Facet& facet, fl
     : facet_(&facet) {
   const int index = mesh.materials[facet.material].texture;
   if (index < 0) return;
-  texture_ = &mesh.textures[static_cast<std::size_t>(index)];
+  texture_ = mesh.textures[static_cast<std::size_t>(index)].get();
   const float texels = footprint_m * facet.texels_per_m;
   const float deepest = static_cast<float>(texture_->coarser.size());
   const float level = std::clamp(texels > 1 ? std::log2(texels) : 0.0f, 0.0f, deepest);

@@ -14,14 +14,25 @@
 namespace airtruth::setup {
 namespace {
 
-std::size_t bytes_of(const model::Mesh& mesh) {
-  // Of a triangle: its share of vertices, its BVH, and the ambient occlusion of its sides.
-  constexpr std::size_t kBytesOfATriangle = 400;
-  std::size_t bytes = mesh.triangle_count() * kBytesOfATriangle;
-  for (const model::Texture& texture : mesh.textures) {
-    bytes += texture.finest.rgba.size();
-    for (const model::Texture::Level& level : texture.coarser)
-      bytes += level.texels.size() * sizeof(model::Texel);
+// Of a triangle: its share of vertices, its BVH, and the ambient occlusion of its sides.
+constexpr std::size_t kBytesOfATriangle = 400;
+
+std::size_t bytes_of(const model::Texture& texture) {
+  std::size_t bytes = texture.finest.rgba.size();
+  for (const model::Texture::Level& level : texture.coarser)
+    bytes += level.texels.size() * sizeof(model::Texel);
+  return bytes;
+}
+
+// Of memory, about. A texture that several types share counts once.
+std::size_t bytes_of(const std::map<const Type*, long>& types) {
+  std::size_t bytes = 0;
+  std::set<const model::Texture*> textures;
+  for (const auto& [type, slots] : types) {
+    const model::Mesh& mesh = type->aircraft->mesh;
+    bytes += mesh.triangle_count() * kBytesOfATriangle;
+    for (const model::SharedTexture& texture : mesh.textures)
+      if (textures.insert(texture.get()).second) bytes += bytes_of(*texture);
   }
   return bytes;
 }
@@ -40,7 +51,6 @@ std::shared_ptr<const Type> prepared(std::shared_ptr<const fleet::Aircraft> airc
   const std::shared_ptr<const model::Mesh> mesh(aircraft, &aircraft->mesh);
   type->model = std::make_shared<const shade::Model>(mesh, occlusion_cache);
   type->silhouette = {&aircraft->mesh, model::silhouette_points(aircraft->mesh)};
-  type->bytes = bytes_of(aircraft->mesh);
   type->aircraft = std::move(aircraft);
   type->warnings = std::move(warnings);
   return type;
@@ -99,7 +109,9 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
   if (!type) {
     std::vector<std::string> warnings;
     const auto collect = [&](const std::string& text) { warnings.push_back(text); };
-    const auto loaded = aircraft_of(intruder, path, collect, stop);
+    auto read = std::make_shared<fleet::Aircraft>(aircraft_of(intruder, path, collect, stop));
+    share_textures(read->mesh);
+    const std::shared_ptr<const fleet::Aircraft> loaded = std::move(read);
     type = twin_of(*loaded);
     // The ambient occlusion of a distractor is found faster than it is read.
     const std::filesystem::path kept = is_aircraft(intruder) ? occlusion_cache_ : "";
@@ -165,6 +177,21 @@ std::shared_ptr<const Type> SharedInputs::known(const Slot& slot) const {
   return slot.type && slot.stamps == stamps_of(*slot.type->aircraft) ? slot.type : nullptr;
 }
 
+// Exchanges textures for equal ones of kept aircraft: the configurations of a type, of which there
+// are tens where its propellers turn by the airspeed, and its liveries have most in common.
+void SharedInputs::share_textures(model::Mesh& mesh) const {
+  const std::lock_guard lock(mutex_);
+  for (model::SharedTexture& texture : mesh.textures)
+    for (const auto& [key, slot] : slots_) {
+      if (!slot->type) continue;
+      const auto& kept = slot->type->aircraft->mesh.textures;
+      const auto same = std::find(kept.begin(), kept.end(), texture);
+      if (same == kept.end()) continue;
+      texture = *same;
+      break;
+    }
+}
+
 // A kept aircraft that equals the loaded one in all that a sequence and its record contain.
 std::shared_ptr<const Type> SharedInputs::twin_of(const fleet::Aircraft& loaded) const {
   std::vector<std::shared_ptr<const Type>> candidates;
@@ -195,10 +222,9 @@ void SharedInputs::keep(Slot& slot, std::shared_ptr<const Type> type) {
 // are all different, and a stream draws them without end.
 void SharedInputs::drop_unused() {
   std::map<const Type*, long> holders;
-  std::size_t bytes = 0;
   for (const auto& [key, slot] : slots_)
-    if (slot->type && ++holders[slot->type.get()] == 1) bytes += slot->type->bytes;
-  while (bytes > max_kept_bytes_) {
+    if (slot->type) ++holders[slot->type.get()];
+  while (bytes_of(holders) > max_kept_bytes_) {
     Slot* oldest = nullptr;
     for (const auto& [key, slot] : slots_)
       if (slot->type && slot->type.use_count() == holders[slot->type.get()] &&
@@ -206,7 +232,7 @@ void SharedInputs::drop_unused() {
         oldest = slot.get();
     if (oldest == nullptr) break;
     const std::shared_ptr<const Type> dropped = oldest->type;
-    bytes -= dropped->bytes;
+    holders.erase(dropped.get());
     for (const auto& [key, slot] : slots_)
       if (slot->type == dropped) slot->type.reset();
   }

@@ -85,6 +85,7 @@ class SharedInputs {
   std::shared_ptr<Slot> slot_of(const std::string& key);
   std::shared_ptr<const Type> known(const Slot& slot) const;
   std::shared_ptr<const Type> twin_of(const fleet::Aircraft& loaded) const;
+  void share_textures(model::Mesh& mesh) const;
   void keep(Slot& slot, std::shared_ptr<const Type> type);
   void drop_unused();
 

@@ -63,8 +63,8 @@ TEST_F(SharedInputsTest, OneAircraftInOneConfigurationIsLoadedOnce) {
   EXPECT_EQ(shared.kept(), 2u);
   // The same as loaded alone.
   const auto alone = aircraft_of(intruder, straight_at(300 * kMpsOfKnot), {});
-  EXPECT_EQ(alone->mesh, fast->aircraft->mesh);
-  EXPECT_EQ(alone->sources, fast->aircraft->sources);
+  EXPECT_EQ(alone.mesh, fast->aircraft->mesh);
+  EXPECT_EQ(alone.sources, fast->aircraft->sources);
 }
 
 TEST_F(SharedInputsTest, ThreadsThatWantOneAircraftGetOne) {

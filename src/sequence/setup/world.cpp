@@ -128,18 +128,17 @@ model::LoadOptions load_options(const scene::Intruder& intruder,
   return options;
 }
 
-std::shared_ptr<const fleet::Aircraft> aircraft_of(const scene::Intruder& intruder,
-                                                   const trajectory::Path& path,
-                                                   const Warn& warn,
-                                                   const std::stop_token& stop) {
+fleet::Aircraft aircraft_of(const scene::Intruder& intruder,
+                            const trajectory::Path& path,
+                            const Warn& warn,
+                            const std::stop_token& stop) {
   if (intruder.distractor) {
-    auto made = std::make_shared<fleet::Aircraft>();
-    made->name = intruder.aircraft;
-    made->mesh = mesh_of(*intruder.distractor);
+    fleet::Aircraft made;
+    made.name = intruder.aircraft;
+    made.mesh = mesh_of(*intruder.distractor);
     return made;
   }
-  return std::make_shared<const fleet::Aircraft>(
-      fleet::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn));
+  return fleet::load_aircraft(intruder.aircraft, load_options(intruder, path, stop), warn);
 }
 
 World load_world(const scene::Scene& scene,

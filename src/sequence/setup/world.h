@@ -31,7 +31,6 @@ struct Type {
   std::shared_ptr<const shade::Model> model;
   projection::SilhouettePoints silhouette;
   std::vector<std::string> warnings;  // of its reader
-  std::size_t bytes = 0;              // of memory, about
 };
 
 struct Actor {
@@ -71,10 +70,10 @@ model::LoadOptions load_options(const scene::Intruder& intruder,
 
 // Returns an intruder's aircraft in its configuration at the beginning of its path: the airspeed
 // and the height there determine gear and flaps.
-std::shared_ptr<const fleet::Aircraft> aircraft_of(const scene::Intruder& intruder,
-                                                   const trajectory::Path& path,
-                                                   const Warn& warn,
-                                                   const std::stop_token& stop = {});
+fleet::Aircraft aircraft_of(const scene::Intruder& intruder,
+                            const trajectory::Path& path,
+                            const Warn& warn,
+                            const std::stop_token& stop = {});
 
 // Loads a scene without "auto" keys (pipeline/resolved_scene.h). Intruders of [[intruder.seen]] are
 // placed as if the camera did not shake; place_seen() puts them right. Throws Interrupted on stop.

@@ -99,7 +99,7 @@ std::optional<std::string> Gallery::picture(const std::string& name, const std::
   });
   if (kind != kKinds.end()) {
     aircraft =
-        *setup::aircraft_of(distractor_of(*kind), setup::camera_path(scene::Camera{}), {}, stop);
+        setup::aircraft_of(distractor_of(*kind), setup::camera_path(scene::Camera{}), {}, stop);
   } else {
     const std::vector<fleet::Entry> all = fleet::list_aircraft();
     if (std::none_of(
