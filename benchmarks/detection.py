@@ -10,7 +10,6 @@ leaves it as OUT/detection.md beside detection.png, the probability of detection
 """
 
 import argparse
-import csv
 import glob
 import json
 import math
@@ -21,6 +20,8 @@ import sys
 import tomllib
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, "proof"))
+import sets
 # The clips are split once, by name. Whoever works on detectors looks at the others; these are measured once, at the end.
 HELD_BACK_AIRCRAFT = ([f"V_AIRPLANE_{n:03}" for n in (12, 13, 14, 15, 16, 17, 18, 35, 49)]
                       + [f"V_HELICOPTER_{n:03}" for n in (7, 9, 10, 11)])
@@ -47,10 +48,7 @@ def number_of(clip):
 
 def boxes_in(file, origin):
     """(frame, x, y, width, height) of each line; the first pixel is at (0, 0)."""
-    with open(file) as text:
-        rows = csv.reader(text)
-        next(rows)
-        return [(int(row[0]), *(float(v) - (origin if i < 2 else 0) for i, v in enumerate(row[1:5]))) for row in rows if row]
+    return [(frame, *box) for frame, boxes in sets.boxes_in(file, origin).items() for box in boxes]
 
 
 class Clips:
@@ -188,9 +186,9 @@ def plot(out, curves):
               "set xlabel 'longer side of the aircraft, px'", "set ylabel 'probability of detection'", "set key outside right",
               "set grid"]
     parts, data = [], []
-    for number, (name, sets) in enumerate(sorted(curves.items())):
+    for number, (name, curve) in enumerate(sorted(curves.items())):
         for what, dash in (("real", 1), ("made", 2)):
-            points = [(math.sqrt(max(b["from"], 1) * (b["to"] or 2 * b["from"])), b) for b in sets.get(what, []) if "share" in b]
+            points = [(math.sqrt(max(b["from"], 1) * (b["to"] or 2 * b["from"])), b) for b in curve.get(what, []) if "share" in b]
             if not points:
                 continue
             parts.append(f"'-' using 1:2:3:4 with yerrorlines lc {number + 1} dt {dash} pt {7 if dash == 1 else 6} title '{name}, {what}'")

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Does measured motion follow what is far? far_field.py VIDEO MOTION.csv [--focal PX] [--strips OUT.png --frames 612 648]
+"""Does measured motion follow what is far? far_field.py VIDEO [--lens CALIBRATION] [--strips OUT.png --frames 612 648]
 
-MOTION.csv is of `airtruth motion VIDEO -o MOTION.csv` (for --model rotation state the lens's focal length in pixels; a pinhole).
-The answer to compare with is independent of it: the sky and a strip of ground under the skyline are registered as a whole,
+The motion is that of airtruth.motion(): a rotation through the lens, or homographies without one. The answer to compare with is
+independent of it: the sky and a strip of ground under the skyline are registered as a whole,
 from frame to frame, by OpenCV's findTransformECC (Evangelidis and Psarakis 2008), forth and back; frames where the two differ
 by more than 0.2 px are left out. At three places 25 px over the skyline, where an intruder would be, the table tells how far
 the measured motion takes a point from where the far field goes. --strips draws twelve frames from each of the given ones on,
 cut out around a cross that is carried by the measured motion alone: beside it the far field should stand still.
-Needs python3-opencv and numpy.
+Needs the package airtruth (./dev python), python3-opencv and numpy.
 """
 
 import argparse
-import csv
 
+import airtruth
 import cv2
 import numpy as np
 
@@ -88,25 +88,31 @@ def far_steps(before, after):
     return [(p, d) for p, d in steps if np.hypot(*(apply(back, p + d) - p)) < MOST_LOOP_PX]
 
 
-def motion_of(path, focal_px, width, height):
-    """frame -> map of OpenCV's pixels from the reference, None where it is not known."""
-    camera = np.array([[focal_px or 1, 0, (width - 1) / 2], [0, focal_px or 1, (height - 1) / 2], [0, 0, 1]])
-    half = np.array([[1, 0, -0.5], [0, 1, -0.5], [0, 0, 1]])
-    motion = {}
-    with open(path, newline="") as file:
-        for row in csv.DictReader(file):
-            if row["state"] not in ("reference", "measured"):
-                h = None
-            elif "qw" in row:
-                w, x, y, z = (float(row[key]) for key in ("qw", "qx", "qy", "qz"))
-                turn = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                                 [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                                 [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-                h = camera @ turn @ np.linalg.inv(camera)
-            else:
-                h = half @ np.array([float(row[f"h{i}{j}"]) for i in "123" for j in "123"]).reshape(3, 3) @ np.linalg.inv(half)
-            motion[int(row["frame"])] = h
-    return motion
+class Carrier:
+    """Carries OpenCV's pixels, whose centres are at whole numbers, from frame to frame by the measured motion."""
+
+    def __init__(self, motion):
+        self.lens = motion.lens
+        self.known = [state in ("reference", "measured") for state in motion.state]
+        self.homographies = motion.frame_from_reference
+        self.turns = None if motion.lens is None else [matrix_of(q) for q in motion.cam_from_reference_cam]
+
+    def knows(self, *frames):
+        return all(0 <= frame < len(self.known) and self.known[frame] for frame in frames)
+
+    def __call__(self, start, end, point):
+        at = np.array(point, float) + 0.5
+        if self.turns is None:
+            return apply(self.homographies[end] @ np.linalg.inv(self.homographies[start]), at) - 0.5
+        ray = self.turns[end] @ self.turns[start].T @ self.lens.ray_from_pixel([at])[0]
+        return self.lens.pixel_from_cam([ray])[0] - 0.5
+
+
+def matrix_of(quaternion):
+    w, x, y, z = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
 def pictures(video):
@@ -118,7 +124,7 @@ def pictures(video):
         yield picture
 
 
-def strips(arguments, motion):
+def strips(arguments, carry):
     """Twelve frames in a row from each first frame, cut out 96 x 96 around a carried cross, at twice the size."""
     cut, wanted = 48, {first + i: first for first in arguments.frames for i in range(12)}
     rows, start = {}, {}
@@ -130,7 +136,7 @@ def strips(arguments, motion):
             found = sky_and_far(picture)
             middle = places(found[0])[1] if found and places(found[0]) else np.array([picture.shape[1] / 2, picture.shape[0] / 2])
             start[first] = middle
-        at = start[first] if motion[k] is None or motion[first] is None else apply(motion[k] @ np.linalg.inv(motion[first]), start[first])
+        at = carry(first, k, start[first]) if carry.knows(first, k) else start[first]
         tile = cv2.getRectSubPix(picture, (2 * cut, 2 * cut), (float(at[0]), float(at[1])))
         tile = cv2.resize(tile, None, fx=1.5, fy=1.5, interpolation=cv2.INTER_CUBIC)
         cv2.drawMarker(tile, (tile.shape[1] // 2,) * 2, (0, 0, 255), cv2.MARKER_CROSS, 9, 1)
@@ -141,25 +147,23 @@ def strips(arguments, motion):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("video")
-    parser.add_argument("motion")
-    parser.add_argument("--focal", type=float, help="of the lens, px; for rotations")
+    parser.add_argument("--lens", help="a calibration of Gyroflow or OpenCV; for rotations")
     parser.add_argument("--every", type=int, default=120, help="frames in a line of the table")
     parser.add_argument("--strips", help="draw this picture instead")
     parser.add_argument("--frames", type=int, nargs="*", default=[], help="first frames of the strips")
     arguments = parser.parse_args()
-    height, width = next(pictures(arguments.video)).shape[:2]
-    motion = motion_of(arguments.motion, arguments.focal, width, height)
+    carry = Carrier(airtruth.motion(arguments.video, lens=arguments.lens))
     if arguments.strips:
-        strips(arguments, motion)
+        strips(arguments, carry)
         return
     errors, unknown, before = {}, 0, None
     for k, picture in enumerate(pictures(arguments.video)):
         steps = far_steps(before, picture) if before is not None else []
-        a, b = motion.get(k - 1), motion.get(k)
-        unknown += len(steps) if a is None or b is None else 0
-        if a is not None and b is not None:
-            for place, step in steps:
-                errors.setdefault(k, []).append(np.hypot(*(apply(b @ np.linalg.inv(a), place) - place - step)))
+        if not carry.knows(k - 1, k):
+            unknown += len(steps)
+            steps = []
+        for place, step in steps:
+            errors.setdefault(k, []).append(np.hypot(*(carry(k - 1, k, place) - place - step)))
         before = picture
     print("| frames | places | median, px | rms, px | 90 % below, px |\n|---|---:|---:|---:|---:|")
     last = max(errors, default=0)

@@ -3,17 +3,20 @@
 
 Makes samples of aircraft of 10 to 60 px over the clips (640x480 or so; without any, over virtual flights of that size) on one
 thread, in the ways of the table below, and reads as many pictures of a data set of the same catalogue with OpenCV, from
-JPEG files and from its videos at random places. Prints samples a second of wall-clock time and of CPU time.
+JPEG files and from its videos at random places. Where Blender is installed, its own Python loop makes such crops, too
+(blender_crops.py). Prints samples a second of wall-clock time and of CPU time.
 """
 
 import argparse
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 
+TYPES = pathlib.Path("/usr/share/games/flightgear/AI/Aircraft")  # of the package flightgear-data-ai
 REALISM = "realism = { auto = true, fallback = true }\n"
 NO_CODEC = "sensor = { codec_step = 0 }\n"
 WAYS = {  # name: (keys of each background, keys of [stream])
@@ -72,6 +75,21 @@ def read_files(program, folder, clips):
     report("read from videos at random frames by OpenCV", 200, begin)
 
 
+def crops_by_blender(folder, clips, models, count=100):
+    import cv2
+    pictures = [folder / f"{clip.stem}.png" for clip in clips]
+    for clip, picture in zip(clips, pictures):
+        cv2.imwrite(str(picture), cv2.VideoCapture(str(clip)).read()[1])
+    done = subprocess.run(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P",
+                           pathlib.Path(__file__).resolve().with_name("blender_crops.py"), "--", folder, str(count), *pictures, "--", *models],
+                          capture_output=True, text=True)
+    said = [line.split() for line in done.stdout.splitlines() if line.startswith("seconds ")]
+    if done.returncode != 0 or not said:
+        sys.exit(done.stdout[-2000:] + done.stderr)
+    wall_s, cpu_s = (float(value) for value in said[0][1:])
+    print(f"256 px crops by Blender, without textures: {count / wall_s:.1f} a second, {count / cpu_s:.1f} a CPU second")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program")
@@ -89,6 +107,9 @@ def main():
                 sys.exit(done.stderr)
             print(f"{way}:\n  " + done.stdout.strip().replace("\n", "\n  "), flush=True)
         read_files(arguments.program, folder, clips)
+        models = [path for name in ("738/Models/737-800.ac", "c172/Models/c172p.ac") if (path := TYPES / name).exists()]
+        if shutil.which("blender") and models:
+            crops_by_blender(folder, clips, models)
 
 
 if __name__ == "__main__":

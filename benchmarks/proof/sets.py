@@ -125,18 +125,10 @@ def split_line(path, number, line, separator, least):
 
 
 def boxes_in(path, origin):
-    """frame: boxes, of a CSV with the columns frame, x, y, width, height and a header."""
-    boxes = {}
-    with open(path, newline="", encoding="utf-8") as file:
-        for number, row in enumerate(csv.reader(file), 1):
-            if number == 1 or not row:
-                continue
-            try:
-                frame, (x, y, width, height) = int(row[0]), (float(cell) for cell in row[1:5])
-            except ValueError as error:
-                raise Refused(f"{path}:{number}: '{','.join(row)[:60]}' is no box; expected frame,x,y,width,height") from error
-            boxes.setdefault(frame, []).append(np.array([x - origin, y - origin, width, height]))
-    return boxes
+    """frame: boxes, of a CSV with a box a line."""
+    [clip] = airtruth.read_labels(path, "csv")
+    boxes = {frame.frame: [label.box_px for label in frame.labels] for frame in clip.frames if frame.labels}
+    return {number: [box - (origin, origin, 0, 0) for box in found] for number, found in boxes.items()}
 
 
 # The set of Svanstrom and others, from a zoom camera on the ground. Its own boxes are two to three times as large as the aircraft: those of the
