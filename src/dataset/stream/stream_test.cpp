@@ -267,6 +267,28 @@ TEST_F(StreamOfFlights, WhatIsPutOverARunIsDrawnForEachSampleByTheCountsOfTheRul
   for (const auto& [run, kinds] : of_run_over_3) EXPECT_EQ(kinds.size(), 2u) << run;
 }
 
+// Of the types' many liveries; 64 / 5 = 12 in each of five fleets, and two rules share one.
+TEST_F(StreamOfFlights, RulesOfTheSameTypesFlyTheSameFewAircraft) {
+  std::string rules;
+  for (const char* type : {"738", "738", "A320", "A319", "757", "777"})
+    rules += "[[random]]\nname = \"" + std::to_string(rules.size()) +
+             "-{index}\"\ncount = 10\naircraft = [\"" + type + "/*\"]\n";
+  const Stream stream = stream_of(background("flight3") + rules + "[stream]\n");
+  std::map<std::string, std::set<std::string>> of_type;
+  for (std::int64_t index = 0; index < 1024; ++index) {
+    const std::string aircraft = stream.scene(index).intruders.at(0).aircraft;
+    of_type[aircraft.substr(0, aircraft.find('/'))].insert(aircraft);
+  }
+  EXPECT_EQ(of_type.size(), 5u);
+  std::size_t all = 0;
+  for (const auto& [type, aircraft] : of_type) {
+    EXPECT_LE(aircraft.size(), 15u) << type;  // and what changed: one in 512 samples
+    all += aircraft.size();
+  }
+  EXPECT_LE(all, 62u);
+  EXPECT_GT(of_type.at("738").size(), 8u);
+}
+
 TEST_F(StreamOfFlights, PropellersOfEachIntruderStandAtAPlaceOfTheirOwn) {
   const Stream stream = stream_of(
       background("flight3") +

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -140,6 +142,21 @@ TEST_F(OcclusionCacheTest, AFolderThatCannotBeWrittenIsNoError) {
   const auto mesh = corner();
   write_file(folder_, "a file where the folder should be");
   EXPECT_TRUE(are_equal(Model(*mesh).impl().occlusion, Model(mesh, folder_).impl().occlusion));
+}
+
+TEST(Models, AreNotBoundedByTheKeysOfThreadLocalMemory) {
+  std::vector<Model> models;
+  for (int i = 0; i < 1200; ++i) models.emplace_back(corner());  // a process has 1024 keys
+  EXPECT_EQ(models.back().impl().occlusion.size(), 1u);
+}
+
+TEST(Models, TakeTheAmbientOcclusionOfTheirShape) {
+  const Model small(corner());
+  auto mesh = std::make_shared<model::Mesh>(*corner());
+  for (Eigen::Vector3f& position : mesh->positions) position *= 3;
+  const Model large(mesh, small);
+  EXPECT_TRUE(are_equal(large.impl().occlusion, small.impl().occlusion));
+  EXPECT_NEAR(large.impl().radius_m, 3 * small.impl().radius_m, 0.05);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <mutex>
 
 #include "foundation/base/error.h"
 #include "picture/shade/ambient_occlusion.h"
@@ -18,20 +20,26 @@ namespace {
 // The settings omit "threads=1": with it Embree would limit all of oneTBB, and so the whole
 // pipeline, to one thread. All machines use one instruction set, so that a frame has the same bytes
 // on each: AVX2 (2013 and later), or SSE4.2 where AVX2 is missing.
-struct Device {
-  RTCDevice device = nullptr;
-  // Embree's version and its settings.
-  std::string name;
-};
-Device new_device() {
+std::shared_ptr<const Device> new_device() {
   for (const char* settings : {"isa=avx2", "isa=sse4.2", ""}) {
     if (std::strstr(settings, "avx2") != nullptr && !__builtin_cpu_supports("avx2")) continue;
-    if (RTCDevice device = rtcNewDevice(settings))
-      return {device,
-              std::to_string(rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION)) + ' ' +
-                  settings};
+    if (RTCDevice device = rtcNewDevice(settings)) {
+      const ssize_t version = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
+      return std::make_shared<const Device>(device, std::to_string(version) + ' ' + settings);
+    }
   }
   throw Error("Embree has no device");
+}
+
+// The device of all models that are alive: each device takes a key of thread-local memory, of which
+// a process has 1024 (PTHREAD_KEYS_MAX).
+std::shared_ptr<const Device> shared_device() {
+  static std::mutex mutex;
+  static std::weak_ptr<const Device> known;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<const Device> device = known.lock();
+  if (!device) known = device = new_device();
+  return device;
 }
 
 RTCScene scene_of(RTCDevice device, const model::Mesh& mesh, const model::Part& part) {
@@ -126,11 +134,9 @@ Facet facet_of(const model::Mesh& mesh, const model::Triangle& triangle, Opacity
   return facet;
 }
 
-ModelOcclusion known_occlusion(const Model::Impl& model,
-                               const std::string& tracer,
-                               const disk_cache::Cache& cache) {
+ModelOcclusion known_occlusion(const Model::Impl& model, const disk_cache::Cache& cache) {
   if (!cache.keeps()) return model_occlusion(model);
-  const disk_cache::Key key = occlusion_key(model.mesh, tracer);
+  const disk_cache::Key key = occlusion_key(model.mesh, model.device->name);
   const auto read = [&](const std::string& body) { return occlusion_from(body, model.mesh); };
   if (auto known = cache.find(key, read)) return *std::move(known);
   ModelOcclusion occlusion = model_occlusion(model);
@@ -138,31 +144,43 @@ ModelOcclusion known_occlusion(const Model::Impl& model,
   return occlusion;
 }
 
-}  // namespace
-
-Model::Model(const model::Mesh& mesh) : Model(std::make_shared<const model::Mesh>(mesh)) {}
-
-Model::Model(std::shared_ptr<const model::Mesh> shared, const std::filesystem::path& folder)
-    : impl_(std::make_unique<Impl>(std::move(shared))) {
-  const model::Mesh& mesh = impl_->mesh;
-  const Device device = new_device();
-  impl_->device.reset(device.device);
+std::unique_ptr<Model::Impl> prepared(
+    std::shared_ptr<const model::Mesh> shared,
+    const std::function<ModelOcclusion(const Model::Impl&)>& occlusion_of) {
+  auto impl = std::make_unique<Model::Impl>(std::move(shared));
+  const model::Mesh& mesh = impl->mesh;
+  impl->device = shared_device();
   const auto opacity = opacities(mesh);
   for (const model::Part& part : mesh.parts) {
-    impl_->scenes.emplace_back(scene_of(impl_->device.get(), mesh, part));
-    std::vector<Facet>& facets = impl_->facets.emplace_back();
-    const std::size_t p = impl_->facets.size() - 1;
-    std::vector<std::uint8_t>& opaque = impl_->opaque.emplace_back();
+    impl->scenes.emplace_back(scene_of(impl->device->embree, mesh, part));
+    std::vector<Facet>& facets = impl->facets.emplace_back();
+    const std::size_t p = impl->facets.size() - 1;
+    std::vector<std::uint8_t>& opaque = impl->opaque.emplace_back();
     for (std::size_t i = 0; i < part.triangles.size(); ++i) {
       facets.push_back(facet_of(mesh, part.triangles[i], opacity[p][i]));
       opaque.push_back(facets.back().is_opaque ? 1 : 0);
     }
-    impl_->geometry.push_back(geometry_of(mesh, part));
+    impl->geometry.push_back(geometry_of(mesh, part));
   }
-  impl_->find_sphere();
-  impl_->occlusion = known_occlusion(*impl_, device.name, disk_cache::Cache(folder));
-  impl_->outer_sides = outer_sides(*impl_);
+  impl->find_sphere();
+  impl->occlusion = occlusion_of(*impl);
+  impl->outer_sides = outer_sides(*impl);
+  return impl;
 }
+
+}  // namespace
+
+Model::Model(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Model::Model(const model::Mesh& mesh) : Model(std::make_shared<const model::Mesh>(mesh)) {}
+
+Model::Model(std::shared_ptr<const model::Mesh> mesh, const std::filesystem::path& folder)
+    : Model(prepared(std::move(mesh), [&](const Impl& impl) {
+        return known_occlusion(impl, disk_cache::Cache(folder));
+      })) {}
+
+Model::Model(std::shared_ptr<const model::Mesh> mesh, const Model& same_shape)
+    : Model(prepared(std::move(mesh), [&](const Impl&) { return same_shape.impl_->occlusion; })) {}
 
 void Model::Impl::find_sphere() {
   Eigen::AlignedBox3f bounds;

@@ -16,6 +16,9 @@ class Model {
   // one run to the next (ambient_occlusion.h); empty: none.
   explicit Model(std::shared_ptr<const model::Mesh> mesh,
                  const std::filesystem::path& occlusion_cache = {});
+  // Shares the mesh, and takes the ambient occlusion of `same_shape`, whose mesh has the same
+  // triangles in another size or other colours.
+  Model(std::shared_ptr<const model::Mesh> mesh, const Model& same_shape);
   // Copies the mesh.
   explicit Model(const model::Mesh& mesh);
   ~Model();
@@ -24,6 +27,8 @@ class Model {
   const Impl& impl() const { return *impl_; }
 
  private:
+  explicit Model(std::unique_ptr<Impl> impl);
+
   std::unique_ptr<Impl> impl_;
 };
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "aircraft/model/mesh.h"
@@ -15,8 +17,14 @@ namespace airtruth::shade {
 
 enum OuterSides : std::uint8_t;
 
-struct ReleaseDevice {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+struct Device {
+  Device(RTCDevice made, std::string named) : embree(made), name(std::move(named)) {}
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  ~Device() { rtcReleaseDevice(embree); }
+
+  RTCDevice embree;
+  std::string name;  // Embree's version and its settings
 };
 struct ReleaseScene {
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -90,7 +98,7 @@ struct Model::Impl {
 
   std::shared_ptr<const model::Mesh> owned;
   const model::Mesh& mesh;
-  std::unique_ptr<RTCDeviceTy, ReleaseDevice> device;
+  std::shared_ptr<const Device> device;
   // One BVH for each part, in the part's own coordinates; primitive k is parts[i].triangles[k].
   std::vector<std::unique_ptr<RTCSceneTy, ReleaseScene>> scenes;
   std::vector<std::vector<Facet>> facets;  // [part][triangle]

@@ -45,15 +45,32 @@ std::vector<FileStamp> stamps_of(const fleet::Aircraft& aircraft) {
 
 std::shared_ptr<const Type> prepared(std::shared_ptr<const fleet::Aircraft> aircraft,
                                      std::vector<std::string> warnings,
-                                     const std::filesystem::path& occlusion_cache) {
+                                     const std::filesystem::path& occlusion_cache,
+                                     const Type* same_shape) {
   auto type = std::make_shared<Type>();
   // The model shares the mesh within the aircraft.
   const std::shared_ptr<const model::Mesh> mesh(aircraft, &aircraft->mesh);
-  type->model = std::make_shared<const shade::Model>(mesh, occlusion_cache);
+  type->model = same_shape != nullptr
+                    ? std::make_shared<const shade::Model>(mesh, *same_shape->model)
+                    : std::make_shared<const shade::Model>(mesh, occlusion_cache);
   type->silhouette = {&aircraft->mesh, model::silhouette_points(aircraft->mesh)};
   type->aircraft = std::move(aircraft);
   type->warnings = std::move(warnings);
   return type;
+}
+
+// The same with the distractor of its shape that is one metre large and has the usual colours and
+// wing beats.
+scene::Intruder with_plain_distractor(scene::Intruder intruder) {
+  if (intruder.distractor) {
+    scene::Distractor plain;
+    plain.kind = intruder.distractor->kind;
+    plain.plumage = intruder.distractor->plumage;
+    plain.aspect_ratio = intruder.distractor->aspect_ratio;
+    plain.rotors = intruder.distractor->rotors;
+    intruder.distractor = plain;
+  }
+  return intruder;
 }
 
 }  // namespace
@@ -113,9 +130,15 @@ std::shared_ptr<const Type> SharedInputs::type_of(const scene::Intruder& intrude
     share_textures(read->mesh);
     const std::shared_ptr<const fleet::Aircraft> loaded = std::move(read);
     type = twin_of(*loaded);
-    // The ambient occlusion of a distractor is found faster than it is read.
-    const std::filesystem::path kept = is_aircraft(intruder) ? occlusion_cache_ : "";
-    if (!type || type->warnings != warnings) type = prepared(loaded, warnings, kept);
+    if (!type || type->warnings != warnings) {
+      // The ambient occlusion of a distractor is found faster than it is read. Those that a stream
+      // draws are all different, but of few shapes.
+      const auto kept = is_aircraft(intruder) ? occlusion_cache_ : std::filesystem::path();
+      std::shared_ptr<const Type> same_shape;
+      const scene::Intruder plain = with_plain_distractor(intruder);
+      if (plain.distractor != intruder.distractor) same_shape = type_of(plain, path, warn, stop);
+      type = prepared(loaded, warnings, kept, same_shape.get());
+    }
     keep(*slot, type);
   }
   for (const std::string& text : type->warnings) airtruth::warn(warn, text);

@@ -61,6 +61,12 @@ TEST_F(SharedInputsTest, OneAircraftInOneConfigurationIsLoadedOnce) {
   EXPECT_NE(slow, fast);
   EXPECT_GT(slow->aircraft->mesh.triangle_count(), fast->aircraft->mesh.triangle_count());
   EXPECT_EQ(shared.kept(), 2u);
+  std::set<const model::Texture*> of_both;
+  for (const auto& type : {slow, fast})
+    for (const model::SharedTexture& texture : type->aircraft->mesh.textures)
+      of_both.insert(texture.get());
+  EXPECT_EQ(of_both.size(), slow->aircraft->mesh.textures.size());
+  EXPECT_GT(of_both.size(), 0u);
   // The same as loaded alone.
   const auto alone = aircraft_of(intruder, straight_at(300 * kMpsOfKnot), {});
   EXPECT_EQ(alone.mesh, fast->aircraft->mesh);
