@@ -299,6 +299,12 @@ def checkpoint_of(options):
     return options.output + ".checkpoint"
 
 
+def refuse(words):
+    """Ends the program for what the user gave."""
+    print(f"train_detector: {words}", file=sys.stderr)
+    sys.exit(2)
+
+
 def given(options):
     """What a training that goes on must have in common with its beginning."""
     return [[os.path.abspath(folder) for folder in options.sets], options.every, options.batch, options.seed,
@@ -324,7 +330,7 @@ def train(network, frames, options):
     if os.path.exists(checkpoint_of(options)):
         state = torch.load(checkpoint_of(options), map_location="cpu", weights_only=True)
         if state["given"] != given(options):
-            sys.exit(f"{checkpoint_of(options)} is of a training on other sets, or with another --every, --batch or --seed; remove it to begin anew")
+            refuse(f"{checkpoint_of(options)} is of a training on other sets, or with another --every, --batch or --seed; remove it to begin anew")
         network.load_state_dict(state["network"])
         optimiser.load_state_dict(state["optimiser"])
         random.bit_generator.state = state["random"]
@@ -416,7 +422,7 @@ def main():
     try:
         frames = frames_of(options)
     except airtruth.Error as error:
-        sys.exit(f"train_detector: {error}")
+        refuse(error)
     network = Network().to(options.device, memory_format=torch.channels_last)
     print(f"{frames.words()}, {sum(p.numel() for p in network.parameters())} parameters", flush=True)
     step = train(network, frames, options)

@@ -47,7 +47,7 @@ class TrainDetector(unittest.TestCase):
     def test_a_folder_without_sequences(self):
         with tempfile.TemporaryDirectory() as folder:
             done = run(folder, "-o", os.path.join(folder, "a.onnx"))
-            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertEqual(done.returncode, 2, done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
             self.assertIn("holds no finished sequence", done.stderr)
             self.assertEqual(os.listdir(folder), [])
