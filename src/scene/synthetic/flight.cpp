@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -17,12 +18,35 @@
 namespace airtruth::synthetic {
 namespace {
 
-void require(bool good, std::string_view name, double value, std::string_view expected) {
-  if (!good)
-    throw Error(fmt::format("virtual flight: {} is {}; expected {}", name, value, expected));
-}
-
-void check_lens(const FlightOptions& o) {
+const FlightOptions& validated(const FlightOptions& o) {
+  struct Limits {
+    std::string_view name;
+    double value, low, high;
+    std::string_view expected;
+  };
+  constexpr double kAny = std::numeric_limits<double>::max();
+  const Limits all[] = {
+      {"width", double(o.width), 16, 16384, "16 to 16384 px"},
+      {"height", double(o.height), 16, 16384, "16 to 16384 px"},
+      {"frame rate", o.frame_rate_hz, 1e-300, 1000, "more than 0, at most 1000 Hz"},
+      {"frame count", double(o.frame_count), 1, kAny, "at least 1"},
+      {"altitude", o.altitude_m, 20, 900, "20 to 900 m (below the clouds)"},
+      {"speed", o.speed_mps, 0, 400, "0 to 400 m/s"},
+      {"heading", o.heading_deg, -kAny, kAny, "a number"},
+      {"sun azimuth", o.sun_azimuth_deg, -kAny, kAny, "a number"},
+      {"sun elevation", o.sun_elevation_deg, 2, 90, "2 to 90 deg"},
+      {"cloud cover", o.cloud_cover, 0, 1, "0 to 1"},
+      {"hills", o.hills_deg, 0, 5, "0 to 5 deg"},
+      {"extinction", o.extinction_per_km, 0, 10, "0 to 10 per km"},
+      {"shake", o.shake_deg, 0, 5, "0 to 5 deg"},
+      {"roll", o.roll_deg, -45, 45, "-45 to 45 deg"},
+      {"noise", o.noise, 0, 20, "0 to 20"},
+      {"clutter", o.clutter, 0, 1, "0 to 1"},
+  };
+  for (const Limits& limits : all)
+    if (!(limits.value >= limits.low && limits.value <= limits.high))
+      throw Error(fmt::format(
+          "virtual flight: {} is {}; expected {}", limits.name, limits.value, limits.expected));
   if (o.lens && !(o.lens->size() == lens::ImageSize{o.width, o.height}))
     throw Error(
         fmt::format("virtual flight: the lens is for {} x {} px; expected the picture's {} x {}",
@@ -30,38 +54,6 @@ void check_lens(const FlightOptions& o) {
                     o.lens->size().height,
                     o.width,
                     o.height));
-}
-
-const FlightOptions& validated(const FlightOptions& o) {
-  require(o.width >= 16 && o.width <= 16384, "width", o.width, "16 to 16384 px");
-  require(o.height >= 16 && o.height <= 16384, "height", o.height, "16 to 16384 px");
-  require(o.frame_rate_hz > 0 && o.frame_rate_hz <= 1000,
-          "frame rate",
-          o.frame_rate_hz,
-          "more than 0, at most 1000 Hz");
-  require(o.frame_count >= 1, "frame count", o.frame_count, "at least 1");
-  require(o.altitude_m >= 20 && o.altitude_m <= 900,
-          "altitude",
-          o.altitude_m,
-          "20 to 900 m (below the clouds)");
-  require(o.speed_mps >= 0 && o.speed_mps <= 400, "speed", o.speed_mps, "0 to 400 m/s");
-  require(std::isfinite(o.heading_deg), "heading", o.heading_deg, "a number");
-  require(std::isfinite(o.sun_azimuth_deg), "sun azimuth", o.sun_azimuth_deg, "a number");
-  require(o.sun_elevation_deg >= 2 && o.sun_elevation_deg <= 90,
-          "sun elevation",
-          o.sun_elevation_deg,
-          "2 to 90 deg");
-  require(o.cloud_cover >= 0 && o.cloud_cover <= 1, "cloud cover", o.cloud_cover, "0 to 1");
-  require(o.hills_deg >= 0 && o.hills_deg <= 5, "hills", o.hills_deg, "0 to 5 deg");
-  require(o.extinction_per_km >= 0 && o.extinction_per_km <= 10,
-          "extinction",
-          o.extinction_per_km,
-          "0 to 10 per km");
-  require(o.shake_deg >= 0 && o.shake_deg <= 5, "shake", o.shake_deg, "0 to 5 deg");
-  require(std::abs(o.roll_deg) <= 45, "roll", o.roll_deg, "-45 to 45 deg");
-  require(o.noise >= 0 && o.noise <= 20, "noise", o.noise, "0 to 20");
-  require(o.clutter >= 0 && o.clutter <= 1, "clutter", o.clutter, "0 to 1");
-  check_lens(o);
   return o;
 }
 
@@ -85,91 +77,82 @@ constexpr int kRowsPerTask = 8;
 constexpr double kRollPeriod_s = 8.5;
 constexpr double kPitchPeriod_s = 6.1;
 constexpr double kPitchAmplitude_deg = 0.7;
-// Standard gravity (3rd CGPM, 1901).
+
+// Tones of equal power from 5 to 15 Hz, one in each band.
+class Vibration {
+ public:
+  Vibration(Random random, double rms_deg) {
+    for (int i = 0; i < kTones; ++i) {
+      Tone& tone = tones_[static_cast<std::size_t>(i)];
+      tone.frequency_hz = 5 + 10 * (i + random.uniform()) / kTones;
+      tone.phase_rad = random.uniform(0, 2 * kPi);
+      tone.amplitude_deg = rms_deg * std::sqrt(2.0 / kTones);
+    }
+  }
+  double at(double time_s) const {
+    double total = 0;
+    for (const Tone& tone : tones_)
+      total += tone.amplitude_deg * std::sin(2 * kPi * tone.frequency_hz * time_s + tone.phase_rad);
+    return total;
+  }
+
+ private:
+  static constexpr int kTones = 7;
+  struct Tone {
+    double frequency_hz, phase_rad, amplitude_deg;
+  };
+  std::array<Tone, kTones> tones_{};
+};
 
 // The pose of the camera and its shake. Both are closed forms of time, so that frames can be
 // computed in any order.
 class FlightPath {
  public:
-  explicit FlightPath(const FlightOptions& options);
-  trajectory::State nominal(int index) const;
-  trajectory::State shaken(int index) const;
+  explicit FlightPath(const FlightOptions& options)
+      : options_(options),
+        pitch_(Seed(options.seed).stream("shake.pitch"), options.shake_deg),
+        yaw_(Seed(options.seed).stream("shake.yaw"), options.shake_deg),
+        roll_(Seed(options.seed).stream("shake.roll"), 0.6 * options.shake_deg) {
+    Random random = Seed(options.seed).stream("flight");
+    roll_phase_rad_ = random.uniform(0, 2 * kPi);
+    pitch_phase_rad_ = random.uniform(0, 2 * kPi);
+  }
+
+  trajectory::State nominal(int index) const {
+    const double time_s = index / options_.frame_rate_hz;
+    const double rate = 2 * kPi / kRollPeriod_s;
+    const double roll_deg = options_.roll_deg * std::sin(rate * time_s + roll_phase_rad_);
+    // A coordinated turn: yaw rate = g tan(roll) / speed, integrated for the small sinusoidal roll.
+    const double turn = options_.speed_mps > 1 ? kStandardGravityMps2 / options_.speed_mps : 0.0;
+    const double yaw_deg = options_.heading_deg + std::min(turn, 0.5) * options_.roll_deg / rate *
+                                                      (std::cos(roll_phase_rad_) -
+                                                       std::cos(rate * time_s + roll_phase_rad_));
+    const double pitch_deg =
+        kPitchAmplitude_deg * std::sin(2 * kPi * time_s / kPitchPeriod_s + pitch_phase_rad_);
+    trajectory::State state;
+    const double heading = radians(options_.heading_deg);
+    const double travel_m = options_.translate ? options_.speed_mps * time_s : 0.0;
+    const Vector3 ahead(std::cos(heading), std::sin(heading), 0);
+    state.position_in_world = travel_m * ahead - Vector3(0, 0, options_.altitude_m);
+    state.velocity_in_world_mps = (options_.translate ? options_.speed_mps : 0.0) * ahead;
+    state.world_from_body = world_from_body({yaw_deg, pitch_deg, roll_deg});
+    return state;
+  }
+
+  trajectory::State shaken(int index) const {
+    trajectory::State state = nominal(index);
+    const double time_s = index / options_.frame_rate_hz;
+    const YawPitchRoll shake{yaw_.at(time_s), pitch_.at(time_s), roll_.at(time_s)};
+    state.world_from_body = (state.world_from_body * world_from_body(shake)).normalized();
+    return state;
+  }
 
  private:
-  struct Tone {
-    double frequency_hz = 0;
-    double phase_rad = 0;
-    double amplitude_deg = 0;
-  };
-  // Number of tones of a vibration.
-  static constexpr int kTones = 7;
-  using Tones = std::array<Tone, kTones>;
-  static Tones vibration(Random random, double rms_deg);
-  static double sum(const Tones& tones, double time_s);
-
   FlightOptions options_;
-  Tones pitch_, yaw_, roll_;
+  Vibration pitch_, yaw_, roll_;
   double roll_phase_rad_ = 0;
   double pitch_phase_rad_ = 0;
 };
-
-FlightPath::FlightPath(const FlightOptions& options)
-    : options_(options),
-      pitch_(vibration(Seed(options.seed).stream("shake.pitch"), options.shake_deg)),
-      yaw_(vibration(Seed(options.seed).stream("shake.yaw"), options.shake_deg)),
-      roll_(vibration(Seed(options.seed).stream("shake.roll"), 0.6 * options.shake_deg)) {
-  Random random = Seed(options.seed).stream("flight");
-  roll_phase_rad_ = random.uniform(0, 2 * kPi);
-  pitch_phase_rad_ = random.uniform(0, 2 * kPi);
-}
-
-// Tones of equal power from 5 to 15 Hz, one in each band.
-FlightPath::Tones FlightPath::vibration(Random random, double rms_deg) {
-  Tones tones;
-  for (int i = 0; i < kTones; ++i) {
-    Tone& tone = tones[static_cast<std::size_t>(i)];
-    tone.frequency_hz = 5 + 10 * (i + random.uniform()) / kTones;
-    tone.phase_rad = random.uniform(0, 2 * kPi);
-    tone.amplitude_deg = rms_deg * std::sqrt(2.0 / kTones);
-  }
-  return tones;
-}
-
-double FlightPath::sum(const Tones& tones, double time_s) {
-  double total = 0;
-  for (const Tone& tone : tones)
-    total += tone.amplitude_deg * std::sin(2 * kPi * tone.frequency_hz * time_s + tone.phase_rad);
-  return total;
-}
-
-trajectory::State FlightPath::nominal(int index) const {
-  const double time_s = index / options_.frame_rate_hz;
-  const double rate = 2 * kPi / kRollPeriod_s;
-  const double roll_deg = options_.roll_deg * std::sin(rate * time_s + roll_phase_rad_);
-  // A coordinated turn: yaw rate = g tan(roll) / speed, integrated for the small sinusoidal roll.
-  const double turn = options_.speed_mps > 1 ? kStandardGravityMps2 / options_.speed_mps : 0.0;
-  const double yaw_deg = options_.heading_deg + std::min(turn, 0.5) * options_.roll_deg / rate *
-                                                    (std::cos(roll_phase_rad_) -
-                                                     std::cos(rate * time_s + roll_phase_rad_));
-  const double pitch_deg =
-      kPitchAmplitude_deg * std::sin(2 * kPi * time_s / kPitchPeriod_s + pitch_phase_rad_);
-  trajectory::State state;
-  const double heading = radians(options_.heading_deg);
-  const double travel_m = options_.translate ? options_.speed_mps * time_s : 0.0;
-  const Vector3 ahead(std::cos(heading), std::sin(heading), 0);
-  state.position_in_world = travel_m * ahead - Vector3(0, 0, options_.altitude_m);
-  state.velocity_in_world_mps = (options_.translate ? options_.speed_mps : 0.0) * ahead;
-  state.world_from_body = world_from_body({yaw_deg, pitch_deg, roll_deg});
-  return state;
-}
-
-trajectory::State FlightPath::shaken(int index) const {
-  trajectory::State state = nominal(index);
-  const double time_s = index / options_.frame_rate_hz;
-  const YawPitchRoll shake{sum(yaw_, time_s), sum(pitch_, time_s), sum(roll_, time_s)};
-  state.world_from_body = (state.world_from_body * world_from_body(shake)).normalized();
-  return state;
-}
 
 }  // namespace
 
@@ -186,7 +169,6 @@ struct Flight::Impl {
         view(lens, !o.linear_light),
         panorama(1 / (lens.focal_px() * kPanoramaOversampling)),
         sensor(o, stream(o, "sensor")),
-        clutter(o.width, o.height, o.clutter, stream(o, "clutter")),
         ground(make_world()) {}
 
   Ground make_world();
@@ -203,9 +185,7 @@ struct Flight::Impl {
   RayTable view;
   Panorama panorama;
   Sensor sensor;
-  Clutter clutter;
   Vector3 start_in_land_m = Vector3::Zero();
-  float veil = 0;
   Ground ground;
 };
 
@@ -232,9 +212,11 @@ Ground Flight::Impl::make_world() {
 Moment Flight::Impl::moment(int index) const {
   const trajectory::State state = path.shaken(index);
   const Vector3 eye = start_in_land_m + state.position_in_world;
-  return {view.directions_in_world(state.world_from_body, 1),
-          {static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(-eye.z())},
-          clutter.at(index / options.frame_rate_hz)};
+  return {
+      view.directions_in_world(state.world_from_body, 1),
+      {static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(-eye.z())},
+      clutter_at(
+          index / options.frame_rate_hz, lens.size(), options.clutter, stream(options, "clutter"))};
 }
 
 Flight::Flight(const FlightOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -257,8 +239,8 @@ image::Picture Flight::frame(int index) const {
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
   tbb::parallel_for(0, tasks, [&](int task) {
     RowPainter painter(scenery);
-    LightRow upper(width);
-    LightRow lower(width);
+    Row upper(width);
+    Row lower(width);
     for (int y = task * kRowsPerTask; y < std::min((task + 1) * kRowsPerTask, height); y += 2) {
       painter.paint(y, moment, upper);
       if (y + 1 < height) painter.paint(y + 1, moment, lower);

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <tbb/parallel_for.h>
+
+#include "scene/synthetic/rays.h"
 
 namespace airtruth::synthetic {
 namespace {
@@ -26,96 +29,26 @@ constexpr float kCropGreen[kCrops] = {
 constexpr float kCropBlue[kCrops] = {
     0.20F, 0.26F, 0.18F, 0.11F, 0.14F, 0.055F, 0.09F, 0.19F, 0.16F};
 
-// Blends a colour into the ground's by shares, 0 to 1.
-inline void blend(Light& ground, int i, float red, float green, float blue, float share) {
-  ground.red[i] += (red - ground.red[i]) * share;
-  ground.green[i] += (green - ground.green[i]) * share;
-  ground.blue[i] += (blue - ground.blue[i]) * share;
+// Calls step(0) to step(count - 1) in a row without a loop: the compiler makes vectors only of
+// loops that hold no other loop.
+template <int count, typename Step>
+[[gnu::always_inline]] inline void unrolled(const Step& step) {
+  [&]<int... index>(std::integer_sequence<int, index...>) __attribute__((always_inline)) {
+    (step(index), ...);
+  }
+  (std::make_integer_sequence<int, count>{});
 }
 
-// The search for the nearest centre of a block and for the second nearest; in blocks.
-struct Nearest {
-  alignas(64) Floats x;
-  alignas(64) Floats y;
-  // From the nearest centre.
-  alignas(64) Floats dx;
-  alignas(64) Floats dy;
-  alignas(64) Floats square;
-  alignas(64) Floats second_square;
-  alignas(64) Integers centre;
-  alignas(64) Integers second;
+// The colour of the ground.
+struct Cover {
+  float red, green, blue;
+  // Blends a colour into it by a share, 0 to 1.
+  [[gnu::always_inline]] void blend(float r, float g, float b, float share) {
+    red += (r - red) * share;
+    green += (g - green) * share;
+    blue += (b - blue) * share;
+  }
 };
-
-struct Cell {
-  int x, y;
-};
-
-// Compares the distances with those to the centre of a neighbouring cell.
-AIRTRUTH_FOR_VECTORS
-void compare(const float* __restrict north,
-             const float* __restrict east,
-             int blocks,
-             const Cell& cell,
-             int count,
-             Nearest& __restrict nearest) {
-  const Cell step = cell;
-  for (int k = 0; k < count; ++k) {
-    const int cx = floor_int(nearest.x[k]);
-    const int cy = floor_int(nearest.y[k]);
-    const int centre = ((cy + step.y) & (blocks - 1)) * blocks + ((cx + step.x) & (blocks - 1));
-    const float fx = nearest.x[k] - static_cast<float>(cx);
-    const float fy = nearest.y[k] - static_cast<float>(cy);
-    const float dx = fx - static_cast<float>(step.x) - north[centre];
-    const float dy = fy - static_cast<float>(step.y) - east[centre];
-    const float square = dx * dx + dy * dy;
-    const bool closer = square < nearest.square[k];
-    const bool between = square < nearest.second_square[k];
-    nearest.second_square[k] =
-        closer ? nearest.square[k] : (between ? square : nearest.second_square[k]);
-    nearest.second[k] = closer ? nearest.centre[k] : (between ? centre : nearest.second[k]);
-    nearest.square[k] = closer ? square : nearest.square[k];
-    nearest.centre[k] = closer ? centre : nearest.centre[k];
-    nearest.dx[k] = closer ? dx : nearest.dx[k];
-    nearest.dy[k] = closer ? dy : nearest.dy[k];
-  }
-}
-
-// Roads and tracks along the borders of the blocks, with their verges.
-AIRTRUTH_FOR_VECTORS
-void add_tracks(const Integers& borders, Places& __restrict places) {
-  const int count = places.count;
-  for (int i = 0; i < count; ++i) {
-    const auto border = static_cast<std::uint32_t>(borders[i]);
-    places.hedge[i] = (border >> 4) % 5 == 0 ? 1 : 0;
-    const bool road = border % 5 == 1;
-    const float half_m = road ? 4.0F : 2.2F;
-    const float edge_m = places.track_m[i];
-    blend(places.albedo, i, 0.30F, 0.26F, 0.14F, smoothstep(half_m + 3.5F, half_m + 1, edge_m));
-    blend(places.albedo,
-          i,
-          road ? 0.24F : 0.56F,
-          road ? 0.235F : 0.47F,
-          road ? 0.23F : 0.34F,
-          smoothstep(half_m + 0.9F, half_m - 0.9F, edge_m));
-    // The floor of the woods, which tracks cross.
-    const float wood = places.wood[i];
-    const float floor = edge_m > half_m ? wood : 0.0F;
-    blend(places.albedo, i, 0.16F, 0.14F, 0.075F, floor);
-    places.field[i] = ((floor <= 0) | (wood < 0.3F)) ? 1 : 0;
-  }
-}
-
-// The river and its banks.
-AIRTRUTH_FOR_VECTORS
-void add_river(Places& __restrict places) {
-  const int count = places.count;
-  for (int i = 0; i < count; ++i) {
-    const float river_m = places.river_m[i];
-    blend(places.albedo, i, 0.13F, 0.15F, 0.06F, smoothstep(60.0F, 22.0F, river_m));
-    blend(places.albedo, i, 0.12F, 0.15F, 0.155F, smoothstep(13.0F, 10.0F, river_m));
-    places.field[i] = river_m > 45 ? places.field[i] : 0;
-  }
-}
 
 }  // namespace
 
@@ -158,124 +91,148 @@ Land::Land(std::uint32_t seed)
   });
 }
 
-void Land::read_slow_map(const Places& places, Work& work) const {
-  for (int k = 0; k < places.count; ++k) {
-    const float x = places.north_m[k] * (kSlow / kLand_m);
-    const float y = places.east_m[k] * (kSlow / kLand_m);
-    const int ix = floor_int(x);
-    const int iy = floor_int(y);
-    const auto at = [&](int i, int j) -> const LinearRgb& {
-      return slow_[static_cast<std::size_t>(((iy + j) & (kSlow - 1)) * kSlow +
-                                            ((ix + i) & (kSlow - 1)))];
-    };
-    const float fx = x - static_cast<float>(ix);
-    const float fy = y - static_cast<float>(iy);
-    const LinearRgb slow = (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) +
-                           (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
-    work.bend_north[k] = slow[0];
-    work.bend_east[k] = slow[1];
-    work.woods[k] = slow[2];
-    work.height[k] = slow[3];
-  }
-}
-
-// Blocks of fields: the cells of a jittered grid (Worley 1996) with slightly bent borders.
-void Land::find_blocks(Places& places, Work& work) const {
+// Finds the blocks of fields: the cells of a jittered grid (Worley 1996) with slightly bent
+// borders.
+AIRTRUTH_FOR_VECTORS
+void Land::find_blocks(Places& __restrict places, Blocks& __restrict blocks) const {
   // Side of a block.
   constexpr float kBlock_m = kLand_m / kBlocks;
-  Nearest nearest;
-  for (int k = 0; k < places.count; ++k) {
-    nearest.x[k] = places.north_m[k] / kBlock_m + work.bend_north[k];
-    nearest.y[k] = places.east_m[k] / kBlock_m + work.bend_east[k];
-    nearest.square[k] = 1e9F;
-    nearest.second_square[k] = 1e9F;
-    nearest.centre[k] = 0;
-    nearest.second[k] = 0;
-  }
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i)
-      compare(centres_.north.data(), centres_.east.data(), kBlocks, {i, j}, places.count, nearest);
-  for (int k = 0; k < places.count; ++k) {
-    work.block[k] = nearest.centre[k];
-    work.neighbour[k] = nearest.second[k];
-    work.north_m[k] = nearest.dx[k] * kBlock_m;
-    work.east_m[k] = nearest.dy[k] * kBlock_m;
-    places.track_m[k] =
-        0.5F * (std::sqrt(nearest.second_square[k]) - std::sqrt(nearest.square[k])) * kBlock_m;
-  }
-}
-
-AIRTRUTH_FOR_VECTORS
-void Land::find_borders(Places& __restrict places, Work& __restrict work) const {
-  const std::uint32_t* id = centres_.id.data();
+  const float* slow = slow_.data()->data();
+  const float* north = centres_.north.data();
+  const float* east = centres_.east.data();
   const int count = places.count;
   for (int k = 0; k < count; ++k) {
-    work.border[k] = static_cast<std::int32_t>(mix(id[work.block[k]] ^ id[work.neighbour[k]]));
-    places.wood[k] = smoothstep(0.585F, 0.625F, work.woods[k]);
-    places.river_m[k] = std::abs(work.height[k] - 0.47F) * 5200;
+    // The bend of the borders (two), woods and height, from a coarse map.
+    const float sx = places.north_m[k] * (kSlow / kLand_m);
+    const float sy = places.east_m[k] * (kSlow / kLand_m);
+    const int ix = floor_int(sx);
+    const int iy = floor_int(sy);
+    const float right = sx - static_cast<float>(ix);
+    const float lower = sy - static_cast<float>(iy);
+    const auto slow_at = [&](int part) __attribute__((always_inline)) {
+      const auto at = [&](int i, int j) __attribute__((always_inline)) {
+        return slow[(((iy + j) & (kSlow - 1)) * kSlow + ((ix + i) & (kSlow - 1))) * 4 + part];
+      };
+      return (at(0, 0) * (1 - right) + at(1, 0) * right) * (1 - lower) +
+             (at(0, 1) * (1 - right) + at(1, 1) * right) * lower;
+    };
+    places.wood[k] = smoothstep(0.585F, 0.625F, slow_at(2));
+    places.river_m[k] = std::abs(slow_at(3) - 0.47F) * 5200;
+    // The nearest centre and the second nearest, in blocks.
+    const float x = places.north_m[k] / kBlock_m + slow_at(0);
+    const float y = places.east_m[k] / kBlock_m + slow_at(1);
+    const int cx = floor_int(x);
+    const int cy = floor_int(y);
+    float dx = 0, dy = 0;
+    float square = 1e9F, second_square = 1e9F;
+    std::int32_t block = 0, second = 0;
+    unrolled<9>([&](int cell) __attribute__((always_inline)) {
+      const int i = cell % 3 - 1;
+      const int j = cell / 3 - 1;
+      const int centre = ((cy + j) & (kBlocks - 1)) * kBlocks + ((cx + i) & (kBlocks - 1));
+      const float u = x - static_cast<float>(cx) - static_cast<float>(i) - north[centre];
+      const float v = y - static_cast<float>(cy) - static_cast<float>(j) - east[centre];
+      const float here = u * u + v * v;
+      const bool closer = here < square;
+      const bool between = here < second_square;
+      second_square = closer ? square : (between ? here : second_square);
+      second = closer ? block : (between ? centre : second);
+      square = closer ? here : square;
+      block = closer ? centre : block;
+      dx = closer ? u : dx;
+      dy = closer ? v : dy;
+    });
+    places.track_m[k] = 0.5F * (std::sqrt(second_square) - std::sqrt(square)) * kBlock_m;
+    blocks.block[k] = block;
+    blocks.neighbour[k] = second;
+    blocks.north_m[k] = dx * kBlock_m;
+    blocks.east_m[k] = dy * kBlock_m;
   }
 }
 
-// Strips along the block's own direction, divided into parcels.
+// A block has strips along its own direction, divided into parcels; each of these has its crop and
+// its lines of sowing.
 AIRTRUTH_FOR_VECTORS
-void Land::find_parcels(const Places& places, Work& __restrict work) const {
-  const std::uint32_t* id = centres_.id.data();
+void Land::sow(const Blocks& blocks, Places& __restrict places) const {
+  const std::uint32_t* ids = centres_.id.data();
   const float* cosine = centres_.cosine.data();
   const float* sine = centres_.sine.data();
-  const float* width_m = centres_.width_m.data();
-  const float* length_m = centres_.length_m.data();
-  const int count = places.count;
-  for (int k = 0; k < count; ++k) {
-    const std::int32_t block = work.block[k];
-    const float u = cosine[block] * work.north_m[k] + sine[block] * work.east_m[k];
-    const float v = -sine[block] * work.north_m[k] + cosine[block] * work.east_m[k];
-    const float width = width_m[block];
-    const int i = floor_int(u / width);
-    const std::uint32_t strip = hash(i, 7, id[block]);
-    const int j = floor_int(v / length_m[block] + unit(strip));
-    const float side = u - static_cast<float>(i) * width;
-    work.parcel[k] = static_cast<std::int32_t>(hash(i, j, id[block]));
-    work.across_m[k] = u;
-    work.margin_m[k] = std::min(side, width - side);
-  }
-}
-
-// Each parcel has its crop and its lines of sowing.
-AIRTRUTH_FOR_VECTORS
-void Land::sow(const Work& work, Places& __restrict places) const {
+  const float* strip_m = centres_.width_m.data();
+  const float* parcel_m = centres_.length_m.data();
   const float* coarse_soil = coarse_soil_.data();
   const float* fine_soil = fine_soil_.data();
   const int count = places.count;
   for (int k = 0; k < count; ++k) {
-    const auto id = static_cast<std::uint32_t>(work.parcel[k]);
-    const auto crop = static_cast<std::int32_t>(id % kCrops);
-    const float tone = 0.85F + 0.3F * unit(mix(id + 1));
-    const int sx = floor_int(places.north_m[k] / kSoil_m) & (kSoil - 1);
-    const int sy = floor_int(places.east_m[k] / kSoil_m) & (kSoil - 1);
-    const float coarse = coarse_soil[sy * kSoil + sx];
-    const float fine = fine_soil[sy * kSoil + sx];
-    const float soil = 0.62F + 0.45F * coarse + 0.3F * fine;
-    const float spacing = 5 + 9 * unit(mix(id + 2));
-    const float depth = 0.10F * unit(mix(id + 3));
-    const float row = 1 + depth * cosine_of(6.2832F * work.across_m[k] / spacing);
+    const std::int32_t block = blocks.block[k];
+    const std::uint32_t id = ids[block];
+    const float n = blocks.north_m[k];
+    const float e = blocks.east_m[k];
+    const float across_m = cosine[block] * n + sine[block] * e;
+    const float along_m = -sine[block] * n + cosine[block] * e;
+    const float width_m = strip_m[block];
+    const int strip = floor_int(across_m / width_m);
+    const int part = floor_int(along_m / parcel_m[block] + unit(hash(strip, 7, id)));
+    const float side_m = across_m - static_cast<float>(strip) * width_m;
+    const float margin_m = std::min(side_m, width_m - side_m);
+    const std::uint32_t parcel = hash(strip, part, id);
+
+    const auto crop = static_cast<std::int32_t>(parcel % kCrops);
+    const float tone = 0.85F + 0.3F * unit(mix(parcel + 1));
+    const int soil_at = (floor_int(places.east_m[k] / kSoil_m) & (kSoil - 1)) * kSoil +
+                        (floor_int(places.north_m[k] / kSoil_m) & (kSoil - 1));
+    const float fine = fine_soil[soil_at];
+    const float soil = 0.62F + 0.45F * coarse_soil[soil_at] + 0.3F * fine;
+    const float spacing = 5 + 9 * unit(mix(parcel + 2));
+    const float depth = 0.10F * unit(mix(parcel + 3));
+    const float row = 1 + depth * cosine_of(6.2832F * across_m / spacing);
     const float grass = 0.7F + 0.6F * fine;
-    const float margin = smoothstep(1.8F, 0.6F, work.margin_m[k] - 1.2F * fine);
-    places.albedo.red[k] = kCropRed[crop] * tone * soil * row;
-    places.albedo.green[k] = kCropGreen[crop] * tone * soil * row;
-    places.albedo.blue[k] = kCropBlue[crop] * tone * soil * row;
-    blend(places.albedo, k, 0.27F * grass, 0.245F * grass, 0.12F * grass, margin);
+    const float margin = smoothstep(1.8F, 0.6F, margin_m - 1.2F * fine);
+    places.red[k] = lerp(kCropRed[crop] * tone * soil * row, 0.27F * grass, margin);
+    places.green[k] = lerp(kCropGreen[crop] * tone * soil * row, 0.245F * grass, margin);
+    places.blue[k] = lerp(kCropBlue[crop] * tone * soil * row, 0.12F * grass, margin);
+  }
+}
+
+// Adds roads and tracks along the borders of the blocks, with their verges, and the river.
+AIRTRUTH_FOR_VECTORS
+void Land::cross(const Blocks& blocks, Places& __restrict places) const {
+  const std::uint32_t* ids = centres_.id.data();
+  const int count = places.count;
+  for (int k = 0; k < count; ++k) {
+    // The same on both sides of a border.
+    const std::uint32_t border = mix(ids[blocks.block[k]] ^ ids[blocks.neighbour[k]]);
+    const bool road = border % 5 == 1;
+    const float track_m = places.track_m[k];
+    const float river_m = places.river_m[k];
+    const float half_m = road ? 4.0F : 2.2F;
+    Cover cover{places.red[k], places.green[k], places.blue[k]};
+    cover.blend(0.30F, 0.26F, 0.14F, smoothstep(half_m + 3.5F, half_m + 1, track_m));
+    cover.blend(road ? 0.24F : 0.56F,
+                road ? 0.235F : 0.47F,
+                road ? 0.23F : 0.34F,
+                smoothstep(half_m + 0.9F, half_m - 0.9F, track_m));
+    // The floor of the woods, which tracks cross.
+    const float wood = places.wood[k];
+    const float floor = track_m > half_m ? wood : 0.0F;
+    cover.blend(0.16F, 0.14F, 0.075F, floor);
+    // The river and its banks.
+    cover.blend(0.13F, 0.15F, 0.06F, smoothstep(60.0F, 22.0F, river_m));
+    cover.blend(0.12F, 0.15F, 0.155F, smoothstep(13.0F, 10.0F, river_m));
+
+    places.red[k] = cover.red;
+    places.green[k] = cover.green;
+    places.blue[k] = cover.blue;
+    places.hedge[k] = (border >> 4) % 5 == 0 ? 1 : 0;
+    const std::int32_t field = ((floor <= 0) | (wood < 0.3F)) ? 1 : 0;
+    places.field[k] = river_m > 45 ? field : 0;
   }
 }
 
 void Land::cover(Places& places) const {
-  Work work;
-  read_slow_map(places, work);
-  find_blocks(places, work);
-  find_borders(places, work);
-  find_parcels(places, work);
-  sow(work, places);
-  add_tracks(work.border, places);
-  add_river(places);
+  Blocks blocks;
+  find_blocks(places, blocks);
+  sow(blocks, places);
+  cross(blocks, places);
 }
 
 }  // namespace airtruth::synthetic

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "scene/synthetic/noise.h"
-#include "scene/synthetic/rays.h"
 
 namespace airtruth::synthetic {
 
@@ -14,18 +13,22 @@ namespace airtruth::synthetic {
 // woods, and a river. It repeats every kLand_m metres along north and east.
 constexpr float kLand_m = 5120;
 
-// Places on the land and what covers it there.
+// Number of places whose cover is found together.
+constexpr int kBatch = 128;
+
+// Places on the land and what covers it there. One array for each quantity, so that the compiler
+// emits loops over vectors.
 struct Places {
+  using Floats = float[kBatch];
+  using Integers = std::int32_t[kBatch];
   int count = 0;
-  alignas(64) Floats north_m;
-  alignas(64) Floats east_m;
+  alignas(64) Floats north_m, east_m;
   // Linear light of the bare ground, without trees, shadows and houses.
-  Light albedo;
+  alignas(64) Floats red, green, blue;
   // Share of the ground under trees, 0..1.
   alignas(64) Floats wood;
-  // Distance from the nearest track or road.
+  // Distance from the nearest track or road, and 1 where trees stand along it, else 0.
   alignas(64) Floats track_m;
-  // 1 where trees stand along that track, else 0.
   alignas(64) Integers hedge;
   // Distance from the river's middle.
   alignas(64) Floats river_m;
@@ -55,31 +58,14 @@ class Land {
     std::array<float, kCentres> width_m;
     std::array<float, kCentres> length_m;
   };
-  // What the steps of cover() hand on.
-  struct Work {
-    // Slowly varying fields, from a coarse map: the bend of the borders (two), woods, height.
-    alignas(64) Floats bend_north;
-    alignas(64) Floats bend_east;
-    alignas(64) Floats woods;
-    alignas(64) Floats height;
-    // The nearest centre and the one after.
-    alignas(64) Integers block;
-    alignas(64) Integers neighbour;
-    // Position relative to the centre.
-    alignas(64) Floats north_m;
-    alignas(64) Floats east_m;
-    // Identifier of the border, the same on both sides.
-    alignas(64) Integers border;
-    // Random number of the parcel, and the position across its strip.
-    alignas(64) Integers parcel;
-    alignas(64) Floats across_m;
-    alignas(64) Floats margin_m;
+  // The block of each place and the nearest block beside, and the position relative to its centre.
+  struct Blocks {
+    alignas(64) Places::Integers block, neighbour;
+    alignas(64) Places::Floats north_m, east_m;
   };
-  void read_slow_map(const Places& places, Work& work) const;
-  void find_blocks(Places& places, Work& work) const;
-  void find_borders(Places& places, Work& work) const;
-  void find_parcels(const Places& places, Work& work) const;
-  void sow(const Work& work, Places& places) const;
+  void find_blocks(Places& places, Blocks& blocks) const;
+  void sow(const Blocks& blocks, Places& places) const;
+  void cross(const Blocks& blocks, Places& places) const;
 
   Centres centres_;
   std::vector<LinearRgb> slow_;

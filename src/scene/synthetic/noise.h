@@ -70,37 +70,34 @@ inline float value_noise(float x, float y, float z, int period, std::uint32_t se
   return lerp(layer(0), layer(1), fz * fz * (3 - 2 * fz));
 }
 
-// Sum of octaves, each half as strong and twice as fine as the one before; about [0, 1], with a
-// mean of 0.5.
-inline float fractal(float x, float y, int octaves, int period, std::uint32_t seed) {
+// Sum of octaves of noise(scale, period, seed), each half as strong and twice as fine as the one
+// before; about [0, 1], with a mean of 0.5.
+template <typename Noise>
+inline float sum_of_octaves(int octaves, int period, std::uint32_t seed, const Noise& noise) {
   float sum = 0;
   float weight = 0.5F;
   float total = 0;
+  float scale = 1;
   for (int i = 0; i < octaves; ++i) {
-    sum += weight * value_noise(x, y, period, seed + 131U * static_cast<std::uint32_t>(i));
+    sum += weight * noise(scale, period, seed + 131U * static_cast<std::uint32_t>(i));
     total += weight;
     weight *= 0.5F;
-    x *= 2;
-    y *= 2;
+    scale *= 2;
     period *= 2;
   }
   return sum / total;
 }
 
+inline float fractal(float x, float y, int octaves, int period, std::uint32_t seed) {
+  return sum_of_octaves(octaves, period, seed, [=](float scale, int cells, std::uint32_t id) {
+    return value_noise(x * scale, y * scale, cells, id);
+  });
+}
+
 inline float fractal(float x, float y, float z, int octaves, int period, std::uint32_t seed) {
-  float sum = 0;
-  float weight = 0.5F;
-  float total = 0;
-  for (int i = 0; i < octaves; ++i) {
-    sum += weight * value_noise(x, y, z, period, seed + 131U * static_cast<std::uint32_t>(i));
-    total += weight;
-    weight *= 0.5F;
-    x *= 2;
-    y *= 2;
-    z *= 2;
-    period *= 2;
-  }
-  return sum / total;
+  return sum_of_octaves(octaves, period, seed, [=](float scale, int cells, std::uint32_t id) {
+    return value_noise(x * scale, y * scale, z * scale, cells, id);
+  });
 }
 
 }  // namespace airtruth::synthetic

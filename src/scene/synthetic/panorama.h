@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "scene/synthetic/noise.h"
-#include "scene/synthetic/rays.h"
 #include "scene/synthetic/sky.h"
 
 namespace airtruth::synthetic {
@@ -43,8 +42,6 @@ class Panorama {
     const LinearRgb lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
     return upper + (lower - upper) * fy;
   }
-  // The same for the rays of a batch.
-  void seen(const Rays& rays, Light& light) const;
   // The component `up` of the lowest direction: a sine, 1.1 degrees below the horizon.
   static constexpr float kLowest = -0.02F;
 

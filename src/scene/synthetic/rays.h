@@ -8,55 +8,45 @@
 
 #include "foundation/base/vectors.h"
 
-// Rays are traced in batches, one array for each quantity, so that the compiler emits loops over
-// vectors.
 namespace airtruth::synthetic {
 
-// Number of rays that are traced together. The arrays of a batch fit in the first-level cache.
-constexpr int kBatch = 128;
-
-using Floats = float[kBatch];
-using Integers = std::int32_t[kBatch];
-
-// Directions into the world (north-east-down, unit vectors) of the first `count` places.
-struct Rays {
-  int count = 0;
-  alignas(64) Floats north;
-  alignas(64) Floats east;
-  alignas(64) Floats down;
+// Place of the camera.
+struct Eye {
+  float north_m = 0;
+  float east_m = 0;
+  float height_m = 0;
 };
 
-// Linear red, green and blue of the same places.
-struct Light {
-  alignas(64) Floats red;
-  alignas(64) Floats green;
-  alignas(64) Floats blue;
-};
+// The rays of a row of pixels and the light that reaches them: unit directions in the world
+// (north-east-down), linear red, green and blue before the lens's fall-off, and that fall-off, 0 to
+// 1. One array for each quantity, so that the compiler emits loops over vectors. The arrays have
+// room for `width` rounded up to a multiple of 8.
+struct Row {
+  // Pixels side by side.
+  struct Run {
+    int count;
+    const float *north, *east, *down;
+    float *red, *green, *blue;
+  };
+  // The largest number of pixels of a run, whose numbers fit in the first-level cache.
+  static constexpr int kRun = 128;
 
-// The light that reaches each pixel of a row through the lens: linear red, green and blue before
-// the lens's fall-off, and that fall-off, 0 to 1. The arrays have room for `width` rounded up to a
-// multiple of 8.
-struct LightRow {
-  explicit LightRow(int width)
-      : red((static_cast<std::size_t>(width) + 7) & ~std::size_t{7}),
-        green(red.size()),
-        blue(red.size()),
-        fall_off(red.size()) {}
-  std::vector<float> red;
-  std::vector<float> green;
-  std::vector<float> blue;
+  explicit Row(int width) {
+    for (std::vector<float>* part : {&north, &east, &down, &red, &green, &blue, &fall_off})
+      part->resize((static_cast<std::size_t>(width) + 7) & ~std::size_t{7});
+  }
+  Run run(std::size_t first, std::size_t count) {
+    return {static_cast<int>(count),
+            &north[first],
+            &east[first],
+            &down[first],
+            &red[first],
+            &green[first],
+            &blue[first]};
+  }
+  std::vector<float> north, east, down;
+  std::vector<float> red, green, blue;
   std::vector<float> fall_off;
-};
-
-// Directions of the rays of a row, north-east-down, with the same room.
-struct RayRow {
-  explicit RayRow(int width)
-      : north((static_cast<std::size_t>(width) + 7) & ~std::size_t{7}),
-        east(north.size()),
-        down(north.size()) {}
-  std::vector<float> north;
-  std::vector<float> east;
-  std::vector<float> down;
 };
 
 // Base-2 logarithm of a positive number with an error below 0.09, which suffices to choose a mip

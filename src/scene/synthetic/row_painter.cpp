@@ -2,6 +2,8 @@
 #include "scene/synthetic/row_painter.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace airtruth::synthetic {
 namespace {
@@ -57,15 +59,7 @@ std::vector<RayNode> RayTable::directions_in_world(const Quaternion& world_from_
   return nodes;
 }
 
-// Interpolates the pixels between two nodes.
-void RayTable::fill(float left, float step, float* pixels) {
-  for (int x = 0; x < kPitch; ++x) pixels[x] = left + step * (static_cast<float>(x) + 0.5F);
-}
-
-void RayTable::row(int y,
-                   const std::vector<RayNode>& nodes,
-                   RayRow& directions,
-                   std::vector<float>& fall_off) const {
+void RayTable::fill_in(int y, const std::vector<RayNode>& nodes, Row& row) const {
   const float below = (static_cast<float>(y % kPitch) + 0.5F) / kPitch;
   const RayNode* upper = nodes.data() + static_cast<std::ptrdiff_t>(y / kPitch) * columns_;
   const RayNode* lower = upper + columns_;
@@ -73,11 +67,11 @@ void RayTable::row(int y,
   for (int column = 0; column + 1 < columns_; ++column) {
     const RayNode right = upper[column + 1] + (lower[column + 1] - upper[column + 1]) * below;
     const RayNode step = (right - left) / kPitch;
-    const std::size_t first = static_cast<std::size_t>(column) * kPitch;
-    fill(left[0], step[0], &directions.north[first]);
-    fill(left[1], step[1], &directions.east[first]);
-    fill(left[2], step[2], &directions.down[first]);
-    fill(left[3], step[3], &fall_off[first]);
+    const std::array parts{&row.north, &row.east, &row.down, &row.fall_off};
+    for (std::size_t part = 0; part < parts.size(); ++part)
+      for (int x = 0; x < kPitch; ++x)
+        (*parts[part])[static_cast<std::size_t>(column * kPitch + x)] =
+            left[part] + step[part] * (static_cast<float>(x) + 0.5F);
     left = right;
   }
 }
@@ -87,78 +81,101 @@ namespace {
 // The height above the horizon in pixels, plus one half: from 0 to 1 a pixel sees both sides.
 inline float above_horizon(float focal_px, float down) { return focal_px * -down + 0.5F; }
 
-AIRTRUTH_FOR_VECTORS
-void find_ground(const float* down,
-                 float focal_px,
-                 std::size_t width,
-                 std::uint8_t* __restrict sees_ground) {
-  for (std::size_t x = 0; x < width; ++x)
-    sees_ground[x] = above_horizon(focal_px, down[x]) >= 1 ? 0 : 1;
+// A triangle wave between 0 and 1.
+float bounce(double x) {
+  const double turn = x - 2 * std::floor(x / 2);
+  return static_cast<float>(turn < 1 ? turn : 2 - turn);
+}
+
+void draw(const Disc& disc, int y, int width, Row& row) {
+  const float dy = static_cast<float>(y) + 0.5F - disc.y;
+  if (std::abs(dy) >= disc.radius) return;
+  const float reach = std::sqrt(disc.radius * disc.radius - dy * dy);
+  const int first = std::max(static_cast<int>(disc.x - reach), 0);
+  const int last = std::min(static_cast<int>(disc.x + reach) + 1, width);
+  for (int x = first; x < last; ++x) {
+    const float dx = static_cast<float>(x) + 0.5F - disc.x;
+    const float edge = 1 - std::sqrt(dx * dx + dy * dy) / disc.radius;
+    if (edge <= 0) continue;
+    const float scale = 4.5F / disc.radius;
+    const float mottle = fractal(dx * scale + 64, dy * scale + 64, 2, 128, disc.seed);
+    const LinearRgb tone = linear_rgb(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
+    const float covered = smoothstep(0.0F, 0.25F, edge);
+    const auto i = static_cast<std::size_t>(x);
+    row.red[i] += (tone[0] - row.red[i]) * covered;
+    row.green[i] += (tone[1] - row.green[i]) * covered;
+    row.blue[i] += (tone[2] - row.blue[i]) * covered;
+  }
 }
 
 }  // namespace
 
-RowPainter::RowPainter(const Scenery& scenery)
-    : scenery_(scenery),
-      directions_(scenery.width),
-      sees_(static_cast<std::size_t>(scenery.width)) {}
+std::vector<Disc> clutter_at(double time_s,
+                             const lens::ImageSize& size,
+                             double share,
+                             std::uint32_t seed) {
+  std::vector<Disc> discs;
+  if (share <= 0) return discs;
+  const float radius = 0.032F * static_cast<float>(size.height);
+  const double area = 3.14159 * radius * radius;
+  const int count =
+      std::max(1, static_cast<int>(std::lround(share * size.width * size.height / area)));
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t id = hash(i, 0, seed);
+    const auto draw = [&](std::uint32_t k) { return unit(mix(id + k)); };
+    // One crossing of the image takes 8 to 40 s.
+    const double across = time_s * (0.025 + 0.1 * draw(1)) + 2 * draw(2);
+    const double along = time_s * (0.025 + 0.1 * draw(3)) + 2 * draw(4);
+    discs.push_back({bounce(across) * static_cast<float>(size.width),
+                     bounce(along) * static_cast<float>(size.height),
+                     radius * (0.7F + 0.6F * draw(5)),
+                     id});
+  }
+  return discs;
+}
 
-void RowPainter::paint(int y, const Moment& moment, LightRow& row) {
-  scenery_.view.row(y, moment.nodes, directions_, row.fall_off);
-  sort_pixels(y);
+RowPainter::RowPainter(const Scenery& scenery)
+    : scenery_(scenery), sees_(static_cast<std::size_t>(scenery.width)) {}
+
+void RowPainter::paint(int y, const Moment& moment, Row& row) {
+  scenery_.view.fill_in(y, moment.nodes, row);
+  sort_pixels(y, row);
   for (std::size_t first = 0; first < sees_.size();) {
     std::size_t end = first + 1;
-    while (end < sees_.size() && end - first < kBatch && sees_[end] == sees_[first]) ++end;
-    paint_run(first, end, moment.eye, row);
+    while (end < sees_.size() && end - first < Row::kRun && sees_[end] == sees_[first]) ++end;
+    paint_run(sees_[first], row.run(first, end - first), moment.eye);
     first = end;
   }
-  if (!moment.discs.empty()) Clutter::draw(moment.discs, y, scenery_.width, row);
+  for (const Disc& disc : moment.discs) draw(disc, y, scenery_.width, row);
   paint_own_aircraft(y, row);
 }
 
-void RowPainter::sort_pixels(int y) {
-  find_ground(directions_.down.data(), scenery_.focal_px, sees_.size(), sees_.data());
+void RowPainter::sort_pixels(int y, const Row& row) {
+  for (std::size_t x = 0; x < sees_.size(); ++x)
+    sees_[x] = above_horizon(scenery_.focal_px, row.down[x]) >= 1 ? kSky : kGround;
   const auto line = static_cast<std::size_t>(y);
   const LinearRgb* layer = scenery_.own.layer.data() + line * sees_.size();
   for (int x = scenery_.own.first[line]; x < scenery_.own.last[line]; ++x)
     if (layer[x][3] >= 1) sees_[static_cast<std::size_t>(x)] = kAircraft;
 }
 
-void RowPainter::paint_run(std::size_t first, std::size_t end, const Eye& eye, LightRow& row) {
-  const std::uint8_t sees = sees_[first];
+// Ground and sky are blended in the pixels that the horizon crosses.
+void RowPainter::paint_run(Sees sees, const Row::Run& pixels, const Eye& eye) const {
   if (sees == kAircraft) return;
-  const std::size_t count = end - first;
-  rays_.count = static_cast<int>(count);
-  std::copy_n(&directions_.north[first], count, rays_.north);
-  std::copy_n(&directions_.east[first], count, rays_.east);
-  std::copy_n(&directions_.down[first], count, rays_.down);
-  if (sees == kSky) {
-    scenery_.panorama.seen(rays_, light_);
-  } else {
-    for (int i = 0; i < rays_.count; ++i) rays_.down[i] = std::max(rays_.down[i], 1e-5F);
-    scenery_.ground.seen(eye, rays_, light_);
-    soften_horizon(first);
-  }
-  std::copy_n(light_.red, count, &row.red[first]);
-  std::copy_n(light_.green, count, &row.green[first]);
-  std::copy_n(light_.blue, count, &row.blue[first]);
-}
-
-// Blends ground and sky in the pixels that the horizon crosses.
-void RowPainter::soften_horizon(std::size_t first) {
-  for (int i = 0; i < rays_.count; ++i) {
-    const std::size_t x = first + static_cast<std::size_t>(i);
-    const float down = directions_.down[x];
-    const float sky_share = above_horizon(scenery_.focal_px, down);
+  if (sees == kGround) scenery_.ground.light(eye, pixels);
+  for (int i = 0; i < pixels.count; ++i) {
+    const float sky_share = above_horizon(scenery_.focal_px, pixels.down[i]);
     if (sky_share <= 0) continue;
-    const LinearRgb sky = scenery_.panorama.at(directions_.north[x], directions_.east[x], -down);
-    light_.red[i] += (sky[0] - light_.red[i]) * sky_share;
-    light_.green[i] += (sky[1] - light_.green[i]) * sky_share;
-    light_.blue[i] += (sky[2] - light_.blue[i]) * sky_share;
+    const LinearRgb sky = scenery_.panorama.at(pixels.north[i], pixels.east[i], -pixels.down[i]);
+    const LinearRgb ground = linear_rgb(pixels.red[i], pixels.green[i], pixels.blue[i]);
+    const LinearRgb light = sees == kSky ? sky : LinearRgb(ground + (sky - ground) * sky_share);
+    pixels.red[i] = light[0];
+    pixels.green[i] = light[1];
+    pixels.blue[i] = light[2];
   }
 }
 
-void RowPainter::paint_own_aircraft(int y, LightRow& row) const {
+void RowPainter::paint_own_aircraft(int y, Row& row) const {
   const OwnAircraft& own = scenery_.own;
   const auto line = static_cast<std::size_t>(y);
   const LinearRgb* layer = own.layer.data() + line * static_cast<std::size_t>(scenery_.width);

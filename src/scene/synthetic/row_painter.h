@@ -8,7 +8,6 @@
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
-#include "scene/synthetic/clutter.h"
 #include "scene/synthetic/ground.h"
 #include "scene/synthetic/own_aircraft.h"
 #include "scene/synthetic/panorama.h"
@@ -30,16 +29,12 @@ class RayTable {
   // Rays of every `stride`-th node, rotated into the world.
   std::vector<RayNode> directions_in_world(const Quaternion& world_from_body, int stride) const;
 
-  // Directions and fall-off of the row's pixels. `nodes` are those of stride 1.
-  void row(int y,
-           const std::vector<RayNode>& nodes,
-           RayRow& directions,
-           std::vector<float>& fall_off) const;
+  // Fills in directions and fall-off of the row's pixels. `nodes` are those of stride 1.
+  void fill_in(int y, const std::vector<RayNode>& nodes, Row& row) const;
 
  private:
   // Pixels between two nodes.
   static constexpr int kPitch = 8;
-  static void fill(float left, float step, float* pixels);
 
   int columns_;
   int rows_;
@@ -56,34 +51,44 @@ struct Scenery {
   float focal_px = 0;
 };
 
+// A mottled disc that moves over the image independently of the camera: motion that a motion
+// estimate must reject.
+struct Disc {
+  float x, y;
+  float radius;
+  std::uint32_t seed;
+};
+
+// The discs that cover a share of the image.
+std::vector<Disc> clutter_at(double time_s,
+                             const lens::ImageSize& size,
+                             double share,
+                             std::uint32_t seed);
+
 // What changes from frame to frame.
 struct Moment {
   // Rays of the table's nodes in the world.
   std::vector<RayNode> nodes;
   Eye eye;
-  std::vector<Clutter::Disc> discs;
+  std::vector<Disc> discs;
 };
 
 // Draws the rows of a frame from top to bottom. Each thread has its own painter.
 class RowPainter {
  public:
   explicit RowPainter(const Scenery& scenery);
-  void paint(int y, const Moment& moment, LightRow& row);
+  void paint(int y, const Moment& moment, Row& row);
 
  private:
   // What the pixels of a run see: only sky and hills, the ground (or the horizon), or nothing but
   // the own aircraft.
   enum Sees : std::uint8_t { kSky, kGround, kAircraft };
-  void sort_pixels(int y);
-  void paint_run(std::size_t first, std::size_t end, const Eye& eye, LightRow& row);
-  void soften_horizon(std::size_t first);
-  void paint_own_aircraft(int y, LightRow& row) const;
+  void sort_pixels(int y, const Row& row);
+  void paint_run(Sees sees, const Row::Run& pixels, const Eye& eye) const;
+  void paint_own_aircraft(int y, Row& row) const;
 
   Scenery scenery_;
-  RayRow directions_;
-  std::vector<std::uint8_t> sees_;
-  Rays rays_;
-  Light light_;
+  std::vector<Sees> sees_;
 };
 
 }  // namespace airtruth::synthetic

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "foundation/base/seed.h"
 #include "foundation/image/colour.h"
@@ -143,8 +144,7 @@ Sensor::Sensor(const FlightOptions& options, std::uint32_t seed)
 }
 
 Sensor::Exposure Sensor::start() const {
-  return {std::make_unique_for_overwrite<std::uint16_t[]>(static_cast<std::size_t>(width_) *
-                                                          static_cast<std::size_t>(height_))};
+  return Exposure(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
 }
 
 // Every 16 rows use another part of the noise tile, so that no pattern repeats. Writes the noise of
@@ -165,14 +165,14 @@ void Sensor::copy_grain(int frame, int y, int channel, float* grain) const {
 
 void Sensor::expose(int frame,
                     int y,
-                    const LightRow& upper,
-                    const LightRow& lower,
+                    const Row& upper,
+                    const Row& lower,
                     Exposure& exposure,
                     image::Picture& picture) const {
   const std::size_t room = static_cast<std::size_t>(width_) + 1;
   const auto memory = std::make_unique_for_overwrite<float[]>(7 * room);
   const auto part = [&](std::size_t i) { return memory.get() + i * room; };
-  const auto developed = [&](const LightRow& row, std::size_t first) {
+  const auto developed = [&](const Row& row, std::size_t first) {
     const Codes codes{part(first), part(first + 1), part(first + 2)};
     develop(row.red.data(), row.fall_off.data(), curve_.data(), width_, codes.red);
     develop(row.green.data(), row.fall_off.data(), curve_.data(), width_, codes.green);
@@ -183,7 +183,7 @@ void Sensor::expose(int frame,
   const Codes below = developed(lower, 3);
   float* grain = part(6);
   std::uint16_t* luma =
-      exposure.luma.get() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+      exposure.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
   copy_grain(frame, y, 0, grain);
   expose_luma(above, grain, noise_, width_, luma);
   if (y + 1 < height_) {
@@ -202,8 +202,8 @@ void Sensor::expose(int frame,
 
 void Sensor::sharpen(const Exposure& exposure, int y, image::Picture& picture) const {
   const auto row = [&](int at) {
-    return exposure.luma.get() + static_cast<std::size_t>(std::clamp(at, 0, height_ - 1)) *
-                                     static_cast<std::size_t>(width_);
+    return exposure.data() + static_cast<std::size_t>(std::clamp(at, 0, height_ - 1)) *
+                                 static_cast<std::size_t>(width_);
   };
   const Rows rows{row(y), row(y - 1), row(y + 1), row(y - 2), row(y + 2)};
   std::uint8_t* out = picture.planes[0].row(y);

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "foundation/image/picture.h"
@@ -18,18 +17,16 @@ class Sensor {
  public:
   Sensor(const FlightOptions& options, std::uint32_t seed);
 
-  // Luma before sharpening, in 1/64 of a code value.
-  struct Exposure {
-    std::unique_ptr<std::uint16_t[]> luma;
-  };
+  // Luma of a picture before sharpening, in 1/64 of a code value.
+  using Exposure = std::vector<std::uint16_t>;
   Exposure start() const;
 
   // Exposes rows y and y + 1, with an even y; at the bottom of a picture of odd height both are the
   // same row. Rows can come in any order and on any thread.
   void expose(int frame,
               int y,
-              const LightRow& upper,
-              const LightRow& lower,
+              const Row& upper,
+              const Row& lower,
               Exposure& exposure,
               image::Picture& picture) const;
 
