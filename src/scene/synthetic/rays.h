@@ -63,16 +63,8 @@ inline float exp_of_negative(float x) {
   const double power = kLog2E * static_cast<double>(x);
   const auto whole = static_cast<std::int32_t>(power - 0.5);
   const double r = kLn2 * (power - whole);
-  double sum = 1 + r * (1.0 / 10);
-  sum = 1 + r * (1.0 / 9) * sum;
-  sum = 1 + r * (1.0 / 8) * sum;
-  sum = 1 + r * (1.0 / 7) * sum;
-  sum = 1 + r * (1.0 / 6) * sum;
-  sum = 1 + r * (1.0 / 5) * sum;
-  sum = 1 + r * (1.0 / 4) * sum;
-  sum = 1 + r * (1.0 / 3) * sum;
-  sum = 1 + r * (1.0 / 2) * sum;
-  sum = 1 + r * sum;
+  double sum = 1;
+  for (int n = 10; n >= 1; --n) sum = 1 + r * (1.0 / n) * sum;
   const auto scale = std::bit_cast<double>((static_cast<std::int64_t>(whole) + 1023) << 52);
   return static_cast<float>(sum * scale);
 }
@@ -87,14 +79,8 @@ inline float cosine_of(float angle_rad) {
   const auto whole = static_cast<std::int32_t>(turns + (turns < 0 ? -0.5 : 0.5));
   const double half = kHalfTurn * (turns - whole);
   const double square = half * half;
-  double sum = 1 - square * (1.0 / (16 * 17));
-  sum = 1 - square * (1.0 / (14 * 15)) * sum;
-  sum = 1 - square * (1.0 / (12 * 13)) * sum;
-  sum = 1 - square * (1.0 / (10 * 11)) * sum;
-  sum = 1 - square * (1.0 / (8 * 9)) * sum;
-  sum = 1 - square * (1.0 / (6 * 7)) * sum;
-  sum = 1 - square * (1.0 / (4 * 5)) * sum;
-  sum = 1 - square * (1.0 / (2 * 3)) * sum;
+  double sum = 1;
+  for (int n = 16; n >= 2; n -= 2) sum = 1 - square * (1.0 / (n * (n + 1))) * sum;
   const double sine = half * sum;
   return static_cast<float>(1 - 2 * sine * sine);
 }
