@@ -215,7 +215,10 @@ TEST(Modules, HaveAHeaderForEachSource) {
                                                          {"scene/scene", "scene.h"},
                                                          {"scene/trajectory", "path"},
                                                          {"show/drawing", "pictures.h"},
-                                                         {"runners/network", "inference.h"}};
+                                                         {"runners/classical", "classical.h"},
+                                                         {"runners/network", "inference.h"},
+                                                         {"runners/results", "results_folder.h"},
+                                                         {"runners/tracking", "tracker.h"}};
   const std::regex entry_point(R"re(\n(int main\(|extern "C"))re");
   for (const fs::path& path : all_sources()) {
     if (path.extension() != ".cpp" || !is_source(path)) continue;

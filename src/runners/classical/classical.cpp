@@ -4,10 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runners/classical/close_minus_open.h"
-#include "runners/classical/frame_difference.h"
-#include "runners/classical/hidden_markov.h"
-
 namespace airtruth::classical {
 namespace {
 

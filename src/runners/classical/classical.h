@@ -26,6 +26,10 @@ std::vector<std::string> classical_names();
 // nullptr for a name that is none of these.
 std::unique_ptr<detector::Detector> make_classical(std::string_view name);
 
+std::unique_ptr<detector::Detector> make_close_minus_open();
+std::unique_ptr<detector::Detector> make_hidden_markov();
+std::unique_ptr<detector::Detector> make_frame_difference();
+
 // What the detectors share.
 
 // Weaker blobs are noise more often than not at any size: in a frame of 1280x960 white noise a

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/classical/close_minus_open.h"
-
 #include <algorithm>
 #include <deque>
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/classical/frame_difference.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -129,10 +127,7 @@ class FrameDifference : public detector::Detector {
       detection.score = std::round(most * 1000) / 1000;
       detections.push_back(detection);
     }
-    std::stable_sort(
-        detections.begin(),
-        detections.end(),
-        [](const results::Detection& a, const results::Detection& b) { return a.score > b.score; });
+    results::sort_by_score(detections);
     return detections;
   }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/classical/hidden_markov.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -138,10 +136,7 @@ class HiddenMarkov : public detector::Detector {
       bank.update(factor == 1 ? fine : coarser(fine, factor, bank.grid.size()));
       add_detections(bank, levels, detections);
     }
-    std::stable_sort(
-        detections.begin(),
-        detections.end(),
-        [](const results::Detection& a, const results::Detection& b) { return a.score > b.score; });
+    results::sort_by_score(detections);
     return detections;
   }
 

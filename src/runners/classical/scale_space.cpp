@@ -26,6 +26,16 @@ cv::Mat smoothed(const cv::Mat& picture) {
 
 enum class Along { kRows, kColumns };
 enum class Extreme { kLeast, kMost };
+Extreme opposite(Extreme of) { return of == Extreme::kMost ? Extreme::kLeast : Extreme::kMost; }
+
+cv::Mat extreme_of(const cv::Mat& a, const cv::Mat& b, Extreme extreme) {
+  cv::Mat result;
+  if (extreme == Extreme::kMost)
+    cv::max(a, b, result);
+  else
+    cv::min(a, b, result);
+  return result;
+}
 
 // The extreme of every `length` neighbours, by doubling: of 1, 2, 4, ... and, of two that overlap,
 // of all. The result is shorter by length - 1.
@@ -37,12 +47,7 @@ cv::Mat extreme_of(cv::Mat samples, Along along, int length, Extreme extreme) {
       return along == Along::kRows ? samples.colRange(from, from + size)
                                    : samples.rowRange(from, from + size);
     };
-    cv::Mat next;
-    if (extreme == Extreme::kMost)
-      cv::max(part(0), part(shift), next);
-    else
-      cv::min(part(0), part(shift), next);
-    samples = next;
+    samples = extreme_of(part(0), part(shift), extreme);
     reached += shift;
   }
   return samples;
@@ -58,32 +63,19 @@ cv::Mat filtered(const cv::Mat& padded, Along along, int length, Extreme first) 
   const cv::Mat used = along == Along::kRows
                            ? padded({unused, kMargin, size.width + 2 * (length - 1), size.height})
                            : padded({kMargin, unused, size.width, size.height + 2 * (length - 1)});
-  const Extreme second = first == Extreme::kMost ? Extreme::kLeast : Extreme::kMost;
-  return extreme_of(extreme_of(used, along, length, first), along, length, second);
+  return extreme_of(extreme_of(used, along, length, first), along, length, opposite(first));
 }
 
 // The picture without its dark (closing) or bright (opening) objects. An object is one along both
 // directions: of two short elements, or of a short one across it and a long one along it.
 cv::Mat without_objects(const cv::Mat& padded, Extreme first, bool with_long) {
-  const auto nearer = [&](const cv::Mat& a, const cv::Mat& b) {
-    cv::Mat result;
-    if (first == Extreme::kMost)
-      cv::min(a, b, result);
-    else
-      cv::max(a, b, result);
-    return result;
-  };
   const cv::Mat row = filtered(padded, Along::kRows, kElement, first);
   const cv::Mat column = filtered(padded, Along::kColumns, kElement, first);
-  if (!with_long) return nearer(row, column);
-  const cv::Mat wide = nearer(filtered(padded, Along::kRows, kLongElement, first), column);
-  const cv::Mat high = nearer(filtered(padded, Along::kColumns, kLongElement, first), row);
-  cv::Mat either;
-  if (first == Extreme::kMost)
-    cv::max(wide, high, either);
-  else
-    cv::min(wide, high, either);
-  return either;
+  const Extreme nearer = opposite(first);
+  if (!with_long) return extreme_of(row, column, nearer);
+  const cv::Mat wide = filtered(padded, Along::kRows, kLongElement, first);
+  const cv::Mat high = filtered(padded, Along::kColumns, kLongElement, first);
+  return extreme_of(extreme_of(wide, column, nearer), extreme_of(high, row, nearer), first);
 }
 
 cv::Mat close_minus_open(const cv::Mat& picture, bool with_long, cv::Mat& is_dark) {

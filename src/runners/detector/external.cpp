@@ -44,10 +44,21 @@ std::string samples_of(const image::Picture& picture, SampleOrder samples) {
 class SharedSamples {
  public:
   // Throws Error where it cannot be made.
-  explicit SharedSamples(std::size_t bytes);
+  explicit SharedSamples(std::size_t bytes) : bytes_(bytes) {
+    const int file = place_.descriptor();
+    // The blocks are taken now: a full disk is an error here, and no signal later.
+    const int failed = ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
+    memory_ = failed == 0 ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
+                          : MAP_FAILED;
+    const int fault = failed != 0 ? failed : errno;
+    if (memory_ == MAP_FAILED)
+      throw Error(
+          std::string("cannot take memory for a detector's frames: ") + std::strerror(fault),
+          {path()});
+  }
   SharedSamples(const SharedSamples&) = delete;
   SharedSamples& operator=(const SharedSamples&) = delete;
-  ~SharedSamples();
+  ~SharedSamples() { ::munmap(memory_, bytes_); }
 
   std::string path() const { return place_.path().string(); }
   char* data() { return static_cast<char*>(memory_); }
@@ -57,20 +68,6 @@ class SharedSamples {
   std::size_t bytes_;
   void* memory_ = nullptr;
 };
-
-SharedSamples::SharedSamples(std::size_t bytes) : bytes_(bytes) {
-  const int file = place_.descriptor();
-  // The blocks are taken now: a full disk is an error here, and no signal later.
-  const int failed = ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
-  memory_ = failed == 0 ? ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
-                        : MAP_FAILED;
-  const int fault = failed != 0 ? failed : errno;
-  if (memory_ == MAP_FAILED)
-    throw Error(std::string("cannot take memory for a detector's frames: ") + std::strerror(fault),
-                {path()});
-}
-
-SharedSamples::~SharedSamples() { ::munmap(memory_, bytes_); }
 
 class External : public Detector {
  public:

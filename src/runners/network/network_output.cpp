@@ -24,9 +24,7 @@ constexpr double kMostSizePx = 1e5;  // a box beyond it is no answer
 double sigmoid(double value) { return 1 / (1 + std::exp(-value)); }
 
 void keep_strongest(std::vector<results::Detection>& detections) {
-  std::ranges::stable_sort(
-      detections,
-      [](const results::Detection& a, const results::Detection& b) { return a.score > b.score; });
+  results::sort_by_score(detections);
   if (detections.size() > kMostDetections) detections.resize(kMostDetections);
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/results/coco_results.h"
-
 #include <algorithm>
 #include <charconv>
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,7 +12,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/json/json_object.h"
-#include "runners/results/json_list.h"
+#include "runners/results/results_folder.h"
 
 namespace airtruth::results {
 namespace {
@@ -24,6 +23,153 @@ constexpr std::size_t kMaxBytes = std::size_t{4} << 30;  // of a file: some 40 m
 constexpr const char* kExpected =
     "expected COCO results, [{\"image_id\": ..., \"category_id\": ..., \"bbox\": [x, y, width, "
     "height], \"score\": ...}, ...], or a COCO file whose annotations each have a score";
+
+// JSON texts are too large to be a tree of values as a whole: the parts of lists and objects are
+// found by their brackets alone. Each part is parsed by itself, and a fault has its line.
+
+// One value, with the line at which it begins.
+struct JsonPart {
+  std::string_view text;
+  int line = 1;
+};
+
+// A place in a text, with its line.
+struct Cursor {
+  std::string_view text;
+  std::size_t at = 0;
+  int line = 1;
+
+  bool is_at_end() const { return at >= text.size(); }
+  char here() const { return is_at_end() ? '\0' : text[at]; }
+  void step() { line += text[at++] == '\n' ? 1 : 0; }
+  void skip_blanks() {
+    while (!is_at_end() && std::string_view(" \t\r\n").find(here()) != std::string_view::npos)
+      step();
+  }
+  // From the quote on to after the one that closes; false where none does.
+  bool skip_string() {
+    step();
+    while (!is_at_end() && here() != '"') {
+      if (here() == '\\') step();
+      if (!is_at_end()) step();
+    }
+    if (is_at_end()) return false;
+    step();
+    return true;
+  }
+  // To the comma or bracket after the value; false where there is none.
+  bool skip_value() {
+    int depth = 0;
+    while (!is_at_end()) {
+      const char c = here();
+      if (c == '"') {
+        if (!skip_string()) return false;
+        continue;
+      }
+      const bool closes = c == ']' || c == '}';
+      if (depth == 0 && (c == ',' || closes)) return true;
+      if (c == '[' || c == '{') ++depth;
+      if (closes) --depth;
+      step();
+    }
+    return false;
+  }
+  // The value from here on; empty where it does not end.
+  std::optional<JsonPart> value() {
+    const std::size_t begin = at;
+    const int first = line;
+    if (!skip_value()) return std::nullopt;
+    return JsonPart{text.substr(begin, at - begin), first};
+  }
+};
+
+[[noreturn]] void not_whole(const fs::path& file, int line) {
+  throw Error("the object does not end: the file is not whole", {file.string(), line});
+}
+
+// The elements of a list.
+class JsonElements {
+ public:
+  // `whole` begins with '['. `what` is what it holds, for messages: "detections". The file's name
+  // and the text must outlive the object.
+  JsonElements(const JsonPart& whole, const fs::path& file, std::string what)
+      : cursor_{whole.text, 0, whole.line}, file_(file), what_(std::move(what)) {
+    cursor_.skip_blanks();
+    if (cursor_.here() != '[') fail("is no list of " + what_);
+    cursor_.step();
+  }
+  // Empty after the last one. Throws Error for a list that does not end, or goes on after its end.
+  std::optional<JsonPart> next() {
+    cursor_.skip_blanks();
+    if (cursor_.here() == ',' && !is_first_) {
+      cursor_.step();
+      cursor_.skip_blanks();
+    } else if (cursor_.here() == ']') {
+      cursor_.step();
+      cursor_.skip_blanks();
+      if (!cursor_.is_at_end()) fail("goes on after the list of " + what_);
+      return std::nullopt;
+    } else if (!is_first_) {
+      fail("the list of " + what_ + " does not end; expected ',' or ']'");
+    }
+    is_first_ = false;
+    const auto part = cursor_.value();
+    if (!part) fail("ends within the list of " + what_ + ": the file is not whole");
+    return part;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& fault) const {
+    throw Error(fault, {file_.string(), cursor_.line});
+  }
+
+  Cursor cursor_;
+  const fs::path& file_;
+  std::string what_;
+  bool is_first_ = true;
+};
+
+// The members of an object with these keys, in the order of `keys`; empty where the object has no
+// such key. Throws Error for a text that is no object, and for a key that is there twice.
+std::vector<std::optional<JsonPart>> json_members(std::string_view text,
+                                                  const fs::path& file,
+                                                  const std::vector<std::string>& keys) {
+  std::vector<std::optional<JsonPart>> members(keys.size());
+  Cursor cursor{text};
+  cursor.skip_blanks();
+  if (cursor.here() != '{') throw Error("is no JSON object", {file.string(), cursor.line});
+  cursor.step();
+  for (bool is_first = true;; is_first = false) {
+    cursor.skip_blanks();
+    if (cursor.here() == '}') break;
+    if (cursor.here() == ',' && !is_first) {
+      cursor.step();
+      cursor.skip_blanks();
+    }
+    if (cursor.here() != '"')
+      throw Error("has no key here; expected a key, ',' or '}'", {file.string(), cursor.line});
+    const std::size_t begin = cursor.at + 1;
+    const int line = cursor.line;
+    if (!cursor.skip_string()) not_whole(file, line);
+    const std::string_view key = text.substr(begin, cursor.at - 1 - begin);
+    cursor.skip_blanks();
+    if (cursor.here() != ':')
+      throw Error("has no value of a key; expected ':'", {file.string(), cursor.line});
+    cursor.step();
+    cursor.skip_blanks();
+    const auto value = cursor.value();
+    if (!value) not_whole(file, line);
+    const auto found = std::find(keys.begin(), keys.end(), key);
+    if (found == keys.end()) continue;
+    auto& member = members[static_cast<std::size_t>(found - keys.begin())];
+    if (member) throw Error("has '" + *found + "' twice", {file.string(), line});
+    member = value;
+  }
+  cursor.step();
+  cursor.skip_blanks();
+  if (!cursor.is_at_end()) throw Error("goes on after the object", {file.string(), cursor.line});
+  return members;
+}
 
 // What a whole COCO file says about the numbers in its annotations.
 struct Names {
@@ -36,27 +182,109 @@ struct SetImage {
   std::int64_t frame = 0;
 };
 
+// The text as a whole number from 0 on; empty where it is not one.
+std::optional<std::int64_t> number_of(const std::string& text) {
+  std::int64_t number = -1;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_whole = failed == std::errc() && end == text.data() + text.size() && number >= 0;
+  return is_whole ? std::optional(number) : std::nullopt;
+}
+
 // The images of a set by their number and by their name (read_detections states both).
 class SetImages {
  public:
   // `set` must outlive the object.
-  explicit SetImages(std::span<const ExpectedSequence> set);
-  // All throw Error at `where` for an image that the set does not have, and for one that it has
-  // twice.
-  SetImage by_id(std::int64_t id, const Where& where) const;
-  SetImage by_number_in_name(std::int64_t number, const Where& where) const;
-  SetImage by_name(const std::string& text, const Where& where) const;
+  explicit SetImages(std::span<const ExpectedSequence> set) : set_(set) {
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      names_.emplace(set[i].name, i);
+      first_ids_.push_back(frames_ + 1);
+      frames_ += set[i].frames;
+      const std::size_t named = std::max(set[i].pictures.size(), set[i].image_ids.size());
+      for (std::size_t frame = 0; frame < named; ++frame) add(i, frame);
+    }
+  }
+
   bool has_id(std::int64_t id) const {
     return states_ids() ? ids_.contains(id) : id >= 1 && id <= frames_;
   }
   bool has_number_in_name(std::int64_t number) const { return numbers_.contains(number); }
   bool has_numbers_in_names() const { return !numbers_.empty(); }
 
+  // All throw Error at `where` for an image that the set does not have, and for one that it has
+  // twice.
+  SetImage by_id(std::int64_t id, const Where& where) const {
+    if (!has_id(id))
+      throw Error(fmt::format("image_id is {}; the set has {} images with ids from {} to {}",
+                              id,
+                              states_ids() ? std::ssize(ids_) : frames_,
+                              states_ids() ? ids_.begin()->first : 1,
+                              states_ids() ? ids_.rbegin()->first : frames_),
+                  where);
+    if (states_ids()) return only(ids_.at(id), fmt::format("image_id {}", id), where);
+    const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), id);
+    const auto sequence = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
+    return {sequence, id - first_ids_[sequence]};
+  }
+  SetImage by_number_in_name(std::int64_t number, const Where& where) const {
+    return only(numbers_.at(number), fmt::format("image_id {}", number), where);
+  }
+  SetImage by_name(const std::string& text, const Where& where) const {
+    const fs::path path(text);
+    for (const std::string& name : {text,
+                                    (path.parent_path() / path.stem()).string(),
+                                    path.filename().string(),
+                                    path.stem().string()})
+      if (const auto found = pictures_.find(name); found != pictures_.end())
+        return only(found->second, "'" + text.substr(0, 200) + "'", where);
+    const std::string name = path.parent_path().filename().string();
+    const auto found = names_.find(name);
+    const auto frame = number_of(path.stem().string());
+    if (found != names_.end() && frame && *frame < set_[found->second].frames)
+      return {found->second, *frame};
+    std::string hint;
+    if (found != names_.end()) {
+      hint = fmt::format("; '{}' has the frames 0 to {}", name, set_[found->second].frames - 1);
+    } else {
+      std::vector<std::string> names;
+      for (const ExpectedSequence& sequence : set_) names.push_back(sequence.name);
+      if (const auto near = nearest_spelling(name, names))
+        hint = "; did you mean the sequence '" + *near + "'?";
+    }
+    throw Error("the set has no image '" + text.substr(0, 200) +
+                    "'; expected a picture's file name, or SEQUENCE/NUMBER.jpg with frames from 0" +
+                    hint,
+                where);
+  }
+
  private:
   using Images = std::vector<SetImage>;
 
-  void add(std::size_t sequence, std::size_t frame);
-  SetImage only(const Images& found, const std::string& what, const Where& where) const;
+  void add(std::size_t sequence, std::size_t frame) {
+    const ExpectedSequence& of = set_[sequence];
+    const SetImage image{sequence, static_cast<std::int64_t>(frame)};
+    if (frame < of.image_ids.size() && of.image_ids[frame])
+      ids_[*of.image_ids[frame]].push_back(image);
+    if (frame >= of.pictures.size() || of.pictures[frame].empty()) return;
+    const fs::path picture = of.pictures[frame];
+    const std::string stem = picture.stem().string();
+    for (const std::string& name : std::set<std::string>{picture.string(),
+                                                         (picture.parent_path() / stem).string(),
+                                                         picture.filename().string(),
+                                                         stem})
+      pictures_[name].push_back(image);
+    if (const auto number = number_of(stem)) numbers_[*number].push_back(image);
+  }
+
+  SetImage only(const Images& found, const std::string& what, const Where& where) const {
+    if (found.size() == 1) return found.front();
+    throw Error(
+        fmt::format("{} is an image of '{}' and of '{}'; expected results that name pictures "
+                    "by their folder and file",
+                    what,
+                    set_[found[0].sequence].name,
+                    set_[found[1].sequence].name),
+        where);
+  }
 
   // Whether the set gives its pictures numbers; else the frames are counted from 1.
   bool states_ids() const { return !ids_.empty(); }
@@ -70,96 +298,6 @@ class SetImages {
   std::map<std::string, Images> pictures_;
   std::map<std::string, std::size_t> names_;
 };
-
-// The text as a whole number from 0 on; empty where it is not one.
-std::optional<std::int64_t> number_of(const std::string& text) {
-  std::int64_t number = -1;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_whole = failed == std::errc() && end == text.data() + text.size() && number >= 0;
-  return is_whole ? std::optional(number) : std::nullopt;
-}
-
-SetImages::SetImages(std::span<const ExpectedSequence> set) : set_(set) {
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    names_.emplace(set[i].name, i);
-    first_ids_.push_back(frames_ + 1);
-    frames_ += set[i].frames;
-    const std::size_t named = std::max(set[i].pictures.size(), set[i].image_ids.size());
-    for (std::size_t frame = 0; frame < named; ++frame) add(i, frame);
-  }
-}
-
-void SetImages::add(std::size_t sequence, std::size_t frame) {
-  const ExpectedSequence& of = set_[sequence];
-  const SetImage image{sequence, static_cast<std::int64_t>(frame)};
-  if (frame < of.image_ids.size() && of.image_ids[frame])
-    ids_[*of.image_ids[frame]].push_back(image);
-  if (frame >= of.pictures.size() || of.pictures[frame].empty()) return;
-  const fs::path picture = of.pictures[frame];
-  const std::string stem = picture.stem().string();
-  for (const std::string& name : std::set<std::string>{picture.string(),
-                                                       (picture.parent_path() / stem).string(),
-                                                       picture.filename().string(),
-                                                       stem})
-    pictures_[name].push_back(image);
-  if (const auto number = number_of(stem)) numbers_[*number].push_back(image);
-}
-
-SetImage SetImages::only(const Images& found, const std::string& what, const Where& where) const {
-  if (found.size() == 1) return found.front();
-  throw Error(fmt::format("{} is an image of '{}' and of '{}'; expected results that name pictures "
-                          "by their folder and file",
-                          what,
-                          set_[found[0].sequence].name,
-                          set_[found[1].sequence].name),
-              where);
-}
-
-SetImage SetImages::by_id(std::int64_t id, const Where& where) const {
-  if (!has_id(id))
-    throw Error(fmt::format("image_id is {}; the set has {} images with ids from {} to {}",
-                            id,
-                            states_ids() ? std::ssize(ids_) : frames_,
-                            states_ids() ? ids_.begin()->first : 1,
-                            states_ids() ? ids_.rbegin()->first : frames_),
-                where);
-  if (states_ids()) return only(ids_.at(id), fmt::format("image_id {}", id), where);
-  const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), id);
-  const auto sequence = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
-  return {sequence, id - first_ids_[sequence]};
-}
-
-SetImage SetImages::by_number_in_name(std::int64_t number, const Where& where) const {
-  return only(numbers_.at(number), fmt::format("image_id {}", number), where);
-}
-
-SetImage SetImages::by_name(const std::string& text, const Where& where) const {
-  const fs::path path(text);
-  for (const std::string& name : {text,
-                                  (path.parent_path() / path.stem()).string(),
-                                  path.filename().string(),
-                                  path.stem().string()})
-    if (const auto found = pictures_.find(name); found != pictures_.end())
-      return only(found->second, "'" + text.substr(0, 200) + "'", where);
-  const std::string name = path.parent_path().filename().string();
-  const auto found = names_.find(name);
-  const auto frame = number_of(path.stem().string());
-  if (found != names_.end() && frame && *frame < set_[found->second].frames)
-    return {found->second, *frame};
-  std::string hint;
-  if (found != names_.end()) {
-    hint = fmt::format("; '{}' has the frames 0 to {}", name, set_[found->second].frames - 1);
-  } else {
-    std::vector<std::string> names;
-    for (const ExpectedSequence& sequence : set_) names.push_back(sequence.name);
-    if (const auto near = nearest_spelling(name, names))
-      hint = "; did you mean the sequence '" + *near + "'?";
-  }
-  throw Error("the set has no image '" + text.substr(0, 200) +
-                  "'; expected a picture's file name, or SEQUENCE/NUMBER.jpg with frames from 0" +
-                  hint,
-              where);
-}
 
 JsonDocument parsed(const JsonPart& part, const fs::path& file) {
   for (const char* word : {"NaN", "Infinity"})

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,10 @@ std::string text_of(const Box& box) {
 
 bool is_sound(const Box& box) {
   return is_finite(box) && box.width > 0 && box.height > 0 && std::isfinite(box.area());
+}
+
+void sort_by_score(std::vector<Detection>& detections) {
+  std::ranges::stable_sort(detections, std::greater(), &Detection::score);
 }
 
 std::optional<std::string> fault_of(const Detection& detection, int width, int height) {

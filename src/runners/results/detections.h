@@ -29,6 +29,9 @@ struct Detection {
   bool operator==(const Detection&) const = default;
 };
 
+// The highest score first; equal ones stay in their order.
+void sort_by_score(std::vector<Detection>& detections);
+
 // The detections of a sequence.
 struct SequenceDetections {
   std::string name;  // of the sequence, or of the video

@@ -8,7 +8,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "runners/results/coco_results.h"
 #include "runners/results/results_folder.h"
 
 namespace airtruth::results {

@@ -15,7 +15,6 @@
 #include "foundation/json/json_object.h"
 #include "foundation/run_files/run_files.h"
 #include "labels/exchange/text.h"
-#include "runners/results/coco_results.h"
 
 namespace airtruth::results {
 namespace {

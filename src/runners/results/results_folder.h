@@ -73,4 +73,16 @@ SequenceDetections read_sequence(const fs::path& folder, const std::string& name
 std::vector<SequenceDetections> read_detections(const fs::path& source,
                                                 std::span<const ExpectedSequence> set);
 
+// The same from COCO's results format alone (cocodataset.org, "Results format"): a list of
+// {image_id, category_id, bbox, score}; bbox is [x, y, width, height] with the first pixel at 0. Or
+// a whole COCO file whose annotations each have a score.
+std::vector<SequenceDetections> read_coco_results(const fs::path& file,
+                                                  std::span<const ExpectedSequence> set);
+// Writes COCO results of `set` to a file. Categories are numbered from 1 in alphabetical order;
+// `set` gives the image ids, as read_detections() takes them. The sequences are read from `folder`
+// one at a time; a sequence of the set that is not in the folder has no results.
+void write_coco_results(const fs::path& file,
+                        const fs::path& folder,
+                        std::span<const ExpectedSequence> set);
+
 }  // namespace airtruth::results

@@ -24,11 +24,9 @@ using evaluation::Mark;
 using evaluation::Trajectory;
 using evaluation::VotFrame;
 
-constexpr std::array<std::pair<const char*, Protocol>, 3> kProtocols = {
-    {{"ope", Protocol::kOnePass},
-     {"restart", Protocol::kRestart},
-     {"multistart", Protocol::kMultiStart}}};
-constexpr const char* kVotFolder = "baseline";
+// The folders of runs with restarts, with several starts, and of both as VOT's toolkit has them.
+constexpr std::array kVotPlaces = {
+    enum_name(Protocol::kRestart), enum_name(Protocol::kMultiStart), "baseline"};
 constexpr const char* kBinary = ".bin";
 constexpr std::size_t kAnchorDigits = 8;  // of a file's name, as VOT's toolkit writes it
 constexpr std::size_t kMotColumns = 6;    // at least: frame, id, x, y, w, h
@@ -211,18 +209,12 @@ void add_vot_runs(const fs::path& folder,
 }  // namespace
 
 Protocol protocol_from_name(std::string_view name) {
-  std::vector<std::string> names;
-  for (const auto& [known, protocol] : kProtocols) {
-    if (name == known) return protocol;
-    names.emplace_back(known);
-  }
-  const auto nearest = nearest_spelling(name, names);
+  if (const auto known = enum_named<Protocol>(name)) return *known;
+  const auto nearest = nearest_spelling(name, all_enum_names<Protocol>());
   throw Error(
       "unknown protocol '" + std::string(name) + "'" +
       (nearest ? "; did you mean '" + *nearest + "'?" : "; expected ope, restart or multistart"));
 }
-
-const char* name(Protocol protocol) { return kProtocols[static_cast<std::size_t>(protocol)].first; }
 
 fs::path trajectory_file(const fs::path& folder,
                          Protocol protocol,
@@ -232,7 +224,7 @@ fs::path trajectory_file(const fs::path& folder,
   const std::string file = protocol == Protocol::kRestart
                                ? fmt::format("{}_{:03d}.txt", sequence, number)
                                : fmt::format("{}_{:08d}.txt", sequence, number);
-  return folder / name(protocol) / sequence / file;
+  return folder / enum_name(protocol) / sequence / file;
 }
 
 fs::path times_file(const fs::path& trajectory, Protocol protocol) {
@@ -274,7 +266,7 @@ TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, 
     results.one_pass.back().seconds =
         read_times(got10k.parent_path() / (clip.name + "_time.txt"), clip.frames.size());
   }
-  for (const char* place : {name(Protocol::kRestart), name(Protocol::kMultiStart), kVotFolder})
+  for (const char* place : kVotPlaces)
     add_vot_runs(folder / place / clip.name, clip, origin_px, results);
   return results;
 }
@@ -293,8 +285,7 @@ std::vector<std::string> tracked_sequences_in(const fs::path& folder) {
     }
   };
   add_folders(folder);
-  for (const char* place : {name(Protocol::kRestart), name(Protocol::kMultiStart), kVotFolder})
-    add_folders(folder / place);
+  for (const char* place : kVotPlaces) add_folders(folder / place);
   return {names.begin(), names.end()};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include <airtruth/vot.h>
 
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 
 // Trackers' results as files (docs/evaluation.md). A folder holds one tracker's:
 //   SEQUENCE.txt                              one pass, a line "x,y,w,h" a frame
@@ -24,9 +26,13 @@
 namespace airtruth::results {
 
 enum class Protocol { kOnePass, kRestart, kMultiStart };
-// "ope", "restart", "multistart"; Error with the nearest for anything else.
+constexpr auto enum_names(Protocol) {
+  return std::to_array<EnumName<Protocol>>({{Protocol::kOnePass, "ope"},
+                                            {Protocol::kRestart, "restart"},
+                                            {Protocol::kMultiStart, "multistart"}});
+}
+// Error with the nearest name for one that is unknown.
 Protocol protocol_from_name(std::string_view name);
-const char* name(Protocol protocol);
 
 // `number` is the number of the repetition from 1, or the anchor's frame; it is ignored for one
 // pass.

@@ -22,7 +22,6 @@
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
 #include "foundation/json/settings_record.h"
-#include "runners/results/coco_results.h"
 #include "runners/results/detections.h"
 #include "runners/runs/clips.h"
 
@@ -66,112 +65,91 @@ Json settings_of(const DetectorName& detector, const DetectOptions& options) {
 // The folder of the results of backgrounds, in a detector's folder.
 constexpr const char* kBackgrounds = "backgrounds";
 
-// The results of one detector in its folder: what is there, what is added. Thread-safe.
+// The results of one detector in its folder: what is there, what is added. Thread-safe. `part` is
+// "" for the sequences of a set, or kBackgrounds.
 class DetectorResults {
  public:
   // Throws Error where the folder holds results of other settings.
-  DetectorResults(const DetectorName& detector, const fs::path& out, const DetectOptions& options);
+  DetectorResults(const DetectorName& detector, const fs::path& out, const DetectOptions& options)
+      : detector_(detector), options_(options), settings_(settings_of(detector, options)) {
+    summary_.name = detector.name;
+    summary_.folder = out / detector.name;
+    is_open();
+  }
 
   // Creates the folder and its record.
-  void open();
-  // `part` is "" for the sequences of a set, or kBackgrounds.
+  void open() {
+    std::error_code failed;
+    fs::create_directories(summary_.folder, failed);
+    if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+    lock_.emplace(summary_.folder, summary_.folder, options_.warn);
+    if (is_open()) return;
+    Json record = settings_;
+    record["name"] = detector_.name;
+    record["format"] = "airtruth detections 1";
+    record["version"] = kVersion;
+    write_file(summary_.folder / kRecord, record.dump(1) + "\n");
+  }
+
   // Counts a sequence that is there.
-  bool keeps(const std::string& part, const std::string& sequence);
+  bool keeps(const std::string& part, const std::string& sequence) {
+    if (!results::has_sequence(summary_.folder / part, sequence)) return false;
+    const std::lock_guard lock(mutex_);
+    ++summary_.kept;
+    return true;
+  }
+
   void add(const std::string& part,
            const results::SequenceDetections& detections,
-           const std::string& log);
-  void add_broken(const std::string& sequence, const std::string& fault, const std::string& log);
+           const std::string& log) {
+    const fs::path folder = summary_.folder / part;
+    fs::create_directories(folder);
+    write_log(detections.name, log);
+    results::write_sequence(folder, detections);
+    const std::lock_guard lock(mutex_);
+    ++summary_.made;
+    summary_.frames += std::ssize(detections.frames);
+    for (const auto& frame : detections.frames) summary_.detections += std::ssize(frame);
+    for (const double s : detections.seconds) summary_.seconds += s;
+  }
+
+  void add_broken(const std::string& sequence, const std::string& fault, const std::string& log) {
+    write_log(sequence, log + "airtruth: the detector " + fault + "\n");
+    const std::lock_guard lock(mutex_);
+    ++summary_.broken;
+    airtruth::warn(options_.warn,
+                   fmt::format("{} on {}: the detector {}", detector_.name, sequence, fault));
+  }
+
   // Writes the COCO results of a set of which every sequence is there.
-  void finish(std::span<const results::ExpectedSequence> set, const std::string& file_name) const;
+  void finish(std::span<const results::ExpectedSequence> set, const std::string& file_name) const {
+    const bool is_whole = std::ranges::all_of(set, [&](const results::ExpectedSequence& one) {
+      return results::has_sequence(summary_.folder, one.name);
+    });
+    const fs::path file = summary_.folder / file_name;
+    if (!is_whole || (fs::exists(file) && summary_.made == 0)) return;
+    results::write_coco_results(file, summary_.folder, set);
+  }
 
   const std::string& command() const { return detector_.command; }
   const DetectSummary& summary() const { return summary_; }
 
  private:
-  bool is_open() const;
-  void write_log(const std::string& sequence, const std::string& log) const;
+  bool is_open() const { return is_record_of(summary_.folder / kRecord, settings_); }
+
+  void write_log(const std::string& sequence, const std::string& log) const {
+    if (log.empty()) return;
+    fs::create_directories(summary_.folder / "logs");
+    write_file(summary_.folder / "logs" / (sequence + ".log"), log);
+  }
 
   DetectorName detector_;
   const DetectOptions& options_;
+  Json settings_;
   std::mutex mutex_;
   DetectSummary summary_;
   std::optional<RunLock> lock_;
 };
-
-DetectorResults::DetectorResults(const DetectorName& detector,
-                                 const fs::path& out,
-                                 const DetectOptions& options)
-    : detector_(detector), options_(options) {
-  summary_.name = detector.name;
-  summary_.folder = out / detector.name;
-  is_open();
-}
-
-bool DetectorResults::is_open() const {
-  // settings_of() throws Error for a lens that is not there, also before there is a folder.
-  return is_record_of(summary_.folder / kRecord, settings_of(detector_, options_));
-}
-
-void DetectorResults::open() {
-  std::error_code failed;
-  fs::create_directories(summary_.folder, failed);
-  if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
-  lock_.emplace(summary_.folder, summary_.folder, options_.warn);
-  if (is_open()) return;
-  Json record = settings_of(detector_, options_);
-  record["name"] = detector_.name;
-  record["format"] = "airtruth detections 1";
-  record["version"] = kVersion;
-  write_file(summary_.folder / kRecord, record.dump(1) + "\n");
-}
-
-bool DetectorResults::keeps(const std::string& part, const std::string& sequence) {
-  if (!results::has_sequence(summary_.folder / part, sequence)) return false;
-  const std::lock_guard lock(mutex_);
-  ++summary_.kept;
-  return true;
-}
-
-void DetectorResults::add(const std::string& part,
-                          const results::SequenceDetections& detections,
-                          const std::string& log) {
-  const fs::path folder = summary_.folder / part;
-  fs::create_directories(folder);
-  write_log(detections.name, log);
-  results::write_sequence(folder, detections);
-  const std::lock_guard lock(mutex_);
-  ++summary_.made;
-  summary_.frames += std::ssize(detections.frames);
-  for (const auto& frame : detections.frames) summary_.detections += std::ssize(frame);
-  for (const double s : detections.seconds) summary_.seconds += s;
-}
-
-void DetectorResults::add_broken(const std::string& sequence,
-                                 const std::string& fault,
-                                 const std::string& log) {
-  write_log(sequence, log + "airtruth: the detector " + fault + "\n");
-  const std::lock_guard lock(mutex_);
-  ++summary_.broken;
-  airtruth::warn(options_.warn,
-                 fmt::format("{} on {}: the detector {}", detector_.name, sequence, fault));
-}
-
-void DetectorResults::finish(std::span<const results::ExpectedSequence> set,
-                             const std::string& file_name) const {
-  const bool is_whole =
-      std::all_of(set.begin(), set.end(), [&](const results::ExpectedSequence& one) {
-        return results::has_sequence(summary_.folder, one.name);
-      });
-  const fs::path file = summary_.folder / file_name;
-  if (!is_whole || (fs::exists(file) && summary_.made == 0)) return;
-  results::write_coco_results(file, summary_.folder, set);
-}
-
-void DetectorResults::write_log(const std::string& sequence, const std::string& log) const {
-  if (log.empty()) return;
-  fs::create_directories(summary_.folder / "logs");
-  write_file(summary_.folder / "logs" / (sequence + ".log"), log);
-}
 
 // The share of a box's pixels, those with their centre in it, that the own aircraft hides.
 double hidden_share(const Box& box, const image::Mask& own_aircraft) {
@@ -226,11 +204,7 @@ class Following {
         if (const auto fault = results::fault_of(detection, found_.width, found_.height))
           throw process::Failure(
               fmt::format("answered what is no detection for frame {}: {}", frame.index, *fault));
-      std::stable_sort(detections.begin(),
-                       detections.end(),
-                       [](const results::Detection& a, const results::Detection& b) {
-                         return a.score > b.score;
-                       });
+      results::sort_by_score(detections);
       if (own_aircraft_)
         std::erase_if(detections, [&](const results::Detection& d) {
           return hidden_share(d.box_px, *own_aircraft_) > 0.5;

@@ -51,7 +51,7 @@ struct Am3Options {
 };
 
 Am3Options am3_options(std::uint64_t seed);
-// AM3 that follows the scale by optical flow (scale.h). Its classifiers start anew whenever the
+// AM3 that follows the scale by optical flow (am3.cpp). Its classifiers start anew whenever the
 // scale has changed by half.
 Am3Options am3s_options(std::uint64_t seed);
 // The trackers of Babenko et al. (mil) and of Zhang and Song (wmil): one classifier at one

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/tracking/opencv_trackers.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -20,6 +18,7 @@
 
 #include "camera/opencv_plugin/opencv_plugin.h"
 #include "foundation/image/colour.h"
+#include "runners/tracking/tracker.h"
 
 namespace airtruth::tracking {
 namespace {

@@ -8,7 +8,6 @@
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 #include "runners/tracking/am3.h"
-#include "runners/tracking/opencv_trackers.h"
 #include "runners/tracking/trax_session.h"
 
 namespace airtruth::tracking {

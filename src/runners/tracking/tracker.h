@@ -69,6 +69,9 @@ struct TrackerOptions {
 // for any other name, and process::Failure where a command cannot be run or does not send TraX's
 // hello message.
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOptions& options);
+// One of OpenCV's alone, which need no model file; nullptr for any other name. Each tracker gets
+// newly seeded random numbers.
+std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_t seed);
 std::vector<std::string> tracker_names();
 bool is_trax(std::string_view tracker);  // also for "NAME=trax:COMMAND"
 
