@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/demo/demo.h"
 
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kScene =
     R"(# Made by `airtruth demo`; change it and run: airtruth render demo.toml --out . --overwrite
 name = "demo"
-seed = %llu
+seed = {}
 
 [background]
 video = "flight.mp4"
@@ -27,19 +27,19 @@ mask = "own_aircraft.png"
 
 [lens]
 model = "fisheye"
-vertical_fov_deg = %g
+vertical_fov_deg = {:g}
 
 [camera]
-position_ned_m = [0, 0, -%g]
-velocity_ned_mps = [%g, 0, 0]
+position_ned_m = [0, 0, -{:g}]
+velocity_ned_mps = [{:g}, 0, 0]
 attitude_yaw_pitch_roll_deg = [0, 0, 0]
 
 [motion]
 reference = "first_frame"
 
 [light]
-sun_azimuth_deg = %g
-sun_elevation_deg = %g
+sun_azimuth_deg = {:g}
+sun_elevation_deg = {:g}
 
 [[intruder]]
 id = "b737"
@@ -70,17 +70,13 @@ synthetic::FlightOptions flight_options(const DemoOptions& options) {
 }
 
 std::string scene_text(const synthetic::FlightOptions& flight, std::uint64_t seed) {
-  char text[4096];
-  const int length = std::snprintf(text,
-                                   sizeof text,
-                                   kScene,
-                                   static_cast<unsigned long long>(seed),
-                                   kVerticalFovDeg,
-                                   flight.altitude_m,
-                                   flight.speed_mps,
-                                   flight.sun_azimuth_deg,
-                                   flight.sun_elevation_deg);
-  return {text, static_cast<std::size_t>(length)};
+  return fmt::format(kScene,
+                     seed,
+                     kVerticalFovDeg,
+                     flight.altitude_m,
+                     flight.speed_mps,
+                     flight.sun_azimuth_deg,
+                     flight.sun_elevation_deg);
 }
 
 std::function<void(std::int64_t, std::int64_t)> staged(const pipeline::Options& run,

@@ -37,12 +37,16 @@ struct StageTimes {
   double end_cpu_s = 0;
 };
 
-struct Summary {
-  fs::path folder;  // <out>/<name>
+// How many frames there were, and of them those of which something is to be said.
+struct FrameCounts {
   std::int64_t frames = 0;
-  std::int64_t frames_visible = 0;  // frames with at least one visible intruder
-  std::int64_t frames_bridged = 0;  // frames whose motion was not measured
-  std::int64_t frames_damaged = 0;
+  std::int64_t frames_visible = 0;  // with at least one visible aircraft
+  std::int64_t frames_bridged = 0;  // whose camera motion was not measured
+  std::int64_t frames_damaged = 0;  // whose data in the background was corrupt
+};
+
+struct Summary : FrameCounts {
+  fs::path folder;  // <out>/<name>
   // Wall time of the frames in seconds, without opening the inputs and loading the aircraft.
   double seconds = 0;
   StageTimes stages;
