@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <memory>
 
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 #include "dataset/labelled/import.h"
 #include "dataset/set_report/report.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "foundation/run_files/run_files.h"
 
 namespace airtruth::cli {
@@ -82,12 +82,10 @@ struct Import {
 std::pair<std::string, std::int64_t> start_frame_from(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const std::size_t digits = equals == std::string::npos ? 0 : equals + 1;
-  std::int64_t number = -1;
-  const char* end = text.data() + text.size();
-  const auto [rest, failed] = std::from_chars(text.data() + digits, end, number);
-  if (failed != std::errc() || rest != end || number < 0)
+  const auto number = number_from_text<std::int64_t>(std::string_view(text).substr(digits));
+  if (!number || *number < 0)
     throw Error("--start-frame is '" + text + "'; expected N or CLIP=N, a picture's number");
-  return {digits == 0 ? std::string() : text.substr(0, equals), number};
+  return {digits == 0 ? std::string() : text.substr(0, equals), *number};
 }
 
 void run_import(Import arguments, Context& context) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
+#include "foundation/base/text.h"
 #include "runners/runs/detector_run.h"
 
 namespace airtruth::cli {
@@ -45,11 +45,9 @@ void tell(const runs::DetectSummary& summary, Context& context) {
 void read_declare(const std::string& text, association::AssociationOptions& association) {
   const std::size_t slash = text.find('/');
   const auto number = [&](std::string_view digits) {
-    int value = 0;
-    const auto [end, fault] = std::from_chars(digits.begin(), digits.end(), value);
-    if (fault != std::errc{} || end != digits.end() || digits.empty())
-      throw Error("--declare is '" + text + "'; expected M/N, such as 3/5");
-    return value;
+    const auto value = number_from_text<int>(digits);
+    if (!value) throw Error("--declare is '" + text + "'; expected M/N, such as 3/5");
+    return *value;
   };
   if (slash == std::string::npos) number("");
   association.declare_m = number(std::string_view(text).substr(0, slash));

@@ -58,9 +58,8 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
-  const auto nearest = nearest_spelling(argv[1], names);
-  throw Error("there is no command '" + std::string(argv[1]) + "'" +
-              (nearest ? "; did you mean '" + *nearest + "'?" : "") + " (see --help)");
+  throw Error("there is no command '" + std::string(argv[1]) + "'" + did_you_mean(argv[1], names) +
+              " (see --help)");
 }
 
 // --help and --version.

@@ -2,7 +2,6 @@
 #include "aircraft/fleet/scale.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "aircraft/shapes/airframes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::fleet {
 namespace {
@@ -30,11 +30,9 @@ std::vector<std::string> parted(const std::string& text, char by) {
 }
 
 double metres(const std::string& text) {
-  double value = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  check(fault == std::errc() && end == text.data() + text.size() && value > 0,
-        "the table of published sizes holds metres");
-  return value;
+  const auto value = number_from_text<double>(text);
+  check(value && *value > 0, "the table of published sizes holds metres");
+  return *value;
 }
 
 PublishedSize size_from(const std::string& line) {

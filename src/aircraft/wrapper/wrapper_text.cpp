@@ -117,13 +117,11 @@ std::optional<std::pair<std::string, int>> blade_of(std::string_view property) {
       blade < rotor + kRotors.size() || !property.ends_with(kPlace))
     return std::nullopt;
   const std::size_t begin = blade + kBlade.size();
-  int number = 0;
-  const char* end = property.data() + property.size() - kPlace.size();
-  const auto [rest, failed] = std::from_chars(property.data() + begin, end, number);
-  if (failed != std::errc() || rest != end || number < 0 || number >= kMostBlades)
-    return std::nullopt;
+  const auto number =
+      number_from_text<int>(property.substr(begin, property.size() - kPlace.size() - begin));
+  if (!number || *number < 0 || *number >= kMostBlades) return std::nullopt;
   const std::size_t name = rotor + kRotors.size();
-  return std::pair(std::string(property.substr(name, blade - name)), number);
+  return std::pair(std::string(property.substr(name, blade - name)), *number);
 }
 
 // The number of blades of each rotor that a wrapper turns.

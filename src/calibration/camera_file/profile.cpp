@@ -173,10 +173,9 @@ const CameraProfile& camera_profile(const std::string& name, const Where& where)
     if (profile.name == name) return profile;
     names.push_back(profile.name);
   }
-  std::string message = "there is no camera profile '" + name + "'";
-  if (const auto near = nearest_spelling(name, names)) message += "; did you mean '" + *near + "'?";
-  message += " ('airtruth calibrate --list-profiles' lists them)";
-  throw Error(message, where);
+  throw Error("there is no camera profile '" + name + "'" + did_you_mean(name, names) +
+                  " ('airtruth calibrate --list-profiles' lists them)",
+              where);
 }
 
 const CameraProfile* recognised_profile(int width,

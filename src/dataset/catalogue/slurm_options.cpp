@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -86,10 +85,8 @@ constexpr int kMostTasks = 100'000;
 
 // A whole number from 1 to kMostTasks.
 std::optional<int> count_of(std::string_view text) {
-  int count = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return is_digits(text) && count >= 1 && count <= kMostTasks ? std::optional(count) : std::nullopt;
+  const auto count = number_from_text<int>(text);
+  return count && is_digits(text) && *count >= 1 && *count <= kMostTasks ? count : std::nullopt;
 }
 
 // "TASKS", "TASKS%M" or "%M"; `tasks_of` reads the first.

@@ -35,9 +35,7 @@ std::size_t place_of(const Things& things,
   for (const auto& thing : things) names.push_back(thing.name);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  const auto nearest = nearest_spelling(name, names);
-  throw Error("there is no " + std::string(what) + " '" + name + "'" +
-                  (nearest ? "; did you mean '" + *nearest + "'?" : ""),
+  throw Error("there is no " + std::string(what) + " '" + name + "'" + did_you_mean(name, names),
               where);
 }
 

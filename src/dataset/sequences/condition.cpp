@@ -29,14 +29,12 @@ Condition condition_from(const std::string& text) {
                 {"--where"});
   Condition condition{text, text.substr(0, equals), 0, 0};
   const std::vector<std::string> known = scene::weather_names();
-  if (std::find(known.begin(), known.end(), condition.key) == known.end()) {
-    const auto nearest = nearest_spelling(condition.key, known);
+  if (std::find(known.begin(), known.end(), condition.key) == known.end())
     throw Error(fmt::format("has the key '{}'{}; expected {}",
                             condition.key,
-                            nearest ? fmt::format("; did you mean '{}'?", *nearest) : "",
+                            did_you_mean(condition.key, known),
                             fmt::join(known, ", ")),
                 {"--where"});
-  }
   constexpr double kOpen = std::numeric_limits<double>::infinity();
   condition.low = bound_from(text.substr(equals + 1, dots - equals - 1), -kOpen);
   condition.high = bound_from(text.substr(dots + 2), kOpen);

@@ -2,7 +2,6 @@
 #include "encounter/encounter_model/model_fields.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -36,12 +35,11 @@ std::string_view next_word(std::string_view& rest) {
 }
 
 double number_of(std::string_view word, const std::string& name, const Where& where) {
-  double value = 0;
-  const auto [rest, failed] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (failed != std::errc() || rest != word.data() + word.size() || !std::isfinite(value))
+  const auto value = number_from_text<double>(word);
+  if (!value || !std::isfinite(*value))
     throw Error(fmt::format("{} holds '{}'; expected finite numbers", name, word.substr(0, 40)),
                 where);
-  return value;
+  return *value;
 }
 
 }  // namespace
@@ -63,14 +61,13 @@ ModelFields::ModelFields(std::string_view text, const std::filesystem::path& fil
       continue;
     }
     const std::string name(trimmed(line.substr(1)));
-    if (std::find(kFields.begin(), kFields.end(), name) == kFields.end()) {
-      const auto near = nearest_spelling(name, kFields);
-      throw Error(fmt::format("unknown field '{}'; {}",
-                              name.substr(0, 40),
-                              near ? "did you mean '" + *near + "'?"
-                                   : fmt::format("expected {}", fmt::join(kFields, ", "))),
-                  {file_, number});
-    }
+    if (std::find(kFields.begin(), kFields.end(), name) == kFields.end())
+      throw Error(
+          fmt::format(
+              "unknown field '{}'{}",
+              name.substr(0, 40),
+              did_you_mean(name, kFields, fmt::format("; expected {}", fmt::join(kFields, ", ")))),
+          {file_, number});
     if (fields_.contains(name))
       throw Error(
           fmt::format("field {} is twice there; first in line {}", name, fields_[name].line),

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -61,14 +60,12 @@ void split_row(std::string_view line, std::vector<std::string_view>& cells) {
 }
 
 double number_in(std::string_view cell, std::string_view name, const Where& where) {
-  double value = 0;
-  const char* end = cell.data() + cell.size();
-  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
-  if (failed != std::errc() || rest != end || !(std::abs(value) <= kMaxNumber))
+  const auto value = number_from_text<double>(cell);
+  if (!value || !(std::abs(*value) <= kMaxNumber))
     throw Error(
         fmt::format("{} is '{}'; expected a number up to 1e9 in size", name, cell.substr(0, 40)),
         where);
-  return value;
+  return *value;
 }
 
 std::string aircraft_name_in(std::string_view cell, const Where& where) {

@@ -86,6 +86,13 @@ int edit_distance(std::string_view a, std::string_view b) {
   return without_case + (with_case - without_case) / 3;
 }
 
+std::string did_you_mean(std::string_view word,
+                         std::span<const std::string> candidates,
+                         const std::string& otherwise) {
+  const auto near = nearest_spelling(word, candidates);
+  return near ? "; did you mean '" + *near + "'?" : otherwise;
+}
+
 std::vector<std::string> nearest_spellings(std::string_view word,
                                            std::span<const std::string> candidates,
                                            std::size_t count) {

@@ -87,6 +87,12 @@ int edit_distance(std::string_view a, std::string_view b);
 std::optional<std::string> nearest_spelling(std::string_view word,
                                             std::span<const std::string> candidates);
 
+// "; did you mean 'seed'?" for the end of a message about an unknown word; `otherwise` where no
+// candidate is near.
+std::string did_you_mean(std::string_view word,
+                         std::span<const std::string> candidates,
+                         const std::string& otherwise = "");
+
 // The `count` candidates with the smallest edit distances, the smallest first, whatever the
 // distances are. Equal distances keep the order of the candidates.
 std::vector<std::string> nearest_spellings(std::string_view word,

@@ -2,7 +2,6 @@
 #include "foundation/base/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -56,12 +55,10 @@ std::string shell_word(std::string_view text) {
 }
 
 double finite_number(const std::string& cell, const Where& where) {
-  double value = 0;
-  const char* end = cell.data() + cell.size();
-  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
-  if (failed != std::errc() || rest != end || !std::isfinite(value))
+  const auto value = number_from_text<double>(cell);
+  if (!value || !std::isfinite(*value))
     throw Error("'" + cell.substr(0, 40) + "' is not a finite number", where);
-  return value;
+  return *value;
 }
 
 std::vector<std::size_t> places_of(const std::vector<std::string>& names,
@@ -74,9 +71,8 @@ std::vector<std::size_t> places_of(const std::vector<std::string>& names,
     if (known == names.end()) {
       std::string expected;
       for (const std::string& name : names) expected += (expected.empty() ? "" : ",") + name;
-      const auto near = nearest_spelling(header[i], names);
-      throw Error("unknown column '" + shown + "'; " +
-                      (near ? "did you mean '" + *near + "'?" : "expected " + expected),
+      throw Error("unknown column '" + shown + "'" +
+                      did_you_mean(header[i], names, "; expected " + expected),
                   where);
     }
     std::size_t& place = places[static_cast<std::size_t>(known - names.begin())];

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "foundation/base/error.h"
@@ -49,6 +52,17 @@ std::string toml_string(std::string_view text);
 
 // The text as one word of a shell command, in single quotes.
 std::string shell_word(std::string_view text);
+
+// The whole text as a number; empty where it is none, or one that the type does not hold.
+//
+//   number_from_text<int>("12") == 12; "12 ", "+12" and "" are none
+template <typename Number>
+std::optional<Number> number_from_text(std::string_view text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [rest, failed] = std::from_chars(text.data(), end, value);
+  return failed == std::errc() && rest == end ? std::optional(value) : std::nullopt;
+}
 
 // The cell as a number. Throws Error where it is not a number or not finite.
 double finite_number(const std::string& cell, const Where& where);

@@ -2,7 +2,6 @@
 #include "labels/annotation/evision.h"
 
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -57,11 +56,9 @@ class Reader {
 
   int frame_number(const pugi::xml_node& node) {
     const std::string_view name = node.name();
-    int number = 0;
     if (name.starts_with("frame_")) {
-      const auto [end, code] = std::from_chars(name.data() + 6, name.data() + name.size(), number);
-      const bool whole = code == std::errc{} && end == name.data() + name.size();
-      if (whole && number >= 1 && number < std::numeric_limits<int>::max()) return number;
+      const auto number = number_from_text<int>(name.substr(6));
+      if (number && *number >= 1 && *number < std::numeric_limits<int>::max()) return *number;
     }
     fail(node, fmt::format("found <{}>; expected <frame_1>, <frame_2>, ...", short_name(node)));
   }
@@ -73,13 +70,10 @@ class Reader {
   }
 
   double number(const pugi::xml_node& node) {
-    const std::string_view text = trimmed(node.text().get());
-    double value = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc{} || end != text.data() + text.size() || text.empty() ||
-        !std::isfinite(value))
+    const auto value = number_from_text<double>(trimmed(node.text().get()));
+    if (!value || !std::isfinite(*value))
       fail(node, fmt::format("<{}> holds no finite number", short_name(node)));
-    return value;
+    return *value;
   }
 
   int pixels(const pugi::xml_node& node) {

@@ -149,10 +149,9 @@ Format format_from_name(std::string_view name) {
     if (name == a.name) return a.format;
     names.emplace_back(a.name);
   }
-  const auto nearest = nearest_spelling(name, names);
-  throw Error("unknown format '" + std::string(name) + "'" +
-              (nearest ? "; did you mean '" + *nearest + "'?"
-                       : fmt::format("; expected one of {}", fmt::join(names, ", "))));
+  throw Error(
+      "unknown format '" + std::string(name) + "'" +
+      did_you_mean(name, names, fmt::format("; expected one of {}", fmt::join(names, ", "))));
 }
 
 const char* name(Format format) { return about(format).name; }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,6 +10,7 @@
 
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "foundation/json/json_object.h"
 #include "runners/results/results_folder.h"
 
@@ -182,14 +182,6 @@ struct SetImage {
   std::int64_t frame = 0;
 };
 
-// The text as a whole number from 0 on; empty where it is not one.
-std::optional<std::int64_t> number_of(const std::string& text) {
-  std::int64_t number = -1;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_whole = failed == std::errc() && end == text.data() + text.size() && number >= 0;
-  return is_whole ? std::optional(number) : std::nullopt;
-}
-
 // The images of a set by their number and by their name (read_detections states both).
 class SetImages {
  public:
@@ -238,8 +230,8 @@ class SetImages {
         return only(found->second, "'" + text.substr(0, 200) + "'", where);
     const std::string name = path.parent_path().filename().string();
     const auto found = names_.find(name);
-    const auto frame = number_of(path.stem().string());
-    if (found != names_.end() && frame && *frame < set_[found->second].frames)
+    const auto frame = number_from_text<std::int64_t>(path.stem().string());
+    if (found != names_.end() && frame && *frame >= 0 && *frame < set_[found->second].frames)
       return {found->second, *frame};
     std::string hint;
     if (found != names_.end()) {
@@ -272,7 +264,8 @@ class SetImages {
                                                          picture.filename().string(),
                                                          stem})
       pictures_[name].push_back(image);
-    if (const auto number = number_of(stem)) numbers_[*number].push_back(image);
+    if (const auto number = number_from_text<std::int64_t>(stem); number && *number >= 0)
+      numbers_[*number].push_back(image);
   }
 
   SetImage only(const Images& found, const std::string& what, const Where& where) const {

@@ -162,9 +162,8 @@ void expect_known(const std::vector<std::string>& names,
   for (const ExpectedSequence& sequence : set) known.push_back(sequence.name);
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const auto near = nearest_spelling(name, known);
     throw Error("holds results of '" + name + "', and the set has no sequence of that name" +
-                    (near ? "; did you mean '" + *near + "'?" : ""),
+                    did_you_mean(name, known),
                 {folder.string()});
   }
 }

@@ -210,10 +210,9 @@ void add_vot_runs(const fs::path& folder,
 
 Protocol protocol_from_name(std::string_view name) {
   if (const auto known = enum_named<Protocol>(name)) return *known;
-  const auto nearest = nearest_spelling(name, all_enum_names<Protocol>());
   throw Error(
       "unknown protocol '" + std::string(name) + "'" +
-      (nearest ? "; did you mean '" + *nearest + "'?" : "; expected ope, restart or multistart"));
+      did_you_mean(name, all_enum_names<Protocol>(), "; expected ope, restart or multistart"));
 }
 
 fs::path trajectory_file(const fs::path& folder,

@@ -96,14 +96,13 @@ std::unique_ptr<detector::Detector> make_detector(std::string_view command,
   }
   const std::string scheme(command.substr(0, command.find(':')));
   const bool has_scheme = scheme.size() < command.size();
-  const auto near = has_scheme
-                        ? nearest_spelling(scheme + ":", std::vector<std::string>{"onnx:", "exec:"})
-                        : nearest_spelling(scheme, detector_names());
-  throw Error(fmt::format("there is no detector '{}'; {}",
-                          command.substr(0, 80),
-                          near ? "did you mean '" + *near + "'?"
-                               : fmt::format("expected {}, onnx:MODEL.onnx or exec:COMMAND",
-                                             fmt::join(detector_names(), ", "))));
+  throw Error(fmt::format(
+      "there is no detector '{}'{}",
+      command.substr(0, 80),
+      did_you_mean(has_scheme ? scheme + ":" : scheme,
+                   has_scheme ? std::vector<std::string>{"onnx:", "exec:"} : detector_names(),
+                   fmt::format("; expected {}, onnx:MODEL.onnx or exec:COMMAND",
+                               fmt::join(detector_names(), ", ")))));
 }
 
 }  // namespace airtruth::runs

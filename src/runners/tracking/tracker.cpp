@@ -40,12 +40,10 @@ std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOption
   if (auto tracker = make_opencv_tracker(name, seed)) return tracker;
   if (auto tracker = make_trax_tracker(name, options)) return tracker;
   const std::vector<std::string> names = tracker_names();
-  const auto nearest = nearest_spelling(name, names);
   std::string all;
   for (const std::string& n : names) all += n + ", ";
   throw Error("unknown tracker '" + std::string(name) + "'" +
-              (nearest ? "; did you mean '" + *nearest + "'?"
-                       : "; expected one of " + all + "or trax:COMMAND"));
+              did_you_mean(name, names, "; expected one of " + all + "or trax:COMMAND"));
 }
 
 bool is_trax(std::string_view tracker) {

@@ -57,12 +57,6 @@ std::string_view property(const Message& message, std::string_view name, std::st
   return value.empty() ? message.property(old) : value;
 }
 
-int whole_of(std::string_view text) {
-  int value = 0;
-  const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return fault == std::errc() && stop == text.data() + text.size() ? value : -1;
-}
-
 double confidence_of(const Message& message) {
   const std::string_view text = message.property("confidence");
   double value = 1;
@@ -119,7 +113,7 @@ Hello hello_of(const Message& message) {
   Hello hello;
   hello.name = std::string(message.property("trax.name"));
   if (const std::string_view version = message.property("trax.version"); !version.empty())
-    hello.version = whole_of(version);
+    hello.version = number_from_text<int>(version).value_or(-1);
   if (hello.version < 1 || hello.version > kNewest)
     throw process::Failure("it speaks version '" +
                            std::string(message.property("trax.version").substr(0, 20)) +

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // GPX 1.0 and 1.1 tracks. Source: Topografix, "GPX 1.1 Schema Documentation".
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -16,21 +15,12 @@
 namespace airtruth::flight_log {
 namespace {
 
-// The number in a part of a text; empty where that part is no number.
-template <typename Number>
-std::optional<Number> number_in(std::string_view text) {
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto [rest, failed] = std::from_chars(text.data(), end, value);
-  if (failed != std::errc() || rest != end) return std::nullopt;
-  return value;
-}
-
 // The minutes by which a zone "+02:00" is ahead of UTC; empty where the text is no zone.
 std::optional<int> zone_minutes(std::string_view zone) {
   if (zone.empty() || zone == "Z") return 0;
   if (zone.size() != 6 || (zone[0] != '+' && zone[0] != '-') || zone[3] != ':') return std::nullopt;
-  const auto hours = number_in<int>(zone.substr(1, 2)), minutes = number_in<int>(zone.substr(4, 2));
+  const auto hours = number_from_text<int>(zone.substr(1, 2)),
+             minutes = number_from_text<int>(zone.substr(4, 2));
   if (!hours || !minutes) return std::nullopt;
   return (zone[0] == '-' ? -1 : 1) * (60 * *hours + *minutes);
 }
@@ -41,12 +31,13 @@ std::optional<double> seconds_of(std::string_view text) {
   if (text.size() < kToMinutes + 2 || text[4] != '-' || text[7] != '-' || text[10] != 'T' ||
       text[13] != ':' || text[16] != ':')
     return std::nullopt;
-  const auto year = number_in<int>(text.substr(0, 4));
-  const auto month = number_in<unsigned>(text.substr(5, 2)),
-             day = number_in<unsigned>(text.substr(8, 2));
-  const auto hour = number_in<int>(text.substr(11, 2)), minute = number_in<int>(text.substr(14, 2));
+  const auto year = number_from_text<int>(text.substr(0, 4));
+  const auto month = number_from_text<unsigned>(text.substr(5, 2)),
+             day = number_from_text<unsigned>(text.substr(8, 2));
+  const auto hour = number_from_text<int>(text.substr(11, 2)),
+             minute = number_from_text<int>(text.substr(14, 2));
   const std::size_t end = std::min(text.find_first_of("Z+-", kToMinutes), text.size());
-  const auto second = number_in<double>(text.substr(kToMinutes, end - kToMinutes));
+  const auto second = number_from_text<double>(text.substr(kToMinutes, end - kToMinutes));
   const auto zone = zone_minutes(text.substr(end));
   if (!year || !month || !day || !hour || !minute || !second || !zone) return std::nullopt;
   const std::chrono::year_month_day date{
@@ -100,7 +91,7 @@ class GpxReader {
   void add(const pugi::xml_node& point) {
     std::string fault;
     const auto number = [&](std::string_view text, const char* what) {
-      const auto value = number_in<double>(trimmed(text));
+      const auto value = number_from_text<double>(trimmed(text));
       if (!value && fault.empty())
         fault = fmt::format("{} is '{}'; expected a number", what, printable(trimmed(text)));
       return value.value_or(0);

@@ -113,11 +113,10 @@ void TableReader::refuse_unknown() const {
     if (!first || key.source().begin < first->source().begin) first = &key;
   }
   if (!first) return;
-  const auto near = nearest_spelling(first->str().substr(0, 60), keys_);
   const std::string advice =
-      near ? fmt::format("did you mean '{}'?", *near) : "expected " + listed(keys_);
+      did_you_mean(first->str().substr(0, 60), keys_, "; expected " + listed(keys_));
   const auto begin = first->source().begin;
-  throw Error(fmt::format("unknown key {} in {}; {}", in_quotes(first->str()), title_, advice),
+  throw Error(fmt::format("unknown key {} in {}{}", in_quotes(first->str()), title_, advice),
               {file_, static_cast<int>(begin.line), static_cast<int>(begin.column)});
 }
 
@@ -261,11 +260,10 @@ std::optional<std::string> TableReader::choice(std::string_view key,
                                                const std::vector<std::string>& choices) const {
   const auto word = text(key);
   if (!word || std::find(choices.begin(), choices.end(), *word) != choices.end()) return word;
-  const auto near = nearest_spelling(word->substr(0, 60), choices);
   fail_at(where(key),
           key,
           in_quotes(*word),
-          listed(choices) + (near ? "; did you mean '" + *near + "'?" : ""));
+          listed(choices) + did_you_mean(word->substr(0, 60), choices));
 }
 
 std::optional<std::filesystem::path> TableReader::path(std::string_view key) const {

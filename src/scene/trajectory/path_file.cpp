@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 #include <string>
@@ -42,12 +41,10 @@ Header header_of(const std::string& line, const std::string& file) {
 }
 
 double number_of(const std::string& cell, const std::string& column, const Where& where) {
-  double value = 0;
-  const char* end = cell.data() + cell.size();
-  const auto [rest, failed] = std::from_chars(cell.data(), end, value);
-  if (failed != std::errc() || rest != end || !(std::abs(value) <= kLargest))
+  const auto value = number_from_text<double>(cell);
+  if (!value || !(std::abs(*value) <= kLargest))
     throw Error(column + " is '" + cell.substr(0, 40) + "'; expected a number up to 1e9", where);
-  return value;
+  return *value;
 }
 
 // Adds the values of one row, which must follow those before in time.

@@ -142,14 +142,12 @@ std::vector<separation::AskedVolume> volumes_of(const scene::Truth& truth) {
   std::vector<separation::AskedVolume> result;
   for (const std::string& name : truth.volumes) {
     const separation::NamedVolume* known = separation::named_volume(name);
-    if (known == nullptr) {
-      const auto nearest = nearest_spelling(name, separation::volume_names());
+    if (known == nullptr)
       throw Error(fmt::format("[truth] volumes has '{}', which is unknown{}; expected {}",
                               name,
-                              nearest ? fmt::format("; did you mean '{}'?", *nearest) : "",
+                              did_you_mean(name, separation::volume_names()),
                               fmt::join(separation::volume_names(), ", ")),
                   truth.where);
-    }
     result.push_back({name, known->volume});
   }
   for (const scene::TruthVolume& own : truth.own_volumes) {

@@ -4,18 +4,12 @@
 #include <algorithm>
 #include <charconv>
 
+#include "foundation/base/text.h"
+
 namespace airtruth::messages {
 namespace {
 
 constexpr std::size_t kMostBytes = 2048;
-
-template <typename Number>
-std::optional<Number> number_from(std::string_view text) {
-  Number value{};
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 std::optional<std::string> unescaped(std::string_view text) {
   std::string result;
@@ -45,7 +39,7 @@ std::string Target::value(const std::string& key) const {
 std::optional<std::int64_t> Target::whole(const std::string& key,
                                           std::int64_t least,
                                           std::int64_t most) const {
-  const auto number = number_from<std::int64_t>(value(key));
+  const auto number = number_from_text<std::int64_t>(value(key));
   return number && *number >= least && *number <= most ? number : std::nullopt;
 }
 
@@ -73,8 +67,9 @@ std::optional<ByteRange> range_from(std::string_view header,
   if (!header.starts_with(kUnit) || size == 0) return std::nullopt;
   const std::size_t dash = header.find('-');
   if (dash == std::string_view::npos) return std::nullopt;
-  const auto first = number_from<std::uint64_t>(header.substr(kUnit.size(), dash - kUnit.size()));
-  const auto last = number_from<std::uint64_t>(header.substr(dash + 1));
+  const auto first =
+      number_from_text<std::uint64_t>(header.substr(kUnit.size(), dash - kUnit.size()));
+  const auto last = number_from_text<std::uint64_t>(header.substr(dash + 1));
   if (!first && dash > kUnit.size()) return std::nullopt;
   if (!last && dash + 1 < header.size()) return std::nullopt;
   if (!first && !last) return std::nullopt;
