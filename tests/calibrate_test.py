@@ -152,6 +152,14 @@ video = "mkv"
         self.assert_stopped(program.interrupted(["calibrate", *["own.mkv"] * 50, "-o", "stopped.toml"], program.has_open("own.mkv")))
         self.assertEqual([name for name in os.listdir(path()) if "stopped" in name], [])
 
+    def test_ctrl_c_may_reach_a_thread_that_a_library_began_before_the_program(self):
+        # As OpenBLAS does; the program cannot block signals for it.
+        source = write("early.c", "#include <pthread.h>\n#include <unistd.h>\nstatic void *wait_on(void *p) { for (;;) pause(); return p; }\n"
+                                  "__attribute__((constructor)) static void begin(void) { pthread_t t; pthread_create(&t, 0, wait_on, 0); }\n")
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", path("early.so"), source, "-lpthread"], check=True)
+        self.assert_stopped(program.interrupted(["calibrate", *["own.mkv"] * 50, "-o", "stopped.toml"], program.has_open("own.mkv"),
+                                                LD_PRELOAD=path("early.so")))
+
 
 class Mask(program.Case):
     def test_covers_the_own_aircraft(self):

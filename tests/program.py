@@ -50,9 +50,10 @@ def made(*arguments):
     return result
 
 
-def interrupted(arguments, is_working):
+def interrupted(arguments, is_working, **environment):
     """Runs a command, sends it the signal of Ctrl-C once `is_working(process)` is true, and returns its exit code and its messages."""
-    process = subprocess.Popen([_airtruth, *arguments], cwd=_root, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([_airtruth, *arguments], cwd=_root, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                               env={**os.environ, **environment})
     until = time.monotonic() + HANG_S
     while process.poll() is None and not is_working(process) and time.monotonic() < until:
         time.sleep(0.01)

@@ -160,6 +160,17 @@ constexpr timespec kGrace{.tv_sec = 1, .tv_nsec = 300'000'000};
   std::_Exit(kInterrupted);
 }
 
+// Waits for the signals. It is known before pass_on() is set as a handler.
+pthread_t waiting_thread;
+
+// Libraries may start threads before main(), as OpenBLAS does. They do not block the signals, and
+// the kernel may choose one of them.
+void pass_on(int which) {
+  const int before = errno;
+  pthread_kill(waiting_thread, which);
+  errno = before;
+}
+
 }  // namespace
 
 StopOnSignal::StopOnSignal() {
@@ -171,13 +182,20 @@ StopOnSignal::StopOnSignal() {
   ::sigaction(SIGHUP, nullptr, &hang_up);
   if (hang_up.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);  // nohup ignores it
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::thread([signals, source = source_]() mutable {
+  std::thread waiting([signals, source = source_]() mutable {
     int which = 0;
     sigwait(&signals, &which);
     source.request_stop();
     sigtimedwait(&signals, nullptr, &kGrace);  // a second signal ends the wait
     end_now();
-  }).detach();
+  });
+  waiting_thread = waiting.native_handle();
+  waiting.detach();
+  struct sigaction passing {};
+  passing.sa_handler = pass_on;
+  passing.sa_flags = SA_RESTART;
+  for (const int which : {SIGINT, SIGTERM, SIGHUP})
+    if (sigismember(&signals, which) == 1) ::sigaction(which, &passing, nullptr);
 }
 
 }  // namespace airtruth::cli

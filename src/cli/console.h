@@ -63,8 +63,8 @@ void open_standard_streams();
 
 // Turns SIGINT, SIGTERM and SIGHUP into a request to stop. Where the process has not ended within
 // two seconds, or a second signal arrives, unfinished output is removed and the process ends with
-// exit code 130. main() creates it first, before any thread, so that every thread inherits the
-// blocked signals.
+// exit code 130. main() creates it first, before any thread, so that every thread of its own
+// inherits the blocked signals; threads that libraries began before hand them on.
 class StopOnSignal {
  public:
   StopOnSignal();
