@@ -58,10 +58,6 @@ inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
 // Reads the width and height from "1280x960", the form of --size. Throws Error for any other form.
 std::pair<int, int> size_from(const std::string& text);
 
-// All commands of the program: those of airtruth (all_commands.cpp), or of airtruth-demo, which is
-// built in half the time (demo_alone.cpp).
-void add_commands(CLI::App& app, Context& context);
-
 void add_render(CLI::App& app, Context& context);
 void add_scene(CLI::App& app, Context& context);
 void add_preview(CLI::App& app, Context& context);

@@ -119,6 +119,34 @@ int run(CLI::App& app,
   }
 }
 
+// In the order of --help.
+void add_commands(CLI::App& app, cli::Context& context) {
+  cli::add_demo(app, context);
+#ifndef AIRTRUTH_DEMO_ALONE  // of the program airtruth-demo, which is built in half the time
+  cli::add_render(app, context);
+  cli::add_scene(app, context);
+  cli::add_preview(app, context);
+  cli::add_studio(app, context);
+  cli::add_overlay(app, context);
+  cli::add_inspect(app, context);
+  cli::add_motion(app, context);
+  cli::add_calibrate(app, context);
+  cli::add_mask(app, context);
+  cli::add_lens(app, context);
+  cli::add_log(app, context);
+  cli::add_aircraft(app, context);
+  cli::add_synth(app, context);
+  cli::add_encounter(app, context);
+  cli::add_dataset(app, context);
+  cli::add_track(app, context);
+  cli::add_detect(app, context);
+  cli::add_evaluate(app, context);
+  cli::add_compare(app, context);
+  cli::add_evision(app, context);
+  cli::add_describe(app, context);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -141,7 +169,7 @@ int main(int argc, char** argv) {
     if (!console) console.emplace(options);
     return *console;
   };
-  cli::add_commands(app, context);
+  add_commands(app, context);
   const int code = run(app, argc, argv, options, console);
   return code != 0 ? code : context.exit_code;
 }
