@@ -126,35 +126,24 @@ class Frames:
 
 
 class Streamed:
-    """The same from a training stream, whose samples are new each time. Those in a row are of eight places, and would teach a step these
-    alone: samples are drawn from a pool, and each is replaced by the next."""
+    """The same from a training stream, whose samples are new each time."""
 
-    POOL = 1024  # samples: those of some sixteen places, chosen
-    next = 0  # index of the sample that comes into the pool next
+    next = 0  # index of the sample that is drawn next
 
     def __init__(self, catalogue, seed):
         self.stream = airtruth.Stream(pathlib.Path(catalogue), seed=seed)
-        self.pool = []
 
-    def read(self, index):
-        sample = self.stream[index]
-        frame = sample.frames[-1]
-        boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
+    def draw(self, with_aircraft, random):
+        for _ in range(20):
+            sample = self.stream[self.next]
+            self.next += 1
+            frame = sample.frames[-1]
+            boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
+            if not with_aircraft or len(boxes):
+                break
         for some in (boxes, ignored):
             some[:, :2] -= sample.crop[:2]
         return grey_of(frame), boxes, ignored
-
-    def draw(self, with_aircraft, random):
-        if not self.pool:
-            self.next = max(self.next, self.POOL)  # more where a training goes on
-            self.pool = [self.read(index) for index in range(self.next - self.POOL, self.next)]
-        for _ in range(20):
-            place = random.integers(self.POOL)
-            drawn, self.pool[place] = self.pool[place], self.read(self.next)
-            self.next += 1
-            if not with_aircraft or len(drawn[1]):
-                break
-        return drawn
 
     def words(self):
         return "a stream"
