@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Labelled crops of aircraft by Blender's own Python loop, as one would write it without airtruth, for stream.py:
 
-    blender -b --factory-startup -P blender_crops.py -- CATALOGUE COUNT PICTURE ... -- MODEL.ac ...
+    blender -b --factory-startup -P blender_crops.py -- FOLDER COUNT PICTURE ... -- MODEL.ac ...
 
 Each crop has an aircraft of 10 to 60 px, rendered by Cycles in the light of blender_light.py, over a crop of a picture, and the box
-of its opacity. The aircraft have no textures, no noise and no blur. Prints seconds of wall-clock time and of CPU time.
+of its opacity; crops are left in FOLDER, boxes printed. The aircraft have no textures, no noise and no blur. Prints seconds of wall-clock time and of CPU time.
 """
 
 import math
@@ -49,25 +49,18 @@ def set_up(folder):
     bpy.context.scene.camera.location = (0, 0, 0)
     bpy.context.scene.camera.rotation_quaternion = light.looking(mathutils, (0, 1, 0))
     light.sky_and_ground(bpy, view)
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.device = "CPU"
+    scene = light.cycles_scene(bpy, SIDE_PX, "PNG")
     scene.cycles.samples = SAMPLES
-    scene.cycles.use_denoising = False
     scene.render.use_persistent_data = True
-    scene.render.film_transparent = True
-    scene.render.resolution_x = scene.render.resolution_y = SIDE_PX
-    scene.render.resolution_percentage = 100
     scene.render.threads_mode, scene.render.threads = "FIXED", 1
-    scene.render.image_settings.file_format = "PNG"
-    scene.render.image_settings.color_mode = "RGBA"
     scene.render.filepath = f"{folder}/layer.png"
 
 
 def crop(draw, made, pictures, folder):
     body, longest_m = made[draw.integers(len(made))]
     distance_m = FOCAL_PX * longest_m / draw.uniform(*SIZES_PX)
-    body.location = (*(distance_m * draw.uniform(-0.07, 0.07, 1)), distance_m, distance_m * draw.uniform(-0.07, 0.07))
+    right, above = draw.uniform(-0.07, 0.07, 2)
+    body.location = (distance_m * right, distance_m, distance_m * above)
     body.rotation_quaternion = mathutils.Euler([math.radians(draw.uniform(-b, b)) for b in (20, 10, 180)]).to_quaternion()
     body.hide_render = False
     bpy.ops.render.render(write_still=True)
@@ -91,7 +84,7 @@ def main():
     for number in range(int(count)):
         picture, box = crop(draw, made, pictures, folder)
         cv2.imwrite(f"{folder}/crop{number}.png", picture)
-        print("box", number, *box)
+        print("box", number, *box)  # x, y, width, height
     print("seconds", time.monotonic() - begin[0], time.process_time() - begin[1], flush=True)
 
 

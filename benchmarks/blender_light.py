@@ -404,6 +404,20 @@ def add_sun_and_camera(bpy, mathutils, job):
     bpy.context.scene.camera = eye
 
 
+def cycles_scene(bpy, side_px, file_format):
+    """The scene, rendered by the processor into squares with an alpha channel."""
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.device = "CPU"
+    scene.cycles.use_denoising = False
+    scene.render.film_transparent = True
+    scene.render.resolution_x = scene.render.resolution_y = side_px
+    scene.render.resolution_percentage = 100
+    scene.render.image_settings.file_format = file_format
+    scene.render.image_settings.color_mode = "RGBA"
+    return scene
+
+
 def in_blender(path):
     import bpy
     import mathutils
@@ -413,19 +427,11 @@ def in_blender(path):
         bpy.data.objects.remove(thing)
     body = add_body(bpy, job["folder"])
     add_sun_and_camera(bpy, mathutils, job)
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.device = "CPU"
-    scene.cycles.use_denoising = False
+    scene = cycles_scene(bpy, SIDE_PX, "OPEN_EXR")
     scene.cycles.use_adaptive_sampling = False
     scene.cycles.pixel_filter_type = "BOX"
     scene.cycles.filter_width = 1
     scene.cycles.max_bounces = 8
-    scene.render.film_transparent = True
-    scene.render.resolution_x = scene.render.resolution_y = SIDE_PX
-    scene.render.resolution_percentage = 100
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    scene.render.image_settings.color_mode = "RGBA"
     scene.render.image_settings.color_depth = "32"
 
     def shoot(name, material, samples):

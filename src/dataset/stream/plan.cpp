@@ -118,6 +118,7 @@ std::size_t Planner::fleet_with(Fleet fleet) {
     return other.types == fleet.types && other.every_type == fleet.every_type;
   });
   if (same != fleets_.end()) return static_cast<std::size_t>(same - fleets_.begin());
+  fleet.seed = Seed(seed_).stream("fleet", fleets_.size())();
   fleets_.push_back(std::move(fleet));
   return fleets_.size() - 1;
 }
@@ -132,16 +133,14 @@ std::size_t Planner::aircraft_at_a_time(const Fleet& fleet) const {
 std::vector<catalogue::AircraftType> Planner::flying(const Fleet& fleet, std::int64_t index) const {
   const std::size_t count = aircraft_at_a_time(fleet);
   if (liveries_of(fleet.types) <= count) return fleet.types;
-  const auto number_of_fleet = static_cast<std::uint64_t>(&fleet - fleets_.data());
-  const std::uint64_t seed = Seed(seed_).stream("fleet", number_of_fleet)();
-  const pairing::Strata turns(Seed(seed).stream("turns of types")(), fleet.types.size(), 1);
+  const pairing::Strata turns(Seed(fleet.seed).stream("turns of types")(), fleet.types.size(), 1);
   std::vector<catalogue::AircraftType> types;
   for (std::size_t slot = 0; slot < count; ++slot) {
     const auto begin =
         static_cast<std::int64_t>(slot) * samples_of_aircraft_ / static_cast<std::int64_t>(count);
     const auto number =
         static_cast<std::uint64_t>((index + begin) / samples_of_aircraft_) * count + slot;
-    Random random = Seed(seed).stream("aircraft", number);
+    Random random = Seed(fleet.seed).stream("aircraft", number);
     const std::size_t turn = (fleet.every_type ? slot : number) % fleet.types.size();
     const catalogue::AircraftType& type = catalogue::one_at(turns.spaced(turn, 0), fleet.types);
     types.push_back({type.name, {catalogue::one_of(random, type.liveries)}});

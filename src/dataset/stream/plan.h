@@ -67,6 +67,7 @@ class Planner {
   struct Fleet {
     std::vector<catalogue::AircraftType> types;
     bool every_type = false;  // at least one of each type at a time
+    std::uint64_t seed = 1;
   };
   // A rule without its types, which are those of a fleet.
   struct Rule {
