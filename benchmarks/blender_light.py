@@ -172,6 +172,7 @@ def linear(codes):
 SCENE = """name = "body"
 [background]
 video = "black/%05d.png"
+frame_rate_hz = 25
 [lens]
 model = "pinhole"
 focal_px = [{focal}, {focal}]
