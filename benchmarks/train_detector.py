@@ -14,6 +14,7 @@ output are to be read (docs/formats/detector-model.md). The labels are the cover
 """
 
 import argparse
+import collections
 import itertools
 import json
 import math
@@ -36,6 +37,7 @@ CROP = 192          # px: side of the square that a training step sees; twice th
 MIN_SIGMA = 0.7     # cells: width of the peak of the smallest aircraft, so that a peak is wider than its sampling
 NEGATIVE_PX = 280   # px: side of the picture about a false alarm; a crop that is scaled by 0.7 fits into it
 MOST_PX = 128       # px: aircraft that are longer are left out of training
+MOST_WAITING = 256  # samples of a stream without an aircraft that wait to be used, some 20 MB
 NO_BOXES = np.zeros((0, 4), np.float32)
 
 
@@ -121,29 +123,51 @@ class Frames:
                 break
         return self.pictures[index], self.boxes[index], self.ignored[index]
 
+    def place(self):
+        """Where the drawing is, for a checkpoint."""
+        return None
+
+    def go_to(self, place):
+        pass
+
     def words(self):
         return f"{len(self.pictures)} frames, {sum(map(len, self.boxes))} boxes"
 
 
 class Streamed:
-    """The same from a training stream, whose samples are new each time."""
-
-    next = 0  # index of the sample that is drawn next
+    """The same from a training stream, whose samples are new each time. What has no aircraft waits for a crop that need not have one: with
+    `negatives = 0.5` in the catalogue half of the crops of a training are about an aircraft, and half have none."""
 
     def __init__(self, catalogue, seed):
         self.stream = airtruth.Stream(pathlib.Path(catalogue), seed=seed)
+        self.index = 0  # of the sample that is drawn next
+        self.waiting = collections.deque(maxlen=MOST_WAITING)  # (index, sample) of those without an aircraft
 
-    def draw(self, with_aircraft, random):
-        for _ in range(20):
-            sample = self.stream[self.next]
-            self.next += 1
-            frame = sample.frames[-1]
-            boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
-            if not with_aircraft or len(boxes):
-                break
+    def read(self, index):
+        sample = self.stream[index]
+        frame = sample.frames[-1]
+        boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
         for some in (boxes, ignored):
             some[:, :2] -= sample.crop[:2]
         return grey_of(frame), boxes, ignored
+
+    def draw(self, with_aircraft, random):
+        if not with_aircraft and self.waiting:
+            return self.waiting.popleft()[1]
+        for _ in range(20):
+            sample = self.read(self.index)
+            self.index += 1
+            if not with_aircraft or len(sample[1]):
+                break
+            self.waiting.append((self.index - 1, sample))
+        return sample
+
+    def place(self):
+        return [self.index, *(index for index, _ in self.waiting)]
+
+    def go_to(self, place):
+        self.index = place[0]
+        self.waiting.extend((index, self.read(index)) for index in place[1:])
 
     def words(self):
         return "a stream"
@@ -161,7 +185,11 @@ class WithNegatives:
                     x, y, width, height = alarm.around(np.minimum(NEGATIVE_PX, grey.shape[::-1]), frame)
                     self.pictures.append(grey[y:y + height, x:x + width].copy())
 
-    next = property(lambda self: getattr(self.frames, "next", 0), lambda self, value: setattr(self.frames, "next", value))
+    def place(self):
+        return self.frames.place()
+
+    def go_to(self, place):
+        self.frames.go_to(place)
 
     def draw(self, with_aircraft, random):
         if with_aircraft or not self.pictures or random.random() < 0.5:
@@ -319,7 +347,7 @@ def done(options, step, spent):
 def save(network, optimiser, random, frames, options, spent, step):
     unfinished = checkpoint_of(options) + ".part"
     torch.save({"network": network.state_dict(), "optimiser": optimiser.state_dict(), "random": random.bit_generator.state,
-                "next": getattr(frames, "next", 0), "spent": spent, "step": step, "given": given(options)}, unfinished)
+                "place": frames.place(), "spent": spent, "step": step, "given": given(options)}, unfinished)
     os.replace(unfinished, checkpoint_of(options))
 
 
@@ -334,7 +362,8 @@ def train(network, frames, options):
         network.load_state_dict(state["network"])
         optimiser.load_state_dict(state["optimiser"])
         random.bit_generator.state = state["random"]
-        before, step, frames.next = state["spent"], state["step"], state["next"]
+        before, step = state["spent"], state["step"]
+        frames.go_to(state["place"])
         print(f"goes on from {checkpoint_of(options)}: {before:.1f} min, step {step}", flush=True)
     begun, shown = time.process_time(), before
     network.train()

@@ -31,13 +31,15 @@ endfunction()
 
 # add_module(NAME SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
 #            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...]
-#            [UNSANITIZED Suite.Name ...])
-# makes the static library airtruth_NAME, and keeps its tests for the test programs of its wing (add_wing_tests). SLOW_TESTS are
+#            [UNSANITIZED Suite.Name ...] [OPTIMISATION flag ...])
+# makes the static library airtruth_NAME, and keeps its tests for the test programs of its wing (add_wing_tests). DEPENDS are the
+# modules that its sources include, and no others (tests/layers_test.cpp). OPTIMISATION is what inner loops are compiled with
+# beyond the usual, which precompiled headers would undo. SLOW_TESTS are
 # left out with sanitizers, under which they take hours. UNSANITIZED Suite.Name ... names tests that are left out with sanitizers:
 # they repeat, for their statistics or in whole runs, what other tests run.
 function(add_module name)
   cmake_parse_arguments(arg "" ""
-    "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;UNSANITIZED" ${ARGN})
+    "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;UNSANITIZED;OPTIMISATION" ${ARGN})
   if(arg_SOURCES)
     add_library(airtruth_${name} STATIC ${arg_SOURCES})
     compile_sources_together(airtruth_${name})
@@ -52,7 +54,9 @@ function(add_module name)
   if(arg_PRIVATE_LIBRARIES)
     target_link_libraries(airtruth_${name} PRIVATE ${arg_PRIVATE_LIBRARIES})
   endif()
-  if(AIRTRUTH_PCH AND arg_SOURCES)
+  if(arg_OPTIMISATION AND NOT AIRTRUTH_SANITIZE)
+    target_compile_options(airtruth_${name} PRIVATE ${arg_OPTIMISATION})
+  elseif(AIRTRUTH_PCH AND arg_SOURCES)
     target_precompile_headers(airtruth_${name} REUSE_FROM airtruth_pch)
   endif()
   set_property(GLOBAL APPEND PROPERTY AIRTRUTH_MODULES airtruth_${name})

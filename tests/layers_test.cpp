@@ -164,6 +164,105 @@ TEST(Layers, IncludesGoStrictlyDownward) {
   EXPECT_GT(checked, 1000);
 }
 
+// The words after a keyword of an add_module call, up to the next keyword.
+std::vector<std::string> words_after(const std::string& keyword, const std::string& call) {
+  std::vector<std::string> result;
+  std::istringstream words(call);
+  const std::regex is_keyword("[A-Z_]{5,}");
+  bool is_asked = false;
+  for (std::string word; words >> word;) {
+    if (std::regex_match(word, is_keyword))
+      is_asked = word == keyword;
+    else if (is_asked)
+      result.push_back(word);
+  }
+  return result;
+}
+
+// Each name that a CMakeLists.txt gives to add_module: its "wing/module", and what it depends on.
+struct Built {
+  std::string module;
+  std::vector<std::string> depends;
+};
+
+std::map<std::string, Built> built_modules() {
+  std::map<std::string, Built> result;
+  const std::regex call(R"re(\badd_module\(\s*([a-z_0-9]+)([^)]*)\))re");
+  for (const auto& entry : fs::recursive_directory_iterator(kSource)) {
+    if (entry.path().filename() != "CMakeLists.txt") continue;
+    const fs::path path = fs::relative(entry.path(), kSource);
+    const std::string text = text_of(path);
+    for (std::sregex_iterator match(text.begin(), text.end(), call), end; match != end; ++match)
+      result[(*match)[1].str()] = {module_of(path), words_after("DEPENDS", (*match)[2].str())};
+  }
+  return result;
+}
+
+using Modules = std::set<std::string>;
+
+// The modules with a source X.cpp that includes a header <airtruth/X.h>, of each such header.
+std::map<std::string, Modules> implementers() {
+  std::map<std::string, Modules> result;
+  for (const fs::path& path : all_sources()) {
+    if (path.extension() != ".cpp" || !is_source(path)) continue;
+    const std::string header = "airtruth/" + path.stem().string() + ".h";
+    if (text_of(path).find("#include <" + header + ">") != std::string::npos)
+      result[header].insert(module_of(path));
+  }
+  return result;
+}
+
+// What the sources of each module include: modules, and those that implement a public header.
+struct Included {
+  Modules modules;
+  Modules behind_public_headers;
+};
+
+std::map<std::string, Included> included_modules() {
+  std::map<std::string, Included> result;
+  const auto behind = implementers();
+  const std::regex include(R"re(\n#include ["<]([a-z_0-9/]+\.h)[">])re");
+  for (const fs::path& path : all_sources()) {
+    if (!is_source(path)) continue;
+    const std::string text = "\n" + text_of(path);
+    Included& of_module = result[module_of(path)];
+    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end;
+         ++match) {
+      const std::string header = (*match)[1].str();
+      if (fs::exists(kSource / header)) of_module.modules.insert(module_of(header));
+      if (const auto found = behind.find(header); found != behind.end())
+        of_module.behind_public_headers.insert(found->second.begin(), found->second.end());
+    }
+  }
+  return result;
+}
+
+// What a module states is what is built for it: a dependency that no source includes makes a
+// program of a few modules wait for others.
+TEST(Modules, StateTheModulesThatTheyInclude) {
+  const auto built = built_modules();
+  EXPECT_GT(built.size(), 80U);
+  std::map<std::string, Modules> stated;
+  for (const auto& [name, one] : built) {
+    for (const std::string& other : one.depends) {
+      ASSERT_TRUE(built.contains(other)) << name << " depends on " << other;
+      stated[one.module].insert(built.at(other).module);
+    }
+  }
+  auto included = included_modules();
+  for (const auto& [module, others] : stated) {
+    const Included& of_module = included[module];
+    for (const std::string& other : others) {
+      EXPECT_TRUE(of_module.modules.contains(other) ||
+                  of_module.behind_public_headers.contains(other) || other == module)
+          << module << " states that it depends on " << other << ", which no source of it includes";
+    }
+    for (const std::string& other : of_module.modules)
+      EXPECT_TRUE(others.contains(other) || other == module)
+          << module << " includes " << other << " and does not state it";
+  }
+}
+
 TEST(Modules, HaveAtMost25Files) {
   std::map<std::string, int> files;
   for (const fs::path& path : all_sources()) ++files[module_of(path)];
