@@ -6,7 +6,7 @@
     python3 benchmarks/train_detector.py CATALOGUE.toml -o aircraft.onnx     new pictures at each step, from a training stream
     python3 benchmarks/train_detector.py SET... -o better.onnx --negatives VIDEO --mine-with onnx:aircraft.onnx
 
-A stream needs crops of 280 px or more in [stream] size_px. Needs the package airtruth (docs/python.md), and python3-torch, python3-onnx
+A stream needs crops of 280 px or more in [stream] size_px, and `negatives = 0.5` of its rules. Needs the package airtruth (docs/python.md), and python3-torch, python3-onnx
 and python3-opencv of Debian 12. The network is fully convolutional and sees one grey picture;
 it answers, for every cell of 4 x 4 px, how likely an aircraft's centre lies there, where in the cell, and how large it is
 (Zhou, Wang and Kraehenbuehl 2019, "Objects as Points"). Beside aircraft.onnx it writes aircraft.json, which says how its input and
