@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# usage: installed_test.sh airtruth.deb
-# Installs the Debian package, makes a demo and an example's sequence with the installed files, and removes the package.
+# usage: installed_test.sh BUILD/airtruth.deb
+# Looks at the Debian package of a build folder (lintian, and the files of an installation), installs it, makes a demo and an
+# example's sequence with the installed files, and removes the package.
 # As root, and where airtruth is not installed already, this is done to the system; else to a folder in its place.
 set -euo pipefail
-[ $# = 1 ] || { echo "usage: installed_test.sh airtruth.deb" >&2; exit 2; }
+[ $# = 1 ] || { echo "usage: installed_test.sh BUILD/airtruth.deb" >&2; exit 2; }
 deb=$(realpath "$1")
 place=$(mktemp -d)
 installed=""
@@ -16,6 +17,18 @@ remove() {
 trap 'remove; rm -rf "$place"' EXIT
 
 fail() { echo "installed_test: $*" >&2; exit 1; }
+
+cmake --install "$(dirname "$deb")" --prefix "$place/build/usr" >"$place/files.log" || { cat "$place/files.log"; fail "cmake --install"; }
+dpkg-deb -x "$deb" "$place/packed"
+for folder in build packed; do
+  (cd "$place/$folder/usr" && find . \( -type f -o -type l \) | sort) >"$place/$folder.files"
+done
+diff "$place/build.files" "$place/packed.files" || fail "the package holds other files than an installation"
+looked="not looked at by lintian, which is not installed"
+if command -v lintian >/dev/null; then
+  lintian --allow-root --fail-on error,warning "$deb" 2>"$place/lintian.log" || fail "lintian has errors"
+  looked="lintian finds neither error nor warning"
+fi
 
 if [ "$(id -u)" = 0 ] && ! dpkg -s airtruth >/dev/null 2>&1; then
   installed=yes
@@ -76,4 +89,4 @@ if [ -n "$installed" ]; then
   left=$(find /usr/share/airtruth /usr/libexec/airtruth /usr/lib/cmake /usr/include/airtruth -path '*airtruth*' 2>/dev/null || true)
   [ -z "$left" ] || fail "left after the removal: $left"
 fi
-echo "installed_test: the package was installed, tried and removed"
+echo "installed_test: the package was installed, tried and removed; $looked"

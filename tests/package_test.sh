@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs airtruth into an empty folder and uses it as a stranger would: compiles every header by itself, looks at what the
 # libraries export and need, builds the examples against them and compares what they print with the program's own files, asks every
-# command for help, renders every manual page, completes words. Then the same of the Debian package, unpacked.
+# command for help, renders every manual page, completes words. installed_test.sh has the Debian package.
 set -euo pipefail
 build=$1
 source=$2
@@ -72,11 +72,11 @@ check_evaluation_alone() {
   expect_targets "$light" "REQUIRED COMPONENTS evaluation" "evaluation"
   expect_targets "$light" "REQUIRED COMPONENTS airtruth" "fails"
   if [ -e "$light/bin" ] || [ -e "$light/include/airtruth/renderer.h" ]; then fail "the component evaluation installs more"; fi
+  # check_headers compiles them; here each one that they include has to be there.
   local header
-  for header in "$light"/include/airtruth/*.h; do
-    echo "#include <airtruth/$(basename "$header")>" | g++ -std=c++20 -fsyntax-only -Werror -I "$light/include" -x c++ - ||
-      fail "$header does not compile without the other component"
-  done
+  while read -r header; do
+    [ -f "$light/include/airtruth/$header" ] || fail "a header of the component evaluation includes $header of the other one"
+  done < <(sed -nE 's/^#include <airtruth\/([a-z_]+\.h)>.*/\1/p' "$light"/include/airtruth/*.h | sort -u)
 }
 
 # The public headers and nothing else are installed, and each compiles by itself with the standard library alone.
@@ -270,22 +270,4 @@ check_files "$place/usr"
 gzip -9n "$place/again/man1"/*
 diff -r "$place/again/man1" "$place/usr/share/man/man1" >/dev/null || fail "the pages differ from run to run"
 
-# gzip packs faster than the default, xz.
-(cd "$build" && cpack -G DEB -B "$place/deb" -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip) >"$place/cpack.log" 2>&1 || { cat "$place/cpack.log"; exit 1; }
-package=$(find "$place/deb" -maxdepth 1 -name '*.deb')
-dpkg-deb -x "$package" "$place/root"
-check_files "$place/root/usr"
-check_completion "$place/root/usr"
-"$place/root/usr/bin/airtruth" --help >/dev/null || fail "the packaged program does not run"
-check_model_reader "$place/root/usr"
-check_network_runner "$place/root/usr"
-check_python "$place/root/usr"
-(cd "$place/usr" && find . \( -type f -o -type l \) | sort) >"$place/installed"
-(cd "$place/root/usr" && find . \( -type f -o -type l \) | sort) >"$place/packaged"
-diff "$place/installed" "$place/packaged" || fail "the package holds other files than an installation"
-looked="not looked at by lintian, which is not installed"
-if command -v lintian >/dev/null; then
-  lintian --allow-root --fail-on error,warning "$package" 2>"$place/lintian.log" || fail "lintian has errors"
-  looked="lintian finds neither error nor warning"
-fi
-echo "installed, found by find_package, examples built and checked; $(wc -l <"$place/packaged") files packaged; $looked"
+echo "installed, found by find_package, examples built and checked"
