@@ -9,6 +9,8 @@ Virtual flights stand for the scene before a camera codes it, so that both are k
     another  like real, with key pictures at other frames: what two codings of one scene differ by.
 Light and motion are stated, so that all show the same aircraft in the same places. Prints the rms error of luma against the picture without
 loss, over that of `real`: of pixels that the aircraft covers, and of those within 3 px of its box that it leaves alone.
+
+Needs the package airtruth (docs/python.md), its program, and ffmpeg with libx264.
 """
 
 import argparse
@@ -64,8 +66,8 @@ class Flight:
         scene_file = os.path.join(folder, "flown.toml")
         pathlib.Path(scene_file).write_text(airtruth.toml_of(described), encoding="utf-8")
         subprocess.run([airtruth_program, "render", scene_file, "--out", folder, "--quiet"], check=True)
-        self.shown, self.flown = list(airtruth.render(described)), os.path.join(folder, "flown", "flown.mkv")
-        self.luma, self.without_aircraft = luma_of(self.flown), luma_of(self.empty)
+        self.shown, self.flown = list(airtruth.DataSet(folder)["flown"]), os.path.join(folder, "flown", "flown.mkv")
+        self.luma, self.without_aircraft = [frame.gray.astype(float) for frame in self.shown], luma_of(self.empty)
 
     def coded(self, video, quantiser, first=0):
         out = os.path.join(self.folder, f"{os.path.basename(video)}-{quantiser}-{first}.mp4")

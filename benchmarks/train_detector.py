@@ -37,7 +37,7 @@ CROP = 192          # px: side of the square that a training step sees; twice th
 MIN_SIGMA = 0.7     # cells: width of the peak of the smallest aircraft, so that a peak is wider than its sampling
 NEGATIVE_PX = 280   # px: side of the picture about a false alarm; a crop that is scaled by 0.7 fits into it
 MOST_PX = 128       # px: aircraft that are longer are left out of training
-MOST_WAITING = 256  # samples of a stream without an aircraft that wait to be used, some 20 MB
+MOST_WAITING = 256  # samples of a stream without an aircraft that wait to be used: 20 MB of crops of 280 px
 NO_BOXES = np.zeros((0, 4), np.float32)
 
 
@@ -357,8 +357,8 @@ def train(network, frames, options):
     before, step, mean = 0.0, 0, None
     if os.path.exists(checkpoint_of(options)):
         state = torch.load(checkpoint_of(options), map_location="cpu", weights_only=True)
-        if state["given"] != given(options):
-            refuse(f"{checkpoint_of(options)} is of a training on other sets, or with another --every, --batch or --seed; remove it to begin anew")
+        if state["given"] != given(options) or "place" not in state:
+            refuse(f"{checkpoint_of(options)} is of a training on other sets, or with another --every, --batch, --seed or version of this script; remove it to begin anew")
         network.load_state_dict(state["network"])
         optimiser.load_state_dict(state["optimiser"])
         random.bit_generator.state = state["random"]

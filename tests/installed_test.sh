@@ -24,6 +24,7 @@ for folder in build packed; do
   (cd "$place/$folder/usr" && find . \( -type f -o -type l \) | sort) >"$place/$folder.files"
 done
 diff "$place/build.files" "$place/packed.files" || fail "the package holds other files than an installation"
+diff -r "$place/build/usr/share" "$place/packed/usr/share" || fail "a file of the package differs from an installation's"
 looked="not looked at by lintian, which is not installed"
 if command -v lintian >/dev/null; then
   lintian --allow-root --fail-on error,warning "$deb" 2>"$place/lintian.log" || fail "lintian has errors"
@@ -68,6 +69,10 @@ speed_mps = 40
 SCENE
 "$airtruth" render "$place/scene.toml" --out "$place" --no-cache >"$place/render.log" 2>&1 || { cat "$place/render.log"; fail "render"; }
 [ -s "$place/one/one.mp4" ] || fail "render: no video"
+
+printf 'v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n' >"$place/a.obj"
+"$airtruth" aircraft show "$place/a.obj" >"$place/shown" || fail "the installed program reads no model file"
+grep -q '2 triangles' "$place/shown" || fail "the installed program reads a model file wrongly: $(cat "$place/shown")"
 
 "$airtruth" detect "$place/one/one.mp4" -o "$place/found" >"$place/detect.log" 2>&1 || { cat "$place/detect.log"; fail "detect"; }
 [ -s "$place/found/network/one.json" ] || fail "detect: the network that ships gave no results"

@@ -244,9 +244,10 @@ TEST(Modules, StateTheModulesThatTheyInclude) {
   EXPECT_GT(built.size(), 80U);
   std::map<std::string, Modules> stated;
   for (const auto& [name, one] : built) {
+    Modules& of_module = stated[one.module];  // also where nothing is stated
     for (const std::string& other : one.depends) {
       ASSERT_TRUE(built.contains(other)) << name << " depends on " << other;
-      stated[one.module].insert(built.at(other).module);
+      of_module.insert(built.at(other).module);
     }
   }
   auto included = included_modules();
