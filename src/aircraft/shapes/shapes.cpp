@@ -245,9 +245,6 @@ constexpr float kArmAbove = 0.02f;  // height of the arms above the middle
 constexpr float kRotorAbove = 0.085f;
 constexpr float kSkidBelow = 0.20f;
 constexpr float kLegBelow = 0.17f;
-// Multirotors below this size stand on a leg under each motor (DJI F450, Hubsan H501), larger ones
-// on skids (DJI S900: 0.9 m).
-constexpr float kLeastWithSkidsM = 0.6f;
 // Radius of a small one's arms: those of an F450 are 4 cm deep for 45 cm between rotors.
 constexpr float kStoutArm = 0.044f;
 
@@ -347,7 +344,7 @@ model::Mesh multirotor(const MultirotorShape& shape) {
   builder.begin_part({"airframe", {}});
   add_shell(builder, size, shell, dark);
   const std::vector<V> rotors = directions(shape.rotors);
-  const bool has_skids = size >= kLeastWithSkidsM;
+  const bool has_skids = shape.size_m >= kLeastWithSkidsM;
   if (has_skids) {
     add_skids(builder, size, dark);
   } else {

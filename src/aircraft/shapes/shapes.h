@@ -42,6 +42,10 @@ model::Mesh bird(const BirdShape& shape);
 // cruising flight", equation 9, with mass as span^3 and area as span^2).
 double usual_strokes_per_s(double span_m);
 
+// Multirotors below this size stand on a leg under each motor (DJI F450, Hubsan H501), larger ones
+// on skids (DJI S900: 0.9 m): their meshes have other triangles.
+constexpr double kLeastWithSkidsM = 0.6;
+
 struct MultirotorShape {
   // Between the axes of opposite rotors.
   double size_m = 0.4;

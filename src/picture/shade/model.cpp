@@ -168,6 +168,15 @@ std::unique_ptr<Model::Impl> prepared(
   return impl;
 }
 
+// The ambient occlusion of a model whose mesh has the same triangles.
+ModelOcclusion occlusion_of_shape(const Model::Impl& known, const model::Mesh& mesh) {
+  bool has_same = known.mesh.parts.size() == mesh.parts.size();
+  for (std::size_t p = 0; has_same && p < mesh.parts.size(); ++p)
+    has_same = known.mesh.parts[p].triangles == mesh.parts[p].triangles;
+  check(has_same, "models that share their ambient occlusion have the same triangles");
+  return known.occlusion;
+}
+
 }  // namespace
 
 Model::Model(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -180,7 +189,9 @@ Model::Model(std::shared_ptr<const model::Mesh> mesh, const std::filesystem::pat
       })) {}
 
 Model::Model(std::shared_ptr<const model::Mesh> mesh, const Model& same_shape)
-    : Model(prepared(std::move(mesh), [&](const Impl&) { return same_shape.impl_->occlusion; })) {}
+    : Model(prepared(std::move(mesh), [&](const Impl& impl) {
+        return occlusion_of_shape(same_shape.impl(), impl.mesh);
+      })) {}
 
 void Model::Impl::find_sphere() {
   Eigen::AlignedBox3f bounds;

@@ -17,7 +17,7 @@ class Model {
   explicit Model(std::shared_ptr<const model::Mesh> mesh,
                  const std::filesystem::path& occlusion_cache = {});
   // Shares the mesh, and takes the ambient occlusion of `same_shape`, whose mesh has the same
-  // triangles in another size or other colours.
+  // triangles in another size or other colours; any other is a logic error.
   Model(std::shared_ptr<const model::Mesh> mesh, const Model& same_shape);
   // Copies the mesh.
   explicit Model(const model::Mesh& mesh);

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "aircraft/fleet/fleet.h"
+#include "aircraft/shapes/shapes.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
 
@@ -59,12 +60,15 @@ std::shared_ptr<const Type> prepared(std::shared_ptr<const fleet::Aircraft> airc
   return type;
 }
 
-// The same with the distractor of its shape that is one metre large and has the usual colours and
-// wing beats.
+// The same with the distractor of its shape that has the usual colours and wing beats and is one
+// metre large, or half a metre where it stands on legs as small multirotors do.
 scene::Intruder with_plain_distractor(scene::Intruder intruder) {
   if (intruder.distractor) {
     scene::Distractor plain;
     plain.kind = intruder.distractor->kind;
+    if (plain.kind == scene::DistractorKind::kMultirotor &&
+        intruder.distractor->size_m < shapes::kLeastWithSkidsM)
+      plain.size_m = 0.5;
     plain.plumage = intruder.distractor->plumage;
     plain.aspect_ratio = intruder.distractor->aspect_ratio;
     plain.rotors = intruder.distractor->rotors;

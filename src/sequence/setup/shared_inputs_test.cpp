@@ -122,6 +122,22 @@ TEST_F(SharedInputsTest, WhatIsDroppedIsForgotten) {
   EXPECT_LE(shared.remembered(), 2u);
 }
 
+// Distractors of one shape share their ambient occlusion, which is by triangle.
+TEST_F(SharedInputsTest, DistractorsOfAnySizeHaveTheTrianglesOfTheirShape) {
+  SharedInputs shared;
+  scene::Intruder intruder;
+  for (const auto kind : {scene::DistractorKind::kBird,
+                          scene::DistractorKind::kMultirotor,
+                          scene::DistractorKind::kBalloon})
+    for (const double size_m : {0.05, 0.3, 0.5, 0.59, 0.6, 1.0, 3.0, 10.0})
+      for (const int rotors : {4, 6, 8}) {
+        intruder.distractor = scene::usual_distractor(kind, size_m);
+        intruder.distractor->rotors = rotors;
+        intruder.distractor->colour = {0.3, 0.4, 0.5};
+        EXPECT_NO_THROW(shared.type_of(intruder, straight_at(10), {}, {})) << size_m;
+      }
+}
+
 TEST_F(SharedInputsTest, EveryCallPassesTheWarnings) {
   std::vector<std::string> first, second;
   SharedInputs shared;
