@@ -26,6 +26,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 import warnings
 import zlib
 
@@ -43,7 +44,7 @@ from airtruth import _core, _show, evaluate
 if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
     np.set_printoptions(legacy="1.25")  # the examples show numbers without their types
 
-MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_mine", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "_calibrate", "_encounters", "evaluate")
+MODULES = ("_error", "_frames", "_video", "_lens", "_render", "_labels", "_mine", "_source", "_stream", "_dataset", "_show", "_aircraft", "_motion", "_program", "_calibrate", "_encounters", "evaluate")
 SCENE = """name = "across"
 [background]
 video = "clip.mkv"
@@ -175,6 +176,12 @@ class Frames(unittest.TestCase):
         self.assertEqual(told, [(k + 1, 6) for k in range(6)])
         with self.assertRaises(ZeroDivisionError):
             list(airtruth.render("scene.toml", progress=lambda done, total: 1 / 0))
+        for call in (lambda **how: airtruth.motion("clip.mkv", cache=False, **how), lambda **how: airtruth.calibrate("clip.mkv", **how)):
+            told.clear()
+            call(progress=lambda done, total: told.append((done, total)))
+            self.assertEqual((told[-1], told == sorted(told)), ((6, 6), True))
+            with self.assertRaises(ZeroDivisionError):
+                call(progress=lambda done, total: 1 / 0)
 
     def test_frames_outlive_what_made_them_and_travel(self):
         with airtruth.render("scene.toml") as frames:
@@ -578,6 +585,7 @@ def hostile_targets():
         "boxes": (frame.boxes, ["covered"]),
         "boxes of a crop": (lambda box, crop: html_of(frame, box, crop), [[0, 0, 9, 9], [2, 2, 9, 9]]),
         "Stream": (lambda *a: airtruth.Stream(a[0], seed=a[1], threads=a[2], cache=a[3], folder=a[4])[0], ["training.toml", 1, 1, True, None]),
+        "run": (lambda *a: airtruth.run(a[0], a[1], format=a[2], out=a[3], progress=a[4]), ["dataset export", "set", "mot", "hostile", None]),
         "Stream[]": (stream.__getitem__, [0]),
         "Stream.scene": (stream.scene, [0]),
         "motion": (lambda *a: airtruth.motion(a[0], model=a[1], lens=a[2], mask=a[3], reference=a[4], smoothing_s=a[5], cache=a[6]),
@@ -943,6 +951,62 @@ def frame_in_child(queue):
     queue.put([next(airtruth.render("scene.toml")), airtruth.DataSet("set")["across"].frame(2)])
 
 
+class Commands(unittest.TestCase):
+    """airtruth.run()."""
+
+    def test_every_command_can_be_run(self):
+        with open(os.path.join(SOURCE, "docs", "reference", "commands.md")) as file:
+            names = re.findall(r"(?m)^##+ airtruth (.+)$", file.read())
+        self.assertGreater(len(names), 30)
+        for name in names:
+            self.assertIn(f"airtruth {name}", airtruth.run(name, help=True))
+
+    def test_it_is_the_programs_own_work(self):
+        self.assertEqual(airtruth.run("aircraft list", "c172/*", sizes=True, left_out=False), output("aircraft", "list", "--sizes", "c172/*"))
+        shown = airtruth.run("dataset export", pathlib.Path("set"), format="mot", out=pathlib.Path("mot_run"), images=None)
+        self.assertEqual(shown.replace("mot_run", "mot_program"), output("dataset", "export", "set", "--format", "mot", "-o", "mot_program"))
+        lists = {"course_deg": [150, 210]}
+        airtruth.run("encounter sample", "geometric", own="own.csv", count=5, out="run.csv", **lists)
+        output("encounter", "sample", "geometric", "--own", "own.csv", "--count", "5", "--course-deg", "150", "210", "-o", "program.csv")
+        self.assertEqual(pathlib.Path("run.csv").read_text(), pathlib.Path("program.csv").read_text())
+
+    def test_progress_is_told_and_its_exception_ends_the_program(self):
+        told = []
+        airtruth.run("synth", out="told.mkv", width=64, height=64, frames=300, progress=lambda *now: told.append(now))
+        self.assertEqual((told[-1], told == sorted(told)), ((300, 300), True))
+        with self.assertRaises(ZeroDivisionError):
+            airtruth.run("synth", out="broken.mkv", frames=100000, progress=lambda *now: 1 / 0)
+        self.assertFalse(os.path.exists("broken.mkv"))
+
+    def test_messages_are_pythons(self):
+        for arguments, options, words in ((("rendr",), {}, "there is no command 'rendr'; did you mean 'render'"),
+                                          (("dataset plam", "x"), {}, "there is no command 'plam'; did you mean 'plan'"),
+                                          (("render", "scene.toml"), {"ou": "x"}, "there is no option '--ou'; did you mean '--out'"),
+                                          (("render", "none.toml"), {}, "none.toml: cannot open"),
+                                          (("render", "-none.toml"), {}, "-none.toml: cannot open")):
+            with self.assertRaisesRegex(airtruth.Error, words) as caught:
+                airtruth.run(*arguments, **options)
+            self.assertEqual(len(str(caught.exception).splitlines()), 1)
+        pathlib.Path("slow.toml").write_text(SCENE.replace("speed_mps = 40", "speed_mps = 5"))
+        with self.assertWarnsRegex(UserWarning, "cannot fly its path") as caught:
+            airtruth.run("render", "slow.toml", out="slow")
+        self.assertEqual(os.path.basename(caught.filename), "python_package_test.py")
+
+    def test_all_that_the_program_says_arrives(self):
+        said = '{"level": "warning", "message": "a\\nb"}\nof a library\n{"level": "error", "message": "first"}\n{"level": "error", "message": "last"}\n'
+        pathlib.Path("says.sh").write_text(f"#!/bin/sh\necho out\ncat >&2 <<'END'\n{said}END\nexit $STATUS\n")
+        os.chmod("says.sh", 0o755)
+        for status in ("0", "1"):
+            with unittest.mock.patch.dict(os.environ, AIRTRUTH_PROGRAM=os.path.abspath("says.sh"), STATUS=status), warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                if status == "0":
+                    self.assertEqual(airtruth.run("x"), "out\n")
+                else:
+                    with self.assertRaisesRegex(airtruth.Error, "^last$"):
+                        airtruth.run("x")
+            self.assertEqual([str(one.message) for one in told], ["a b", "of a library", "first"] + ["last"] * (status == "0"))
+
+
 class Processes(unittest.TestCase):
     def test_fork_and_spawn(self):
         wanted = [next(airtruth.render("scene.toml")), airtruth.DataSet("set")["across"].frame(2)]
@@ -984,11 +1048,12 @@ class Processes(unittest.TestCase):
                     "while it streams": "list(stream)",
                     "while it measures motion": "for _ in range(9**9): airtruth.motion(source, cache=False)",
                     "while it calibrates": "for _ in range(9**9): airtruth.calibrate(source)",
+                    "while the program runs": "airtruth.run('synth', out='endless.mkv', frames=1000000)",
                     "while it draws encounters": "airtruth.sample_encounters('light_aircraft.txt', count=1000000)",
                     "while it scores": "airtruth.evaluate.average_precision([source] * 20000, [source] * 20000, [range(30)] * 20000)"}
         boxes = [[k, k, 20, 10] for k in range(30)]
         waited = []
-        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, "long.mkv", "long.mkv", "", boxes)):
+        for (when, line), source in zip(programs.items(), (measured, SCENE, TRAINING, "long.mkv", "long.mkv", "", "", boxes)):
             code = (f"import sys; sys.path.insert(0, {PACKAGES!r}); import airtruth\nsource = {source!r}\n"
                     f"stream = airtruth.Stream({TRAINING!r})\nprint('begun', flush=True)\n"
                     f"try:\n  {line}\nexcept KeyboardInterrupt:\n  print('stopped', stream[7].index)\n")

@@ -23,6 +23,9 @@ The installed manual pages (`man airtruth-render`) hold the same text.
 
 `--quiet`, `--json-log` and `--version` belong to `airtruth` itself and stand before the command:
 `airtruth --quiet render scene.toml`.
+
+From Python, `airtruth.run("dataset build", "set.toml", out="set")` is `airtruth dataset build set.toml --out set`
+([airtruth.run](../python.md)).
 """
 EXIT_CODES = """
 ## Exit codes

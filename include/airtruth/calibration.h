@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -34,6 +35,8 @@ struct CalibrateOptions {
   // empty: the one that the first clip's tags and size tell, else the median over all.
   std::string profile;
   Warn warn;
+  // As in MotionOptions.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
   // calibrate() throws Interrupted once a stop is requested.
   std::stop_token stop;
 };

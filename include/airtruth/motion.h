@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -35,6 +36,9 @@ struct MotionOptions {
   bool use_cache = true;
   std::filesystem::path cache;
   Warn warn;
+  // Called as frames are measured, from the thread of measure_motion(); total is 0 where the number
+  // of frames is unknown.
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
   // measure_motion() throws Interrupted once a stop is requested.
   std::stop_token stop;
 };

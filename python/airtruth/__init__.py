@@ -24,6 +24,7 @@ from ._labels import Clip, Label, LabelledFrame, convert_labels, read_labels
 from ._lens import Lens
 from ._mine import FalseAlarm, HardNegatives, mine
 from ._motion import GyroAgreement, Motion, motion
+from ._program import run
 from ._render import Rendering, render
 from ._source import toml_of
 from ._stream import Sample, Stream
@@ -39,6 +40,7 @@ __all__ = [
     "aircraft", "Aircraft", "left_out_aircraft", "show_aircraft", "AircraftModel",
     "sample_encounters", "Encounters",
     "read_labels", "convert_labels", "Clip", "LabelledFrame", "Label",
+    "run",
     "evaluate", "Error",
 ]
 

@@ -5,6 +5,8 @@ from typing import Any, Dict, Iterable, List, Optional, Sequence as Row, Tuple, 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._progress import Progress
+
 Numbers = NDArray[np.float64]
 Size = Optional[Tuple[int, int]]
 Picture = Tuple[Tuple[NDArray[np.uint8], ...], str, str, bool]
@@ -74,10 +76,11 @@ class Clips:
     def dicts(self) -> List[Fields]: ...
 
 def motion(
-    video: str, model: str, lens: str, mask: str, reference: str, smoothing_s: float, cache: Union[bool, Path]
+    video: str, model: str, lens: str, mask: str, reference: str, smoothing_s: float, cache: Union[bool, Path], progress: Progress
 ) -> Fields: ...
 def calibrate(
-    videos: List[str], lens: str, mask: str, altitude_m: Optional[float], heading_deg: float, gamma: float, profile: str
+    videos: List[str], lens: str, mask: str, altitude_m: Optional[float], heading_deg: float, gamma: float, profile: str,
+    progress: Progress
 ) -> Fields: ...
 def camera_profiles() -> List[Fields]: ...
 def aircraft(filter: str) -> List[Fields]: ...

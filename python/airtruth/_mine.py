@@ -4,24 +4,21 @@ from __future__ import annotations
 import json
 import os
 import pathlib
-import shutil
-import subprocess
 import tempfile
-import warnings
 from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
 from ._error import Error
 from ._frames import Frame, Numbers, Samples
+from ._program import run_from
+from ._progress import Progress
 from ._video import Path, VideoReader
 
 _NEAR_PX = 10  # as far apart, or half of the longer side, two boxes are of one thing
 _LEAST_WEIGHT = 0.001  # of a background
-_END_S = 5  # for the program to end by itself once it is told to
 
 
 @dataclass
@@ -128,45 +125,6 @@ class HardNegatives:
         return list(made.values())
 
 
-def _program() -> str:
-    """The program `airtruth` of this package: in its build or beside it in the system, else the one that the shell finds."""
-    stated = os.environ.get("AIRTRUTH_PROGRAM")
-    if stated:
-        return stated
-    package = pathlib.Path(_core.__file__).parent
-    for place in (package.parents[1] / "src" / "cli" / "airtruth", package.parents[3] / "bin" / "airtruth"):
-        if os.access(place, os.X_OK):
-            return str(place)
-    found = shutil.which("airtruth")
-    if found is None:
-        raise Error("the program airtruth, which runs detectors, is not installed; install airtruth whole, or set AIRTRUTH_PROGRAM to it")
-    return found
-
-
-def _run(arguments: List[str]) -> None:
-    """Runs the program, which ends with this call whatever ends that."""
-    try:
-        process = subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    except OSError as error:
-        raise Error(f"{arguments[0]}: {error.strerror}") from None
-    try:
-        said = process.communicate()[1].decode(errors="replace").splitlines()
-    except BaseException:
-        process.terminate()
-        try:
-            process.wait(_END_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        raise
-    told = {kind: [line[len(kind) :] for line in said if line.startswith(kind)] for kind in ("airtruth: error: ", "airtruth: warning: ")}
-    errors, remarks = told.values()
-    if process.returncode != 0:  # a detector that breaks off is a warning of the program
-        raise Error((errors or remarks or said or [f"airtruth detect ended with status {process.returncode}"])[-1])
-    for remark in remarks:
-        warnings.warn(remark, stacklevel=3)
-
-
 def _found(results: pathlib.Path) -> Numbers:
     """A row for each detection of an aircraft: frame from 0, track or -1, x, y, width, height, score."""
     text = next((path for path in sorted(results.glob("*/*.txt"))), None)
@@ -206,6 +164,7 @@ def mine(
     lens: Optional[Path] = None,
     mask: Optional[Path] = None,
     frame_rate_hz: Optional[float] = None,
+    progress: Optional[Progress] = None,
 ) -> HardNegatives:
     """Finds the hard negatives of a detector: what it takes for an aircraft in a video in which none flies, where each detection is
     a false alarm. Train with their pictures as background, and mine again with the detector that comes out.
@@ -216,6 +175,7 @@ def mine(
     `count`: at most so many alarms, those of the highest scores; None: all. `min_score`: only those of so high a score. `lens`: a calibration
     as of Lens.from_file(), which makes tracks better. `mask`: a picture that is black where the own aircraft is; what a detector finds
     there does not count. `frame_rate_hz`: of numbered pictures, which state none.
+    `progress` as in run().
 
     The video must not show an aircraft: it would be learned as background. airtruth.Error for a file that cannot be read, for an unknown
     detector and one that fails; ValueError for a number out of range. Ctrl-C ends the work.
@@ -232,16 +192,19 @@ def mine(
         if value is not None and not value >= 1:
             raise ValueError(f"{name} is {value}; expected 1 or more")
     path = pathlib.Path(os.fspath(video))
-    options = [] if min_score is None else [f"--min-score={min_score}"]
-    options += [] if lens is None else ["--lens", os.fspath(lens)]
-    options += [] if mask is None else ["--mask", os.fspath(mask), "--mask-results"]
-    options += [] if frame_rate_hz is None else [f"--frame-rate={frame_rate_hz}"]
+    options = {
+        "detector": detector,
+        "associate": True,
+        "declare": "1/1",
+        "confident": -1e300,
+        "min_score": min_score,
+        "lens": lens,
+        "mask": mask,
+        "mask_results": mask is not None,
+        "frame_rate": frame_rate_hz,
+    }
     with tempfile.TemporaryDirectory(prefix="airtruth_mine_") as folder:
-        _run(
-            [_program(), "--quiet", "detect", "--detector", detector, "--out", folder, "--associate", "--declare", "1/1", "--confident=-1e300"]
-            + options
-            + ["--", str(path)]
-        )
+        run_from(3, "detect", [path], {**options, "out": folder}, progress)
         rows = _thinned(_found(pathlib.Path(folder)), every, count)
     mined = HardNegatives(path, detector, [FalseAlarm(int(row[0]), 0.0, row[2:6].copy(), float(row[6])) for row in rows], frame_rate_hz)
     for frame, alarms in mined.frames():

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._frames import Numbers
 from ._lens import Lens
+from ._progress import Progress, shown
 from ._source import cache_of
 from ._video import Path
 
@@ -50,13 +51,14 @@ def motion(
     reference: str = "first_frame",
     smoothing_s: float = 1,
     cache: Union[bool, Path] = True,
+    progress: Optional[Progress] = None,
 ) -> Motion:
     """Measures how a video's camera moved, as `airtruth motion` does.
 
     `model`: "rotation", on the sphere, through a known lens; "homography", of one plane; "auto": a rotation with a lens, a homography
     without. `lens`: a calibration as of Lens.from_file(). `mask`: a picture that is black where the own aircraft is.
     `reference`: "first_frame", or "smoothed": the camera's path under a window of `smoothing_s`. `cache` as in render(), whose
-    measured motion is the same.
+    measured motion is the same. `progress(done, total)` is called as the frames are measured; without it a terminal shows a line.
 
     airtruth.Error for a file that cannot be read and for arguments that do not fit together. Ctrl-C ends the work within 2 s.
 
@@ -64,9 +66,10 @@ def motion(
     >>> moved.state[:2], moved.frame_from_reference.shape, moved.cam_from_reference_cam
     (['reference', 'measured'], (6, 3, 3), None)
     """
-    fields = _core.motion(
-        os.fspath(video), model, os.fspath(lens or ""), os.fspath(mask or ""), reference, smoothing_s, cache_of(cache)
-    )
+    with shown("measuring", progress) as tell:
+        fields = _core.motion(
+            os.fspath(video), model, os.fspath(lens or ""), os.fspath(mask or ""), reference, smoothing_s, cache_of(cache), tell
+        )
     fields["lens"] = fields["lens"] and Lens(fields["lens"])
     fields["gyro"] = fields["gyro"] and GyroAgreement(**fields["gyro"])
     return Motion(**fields)

@@ -2,15 +2,14 @@
 from __future__ import annotations
 
 from types import TracebackType
-from typing import Callable, Iterator, Optional, Type, Union
+from typing import Iterator, Optional, Type, Union
 
 from . import _core
 from ._frames import Frame, truth_of
 from ._lens import Lens
+from ._progress import Line, Progress, checked
 from ._source import Source, cache_of, source_of
 from ._video import Path, VideoInfo
-
-Progress = Callable[[int, int], object]
 
 
 class Rendering:
@@ -24,6 +23,8 @@ class Rendering:
     def __init__(self, core: _core.Renderer, progress: Optional[Progress] = None) -> None:
         self._core = core
         self._progress = progress
+        self._line = Line("rendering")
+        self._done = 0
         self._total = self.video.frame_count_estimate
 
     @property
@@ -40,13 +41,20 @@ class Rendering:
         return self
 
     def __next__(self) -> Frame:
-        got = self._core.next()
+        # A terminal shows the line while a frame is awaited, and is the caller's own between frames.
+        if not self._progress:
+            self._line.draw(self._done, self._total)
+        try:
+            got = self._core.next()
+        finally:
+            self._line.erase()
         if got is None:
             raise StopIteration
         picture, fields = got
         truth = truth_of(fields)
+        self._done += 1
         if self._progress:
-            self._progress(truth.frame + 1, self._total)
+            self._progress(self._done, self._total)
         return Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth)
 
     def close(self) -> None:
@@ -75,7 +83,7 @@ def render(
     Relative paths in a text or a dict are relative to `folder` (default: the working folder).
     `threads`: frames made at the same time; 0: one for each core; at most 256. Pictures and truth do not depend on it.
     `cache`: whether measured motion and calibration of a clip are kept and found again; a path: in that folder.
-    `progress(done, total)` is called after each frame; total is 0 where it is unknown.
+    `progress(done, total)` is called after each frame; total is 0 where it is unknown. Without it a terminal shows a line.
 
     What is wrong with the scene is an airtruth.Error with file and line, raised here; what the renderer warns of goes to Python's
     `warnings`. Ctrl-C ends the work within 2 s. A rendering belongs to the process that began it.
@@ -90,6 +98,4 @@ def render(
     >>> len(list(airtruth.render(scene, threads=1, cache=False)))
     6
     """
-    if progress is not None and not callable(progress):
-        raise TypeError("progress is no function of two numbers")
-    return Rendering(_core.Renderer(*source_of(scene, folder), threads, cache_of(cache)), progress)
+    return Rendering(_core.Renderer(*source_of(scene, folder), threads, cache_of(cache)), checked(progress))

@@ -2,6 +2,7 @@
 #include "calls.h"
 
 #include <chrono>
+#include <utility>
 
 #include <airtruth/error.h>
 #include <unistd.h>
@@ -41,10 +42,38 @@ void Warnings::hand_over() {
     py::module_::import("warnings").attr("warn")(text(message), py::arg("stacklevel") = 2);
 }
 
+void HeardProgress::set(std::int64_t done, std::int64_t total) {
+  const std::lock_guard lock(mutex_);
+  news_ = {done, total};
+}
+
+void HeardProgress::tell() {
+  std::unique_lock lock(mutex_);
+  const auto news = std::exchange(news_, std::nullopt);
+  lock.unlock();
+  if (news && !heard_.is_none()) heard_(news->first, news->second);
+}
+
+namespace {
+
+// The exception that a signal's handler or `look` raises.
+std::optional<py::error_already_set> raised_by(const std::function<void()>& look) {
+  try {
+    if (PyErr_CheckSignals() != 0) return py::error_already_set();
+    look();
+  } catch (const py::error_already_set& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<py::error_already_set> await(std::mutex& mutex,
                                            std::condition_variable& changed,
                                            const std::function<bool()>& is_done,
-                                           const std::function<bool()>& goes_on) {
+                                           const std::function<bool()>& goes_on,
+                                           const std::function<void()>& look) {
   constexpr std::chrono::milliseconds kLook{50};
   std::optional<py::error_already_set> raised;
   const py::gil_scoped_release released;
@@ -53,9 +82,9 @@ std::optional<py::error_already_set> await(std::mutex& mutex,
     lock.unlock();
     {
       const py::gil_scoped_acquire held;
-      if (!raised && PyErr_CheckSignals() != 0) {
-        raised.emplace();
-        if (!goes_on()) return raised;
+      if (!raised) {
+        raised = raised_by(look);
+        if (raised && !goes_on()) return raised;
       }
     }
     lock.lock();
@@ -100,7 +129,7 @@ void Worker::post(const std::function<void()>& work) {
   changed_.notify_all();
 }
 
-void Worker::run(const std::function<void()>& work) {
+void Worker::run(const std::function<void()>& work, const std::function<void()>& look) {
   post(work);
   std::exception_ptr failure;
   const auto raised = await(
@@ -113,7 +142,8 @@ void Worker::run(const std::function<void()>& work) {
       [&] {
         stop_.request_stop();
         return true;
-      });
+      },
+      look);
   if (raised) throw *raised;
   if (failure) std::rethrow_exception(failure);
 }

@@ -60,13 +60,30 @@ class Warnings {
   std::vector<std::string> messages_;
 };
 
-// Waits without the GIL until is_done(), which is called with the mutex locked, and lets Python
-// handle its signals every 50 ms. Where a handler raises (KeyboardInterrupt) the exception is
-// returned: at once, or, where goes_on() says so, when all is done.
+// Progress of work in another thread, which a function of Python hears of in its own.
+class HeardProgress {
+ public:
+  explicit HeardProgress(py::object heard) : heard_(std::move(heard)) {}
+  // From any thread.
+  void set(std::int64_t done, std::int64_t total);
+  // With the GIL held: calls the function where there is news.
+  void tell();
+
+ private:
+  py::object heard_;
+  std::mutex mutex_;
+  std::optional<std::pair<std::int64_t, std::int64_t>> news_;
+};
+
+// Waits without the GIL until is_done(), which is called with the mutex locked, and every 50 ms
+// lets Python handle its signals and calls look(), with the GIL held. Where a handler
+// (KeyboardInterrupt) or look() raises, the exception is returned: at once, or, where goes_on()
+// says so, when all is done.
 std::optional<py::error_already_set> await(std::mutex& mutex,
                                            std::condition_variable& changed,
                                            const std::function<bool()>& is_done,
-                                           const std::function<bool()>& goes_on);
+                                           const std::function<bool()>& goes_on,
+                                           const std::function<void()>& look);
 
 // The result of a long computation that cannot be stopped. An exception of a signal's handler
 // leaves it to end by itself, so that `work` must own what it uses.
@@ -98,7 +115,8 @@ auto left_alone(Work work) {
       state->mutex,
       state->changed,
       [&] { return state->result || state->failure; },
-      [] { return false; });
+      [] { return false; },
+      [] {});
   if (raised) throw *raised;
   if (state->failure) std::rethrow_exception(state->failure);
   return std::move(*state->result);
@@ -116,7 +134,9 @@ class Worker {
   std::stop_token stop() const { return stop_.get_token(); }
   bool is_stopped() const { return stop_.stop_requested(); }
   // With the GIL held. Rethrows what `work` throws. Throws Error where a call is under way already.
-  void run(const std::function<void()>& work);
+  // `look` as of await().
+  void run(
+      const std::function<void()>& work, const std::function<void()>& look = [] {});
   // The same without a look at signals, for the end of the object.
   void run_to_the_end(const std::function<void()>& work);
 
@@ -133,17 +153,21 @@ class Worker {
   std::thread thread_;
 };
 
-// The result of one long call, work(options), which an exception of a signal's handler stops.
-// `Options` has stop, and may have warn.
+// The result of one long call, work(options), which an exception of a signal's handler or of
+// `progress`, a function of Python, stops. `Options` has stop, and may have warn and progress.
 template <typename Options, typename Work>
-auto stoppable(Options options, const Work& work) {
+auto stoppable(Options options, const Work& work, const py::object& progress = py::none()) {
   const auto warnings = std::make_shared<Warnings>();
+  HeardProgress heard(progress);
   Worker worker;
   if constexpr (requires { options.warn; })
     options.warn = [warnings](const std::string& message) { warnings->add(message); };
+  if constexpr (requires { options.progress; })
+    options.progress = [&heard](std::int64_t done, std::int64_t total) { heard.set(done, total); };
   options.stop = worker.stop();
   std::optional<decltype(work(options))> result;
-  worker.run([&] { result.emplace(work(options)); });
+  worker.run([&] { result.emplace(work(options)); }, [&] { heard.tell(); });
+  heard.tell();
   warnings->hand_over();
   return std::move(*result);
 }

@@ -52,7 +52,8 @@ py::dict motion(const fs::path& video,
                 const fs::path& mask,
                 const std::string& reference,
                 double smoothing_s,
-                const py::object& cache) {
+                const py::object& cache,
+                const py::object& progress) {
   MotionOptions options;
   options.model = model;
   options.lens = lens;
@@ -60,8 +61,8 @@ py::dict motion(const fs::path& video,
   options.reference = reference;
   options.smoothing_s = smoothing_s;
   take_cache(cache, options);
-  const ClipMotion found =
-      stoppable(options, [&](const MotionOptions& o) { return measure_motion(video, o); });
+  const ClipMotion found = stoppable(
+      options, [&](const MotionOptions& o) { return measure_motion(video, o); }, progress);
   const std::vector<FrameMotion>& frames = found.frames;
   py::dict dict;
   const IntoDict into{dict};
@@ -110,7 +111,8 @@ py::dict calibration(const std::vector<fs::path>& videos,
                      std::optional<double> altitude_m,
                      double heading_deg,
                      double gamma,
-                     const std::string& profile) {
+                     const std::string& profile,
+                     const py::object& progress) {
   CalibrateOptions options;
   options.lens = lens;
   options.mask = mask;
@@ -118,8 +120,8 @@ py::dict calibration(const std::vector<fs::path>& videos,
   options.heading_deg = heading_deg;
   options.gamma = gamma;
   options.profile = profile;
-  const Calibration found =
-      stoppable(options, [&](const CalibrateOptions& o) { return calibrate(videos, o); });
+  const Calibration found = stoppable(
+      options, [&](const CalibrateOptions& o) { return calibrate(videos, o); }, progress);
   py::dict quantities;
   for (const CalibratedQuantity& quantity : found.quantities)
     quantities[text(quantity.name)] = quantity_dict(quantity);

@@ -52,14 +52,38 @@ void keep_memory() {
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
 }
 
-// CLI11 alone would answer an unknown word together with --help as if it were valid.
-void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
+// The command that the words of the command line name, as far as they are commands.
+const CLI::App& named_command(const CLI::App& app) {
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  return parsed.empty() ? app : named_command(*parsed.front());
+}
+
+std::vector<std::string> command_names(const CLI::App& command) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
-  throw Error("there is no command '" + std::string(argv[1]) + "'" + did_you_mean(argv[1], names) +
-              " (see --help)");
+  for (const CLI::App* one : command.get_subcommands({})) names.push_back(one->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& app, const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* one : {&app, &command})
+    for (const CLI::Option* option : one->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// The first word that is neither a command nor an option, in a message; empty where there is none.
+// CLI11 names a missing argument first, and answers an unknown command that has --help.
+std::string unknown_word(const CLI::App& app) {
+  std::vector<std::string> unknown = app.remaining(true);
+  std::erase(unknown, "--");
+  if (unknown.empty()) return "";
+  const std::string word = unknown.front().substr(0, unknown.front().find('='));
+  const CLI::App& command = named_command(app);
+  if (word.starts_with("-"))
+    return "there is no option '" + word + "'" + did_you_mean(word, option_names(app, command));
+  const std::vector<std::string> names = command_names(command);
+  return names.empty() ? "" : "there is no command '" + word + "'" + did_you_mean(word, names);
 }
 
 // --help and --version.
@@ -89,15 +113,15 @@ int run(CLI::App& app,
     console->error(message);
   };
   try {
-    refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) {
+    const std::string unknown = unknown_word(app);
+    if (error.get_exit_code() == 0 && unknown.empty()) {
       if (!console) console.emplace(options);
       return print_help(app, error, *console, say);
     }
-    say(std::string(error.what()) + " (see --help)");
+    say((unknown.empty() ? error.what() : unknown) + " (see --help)");
     return kBadInput;
   } catch (const Interrupted&) {
     if (!console) console.emplace(options);

@@ -135,6 +135,12 @@ class BadScene(Case):
     def test_unknown_key_gets_the_nearest_spelling(self):
         self.assert_refused(self.render(scene(background="first_frmae = 1")), "first_frmae", "first_frame", "scene.toml:4")
 
+    def test_an_unknown_word_is_named_before_what_is_missing(self):
+        for line, words in (("rendr", "no command 'rendr'; did you mean 'render'"), ("--quiet rendr --help", "no command 'rendr'"),
+                            ("dataset plam", "no command 'plam'; did you mean 'plan'"), ("render --hlep", "no option '--hlep'; did you mean '--help'"),
+                            ("render x.toml --ou=y", "no option '--ou'; did you mean '--out'")):
+            self.assert_refused(run(*line.split()), words)
+
     def test_unknown_aircraft_gets_the_nearest_names(self):
         result = self.render(scene(aircraft="c172/newz"))
         self.assert_refused(result, "c172/newz", "scene.toml:")

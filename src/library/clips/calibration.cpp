@@ -29,6 +29,7 @@ Calibration calibrate(const std::vector<std::filesystem::path>& videos,
   how.gamma = options.gamma;
   how.profile = options.profile;
   how.warn = options.warn;
+  how.progress = options.progress;
   how.stop = options.stop;
   const camera_file::Calibration found = camera_file::calibrate_camera(videos, how);
   Calibration result;

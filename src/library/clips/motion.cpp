@@ -47,6 +47,7 @@ ClipMotion measure_motion(const std::filesystem::path& video, const MotionOption
   how.smoothing_s = options.smoothing_s;
   how.cache = disk_cache::Cache(pipeline::cache_folder(cache_options(options), "motion"));
   how.warn = options.warn;
+  how.progress = options.progress;
   how.stop = options.stop;
   const setup::ClipMotion found = setup::clip_motion(video, how);
   ClipMotion result{found.info.width, found.info.height, {}, {}, {}};
