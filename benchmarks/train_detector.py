@@ -109,7 +109,7 @@ class Frames:
         data = airtruth.DataSet(folder)
         for name in data.names:
             for frame in itertools.islice(data[name], 0, None, every):
-                self.add(grey_of(frame), *boxes_of([vars(intruder) for intruder in frame.intruders]))
+                self.add(frame.full_range_gray, *boxes_of([vars(intruder) for intruder in frame.intruders]))
 
     def add(self, picture, boxes, ignored=NO_BOXES):
         self.pictures.append(picture)
@@ -149,7 +149,7 @@ class Streamed:
         boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
         for some in (boxes, ignored):
             some[:, :2] -= sample.crop[:2]
-        return grey_of(frame), boxes, ignored
+        return frame.full_range_gray, boxes, ignored
 
     def draw(self, with_aircraft, random):
         if not with_aircraft and self.waiting:
@@ -180,7 +180,7 @@ class WithNegatives:
         self.frames, self.pictures = frames, []
         for video in videos:
             for frame, alarms in airtruth.mine(video, detector=detector).frames():
-                grey = grey_of(frame)
+                grey = frame.full_range_gray
                 for alarm in alarms:
                     x, y, width, height = alarm.around(np.minimum(NEGATIVE_PX, grey.shape[::-1]), frame)
                     self.pictures.append(grey[y:y + height, x:x + width].copy())
@@ -198,11 +198,6 @@ class WithNegatives:
 
     def words(self):
         return f"{self.frames.words()}, {len(self.pictures)} mined false alarms"
-
-
-def grey_of(frame):
-    """Luma in the full range, as `airtruth detect` shows it to the network."""
-    return frame.gray.copy() if frame.is_full_range else np.interp(frame.gray, (16, 235), (0, 255)).round().astype(np.uint8)
 
 
 def boxes_of(intruders):

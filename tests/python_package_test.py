@@ -183,6 +183,22 @@ class Frames(unittest.TestCase):
             with self.assertRaises(ZeroDivisionError):
                 call(progress=lambda done, total: 1 / 0)
 
+    def test_full_range_gray_is_that_of_a_network(self):
+        def frame(planes, pixel_format, matrix, is_full_range):
+            return airtruth.Frame(0, 0.0, planes, pixel_format, matrix, is_full_range)
+
+        ramp = np.arange(256, dtype=np.uint8).reshape(16, 16)
+        wide = frame((ramp,), "gray", "bt601", False).full_range_gray
+        self.assertEqual([wide.flat[k] for k in (0, 16, 17, 126, 235, 255)], [0, 0, 1, 128, 255, 255])
+        self.assertTrue(np.array_equal(frame((ramp,), "gray", "bt601", True).full_range_gray, ramp))
+        rgb = np.random.default_rng(1).integers(0, 256, (40, 30, 3), dtype=np.uint8)
+        planes = tuple(np.ascontiguousarray(rgb[..., k]) for k in (1, 2, 0))
+        try:
+            import cv2
+        except ImportError:
+            return
+        self.assertTrue(np.array_equal(frame(planes, "gbrp", "rgb", True).full_range_gray, cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)))
+
     def test_frames_outlive_what_made_them_and_travel(self):
         with airtruth.render("scene.toml") as frames:
             frame = next(frames)

@@ -93,7 +93,7 @@ class Items(unittest.TestCase):
         for k in range(12):
             frame = self.stream[5 + k].frames[0]
             self.assertTrue(np.array_equal(np.moveaxis(rgb[k][0].numpy(), 0, 2), frame.rgb))
-            self.assertTrue(np.allclose(gray[k][0].numpy() * 255, frame.gray[None], atol=1e-4))
+            self.assertTrue(np.allclose(gray[k][0].numpy() * 255, frame.full_range_gray[None], atol=1e-4))
             self.assertEqual([rgb[k][0].dtype, gray[k][0].dtype, int(rgb[k][1]["index"])], [torch.uint8, torch.float32, 5 + k])
         self.assertTrue(torch.equal(rgb[-1][0], rgb[11][0]))
         self.assertRaises(IndexError, rgb.__getitem__, 12)
@@ -126,7 +126,7 @@ class Items(unittest.TestCase):
     def test_pictures_in_a_row_are_channels(self):
         stream = airtruth.Stream(TRAINING.replace("[stream]", "[stream]\nframes = 3"), seed=7)
         picture, target = airtruth.torch.Dataset(stream, 4, channels="gray")[2]
-        self.assertTrue(np.array_equal(picture.numpy(), [frame.gray for frame in stream[2].frames]))
+        self.assertTrue(np.array_equal(picture.numpy(), [frame.full_range_gray for frame in stream[2].frames]))
         self.assertEqual(int(target["index"]), 2)
 
     def test_ultralytics_boxes_are_shares(self):

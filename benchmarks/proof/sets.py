@@ -68,7 +68,7 @@ class Clip:
             for picture in video:
                 if picture.index in wanted:
                     found += 1
-                    yield picture.gray
+                    yield picture.full_range_gray
                 if found == len(wanted):
                     return
         raise Refused(f"{self.video} has no frame {max(wanted)}, which its labels have")

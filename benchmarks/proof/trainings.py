@@ -106,7 +106,7 @@ def real(material, frames, seed):
 
 def add_samples(frames, stream, count):
     for frame, boxes, ignored in samples(stream, count):
-        frames.add(frame.gray.copy(), boxes, ignored)
+        frames.add(frame.full_range_gray, boxes, ignored)
 
 
 def composites(material, frames, seed):
@@ -128,7 +128,7 @@ def cut_and_paste(material, frames, seed):
         mask = frame.masks.max(axis=0) > 127 if len(frame.masks) else None
         for box in boxes.astype(int):
             x, y, width, height = box
-            patch, shape = frame.gray[y:y + height, x:x + width].astype(np.float32), mask[y:y + height, x:x + width]
+            patch, shape = frame.full_range_gray[y:y + height, x:x + width].astype(np.float32), mask[y:y + height, x:x + width]
             if dice.random() < 0.5:
                 patch, shape = patch[:, ::-1], shape[:, ::-1]
             height, width = patch.shape

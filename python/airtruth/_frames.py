@@ -27,6 +27,8 @@ class Volume(NamedTuple):
     inside: bool
     to_violation_s: Optional[float]  # 0 inside; None where there is no violation within the lookahead
 
+_FULL_FROM_LIMITED = np.clip(np.rint((np.arange(256) - 16) * (255 / 219)), 0, 255).astype(np.uint8)
+
 
 @dataclass
 class Encounter:
@@ -173,6 +175,17 @@ class Frame:
             return self.planes[0]
         green, blue, red = (plane.astype(np.float32) for plane in self.planes)
         luma: Samples = np.rint(0.2126 * red + 0.7152 * green + 0.0722 * blue).astype(np.uint8)
+        return luma
+
+    @property
+    def full_range_gray(self) -> Samples:
+        """H x W, uint8: the luma in the full range of 0 to 255, of "gbrp" that of BT.601: what `airtruth detect` shows a network of grey
+        pictures. Computed at each access."""
+        if self.pixel_format != "gbrp":
+            limited: Samples = _FULL_FROM_LIMITED[self.gray]
+            return self.gray.copy() if self.is_full_range else limited
+        green, blue, red = (plane.astype(np.uint32) for plane in self.planes)
+        luma: Samples = ((9798 * red + 19235 * green + 3735 * blue + 16384) >> 15).astype(np.uint8)  # OpenCV's integers
         return luma
 
     @property

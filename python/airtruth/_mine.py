@@ -79,14 +79,14 @@ class HardNegatives:
 
     def crops(self, size_px: Sequence[int] = (192, 192), channels: str = "rgb") -> Samples:
         """The pictures of this width and height about each of the alarms, in their order: n x height x width x 3 of "rgb", n x height x
-        width of "gray" (Frame.gray), uint8. ValueError where the frame is smaller than a crop."""
+        width of "gray" (Frame.full_range_gray), uint8. ValueError where the frame is smaller than a crop."""
         if channels not in ("rgb", "gray"):
             raise ValueError(f"channels is {channels!r}; expected 'rgb' or 'gray'")
         width, height = size_px
         pictures = np.zeros((len(self.alarms), height, width) + ((3,) if channels == "rgb" else ()), np.uint8)
         place = {id(alarm): k for k, alarm in enumerate(self.alarms)}
         for frame, alarms in self.frames():
-            picture = frame.rgb if channels == "rgb" else frame.gray
+            picture = frame.rgb if channels == "rgb" else frame.full_range_gray
             for alarm in alarms:
                 x, y, w, h = alarm.around(size_px, frame)
                 pictures[place[id(alarm)]] = picture[y : y + h, x : x + w]

@@ -26,7 +26,7 @@ class Dataset(torch.utils.data.Dataset):  # type: ignore
     first + length - 1 of a stream as a map-style data set, of which an item is (picture, target).
 
     `picture`: tensor C x H x W, uint8 of 0 to 255 or, with dtype="float32", of 0 to 1; C is 3 with channels="rgb" and 1 with
-    "gray". Of a stream with several `frames`, C is that of all of them, the earliest first, and the target is of the last.
+    "gray" (Frame.full_range_gray). Of a stream with several `frames`, C is that of all of them, the earliest first, and the target is of the last.
 
     `target`: a dict as the detectors of torchvision take it. `boxes` (n x 4, float32): x0, y0, x1, y1 in pixels of the picture, of
     the visible objects with a covered box, cut at the picture's edges; `labels` (n, int64); `range_m` (n, float32), NaN for what is
@@ -84,7 +84,7 @@ class Dataset(torch.utils.data.Dataset):  # type: ignore
         return self._picture(sample), self._target(sample)
 
     def _picture(self, sample: Sample) -> torch.Tensor:
-        pictures = [np.moveaxis(frame.rgb, 2, 0) if self._channels == "rgb" else frame.gray[np.newaxis] for frame in sample.frames]
+        pictures = [np.moveaxis(frame.rgb, 2, 0) if self._channels == "rgb" else frame.full_range_gray[np.newaxis] for frame in sample.frames]
         picture = torch.from_numpy(np.concatenate(pictures))
         return picture if self._dtype == "uint8" else picture.float() / 255
 
