@@ -83,11 +83,11 @@ class _Log:
     def _take(self, text: str) -> None:
         try:
             said = json.loads(text)
-            level = said["level"]
+            level, message = said["level"], said.get("message", "")
         except (ValueError, TypeError, KeyError):  # of a child of the program
-            level, said = "warning", {"message": text}
+            level, message = "warning", text
         if level != "progress":
-            (self.errors if level == "error" else self.warnings).append(" ".join(said["message"].splitlines()))
+            (self.errors if level == "error" else self.warnings).append(" ".join(message.splitlines()))
         elif self._progress:
             self._progress(said["done"], said["total"])
         else:
@@ -129,8 +129,8 @@ def run(command: str, *arguments: Path, progress: Optional[Progress] = None, **o
     line (docs/reference/commands.md).
 
     `command`: its name, "render" or "dataset build". `arguments`: what stands without an option, in the command line's order.
-    `options` by their names, with _ in place of -: out="set" is --out=set; True is the option alone; False and None leave it out; a
-    list repeats it.
+    `options` by their names, with _ in place of -, and class_ for --class: out="set" is --out=set; True is the option alone; False and
+    None leave it out; a list repeats it.
     `progress(done, total)` is called as the work goes on; without it a terminal shows a line.
 
     airtruth.Error holds the program's own line, and what the program warns of goes to Python's `warnings`, as do the errors before the
