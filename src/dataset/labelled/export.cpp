@@ -16,6 +16,7 @@
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/object_class.h"
+#include "labels/label_file/label_file.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
@@ -266,7 +267,7 @@ class Export {
       for (exchange::Label& label : frame.labels) {
         if (!is_faint(label)) continue;
         ++faint;
-        label.object_class = exchange::kIgnore;
+        label.object_class = label_file::kIgnore;
       }
       if (!marks_faint())
         std::erase_if(frame.labels, [this](const auto& label) { return is_faint(label); });

@@ -13,6 +13,7 @@
 #include "labels/exchange/pictures.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
+#include "labels/label_file/label_file.h"
 
 // Airborne Object Tracking (Amazon 2021, "airborne-detection-starter-kit": docs/DATASET.md,
 // core/flight.py, core/frame.py, core/metrics): one groundtruth.json; `samples` holds one flight
@@ -170,7 +171,7 @@ class FlightReader {
   Clip read() {
     const JsonObject about = flight_.object("metadata");
     if (!about.maybe_truth("fps_is_nominal").value_or(false))
-      clip_.frame_rate_hz = rate_of(about.maybe_number("fps"));
+      clip_.frame_rate_hz = label_file::rate_of(about.maybe_number("fps"));
     has_times_ = !about.maybe_truth("time_is_nominal").value_or(false);
     origin_ns_ = about.maybe_integer("time_origin_ns");
     if (about.has("resolution")) {

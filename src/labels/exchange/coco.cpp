@@ -17,6 +17,7 @@
 #include "labels/exchange/pictures.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
+#include "labels/label_file/label_file.h"
 
 // Reads COCO; the writer below describes the format.
 namespace airtruth::exchange {
@@ -64,7 +65,7 @@ class CocoReader {
     for (const JsonObject& video : json_.objects("videos")) {
       Video& about = videos_[video.whole("id")];
       about.name = video.has("name") ? video.text("name") : video.text("file_name");
-      about.frame_rate_hz = rate_of(video.maybe_number("frame_rate_hz"));
+      about.frame_rate_hz = label_file::rate_of(video.maybe_number("frame_rate_hz"));
     }
   }
 
@@ -120,7 +121,7 @@ class CocoReader {
       if (!label) continue;
       const auto track = track_of(annotation);
       label->track = track ? *track : ++labels_without_track[image];
-      get_known(annotation, *label, "visibility");
+      label_file::get_known(annotation, *label, "visibility");
       if (annotation.has("attributes") && !label->occluded)
         label->occluded = annotation.object("attributes").maybe_truth("occluded");
       picture.labels.push_back(*std::move(label));
@@ -325,8 +326,8 @@ class CocoWriter : public FolderWriter {
           {"bbox", {b.x, b.y, b.width, b.height}},
           {"area", label.area_px.value_or(label.mask ? double(label.mask->area_px) : b.area())},
           {"segmentation", segmentation_of(label)},
-          {"iscrowd", label.object_class == kIgnore ? 1 : 0}};
-      each_known(
+          {"iscrowd", label.object_class == label_file::kIgnore ? 1 : 0}};
+      label_file::each_known(
           label, "visibility", [&](const char* key, const auto& value) { put(json, key, value); });
       lists.annotations.out() << (number > 1 ? ",\n" : "") << json.dump();
     }

@@ -58,8 +58,6 @@ std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options);
 
-// The class of a region in which detections count neither way.
-inline constexpr const char* kIgnore = "ignore";
 // True where the format can say so of a box: COCO's iscrowd, VOC's difficult, MOT's seventh column,
 // the class of a WebDataset and of a table.
 bool has_ignore_mark(Format format);

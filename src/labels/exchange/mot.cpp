@@ -14,6 +14,7 @@
 #include "labels/exchange/parts.h"
 #include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
+#include "labels/label_file/label_file.h"
 
 // MOTChallenge (Milan et al. 2016, "MOT16", table 4): one folder for each clip, with
 // img1/000001.jpg ..., seqinfo.ini and gt/gt.txt. The lines are "frame, id, left, top, width,
@@ -98,7 +99,7 @@ class MotWriter : public FolderWriter {
   std::string line_of(const Label& label, std::size_t i, double unknown_visibility) const {
     const Box& b = label.box_px;
     // MOTChallenge's evaluation of one class passes over what is not to be considered.
-    const bool is_considered = options_.mot_classes ? label.object_class != kIgnore
+    const bool is_considered = options_.mot_classes ? label.object_class != label_file::kIgnore
                                                     : annotation::is_aircraft(label.object_class);
     return fmt::format("{},{},{},{},{},{},{},{},{},{}\n",
                        i + 1,
@@ -179,7 +180,7 @@ class SequenceFolder {
   void about(const fs::path& file) {
     const auto about = settings_of(file);
     if (const auto named = about.find("name"); named != about.end()) clip_.name = named->second;
-    clip_.frame_rate_hz = rate_of(number_in(about, "frameRate"));
+    clip_.frame_rate_hz = label_file::rate_of(number_in(about, "frameRate"));
     clip_.width = side_of(number_in(about, "imWidth"));
     clip_.height = side_of(number_in(about, "imHeight"));
     const auto frames = whole_in(number_in(about, "seqLength").value_or(0), 0, kMaxFrames);
@@ -189,7 +190,7 @@ class SequenceFolder {
       if (line.text == kNoVisibility) knows_visibility_ = false;
       if (!line.text.starts_with(kExactRate)) continue;
       const auto rate = numbers_of({line.number, line.text.substr(kExactRate.size())}, file);
-      if (rate.size() == 1 && rate_of(rate[0])) clip_.frame_rate_hz = rate[0];
+      if (rate.size() == 1 && label_file::rate_of(rate[0])) clip_.frame_rate_hz = rate[0];
     }
   }
 

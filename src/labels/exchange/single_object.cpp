@@ -14,6 +14,7 @@
 #include "labels/exchange/parts.h"
 #include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
+#include "labels/label_file/label_file.h"
 
 // Folders with one object each, and one line of x, y, width, height for each frame.
 //
@@ -82,10 +83,10 @@ Box box_of_mask(const Line& line, const fs::path& file) {
   const std::vector<double> n = numbers_of({line.number, line.text.substr(1)}, file);
   const Where where{file.string(), line.number};
   if (n.size() < 5) throw Error("is no mask: expected mX,Y,WIDTH,HEIGHT and run lengths", where);
-  const auto left = whole_in(n[0], -kLongestSide_px, kLongestSide_px);
-  const auto top = whole_in(n[1], -kLongestSide_px, kLongestSide_px);
-  const auto width = whole_in(n[2], 0, kLongestSide_px);
-  const auto height = whole_in(n[3], 0, kLongestSide_px);
+  const auto left = whole_in(n[0], -label_file::kLongestSide_px, label_file::kLongestSide_px);
+  const auto top = whole_in(n[1], -label_file::kLongestSide_px, label_file::kLongestSide_px);
+  const auto width = whole_in(n[2], 0, label_file::kLongestSide_px);
+  const auto height = whole_in(n[3], 0, label_file::kLongestSide_px);
   if (!left || !top || !width || !height)
     throw Error("is no mask: its window is no whole numbers of pixels", where);
   BoxBounds bounds;
@@ -167,8 +168,8 @@ class SequenceReader {
     if (size) std::tie(clip_.width, clip_.height) = *size;
     if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
       const auto settings = settings_of(folder_ / "sequence");
-      const auto exact = rate_of(number_in(settings, "exact_fps"));
-      clip_.frame_rate_hz = exact ? exact : rate_of(number_in(settings, "fps"));
+      const auto exact = label_file::rate_of(number_in(settings, "exact_fps"));
+      clip_.frame_rate_hz = exact ? exact : label_file::rate_of(number_in(settings, "fps"));
       clip_.width = side_of(number_in(settings, "width").value_or(clip_.width));
       clip_.height = side_of(number_in(settings, "height").value_or(clip_.height));
       if (const auto found = settings.find("category"); found != settings.end())
@@ -184,7 +185,7 @@ class SequenceReader {
     std::string rate = got10k_value(file, "anno_fps");
     if (rate.ends_with("Hz")) rate.resize(rate.size() - 2);
     const std::vector<double> rates = known_numbers(rate, file);
-    if (rates.size() == 1) clip_.frame_rate_hz = rate_of(rates[0]);
+    if (rates.size() == 1) clip_.frame_rate_hz = label_file::rate_of(rates[0]);
     std::string size = got10k_value(file, "resolution");
     std::replace_if(
         size.begin(), size.end(), [](char c) { return c == '(' || c == ')'; }, ' ');

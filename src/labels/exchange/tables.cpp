@@ -15,6 +15,7 @@
 #include "labels/exchange/parts.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
+#include "labels/label_file/label_file.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -188,7 +189,7 @@ class TableWriter : public FolderWriter {
              << cell(frame.time_s) << ',' << label.track << ',' << csv_cell(label.category) << ','
              << label.object_class << ',' << number(label.box_px.x) << ',' << number(label.box_px.y)
              << ',' << number(label.box_px.width) << ',' << number(label.box_px.height);
-        each_known(
+        label_file::each_known(
             label, "visible", [&](const char*, const auto& value) { out_ << ',' << cell(value); });
         out_ << ',' << cell(label.area_px);
         if (options_.cells)

@@ -12,6 +12,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
 #include "foundation/picture_series/series.h"
+#include "labels/label_file/label_file.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -92,11 +93,7 @@ std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_
 }
 
 int side_of(const std::optional<double>& value) {
-  return static_cast<int>(value ? whole_in(*value, 1, kLongestSide_px).value_or(0) : 0);
-}
-
-std::optional<double> rate_of(const std::optional<double>& value) {
-  return value && *value > 0 && *value <= kHighestRate_hz ? value : std::nullopt;
+  return static_cast<int>(value ? whole_in(*value, 1, label_file::kLongestSide_px).value_or(0) : 0);
 }
 
 std::string padded(std::int64_t number, int digits) {

@@ -48,16 +48,9 @@ constexpr std::int64_t kMaxTracks = 1'000'000'000;
 
 // The number as an integer where it is whole and within [low, high]; else empty.
 std::optional<std::int64_t> whole_in(double value, std::int64_t low, std::int64_t high);
-// The longest side of a picture, in pixels, and the highest frame rate of a clip, in frames/s:
-// beyond every camera. Labels of our own hold neither more.
-constexpr std::int64_t kLongestSide_px = 1'000'000;
-constexpr double kHighestRate_hz = 1e6;
 
 // The side of a picture, in pixels; 0 (unknown) where the value is missing or invalid.
 int side_of(const std::optional<double>& value);
-// The frame rate of a clip; empty (unknown) where the value is missing, not above 0 or above
-// kHighestRate_hz.
-std::optional<double> rate_of(const std::optional<double>& value);
 
 // A whole number with leading zeros.
 std::string padded(std::int64_t number, int digits);

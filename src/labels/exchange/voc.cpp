@@ -13,6 +13,7 @@
 #include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
 #include "labels/exchange/xml_file.h"
+#include "labels/label_file/label_file.h"
 
 // Pascal VOC (Everingham et al. 2010; VOC2012 development kit, section 4): Annotations/NAME.xml,
 // JPEGImages/NAME.jpg, ImageSets/Main/PART.txt. Pixels count from 1 and both corners belong to the
@@ -82,7 +83,7 @@ class VocWriter : public FolderWriter {
     add_number(object, "truncated", label.truncated.value_or(false) ? 1 : 0);
     add_number(object, "occluded", label.occluded.value_or(false) ? 1 : 0);
     // The development kit's evaluation passes over what is difficult.
-    add_number(object, "difficult", label.object_class == kIgnore ? 1 : 0);
+    add_number(object, "difficult", label.object_class == label_file::kIgnore ? 1 : 0);
     if (label.contrast_to_noise)
       add_text(object, "contrast_to_noise", number(*label.contrast_to_noise));
     std::string unknown = label.truncated ? "" : "truncated";

@@ -13,6 +13,7 @@
 #include "labels/exchange/parts.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
+#include "labels/label_file/label_file.h"
 
 // WebDataset (github.com/webdataset/webdataset, "The WebDataset Format"): tar archives
 // PART-000000.tar, in which files of one sample follow each other and have one key, the name up to
@@ -39,7 +40,8 @@ std::string json_of(const Clip& clip, std::size_t i) {
   if (clip.height > 0) json["height"] = clip.height;
   put(json, "frame_rate_hz", clip.frame_rate_hz);
   json["labels"] = Json::array();
-  for (const Label& label : frame.labels) json["labels"].push_back(json_of_label(label));
+  for (const Label& label : frame.labels)
+    json["labels"].push_back(label_file::json_of_label(label));
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -90,10 +92,10 @@ void add(const JsonDocument& json, std::map<std::string, Clip>& clips, LeftOut& 
   clip.name = name;
   clip.width = side_of(json.maybe_number("width"));
   clip.height = side_of(json.maybe_number("height"));
-  clip.frame_rate_hz = rate_of(json.maybe_number("frame_rate_hz"));
+  clip.frame_rate_hz = label_file::rate_of(json.maybe_number("frame_rate_hz"));
   LabelledFrame frame{json.whole("frame", 0, kMaxFrames), json.maybe_number("time_s"), {}};
   for (const JsonObject& label : json.objects("labels"))
-    add_label(frame.labels, label_of_json(label), clip, left_out, label.place());
+    add_label(frame.labels, label_file::label_of_json(label), clip, left_out, label.place());
   clip.frames.push_back(std::move(frame));
 }
 
