@@ -40,7 +40,7 @@ endfunction()
 
 # Metrics and formats for authors of trackers: without OpenSceneGraph, Embree, OpenCV and codecs. It can be installed by
 # itself: cmake --install BUILD --component evaluation.
-set(evaluation_modules base matching statistics measures exchange records)
+set(evaluation_modules base matching statistics measures label_file exchange records)
 set(evaluation_headers aot average_precision box dataset error export froc labels lens metrics statistics track_measures truth vot)
 airtruth_library(evaluation airtruth-evaluation MODULES ${evaluation_modules} HEADERS ${evaluation_headers})
 # All of it.
