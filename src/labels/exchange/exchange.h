@@ -58,8 +58,8 @@ std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options);
 
-// True where the format can say so of a box: COCO's iscrowd, VOC's difficult, MOT's seventh column,
-// the class of a WebDataset and of a table.
+// True where the format can say of a box that it is of the class "ignore": COCO's iscrowd, VOC's
+// difficult, MOT's seventh column, the class of a WebDataset and of a table.
 bool has_ignore_mark(Format format);
 
 // The clip without its distractors.
