@@ -125,10 +125,11 @@ def cut_and_paste(material, frames, seed):
     for frame, boxes, _ in samples(material.stream(False, seed, masks=True), material.options.frames):
         picture = below[dice.integers(len(below))].copy()
         pasted = []
+        shown = frame.full_range_gray
         mask = frame.masks.max(axis=0) > 127 if len(frame.masks) else None
         for box in boxes.astype(int):
             x, y, width, height = box
-            patch, shape = frame.full_range_gray[y:y + height, x:x + width].astype(np.float32), mask[y:y + height, x:x + width]
+            patch, shape = shown[y:y + height, x:x + width].astype(np.float32), mask[y:y + height, x:x + width]
             if dice.random() < 0.5:
                 patch, shape = patch[:, ::-1], shape[:, ::-1]
             height, width = patch.shape

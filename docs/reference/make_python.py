@@ -40,10 +40,11 @@ def signature_of(function):
     for name, one in signature.parameters.items():
         if name in ("self", "cls"):
             continue
-        if one.kind is one.KEYWORD_ONLY and "*" not in words:
+        if one.kind is one.KEYWORD_ONLY and not any(word.startswith("*") for word in words):
             words.append("*")
+        stars = {one.VAR_POSITIONAL: "*", one.VAR_KEYWORD: "**"}.get(one.kind, "")
         default = "" if one.default is one.empty else f"={one.default!r}"
-        words.append(f"{name}{default}")
+        words.append(f"{stars}{name}{default}")
     returned = "" if signature.return_annotation in (signature.empty, "None") else f" -> {plain(signature.return_annotation)}"
     return f"({', '.join(words)}){returned}"
 
