@@ -1,3 +1,6 @@
+# Wings that read, write and sort more than they compute: sanitized, they are not optimised, which takes half the time. In the
+# others a test takes five times longer then.
+set(AIRTRUTH_WINGS_WITHOUT_LOOPS foundation labels show dataset evaluation library studio cli)
 # For tests and for the sources of the program: what they call is optimised (decision 0011).
 set(airtruth_light_optimisation $<IF:$<BOOL:${AIRTRUTH_SANITIZE}>,-O0,-O1>)
 
@@ -21,43 +24,60 @@ if(AIRTRUTH_PCH)
   endif()
 endif()
 
-# Most of a compiler's time goes into headers, which sources that are compiled as one read once. Their private names must
-# differ from each other; a source whose names have to clash sets SKIP_UNITY_BUILD_INCLUSION.
+# Most of a compiler's time goes into headers and templates, which sources that are compiled as one read and instantiate once.
+# Their private names must differ from each other.
 function(compile_sources_together target)
   if(AIRTRUTH_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${AIRTRUTH_UNITY})
   endif()
 endfunction()
 
-# add_module(NAME SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
+# add_module(NAME [APART] SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
 #            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...]
 #            [UNSANITIZED Suite.Name ...] [OPTIMISATION flag ...])
-# makes the static library airtruth_NAME, and keeps its tests for the test programs of its wing (add_wing_tests). DEPENDS are the
-# modules that its sources include, and no others (tests/layers_test.cpp). OPTIMISATION is what inner loops are compiled with
-# beyond the usual, which precompiled headers would undo. SLOW_TESTS are
-# left out with sanitizers, under which they take hours. UNSANITIZED Suite.Name ... names tests that are left out with sanitizers:
-# they repeat, for their statistics or in whole runs, what other tests run.
+# makes the library airtruth_NAME, and keeps its tests for the test programs of its wing (add_wing_tests). DEPENDS are the
+# modules that its sources include, and no others (tests/layers_test.cpp). With AIRTRUTH_UNITY the module's sources are compiled
+# with those of its wing, unless it stands APART: what goes into libairtruth-evaluation.so or into a child program without its
+# wing, what the demo does without, and what has sources or definitions of its own making. OPTIMISATION is what inner loops are
+# compiled with beyond the usual, which precompiled headers would undo. SLOW_TESTS are left out with sanitizers, under which they
+# take hours. UNSANITIZED Suite.Name ... names tests that are left out with sanitizers: they repeat, for their statistics or in
+# whole runs, what other tests run.
 function(add_module name)
-  cmake_parse_arguments(arg "" ""
+  cmake_parse_arguments(arg "APART" ""
     "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;UNSANITIZED;OPTIMISATION" ${ARGN})
-  if(arg_SOURCES)
+  set(owner airtruth_${name})
+  if(NOT arg_SOURCES)
+    add_library(airtruth_${name} INTERFACE)
+    set(scope INTERFACE)
+  elseif(AIRTRUTH_UNITY AND NOT arg_APART AND NOT arg_OPTIMISATION)
+    wing_library(owner)
+    add_library(airtruth_${name} INTERFACE)
+    target_link_libraries(airtruth_${name} INTERFACE ${owner})
+    foreach(source IN LISTS arg_SOURCES)
+      cmake_path(ABSOLUTE_PATH source)
+      target_sources(${owner} PRIVATE ${source})
+    endforeach()
+    set(scope PUBLIC)
+  else()
     add_library(airtruth_${name} STATIC ${arg_SOURCES})
     compile_sources_together(airtruth_${name})
     set(scope PUBLIC)
-  else()
-    add_library(airtruth_${name} INTERFACE)
-    set(scope INTERFACE)
   endif()
   list(TRANSFORM arg_DEPENDS PREPEND airtruth_)
-  target_include_directories(airtruth_${name} ${scope} ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(airtruth_${name} ${scope} ${arg_DEPENDS} ${arg_LIBRARIES} airtruth_options)
+  target_include_directories(${owner} ${scope} ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${owner} ${scope} ${arg_DEPENDS} ${arg_LIBRARIES} airtruth_options)
   if(arg_PRIVATE_LIBRARIES)
-    target_link_libraries(airtruth_${name} PRIVATE ${arg_PRIVATE_LIBRARIES})
+    target_link_libraries(${owner} PRIVATE ${arg_PRIVATE_LIBRARIES})
   endif()
   if(arg_OPTIMISATION AND NOT AIRTRUTH_SANITIZE)
-    target_compile_options(airtruth_${name} PRIVATE ${arg_OPTIMISATION})
+    target_compile_options(${owner} PRIVATE ${arg_OPTIMISATION})
+  elseif(AIRTRUTH_SANITIZE AND arg_SOURCES AND NOT arg_OPTIMISATION)
+    wing_of_folder(wing)
+    if(wing IN_LIST AIRTRUTH_WINGS_WITHOUT_LOOPS)
+      target_compile_options(${owner} PRIVATE -O0)
+    endif()
   elseif(AIRTRUTH_PCH AND arg_SOURCES)
-    target_precompile_headers(airtruth_${name} REUSE_FROM airtruth_pch)
+    target_precompile_headers(${owner} REUSE_FROM airtruth_pch)
   endif()
   set_property(GLOBAL APPEND PROPERTY AIRTRUTH_MODULES airtruth_${name})
   set(libraries airtruth_${name} ${arg_TEST_DEPENDS} ${arg_PRIVATE_LIBRARIES})
@@ -68,6 +88,24 @@ function(add_module name)
   if(arg_SLOW_TESTS AND NOT AIRTRUTH_SANITIZE)
     keep_tests(slow_test "${arg_SLOW_TESTS}" "${libraries}")
   endif()
+endfunction()
+
+# wing_library(OUT): the library of the modules of the current folder's wing that are compiled together.
+function(wing_library out)
+  wing_of_folder(wing)
+  set(library airtruth_${wing}_wing)
+  if(NOT TARGET ${library})
+    add_library(${library} STATIC)
+    compile_sources_together(${library})
+  endif()
+  set(${out} ${library} PARENT_SCOPE)
+endfunction()
+
+# The wing of the current folder: foundation in src/foundation/base.
+function(wing_of_folder out)
+  file(RELATIVE_PATH wing ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REGEX REPLACE "/.*" "" wing ${wing})
+  set(${out} ${wing} PARENT_SCOPE)
 endfunction()
 
 # add_lazy_library(NAME SOURCES a.cpp ... LIBRARIES target ...) makes airtruth-late-NAME.so, which stands beside the
@@ -85,8 +123,7 @@ endfunction()
 
 # Keeps test sources of the current folder for the program WING_KIND (kind: test or slow_test) of its wing.
 function(keep_tests kind sources libraries)
-  file(RELATIVE_PATH wing ${PROJECT_SOURCE_DIR}/src ${CMAKE_CURRENT_SOURCE_DIR})
-  string(REGEX REPLACE "/.*" "" wing ${wing})
+  wing_of_folder(wing)
   list(TRANSFORM sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   set_property(GLOBAL APPEND PROPERTY AIRTRUTH_SOURCES_OF_${wing}_${kind} ${sources})
   set_property(GLOBAL APPEND PROPERTY AIRTRUTH_LIBRARIES_OF_${wing}_${kind} ${libraries})

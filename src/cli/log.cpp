@@ -152,7 +152,7 @@ void align(const AlignArguments& arguments, Context& context) {
       found.fit->offset_s));
 }
 
-void add_show(CLI::App& group, Context& context) {
+void add_log_show(CLI::App& group, Context& context) {
   auto [command, arguments] =
       add_command(group, context, "show", "Say what is in a flight log", show_log);
   command
@@ -185,7 +185,7 @@ void add_align(CLI::App& group, Context& context) {
 void add_log(CLI::App& app, Context& context) {
   auto* group = app.add_subcommand("log", "Flight logs: where the own aircraft really flew");
   group->require_subcommand(1);
-  add_show(*group, context);
+  add_log_show(*group, context);
   add_align(*group, context);
 }
 

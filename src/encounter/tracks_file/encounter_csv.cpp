@@ -18,44 +18,47 @@
 namespace airtruth::tracks_file {
 namespace {
 
-enum Column {
-  kEncounter,
-  kAircraft,
-  kTime,
-  kNorth,
-  kEast,
-  kDown,
-  kNorthSpeed,
-  kEastSpeed,
-  kDownSpeed,
-  kWeight,
-  kColumns
+enum EncounterColumn {
+  kEncounterColumn,
+  kAircraftColumn,
+  kTimeColumn,
+  kNorthColumn,
+  kEastColumn,
+  kDownColumn,
+  kNorthSpeedColumn,
+  kEastSpeedColumn,
+  kDownSpeedColumn,
+  kWeightColumn,
+  kEncounterColumns
 };
-const std::vector<std::string> kNames = {"encounter",
-                                         "aircraft",
-                                         "time_s",
-                                         "north_m",
-                                         "east_m",
-                                         "down_m",
-                                         "north_mps",
-                                         "east_mps",
-                                         "down_mps",
-                                         "weight"};
+const std::vector<std::string> kEncounterColumnNames = {"encounter",
+                                                        "aircraft",
+                                                        "time_s",
+                                                        "north_m",
+                                                        "east_m",
+                                                        "down_m",
+                                                        "north_mps",
+                                                        "east_mps",
+                                                        "down_mps",
+                                                        "weight"};
 // The largest number of an encounter; a double holds every whole number up to it.
-constexpr double kMaxEncounters = 1e9;
+constexpr double kLargestNumber = 1e9;
 // Added to a number, it makes -0 a plain 0 and changes no other.
 constexpr double kPlainZero = 0;
 
 using Places = std::vector<std::size_t>;
 
 Places columns_of(const std::vector<std::string_view>& headings, const Where& where) {
-  const Places places = airtruth::places_of(kNames, {headings.begin(), headings.end()}, where);
-  const auto is_there = [&](Column column) { return places[column] != kNoColumn; };
-  const bool has_velocity = is_there(kNorthSpeed) || is_there(kEastSpeed) || is_there(kDownSpeed);
-  for (std::size_t column = 0; column < kColumns; ++column) {
-    const bool is_needed = column <= kDown || (column <= kDownSpeed && has_velocity);
+  const Places places =
+      airtruth::places_of(kEncounterColumnNames, {headings.begin(), headings.end()}, where);
+  const auto is_there = [&](EncounterColumn column) { return places[column] != kNoColumn; };
+  const bool has_velocity =
+      is_there(kNorthSpeedColumn) || is_there(kEastSpeedColumn) || is_there(kDownSpeedColumn);
+  for (std::size_t column = 0; column < kEncounterColumns; ++column) {
+    const bool is_needed = column <= kDownColumn || (column <= kDownSpeedColumn && has_velocity);
     if (is_needed && places[column] == kNoColumn)
-      throw Error(fmt::format("has no column '{}'; expected it in the header", kNames[column]),
+      throw Error(fmt::format("has no column '{}'; expected it in the header",
+                              kEncounterColumnNames[column]),
                   where);
   }
   return places;
@@ -67,21 +70,22 @@ class EncounterRows {
   explicit EncounterRows(const Places& places) : places_(places) {}
 
   void add(const std::vector<std::string_view>& cells, const Where& where) {
-    const auto value = [&](Column column) {
-      return number_in(cells[places_[column]], kNames[column], where);
+    const auto value = [&](EncounterColumn column) {
+      return number_in(cells[places_[column]], kEncounterColumnNames[column], where);
     };
-    const double number = value(kEncounter);
-    if (number < 0 || number > kMaxEncounters || number != std::floor(number))
+    const double number = value(kEncounterColumn);
+    if (number < 0 || number > kLargestNumber || number != std::floor(number))
       throw Error(fmt::format("encounter is {}; expected a whole number from 0", number), where);
     if (builder_.is_empty() || number != number_) begin(number, where);
-    if (places_[kWeight] != kNoColumn) set_weight(value(kWeight), where);
-    const std::string name = aircraft_name_in(cells[places_[kAircraft]], where);
-    const double time_s = value(kTime);
-    const Vector3 position(value(kNorth), value(kEast), value(kDown));
-    if (places_[kNorthSpeed] == kNoColumn) {
+    if (places_[kWeightColumn] != kNoColumn) set_weight(value(kWeightColumn), where);
+    const std::string name = aircraft_name_in(cells[places_[kAircraftColumn]], where);
+    const double time_s = value(kTimeColumn);
+    const Vector3 position(value(kNorthColumn), value(kEastColumn), value(kDownColumn));
+    if (places_[kNorthSpeedColumn] == kNoColumn) {
       builder_.add(name, time_s, position, nullptr, where);
     } else {
-      const Vector3 velocity(value(kNorthSpeed), value(kEastSpeed), value(kDownSpeed));
+      const Vector3 velocity(
+          value(kNorthSpeedColumn), value(kEastSpeedColumn), value(kDownSpeedColumn));
       builder_.add(name, time_s, position, &velocity, where);
     }
   }
@@ -104,7 +108,7 @@ class EncounterRows {
   void end() {
     if (builder_.is_empty()) return;
     encounters_.push_back(builder_.take());
-    if (places_[kWeight] != kNoColumn) encounters_.back().weight = weight_;
+    if (places_[kWeightColumn] != kNoColumn) encounters_.back().weight = weight_;
   }
   void set_weight(double weight, const Where& where) {
     if (!(weight > 0))
@@ -150,7 +154,9 @@ std::vector<track::Encounter> parse_encounter_csv(std::string_view text,
   return encounters;
 }
 
-std::string encounter_csv_head() { return fmt::format("{}\n", fmt::join(kNames, ",")); }
+std::string encounter_csv_head() {
+  return fmt::format("{}\n", fmt::join(kEncounterColumnNames, ","));
+}
 
 std::string encounter_csv_rows(const track::Encounter& encounter, std::uint64_t number) {
   std::string text;

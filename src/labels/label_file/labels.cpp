@@ -108,7 +108,7 @@ Clip clip_of(const JsonObject& json) {
   return clip;
 }
 
-std::string text_of(const Json& json) {
+std::string json_line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -122,7 +122,7 @@ std::string labels_jsonl(const Clip& clip) {
   head["frame_rate_hz"] = or_null(clip.frame_rate_hz);
   for (const auto& [id, name] : clip.category_ids)
     head["category_ids"].push_back({{"id", id}, {"name", name}});
-  std::string text = text_of(head);
+  std::string text = json_line(head);
   for (const LabelledFrame& frame : clip.frames) {
     Json json = {{"frame", frame.frame}};
     json["time_s"] = or_null(frame.time_s);
@@ -130,7 +130,7 @@ std::string labels_jsonl(const Clip& clip) {
     json["image_id"] = or_null(frame.image_id);
     json["labels"] = Json::array();
     for (const Label& label : frame.labels) json["labels"].push_back(json_of_label(label));
-    text += text_of(json);
+    text += json_line(json);
   }
   return text;
 }

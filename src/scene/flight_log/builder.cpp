@@ -19,7 +19,7 @@ constexpr double kMaxRateRadps = 1e3;  // gyroscopes of aircraft end at 4,000 de
 
 // An aircraft moves by less than this in a second, and fixes of one place scatter by less than the
 // distance.
-constexpr double kFastestMps = 1e3;
+constexpr double kFastestBetweenFixesMps = 1e3;
 constexpr double kScatterM = 100;
 // Of a degree of latitude.
 constexpr double kMetresOfDegree = 111e3;
@@ -46,7 +46,7 @@ bool are_in_reach(const Fix& a, const Fix& b) {
   east -= 360 * std::round(east / 360);
   const double distance_m = kMetresOfDegree * std::hypot(b.latitude_deg - a.latitude_deg,
                                                          east * std::cos(radians(a.latitude_deg)));
-  return distance_m <= kScatterM + kFastestMps * std::abs(b.time_s - a.time_s);
+  return distance_m <= kScatterM + kFastestBetweenFixesMps * std::abs(b.time_s - a.time_s);
 }
 
 }  // namespace

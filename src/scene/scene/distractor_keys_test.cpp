@@ -15,11 +15,12 @@ namespace {
 
 const std::string kHead =
     "[background]\nvideo = \"clip.mp4\"\n[lens]\nvertical_fov_deg = 60\n[[distractor]]\n";
-const std::string kPath = "waypoints_ned_m = [[100, -10, -150], [100, 10, -150]]\nspeed_mps = 12\n";
+const std::string kDistractorPath =
+    "waypoints_ned_m = [[100, -10, -150], [100, 10, -150]]\nspeed_mps = 12\n";
 
 Scene scene_with(const std::string& keys) { return parse_scene(kHead + keys, "/data/s.toml"); }
 
-std::string message_of(const std::string& keys) {
+std::string message_with_keys(const std::string& keys) {
   try {
     scene_with(keys);
   } catch (const Error& error) {
@@ -39,7 +40,8 @@ TEST(DistractorKeys, KindsAreTheClassesOfTheTruth) {
 }
 
 TEST(DistractorKeys, ABirdFollowsAPathAndBeatsAsItsSizeHasIt) {
-  const Scene scene = scene_with("kind = \"bird\"\nsize_m = 0.65\nplumage = \"grey\"\n" + kPath);
+  const Scene scene =
+      scene_with("kind = \"bird\"\nsize_m = 0.65\nplumage = \"grey\"\n" + kDistractorPath);
   ASSERT_EQ(scene.intruders.size(), 1U);
   const Intruder& bird = scene.intruders[0];
   EXPECT_EQ(bird.id, "bird-1");
@@ -56,7 +58,7 @@ TEST(DistractorKeys, AircraftComeFirst) {
   const Scene scene = scene_with(
       "kind = \"balloon\"\nposition_ned_m = [50, 0, -150]\n[[intruder]]\naircraft = "
       "\"c172/news\"\n" +
-      kPath);
+      kDistractorPath);
   ASSERT_EQ(scene.intruders.size(), 2U);
   EXPECT_TRUE(is_aircraft(scene.intruders[0]));
   EXPECT_EQ(scene.intruders[1].aircraft, "balloon");
@@ -64,8 +66,9 @@ TEST(DistractorKeys, AircraftComeFirst) {
 }
 
 TEST(DistractorKeys, AFlockIsItsBirdsApartFromEachOther) {
-  const Scene scene = scene_with(
-      "kind = \"bird\"\nid = \"starlings\"\nsize_m = 0.4\ncount = 20\nspread_m = 8\n" + kPath);
+  const Scene scene =
+      scene_with("kind = \"bird\"\nid = \"starlings\"\nsize_m = 0.4\ncount = 20\nspread_m = 8\n" +
+                 kDistractorPath);
   ASSERT_EQ(scene.intruders.size(), 20U);
   EXPECT_EQ(scene.intruders[19].id, "starlings-20");
   std::set<double> phases;
@@ -84,7 +87,7 @@ TEST(DistractorKeys, AFlockIsItsBirdsApartFromEachOther) {
 
 TEST(DistractorKeys, TheEffectiveSceneReadsBackAsItIs) {
   for (const std::string& keys :
-       {"kind = \"bird\"\ncount = 3\nspread_m = 4\n" + kPath,
+       {"kind = \"bird\"\ncount = 3\nspread_m = 4\n" + kDistractorPath,
         std::string("kind = \"multirotor\"\nrotors = 6\ncolour = [0.1, 0.2, 0.3]\narm_colour = "
                     "[0.4, 0, 0]\nposition_ned_m = "
                     "[60, 1, -150]\nvelocity_ned_mps = [3, 0, 0]\nyaw_deg = 10\n"),
@@ -110,37 +113,39 @@ TEST(DistractorKeys, TheEffectiveSceneReadsBackAsItIs) {
 }
 
 TEST(DistractorKeys, WrongKeysAreNamedAtTheirLine) {
-  EXPECT_EQ(message_of("size_m = 1\n"),
+  EXPECT_EQ(message_with_keys("size_m = 1\n"),
             "/data/s.toml:5:1: [[distractor]] has no kind; expected bird, multirotor, balloon, "
             "glint, dirt or insect");
-  EXPECT_NE(message_of("kind = \"brid\"\n").find("did you mean 'bird'?"), std::string::npos);
-  EXPECT_EQ(message_of("kind = \"balloon\"\nglide = 0.5\n" + kPath),
+  EXPECT_NE(message_with_keys("kind = \"brid\"\n").find("did you mean 'bird'?"), std::string::npos);
+  EXPECT_EQ(message_with_keys("kind = \"balloon\"\nglide = 0.5\n" + kDistractorPath),
             "/data/s.toml:7:9: glide has no effect with kind = \"balloon\"");
-  EXPECT_EQ(message_of("kind = \"bird\"\nopacity = 0.5\n" + kPath),
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\nopacity = 0.5\n" + kDistractorPath),
             "/data/s.toml:7:11: opacity has no effect with kind = \"bird\"");
-  EXPECT_EQ(message_of("kind = \"bird\"\ncolour = [0, 0, 0]\n" + kPath),
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\ncolour = [0, 0, 0]\n" + kDistractorPath),
             "/data/s.toml:7:10: colour has no effect with kind = \"bird\"");
-  EXPECT_EQ(message_of("kind = \"bird\"\ncount = 4\n" + kPath),
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\ncount = 4\n" + kDistractorPath),
             "/data/s.toml:7:9: count is 4 without spread_m; expected the flock's radius in metres "
             "with it");
-  EXPECT_EQ(message_of("kind = \"bird\"\nsize_m = nan\n" + kPath).find("/data/s.toml:7:10: "), 0U);
-  EXPECT_EQ(message_of("kind = \"multirotor\"\nrotors = 5\n" + kPath),
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\nsize_m = nan\n" + kDistractorPath)
+                .find("/data/s.toml:7:10: "),
+            0U);
+  EXPECT_EQ(message_with_keys("kind = \"multirotor\"\nrotors = 5\n" + kDistractorPath),
             "/data/s.toml:7:10: rotors is 5; expected 4, 6 or 8");
-  EXPECT_EQ(message_of("kind = \"balloon\"\narm_colour = [0, 0, 0]\n" + kPath),
+  EXPECT_EQ(message_with_keys("kind = \"balloon\"\narm_colour = [0, 0, 0]\n" + kDistractorPath),
             "/data/s.toml:7:14: arm_colour has no effect with kind = \"balloon\"");
-  EXPECT_EQ(message_of("kind = \"bird\"\n"),
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\n"),
             "/data/s.toml:5:1: [[distractor]] has no path; expected waypoints_ned_m with speed_mps "
             "or times_s, path_file, [intruder.encounter] or [[intruder.seen]]");
-  EXPECT_EQ(message_of("kind = \"dirt\"\n"),
+  EXPECT_EQ(message_with_keys("kind = \"dirt\"\n"),
             "/data/s.toml:5:1: [[distractor]] of kind \"dirt\" has no pixel; expected the place of "
             "its middle in the picture");
-  EXPECT_EQ(message_of("kind = \"dirt\"\npixel = [1, 2]\nsize_px = 50\nlength_px = 20\n"),
+  EXPECT_EQ(message_with_keys("kind = \"dirt\"\npixel = [1, 2]\nsize_px = 50\nlength_px = 20\n"),
             "/data/s.toml:9:13: length_px is 20, below size_px; expected 50 or more");
-  EXPECT_EQ(message_of("kind = \"bird\"\nposition_ned_m = [1, 2, 3]\n" + kPath),
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\nposition_ned_m = [1, 2, 3]\n" + kDistractorPath),
             "/data/s.toml:8:19: position_ned_m and waypoints_ned_m exclude each other; keep one of "
             "them");
-  EXPECT_EQ(message_of("kind = \"dirt\"\nid = \"a\"\npixel = [1, 2]\n[[distractor]]\nkind = "
-                       "\"dirt\"\nid = \"a\"\npixel = [3, 4]\n"),
+  EXPECT_EQ(message_with_keys("kind = \"dirt\"\nid = \"a\"\npixel = [1, 2]\n[[distractor]]\nkind = "
+                              "\"dirt\"\nid = \"a\"\npixel = [3, 4]\n"),
             "/data/s.toml:11:6: id 'a' is taken; expected another");
 }
 

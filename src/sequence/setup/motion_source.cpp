@@ -57,7 +57,8 @@ std::optional<gyro::GyroFit> bridge_by_gyro(const std::vector<gyro::GyroSample>&
 
 // The lens for a rotation; empty for a homography. As in scenes a rotation is the default, but
 // where no lens is stated none can be measured.
-std::optional<lens::Lens> lens_of(const ClipMotionOptions& options, const lens::ImageSize& size) {
+std::optional<lens::Lens> lens_of_options(const ClipMotionOptions& options,
+                                          const lens::ImageSize& size) {
   if (options.model == scene::MotionModel::kNone)
     throw Error("the model is none; expected auto, rotation or homography");
   if (options.model == scene::MotionModel::kHomography && !options.lens.empty())
@@ -272,7 +273,7 @@ ClipMotion clip_motion(const fs::path& video, const ClipMotionOptions& options) 
   ClipMotion result;
   result.info = reader.info();
   const lens::ImageSize size{result.info.width, result.info.height};
-  result.lens = lens_of(options, size);
+  result.lens = lens_of_options(options, size);
   std::optional<image::Mask> mask;
   scene::Scene scene;
   scene.background.video = video;
