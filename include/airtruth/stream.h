@@ -70,8 +70,9 @@ AIRTRUTH_API std::optional<Box> in_crop(const Box& box_px, const PixelBox& crop)
 //
 // A sample depends on the catalogue, the seed and its index alone, whatever was asked for before
 // and by which thread or process. `airtruth render` of scene(index) makes the same pictures and
-// truth, bit by bit. Indices in a row share decoded frames ([stream] reuse), and are therefore made
-// fastest; they are already mixed, from eight places of the backgrounds at a time.
+// truth, bit by bit, but for samples that [stream] other_cameras shows otherwise. Indices in a row
+// share decoded frames ([stream] reuse), and are therefore made fastest; they are already mixed,
+// from eight places of the backgrounds at a time.
 //
 // Threads may use a Stream at the same time. The constructor reads the catalogue alone; a
 // background and an aircraft are opened where a sample first needs them. Throws Error for faults in

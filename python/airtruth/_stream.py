@@ -44,8 +44,9 @@ class Stream:
     catalogue is one that data sets are built from, with a table [stream]: a path, a text of several lines or a dict, as in render().
 
     A sample depends on the catalogue, the seed (0 to 2^64 - 1) and its index (0 to 2^40) alone, whatever was asked for before and by
-    which thread or process; `airtruth render` of scene(index) makes the same pictures and truth. Indices in a row are made fastest,
-    and are mixed already. `threads` draw one sample; loaders with several workers take 1. `cache` as in render().
+    which thread or process; `airtruth render` of scene(index) makes the same pictures and truth, but for samples that
+    [stream] other_cameras shows otherwise. Indices in a row are made fastest, and are mixed already. `threads` draw one sample; loaders
+    with several workers take 1. `cache` as in render().
 
     A stream may be used by several threads, sent to other processes, and used after a fork, where it opens its files anew. Ctrl-C
     ends a sample within 2 s. airtruth.Error for faults in the catalogue and the files that it names; IndexError for an index out of

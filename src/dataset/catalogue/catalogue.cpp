@@ -196,8 +196,15 @@ StreamTable stream_in(const TableReader& root) {
   constexpr std::int64_t kMostMemory_mb = 1'000'000;
   constexpr scene::Limits kSide{
       .expected = "a side in pixels, 16 to 16384", .low = 16, .high = 16384};
-  const TableReader table = root.table(
-      "stream", {"picture", "size_px", "frames", "intruders", "masks", "reuse", "memory_mb"});
+  const TableReader table = root.table("stream",
+                                       {"picture",
+                                        "size_px",
+                                        "frames",
+                                        "intruders",
+                                        "masks",
+                                        "other_cameras",
+                                        "reuse",
+                                        "memory_mb"});
   StreamTable stream;
   if (table.choice("picture", {"crop", "frame"}).value_or("crop") == "crop") {
     const auto size =
@@ -211,6 +218,8 @@ StreamTable stream_in(const TableReader& root) {
   stream.frames = table.whole("frames", 1, kMostFrames).value_or(stream.frames);
   stream.intruders = whole_range(table, "intruders", kMaxIntruders);
   stream.masks = table.truth("masks").value_or(stream.masks);
+  stream.other_cameras =
+      table.number("other_cameras", scene::kShare).value_or(stream.other_cameras);
   stream.reuse = table.whole("reuse", 1, kMostReuse).value_or(stream.reuse);
   stream.memory_mb = table.whole("memory_mb", 1, kMostMemory_mb).value_or(stream.memory_mb);
   return stream;

@@ -93,6 +93,9 @@ struct StreamTable {
   std::optional<WholeRange> intruders;
   // True: samples have the pixels of each intruder.
   bool masks = false;
+  // Share of samples that are shown as another camera than the background's has them
+  // (dataset/stream/other_camera.h), 0 to 1.
+  double other_cameras = 0;
   // Number of samples that are made of a decoded frame.
   std::int64_t reuse = 8;
   // For decoded frames, in MB of 10^6 bytes.

@@ -14,11 +14,13 @@
 #include "dataset/build/inputs.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/stream/frames.h"
+#include "dataset/stream/other_camera.h"
 #include "dataset/stream/plan.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/seed.h"
+#include "foundation/image/contrast_to_noise.h"
 #include "foundation/image/layer.h"
 #include "labels/annotation/object_class.h"
 #include "picture/composite/cover.h"
@@ -174,10 +176,38 @@ struct Stream::State {
     for (std::size_t k = 0; k < masks.size(); ++k) {
       Sample::Frame& frame = sample.frames[k];
       frame.picture = image::crop(frame.picture, sample.crop);
+      if (const auto camera = other_camera_of(index)) show_through(*camera, index, k, sample);
       for (const composite::AlphaMask& mask : masks[k])
         frame.masks.push_back(insertion::samples_in(mask, sample.crop));
     }
     return sample;
+  }
+
+  // Empty: the background's own.
+  std::optional<OtherCamera> other_camera_of(std::int64_t index) const {
+    const Seed cameras(Seed(seed).stream("other camera", static_cast<std::uint64_t>(index))());
+    if (cameras.stream("share").uniform() >= catalogue.stream.other_cameras) return std::nullopt;
+    return drawn_camera(cameras.stream("camera"));
+  }
+
+  // Frame k of a sample as the camera shows it, and how its intruders stand out there.
+  void show_through(const OtherCamera& camera,
+                    std::int64_t index,
+                    std::size_t k,
+                    Sample& sample) const {
+    Sample::Frame& frame = sample.frames[k];
+    const std::uint64_t noise =
+        Seed(Seed(seed).stream("other noise", static_cast<std::uint64_t>(index))()).stream("", k)();
+    frame.picture = seen_through(camera, frame.picture, noise);
+    for (annotation::Intruder& intruder : frame.truth.intruders) {
+      if (!intruder.contrast_to_noise) continue;
+      PixelBox box = *annotation::box_to_show(intruder);
+      const bool is_whole = intersection(box, sample.crop) == box;
+      box.x -= sample.crop.x;
+      box.y -= sample.crop.y;
+      intruder.contrast_to_noise =
+          is_whole ? image::contrast_to_noise(frame.picture, box) : std::nullopt;
+    }
   }
 
   // A crop that shows one of the aircraft whole in all frames, else one of the distractors, as far
@@ -217,7 +247,7 @@ struct Stream::State {
     for (std::size_t i = 0; i < count; ++i) {
       std::optional<PixelBox> all;
       for (const Sample::Frame& frame : sample.frames)
-        if (const auto& box = shown_box(frame.truth.intruders[i]))
+        if (const auto box = annotation::box_to_show(frame.truth.intruders[i]))
           all = all ? bounds(*all, *box) : *box;
       if (!all) continue;
       const auto& object_class = sample.frames.front().truth.intruders[i].object_class;
@@ -226,10 +256,6 @@ struct Stream::State {
     const auto& among = aircraft.empty() ? others : aircraft;
     if (among.empty()) return std::nullopt;
     return among[static_cast<std::size_t>(which * static_cast<double>(among.size()))];
-  }
-
-  static std::optional<PixelBox> shown_box(const annotation::Intruder& intruder) {
-    return intruder.covered_box_px ? intruder.covered_box_px : intruder.visible_box_px;
   }
 
   // Different warnings that a stream passes on: chosen.

@@ -18,7 +18,8 @@
 // Labelled pictures of a catalogue without end, made when they are asked for.
 // A sample is a sequence of [stream] `frames` frames at the place of its index (plan.h).
 // It depends on the catalogue, the seed and its index alone. It is made by the stages of a run
-// (sequence/pipeline/frame_maker.h), so render() of scene() gives the same pictures and truth.
+// (sequence/pipeline/frame_maker.h), so render() of scene() gives the same pictures and truth, but
+// for samples that [stream] other_cameras shows otherwise (other_camera.h).
 namespace airtruth::stream {
 
 struct Sample {

@@ -14,6 +14,7 @@
 #include "dataset/stream/plan.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/image/contrast_to_noise.h"
 #include "labels/annotation/truth.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
@@ -197,6 +198,36 @@ TEST_F(StreamOfFlights, WorkersThatNeedTheSameFlightAtOnceMakeItOnce) {
         std::async(std::launch::async, [&] { return Stream(catalogue, 7, how).sample(0); }));
   const Sample first = samples.front().get();
   for (std::size_t k = 1; k < samples.size(); ++k) expect_same(samples[k].get(), first);
+}
+
+TEST_F(StreamOfFlights, AShareOfSamplesIsAsOtherCamerasShowThem) {
+  const std::string text = background("flight3") + kRule + "[stream]\nsize_px = [64, 64]\n";
+  const Stream own = stream_of(text);
+  const Stream mixed = stream_of(text + "other_cameras = 0.5\n");
+  int as_own = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Sample plain = own.sample(i);
+    const Sample sample = mixed.sample(i);
+    EXPECT_EQ(sample.crop, plain.crop);
+    if (image::identical(sample.frames[0].picture, plain.frames[0].picture)) {
+      ++as_own;
+      expect_same(sample, plain);
+      continue;
+    }
+    expect_same(sample, mixed.sample(i));
+    for (std::size_t k = 0; k < plain.frames[0].truth.intruders.size(); ++k) {
+      const annotation::Intruder& intruder = sample.frames[0].truth.intruders[k];
+      EXPECT_EQ(intruder.covered_box_px, plain.frames[0].truth.intruders[k].covered_box_px);
+      EXPECT_EQ(intruder.visible_box_px, plain.frames[0].truth.intruders[k].visible_box_px);
+      if (!intruder.contrast_to_noise) continue;
+      PixelBox box = *annotation::box_to_show(intruder);
+      box.x -= sample.crop.x;
+      box.y -= sample.crop.y;
+      EXPECT_EQ(intruder.contrast_to_noise,
+                image::contrast_to_noise(sample.frames[0].picture, box));
+    }
+  }
+  EXPECT_NEAR(as_own, 20, 10);
 }
 
 TEST_F(StreamOfFlights, SamplesAreWhatRenderMakesOfTheirScenes) {
