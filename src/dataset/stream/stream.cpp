@@ -197,7 +197,8 @@ struct Stream::State {
                     Sample& sample) const {
     Sample::Frame& frame = sample.frames[k];
     const std::uint64_t noise =
-        Seed(Seed(seed).stream("other noise", static_cast<std::uint64_t>(index))()).stream("", k)();
+        Seed(Seed(seed).stream("other noise", static_cast<std::uint64_t>(index))())
+            .stream("frame", k)();
     frame.picture = seen_through(camera, frame.picture, noise);
     for (annotation::Intruder& intruder : frame.truth.intruders) {
       if (!intruder.contrast_to_noise) continue;
