@@ -45,16 +45,18 @@ std::vector<float> shares_within(const std::vector<float>& kernel, int length) {
   return shares;
 }
 
-// The weighted mean of what lies within the plane: an even plane stays as it is, at its rim, too.
-void soften(Values& values, double sigma_px) {
-  if (!(sigma_px > 0)) return;
-  const std::vector<float> kernel = composite::gaussian(sigma_px);
-  composite::blur(values.at, values.width, values.height, kernel);
-  const std::vector<float> across = shares_within(kernel, values.width);
-  const std::vector<float> down = shares_within(kernel, values.height);
+// A Gaussian of these deviations in samples, as the weighted mean of what lies within the plane: an
+// even plane stays as it is, at its rim, too.
+void soften(Values& values, double across, double down) {
+  if (!(across > 0)) return;
+  const std::vector<float> along_rows = composite::gaussian(across);
+  const std::vector<float> along_columns = composite::gaussian(down);
+  composite::blur(values.at, values.width, values.height, along_rows, along_columns);
+  const std::vector<float> of_columns = shares_within(along_rows, values.width);
+  const std::vector<float> of_rows = shares_within(along_columns, values.height);
   float* value = values.at.data();
-  for (const float of_row : down)
-    for (const float of_column : across) *value++ /= of_row * of_column;
+  for (const float of_row : of_rows)
+    for (const float of_column : of_columns) *value++ /= of_row * of_column;
 }
 
 void add_noise(Values& values, const OtherCamera& camera, std::uint64_t seed) {
@@ -68,7 +70,7 @@ void add_noise(Values& values, const OtherCamera& camera, std::uint64_t seed) {
 void sharpen(Values& values, double amount) {
   if (!(amount > 0)) return;
   Values soft = values;
-  soften(soft, 1);
+  soften(soft, 1, 1);
   for (std::size_t i = 0; i < values.at.size(); ++i)
     values.at[i] += static_cast<float>(amount) * (values.at[i] - soft.at[i]);
 }
@@ -77,7 +79,7 @@ void sharpen(Values& values, double amount) {
 void show_light(
     const OtherCamera& camera, float low, float high, std::uint64_t seed, image::Plane& plane) {
   Values values = values_of(plane);
-  soften(values, camera.spread_px);
+  soften(values, camera.spread_px, camera.spread_px);
   const auto gamma = static_cast<float>(camera.gamma);
   for (float& value : values.at) {
     const float light = std::clamp((value - low) / (high - low), 0.0F, 1.0F);
@@ -90,13 +92,16 @@ void show_light(
 }
 
 void show_chroma(const OtherCamera& camera,
+                 image::Chroma chroma,
                  float low,
                  float high,
-                 double spread_samples,
                  double tint,
                  image::Plane& plane) {
   Values values = values_of(plane);
-  soften(values, spread_samples);
+  const double spread_px = std::hypot(camera.spread_px, camera.chroma_spread_px);
+  soften(values,
+         spread_px / (1 << image::log2_chroma_width(chroma)),
+         spread_px / (1 << image::log2_chroma_height(chroma)));
   for (float& value : values.at)
     value = 128 + static_cast<float>(camera.saturation) * (value - 128) + static_cast<float>(tint);
   write(values, low, high, plane);
@@ -144,16 +149,15 @@ image::Picture seen_through(const OtherCamera& camera,
   image::Picture shown = picture.clone();
   const bool is_full = picture.colour.range == image::Range::kFull;
   const float low = is_full ? 0 : 16;
-  const double luma_of_chroma = 1 << image::log2_chroma_width(picture.colour.chroma);
   for (int i = 0; i < shown.plane_count; ++i) {
     image::Plane& plane = shown.planes[static_cast<std::size_t>(i)];
     if (i == 0 || picture.colour.matrix == image::Matrix::kRgb)
       show_light(camera, low, is_full ? 255 : 235, seed + static_cast<std::uint64_t>(i), plane);
     else
       show_chroma(camera,
+                  picture.colour.chroma,
                   low,
                   is_full ? 255 : 240,
-                  std::hypot(camera.spread_px, camera.chroma_spread_px) / luma_of_chroma,
                   camera.tint[static_cast<std::size_t>(i - 1)],
                   plane);
   }

@@ -12,14 +12,15 @@
 // networks from simulation to the real world", draw the camera of each picture anew.
 namespace airtruth::stream {
 
-// What the camera adds to a picture, in this order. The defaults add nothing.
+// What the camera adds to a picture, in this order. The defaults add nothing; codes beyond the
+// nominal range end at it.
 struct OtherCamera {
   double spread_px = 0;  // standard deviation of a Gaussian
   // Coded luma v of 0..1 becomes gain v^gamma, clipped at 1.
   double gamma = 1;
   double gain = 1;
   // Standard deviation of the noise of luma at half the range, in shares of the range; its variance
-  // grows with the luma. The noise is as even as white noise after a Gaussian of
+  // grows with the luma. Its spatial correlation is that of white noise after a Gaussian of
   // noise_correlation_px.
   double noise = 0;
   double noise_correlation_px = 0;
@@ -35,8 +36,8 @@ struct OtherCamera {
 
 OtherCamera drawn_camera(Random random);
 
-// `seed`: of the noise. A picture whose Colour the encoder cannot code is not coded; of one with
-// halved chroma and an odd side the last column or row is not.
+// `seed`: of the noise. A picture whose Colour the encoder cannot code is not coded; of an odd
+// side the last column or row is not.
 image::Picture seen_through(const OtherCamera& camera,
                             const image::Picture& picture,
                             std::uint64_t seed);

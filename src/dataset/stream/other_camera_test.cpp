@@ -23,8 +23,7 @@ Picture picture_of(int width,
     image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
     for (int y = 0; y < plane.height; ++y)
       for (int x = 0; x < plane.width; ++x)
-        plane.row(y)[x] =
-            static_cast<std::uint8_t>(i == 0 ? std::lround(luma(x, y)) : std::lround(128.0));
+        plane.row(y)[x] = static_cast<std::uint8_t>(i == 0 ? std::lround(luma(x, y)) : 128);
   }
   return picture;
 }
@@ -80,10 +79,9 @@ TEST(OtherCamera, AnEvenPictureStaysEvenToItsRim) {
 TEST(OtherCamera, SharpeningOvershootsAStep) {
   const Picture step = picture_of(64, 16, [](int x, int) { return x < 32 ? 80 : 160; });
   const Picture shown = seen_through({.sharpening = 0.5}, step, 1);
-  // Half of the step's share that a Gaussian of one pixel takes from the pixel beside it: Phi(-0),
-  // averaged over that pixel, is 0.315.
-  EXPECT_NEAR(shown.luma().row(8)[32] - 160, 0.5 * 0.315 * 80, 1);
-  EXPECT_NEAR(80 - shown.luma().row(8)[31], 0.5 * 0.315 * 80, 1);
+  // A Gaussian of one pixel takes 1 - Phi(1/2) of the step from the pixel beside it.
+  EXPECT_NEAR(shown.luma().row(8)[32] - 160, 0.5 * 0.3085 * 80, 1);
+  EXPECT_NEAR(80 - shown.luma().row(8)[31], 0.5 * 0.3085 * 80, 1);
   EXPECT_EQ(shown.luma().row(8)[60], 160);
 }
 
@@ -118,6 +116,22 @@ TEST(OtherCamera, ColourIsScaledAboutGreyAndTinted) {
   EXPECT_EQ(shown.planes[0].row(3)[3], 120);
   EXPECT_EQ(shown.planes[1].row(3)[3], 128 - 14 + 4);
   EXPECT_EQ(shown.planes[2].row(3)[3], 128 + 36 - 3);
+}
+
+// Halved in one direction alone: in pixels of luma a spot's chroma is as wide as it is high.
+TEST(OtherCamera, ChromaIsSpreadInPixelsOfLuma) {
+  Picture spot = picture_of(64, 64, [](int, int) { return 120; }, {image::Chroma::k422});
+  for (int y = 30; y < 34; ++y) std::fill_n(spot.planes[2].row(y) + 15, 2, 228);
+  const Picture shown = seen_through({.chroma_spread_px = 3}, spot, 1);
+  double sum = 0, across = 0, down = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const double red = shown.planes[2].row(y)[x] - 128;
+      sum += red;
+      across += red * std::pow(2 * x + 1 - 32, 2);
+      down += red * std::pow(y + 0.5 - 32, 2);
+    }
+  EXPECT_NEAR(across / sum, down / sum, 0.15 * down / sum);
 }
 
 TEST(OtherCamera, ACoarserQuantiserLosesMore) {

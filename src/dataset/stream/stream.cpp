@@ -173,10 +173,11 @@ struct Stream::State {
       sample.frames.push_back({std::move(work.frame.picture), std::move(work.truth), {}});
     }
     sample.crop = crop_of(index, sample);
+    const std::optional<OtherCamera> camera = other_camera_of(index);
     for (std::size_t k = 0; k < masks.size(); ++k) {
       Sample::Frame& frame = sample.frames[k];
       frame.picture = image::crop(frame.picture, sample.crop);
-      if (const auto camera = other_camera_of(index)) show_through(*camera, index, k, sample);
+      if (camera) show_through(*camera, index, k, sample);
       for (const composite::AlphaMask& mask : masks[k])
         frame.masks.push_back(insertion::samples_in(mask, sample.crop));
     }
