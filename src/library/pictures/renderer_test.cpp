@@ -37,7 +37,9 @@ class InMemory : public testing::Test {
   static void TearDownTestSuite() { fs::remove_all(root_); }
 
   // FFV1 (mkv) keeps every sample.
-  static std::string scene_text(const std::string& name, const std::string& more) {
+  static std::string scene_text(const std::string& name,
+                                const std::string& more,
+                                const std::string& format = "mkv") {
     return "name = \"" + name +
            "\"\n[background]\nvideo = \"flight.mkv\"\n"
            "[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 75\n"
@@ -46,7 +48,8 @@ class InMemory : public testing::Test {
            more +
            "[[intruder]]\nid = \"a\"\naircraft = \"738/738-Ryanair\"\n"
            "waypoints_ned_m = [[120, -8, -150], [120, 100, -150]]\nspeed_mps = 50\n"
-           "[output]\nvideo = \"mkv\"\n";
+           "[output]\nvideo = \"" +
+           format + "\"\n";
   }
 
   static fs::path rendered(const std::string& scene) {
@@ -129,6 +132,16 @@ TEST_F(InMemory, AReadSequenceHasTheTruthAndTheBoxesOfItsFiles) {
   }
   EXPECT_GT(visible, kFrames / 2);
   EXPECT_THROW(set.sequence("other"), Error);
+}
+
+TEST_F(InMemory, ASequenceOfNumberedPicturesIsRead) {
+  const fs::path folder = rendered(scene_text("numbered", "[motion]\nmodel = \"none\"\n", "png"));
+  const Sequence sequence = DataSet(folder).sequence("numbered");
+  EXPECT_EQ(sequence.video, folder / "numbered");
+  VideoReader video(sequence.video);
+  int frames = 0;
+  while (video.next()) ++frames;
+  EXPECT_EQ(frames, kFrames);
 }
 
 TEST_F(InMemory, FaultsOfTheSceneNameTheirPlace) {

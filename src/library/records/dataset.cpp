@@ -14,11 +14,12 @@
 namespace airtruth {
 namespace {
 
-// The video beside the record: NAME.mp4, NAME.mkv or NAME.avi.
+// The video beside the record: NAME.mp4, NAME.mkv or NAME.avi, or the folder NAME of numbered png.
 fs::path video_in(const fs::path& folder, const std::string& name) {
-  for (const char* extension : {".mp4", ".mkv", ".avi"})
+  for (const char* extension : {".mp4", ".mkv", ".avi", ""})
     if (const fs::path video = folder / (name + extension); fs::exists(video)) return video;
-  throw Error("holds no video " + name + ".mp4, .mkv or .avi; the folder is not whole",
+  throw Error("holds no video " + name + ".mp4, .mkv or .avi, and no folder " + name +
+                  " of pictures; the folder is not whole",
               {folder.string()});
 }
 
