@@ -15,6 +15,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/json_object.h"
+#include "foundation/json/parse_json.h"
 #include "labels/annotation/object_class.h"
 #include "labels/label_file/label_file.h"
 #include "picture/video/reader.h"
@@ -127,7 +128,7 @@ class Place {
  private:
   void examine() {
     if (fs::exists(record())) {
-      const Json found = Json::parse(read_file(record()), nullptr, false);
+      const Json found = parse_json(read_file(record()));
       if (!found.is_object() || found.value("options", Json()) != options_)
         throw Error("holds an export made with other options; expected a new folder",
                     {root_.string()});
@@ -137,7 +138,7 @@ class Place {
       return;
     }
     const bool begun = fs::exists(begun_file());
-    if (begun && Json::parse(read_file(begun_file()), nullptr, false) != options_)
+    if (begun && parse_json(read_file(begun_file())) != options_)
       throw Error(
           "holds an unfinished export with other options; expected the same, or a new folder",
           {root_.string()});

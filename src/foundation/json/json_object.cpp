@@ -12,6 +12,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
+#include "foundation/json/parse_json.h"
 
 namespace airtruth {
 namespace {
@@ -56,6 +57,8 @@ std::string whole_number(std::int64_t least, std::int64_t most) {
 }
 
 std::shared_ptr<const Json> parsed(std::string_view text, const Where& where) {
+  if (is_nested_too_deep(text))
+    throw Error(fmt::format("is nested deeper than {} levels", kMostNesting), where);
   try {
     return std::make_shared<const Json>(Json::parse(text));
   } catch (const Json::parse_error& error) {

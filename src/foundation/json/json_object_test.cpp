@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "foundation/json/parse_json.h"
 
 namespace airtruth {
 namespace {
@@ -94,7 +97,20 @@ TEST(JsonObject, DeepValuesAreRefused) {
   constexpr std::size_t kDepth = 1'000'000;
   const std::string text = "{\"a\": " + std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
   EXPECT_EQ(error_of(text, [](const auto& j) { j.number("a"); }),
-            "a.json: a is a list; expected a number");
+            "a.json: is nested deeper than 64 levels");
+  EXPECT_TRUE(parse_json(text).is_discarded());
+}
+
+TEST(ParseJson, LevelsAreCountedOutsideOfTexts) {
+  const auto nested = [](int levels) {
+    const auto count = static_cast<std::size_t>(levels);
+    return std::string(count, '[') + std::string(count, ']');
+  };
+  EXPECT_TRUE(parse_json(nested(kMostNesting)).is_array());
+  EXPECT_TRUE(parse_json(nested(kMostNesting + 1)).is_discarded());
+  EXPECT_TRUE(parse_json("[" + nested(40) + "," + nested(40) + "]").is_array());
+  EXPECT_EQ(parse_json("{\"a\\\"" + std::string(100, '[') + "\": 1}").size(), 1u);
+  EXPECT_TRUE(parse_json("{\"a\": ").is_discarded());
 }
 
 TEST(JsonObject, AnUnknownKeyIsNamedAtItsLineWithTheNearest) {

@@ -6,6 +6,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/parse_json.h"
 
 namespace airtruth {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 }
 
 nlohmann::ordered_json record_in(const std::filesystem::path& file) {
-  const auto record = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  auto record = parse_json(read_file(file));
   if (!record.is_object()) fail_no_record(file);
   return record;
 }

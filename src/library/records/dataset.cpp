@@ -8,6 +8,7 @@
 #include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/json/parse_json.h"
 #include "labels/annotation/truth.h"
 #include "library/records/truth_values.h"
 
@@ -26,7 +27,7 @@ fs::path video_in(const fs::path& folder, const std::string& name) {
 // The name that the record states; Error where it has no covered boxes and these are asked for.
 std::string name_in_record(const fs::path& folder, dataset::Boxes boxes) {
   const fs::path file = folder / "sequence.json";
-  const auto record = nlohmann::json::parse(read_file(file), nullptr, false);
+  const auto record = parse_json(read_file(file));
   if (!record.is_object() || !record.contains("name") || !record["name"].is_string())
     throw Error("is not a record of airtruth", {file.string()});
   const auto name = record["name"].get<std::string>();

@@ -79,6 +79,10 @@ TEST(Protocol, AnswersThatAreNoneSayWhy) {
   EXPECT_THAT(fault_in(R"({"frame":3,"detections":[{"box":[1,1,1,1],"score":1,"category":4}]})"),
               HasSubstr("category"));
   EXPECT_THAT(fault_in("{\"frame\":3,\x01\xff"), HasSubstr("no JSON object"));
+  // A million lists in each other are refused without recursion to that depth.
+  EXPECT_THAT(fault_in("{\"frame\":3,\"detections\":" + std::string(1'000'000, '[') +
+                       std::string(1'000'000, ']') + "}"),
+              HasSubstr("nested deeper"));
 }
 
 image::Picture picture() {

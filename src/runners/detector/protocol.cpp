@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "foundation/json/parse_json.h"
 #include "labels/annotation/lens_facts.h"
 
 namespace airtruth::detector {
@@ -23,8 +24,10 @@ std::string shown(std::string_view text) {
 }
 
 Json object_of(std::string_view line) {
-  Json json = Json::parse(line.begin(), line.end(), nullptr, false);
+  Json json = parse_json(line);
   if (json.is_object()) return json;
+  if (is_nested_too_deep(line))
+    fail(fmt::format("sent {}, nested deeper than {} levels", shown(line), kMostNesting));
   for (const char* word : {"NaN", "Infinity"})
     if (line.find(word) != std::string_view::npos)
       fail(std::string("sent ") + word + "; expected finite numbers");

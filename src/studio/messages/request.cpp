@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
+#include "foundation/json/parse_json.h"
 #include "scene/scene/limits.h"
 
 namespace airtruth::messages {
@@ -20,34 +21,13 @@ constexpr std::int64_t kMostChanges = 200;
 constexpr std::int64_t kMostFrames = 100'000'000;
 constexpr int kMostPx = 65536;
 constexpr std::int64_t kMostTables = 1'000'000;
-// A change of a scene is nested far less; deeper texts would exhaust a thread's stack.
-constexpr int kMostDepth = 32;
 constexpr std::size_t kMostWord = 200;
-
-bool is_too_deep(std::string_view text) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kMostDepth) return true;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return false;
-}
 
 Json parsed(std::string_view text) {
   if (text.size() > kMostRequestBytes)
     throw Error(fmt::format("the message has {} bytes; expected at most 64 KiB", text.size()));
-  if (is_too_deep(text)) throw Error("the message is nested too deep");
-  Json json = Json::parse(text, nullptr, false);
+  if (is_nested_too_deep(text)) throw Error("the message is nested too deep");
+  Json json = parse_json(text);
   if (!json.is_object())
     throw Error("the message is no JSON object; expected {\"id\": 7, \"do\": \"open\"}");
   return json;
@@ -124,8 +104,8 @@ std::vector<std::string> keys_of(Act act) {
 }  // namespace
 
 std::optional<std::int64_t> id_of(std::string_view text) {
-  if (text.size() > kMostRequestBytes || is_too_deep(text)) return std::nullopt;
-  const Json json = Json::parse(text, nullptr, false);
+  if (text.size() > kMostRequestBytes) return std::nullopt;
+  const Json json = parse_json(text);
   if (!json.is_object() || !json.contains("id") || !json["id"].is_number_integer())
     return std::nullopt;
   return json["id"].get<std::int64_t>();
