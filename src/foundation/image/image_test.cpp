@@ -234,19 +234,6 @@ TEST(SampleMemory, IsTakenAgainByAnyThread) {
   EXPECT_NE(take_samples(kBytes).get(), first);
 }
 
-TEST(SampleMemory, ThatIsLentKeepsItsLenderAndFreesNothingElse) {
-  const auto lender = std::make_shared<std::array<std::uint8_t, 8>>();
-  const std::size_t free_before = free_sample_bytes();
-  SampleMemory lent = lent_samples(lender->data(), lender);
-  EXPECT_EQ(lender.use_count(), 2);
-  SampleMemory moved = std::move(lent);
-  EXPECT_EQ(moved.get(), lender->data());
-  EXPECT_EQ(lender.use_count(), 2);
-  moved.reset();
-  EXPECT_EQ(lender.use_count(), 1);
-  EXPECT_EQ(free_sample_bytes(), free_before);
-}
-
 TEST(SampleMemory, KeepsNeitherSmallBlocksNorMoreThanItsLimit) {
   const std::size_t free_before = free_sample_bytes();
   take_samples(1000).reset();

@@ -4,7 +4,6 @@
 #include <map>
 #include <mutex>
 #include <new>
-#include <utility>
 #include <vector>
 
 namespace airtruth::image {
@@ -69,9 +68,7 @@ Pool& pool() {
 }  // namespace
 
 void GiveBack::operator()(std::uint8_t* samples) noexcept {
-  if (lender_ != nullptr) {
-    lender_.reset();
-  } else if (bytes_ < kMinKeptBytes) {
+  if (bytes_ < kMinKeptBytes) {
     release(samples);
   } else {
     pool().give_back(samples, bytes_);
@@ -82,10 +79,6 @@ SampleMemory take_samples(std::size_t bytes) {
   std::uint8_t* samples = bytes < kMinKeptBytes ? nullptr : pool().take(bytes);
   if (samples == nullptr) samples = static_cast<std::uint8_t*>(::operator new[](bytes, kAlignment));
   return SampleMemory(samples, GiveBack(bytes));
-}
-
-SampleMemory lent_samples(std::uint8_t* samples, std::shared_ptr<void> lender) {
-  return SampleMemory(samples, GiveBack(std::move(lender)));
 }
 
 std::size_t free_sample_bytes() { return pool().free_bytes(); }

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <utility>
 
 // The memory of planes. What one plane gives back, the next of that size takes, whichever threads
 // the two belong to: malloc() keeps memory for each thread by itself, so that a run would come to
@@ -15,20 +14,15 @@ class GiveBack {
  public:
   GiveBack() = default;
   explicit GiveBack(std::size_t bytes) : bytes_(bytes) {}
-  explicit GiveBack(std::shared_ptr<void> lender) : lender_(std::move(lender)) {}
   void operator()(std::uint8_t* samples) noexcept;
 
  private:
   std::size_t bytes_ = 0;
-  std::shared_ptr<void> lender_;
 };
 using SampleMemory = std::unique_ptr<std::uint8_t[], GiveBack>;
 
 // Not initialised; aligned for any vector.
 SampleMemory take_samples(std::size_t bytes);
-
-// Samples in memory of the lender, which is kept for as long as they are.
-SampleMemory lent_samples(std::uint8_t* samples, std::shared_ptr<void> lender);
 
 // What is kept free for planes to come, in bytes.
 std::size_t free_sample_bytes();

@@ -359,27 +359,4 @@ FramePtr copied_frame(const AVCodecContext& encoder,
   return is_on_device ? on_device(encoder, *frame) : std::move(frame);
 }
 
-FramePtr lent_frame(const AVCodecContext& encoder, std::shared_ptr<const Frame> frame) {
-  using Owner = std::shared_ptr<const Frame>;
-  FramePtr lent = blank_frame(encoder);
-  const image::Picture& picture = frame->picture;
-  for (int i = 0; i < picture.plane_count; ++i) {
-    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
-    // An encoder only reads; the buffer is marked read-only.
-    lent->data[i] = const_cast<std::uint8_t*>(plane.row(0));
-    lent->linesize[i] = plane.stride;
-  }
-  auto owner = std::make_unique<Owner>(std::move(frame));
-  const auto release = [](void* opaque, std::uint8_t*) { delete static_cast<Owner*>(opaque); };
-  lent->buf[0] = av_buffer_create(
-      lent->data[0],
-      static_cast<std::size_t>(lent->linesize[0]) * static_cast<std::size_t>(lent->height),
-      release,
-      owner.get(),
-      AV_BUFFER_FLAG_READONLY);
-  if (lent->buf[0] == nullptr) throw std::bad_alloc();
-  owner.release();  // libav's buffer owns it from here on
-  return lent;
-}
-
 }  // namespace airtruth::video

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 
 #include "picture/video/libav.h"
 #include "picture/video/reader.h"
@@ -52,10 +51,5 @@ FramePtr copied_frame(const AVCodecContext& encoder,
                       const image::Picture& picture,
                       const image::Colour& stored,
                       Format format);
-
-// A frame whose planes are the picture's own memory. libav keeps the picture alive as long as it
-// refers to it. The picture must have the encoder's pixel format, and planes of Y, Cb and Cr.
-// Throws std::bad_alloc.
-FramePtr lent_frame(const AVCodecContext& encoder, std::shared_ptr<const Frame> frame);
 
 }  // namespace airtruth::video

@@ -197,30 +197,6 @@ Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colo
   return picture;
 }
 
-std::optional<Picture> lent_picture(const std::shared_ptr<AVFrame>& frame,
-                                    const Layout& layout,
-                                    const image::Colour& colour) {
-  if (layout.rgb || layout.shift > 0) return std::nullopt;
-  const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame->format));
-  Picture picture;
-  picture.width = frame->width;
-  picture.height = frame->height;
-  picture.colour = colour;
-  picture.plane_count = colour.chroma == Chroma::kNone ? 1 : 3;
-  for (int i = 0; i < picture.plane_count; ++i) {
-    const AVComponentDescriptor& c = format->comp[i];
-    if (c.plane != i || c.step != 1 || c.offset != 0 || frame->linesize[i] <= 0)
-      return std::nullopt;
-    const int sx = i > 0 ? image::log2_chroma_width(colour.chroma) : 0;
-    const int sy = i > 0 ? image::log2_chroma_height(colour.chroma) : 0;
-    picture.planes[static_cast<std::size_t>(i)] = {(frame->width + sx) >> sx,
-                                                   (frame->height + sy) >> sy,
-                                                   frame->linesize[i],
-                                                   image::lent_samples(frame->data[i], frame)};
-  }
-  return picture;
-}
-
 Orientation orientation_of(const std::int32_t* m) {
   // x' = a x + c y, y' = b x + d y, with y down.
   double a = m[0];

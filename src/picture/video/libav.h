@@ -97,13 +97,6 @@ AVColorSpace space_of(image::Matrix matrix);
 // The samples of a decoded frame as a Picture of that colour, which must fit the layout.
 image::Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour);
 
-// The samples of a decoded frame as a Picture in the frame's own memory, which it keeps. Empty
-// where a Picture lays its samples out in another way. The decoder reads them as long as it refers
-// to the frame: nobody may write to the Picture before av_frame_is_writable().
-std::optional<image::Picture> lent_picture(const std::shared_ptr<AVFrame>& frame,
-                                           const Layout& layout,
-                                           const image::Colour& colour);
-
 // How a stored picture is shown: left and right are exchanged first, then the picture is rotated.
 struct Orientation {
   bool mirrored = false;

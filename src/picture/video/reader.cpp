@@ -5,7 +5,6 @@
 #include <cmath>
 #include <deque>
 #include <memory>
-#include <new>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -42,27 +41,8 @@ image::Siting siting_of(AVChromaLocation location) {
   }
 }
 
-// How many more frames a decoder returns before it rarely refers to a frame any more: 97 of 100
-// with libx264's default of three reference frames, and 99 of 100 of those of cameras, which have
-// fewer.
-constexpr std::size_t kReferredFrames = 3;
-
 // Largest numerator and denominator of a stated frame rate: 30000/1001 is exact.
 constexpr int kMaxRateTerm = 100'000;
-
-// A frame whose picture may lie in memory to which the decoder still refers.
-struct Decoded {
-  Frame frame;
-  // Null where the picture has its own memory.
-  std::shared_ptr<AVFrame> lender;
-};
-
-// The frame in memory of its own.
-Frame owned(Decoded decoded) {
-  if (decoded.lender && av_frame_is_writable(decoded.lender.get()) == 0)
-    decoded.frame.picture = decoded.frame.picture.clone();
-  return std::move(decoded.frame);
-}
 
 // The number of frames of a stream as its container states it, without those that an edit list
 // leaves out; 0: unknown.
@@ -117,8 +97,8 @@ struct Reader::State {
   std::int64_t pts_step = 1;
   std::optional<std::int64_t> first_pts;
   // Decoded frames that are not yet handed out: the constructor decodes the first one, and with
-  // cuts, or without copies, the queue also holds the frames after the next.
-  std::deque<Decoded> ahead;
+  // cuts the queue also holds the frames after the next.
+  std::deque<Frame> ahead;
   image::Differences difference;
   // Differences between each frame and the one before it, from the frame `first_difference` on.
   std::deque<double> differences;
@@ -151,8 +131,7 @@ struct Reader::State {
   bool go_to_packet(const KeyPacket& key);
   // Fills `frame`; false at the end.
   bool decode_one();
-  std::optional<Decoded> next();
-  Decoded with_picture(Frame result);
+  std::optional<Frame> next();
   // Decodes one more frame; false at the end.
   bool look_ahead();
   bool begins_shot(std::int64_t index);
@@ -402,22 +381,7 @@ void Reader::State::make_plain() {
   frame = in_format(*frame, plain);
 }
 
-Decoded Reader::State::with_picture(Frame result) {
-  if (options.avoids_copies && !orientation.mirrored && orientation.clockwise_deg == 0) {
-    const std::shared_ptr<AVFrame> lender(av_frame_clone(frame.get()), FreeFrame());
-    if (!lender) throw std::bad_alloc();
-    if (auto lent = lent_picture(lender, layout, coded_colour)) {
-      // The reader itself must not refer to the frame any more.
-      av_frame_unref(frame.get());
-      result.picture = std::move(*lent);
-      return {std::move(result), lender};
-    }
-  }
-  result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
-  return {std::move(result), nullptr};
-}
-
-std::optional<Decoded> Reader::State::next() {
+std::optional<Frame> Reader::State::next() {
   if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
   for (;;) {
     if (!std::exchange(is_pending, false) && !decode_one()) {
@@ -438,7 +402,8 @@ std::optional<Decoded> Reader::State::next() {
     if (!first_pts) first_pts = result.pts;
     result.index = handed++;
     result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
-    return with_picture(std::move(result));
+    result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
+    return result;
   }
 }
 
@@ -509,7 +474,7 @@ bool Reader::State::look_ahead() {
   auto one = next();
   if (!one) return false;
   if (options.with_cuts)
-    if (const auto d = difference.add(one->frame.picture)) differences.push_back(*d);
+    if (const auto d = difference.add(one->picture)) differences.push_back(*d);
   ahead.push_back(std::move(*one));
   return true;
 }
@@ -567,12 +532,11 @@ const StreamInfo& Reader::info() const { return state_->info; }
 
 std::optional<Frame> Reader::next() {
   State& state = *state_;
-  std::size_t held_back = state.options.with_cuts ? std::size_t{image::kCutNeighbours} : 0;
-  if (state.options.avoids_copies) held_back = std::max(held_back, kReferredFrames);
+  const std::size_t held_back = state.options.with_cuts ? std::size_t{image::kCutNeighbours} : 0;
   while (state.ahead.size() < 1 + held_back && state.look_ahead()) {
   }
   if (state.ahead.empty()) return std::nullopt;
-  Frame frame = owned(std::move(state.ahead.front()));
+  Frame frame = std::move(state.ahead.front());
   state.ahead.pop_front();
   if (state.options.with_cuts) frame.begins_shot = !frame.damaged && state.begins_shot(frame.index);
   return frame;
@@ -588,8 +552,8 @@ std::optional<Frame> Reader::at(double time_s) {
   // The frame that is shown at a time is the last one that does not begin after it.
   std::optional<Frame> shown;
   while (auto decoded = state.next()) {
-    if (shown && decoded->frame.pts > wanted) break;
-    shown = owned(std::move(*decoded));
+    if (shown && decoded->pts > wanted) break;
+    shown = std::move(decoded);
     if (shown->pts >= wanted) break;
   }
   if (shown)

@@ -95,9 +95,6 @@ struct ReaderOptions {
   // True: the reader fills Frame::begins_shot. The decision needs the following frames, so the
   // reader holds two decoded frames back.
   bool with_cuts = false;
-  // True: the reader holds three decoded frames back. After so many the decoder rarely refers to a
-  // frame any more, and its samples need not be copied. All frames are the same as without.
-  bool avoids_copies = false;
   // False: one picture is wanted, and no duration, rate or shape of its pixels. A picture file is
   // then decoded once and not twice.
   bool with_timing = true;

@@ -55,8 +55,6 @@ struct Writer::State {
     if (result < 0) fail(std::string(what) + ": " + reason(result));
   }
   void open();
-  bool takes_as_it_is(const Picture& picture) const;
-  void write_frame(const Frame& frame, const std::shared_ptr<const Frame>& lent);
   void encode(const AVFrame* frame);
   void write_image(const Picture& picture) const;
 };
@@ -152,42 +150,27 @@ Writer::~Writer() {
 Writer::Writer(Writer&&) noexcept = default;
 Writer& Writer::operator=(Writer&&) noexcept = default;
 
-// libx264 and FFV1 only read what they take. MJPEG's encoder may use a frame as its own reference,
-// and hardware has its own memory.
-bool Writer::State::takes_as_it_is(const Picture& picture) const {
-  return (encoder_name == "libx264" || encoder_name == "ffv1") && picture.colour == stored &&
-         stored.matrix != image::Matrix::kRgb;
-}
-
-// `lent`: the same frame, where its memory may be read after the call; else null.
-void Writer::State::write_frame(const Frame& frame, const std::shared_ptr<const Frame>& lent) {
-  check(frame.picture.width == info.width && frame.picture.height == info.height,
+void Writer::write(const Frame& frame) {
+  State& s = *state_;
+  check(frame.picture.width == s.info.width && frame.picture.height == s.info.height,
         "frames keep their size");
-  if (options.format == Format::kPng) {
-    write_image(frame.picture);
-    ++count;
+  if (s.options.format == Format::kPng) {
+    s.write_image(frame.picture);
+    ++s.count;
     return;
   }
-  const FramePtr out = lent != nullptr && takes_as_it_is(frame.picture)
-                           ? lent_frame(*codec, lent)
-                           : copied_frame(*codec, frame.picture, stored, options.format);
-  if (count == 0) first_pts = frame.pts;
-  std::int64_t pts = options.format == Format::kAvi ? count : frame.pts - first_pts;
-  if (pts <= last_pts) pts = last_pts + 1;
-  last_pts = pts;
+  const FramePtr out = copied_frame(*s.codec, frame.picture, s.stored, s.options.format);
+  if (s.count == 0) s.first_pts = frame.pts;
+  std::int64_t pts = s.options.format == Format::kAvi ? s.count : frame.pts - s.first_pts;
+  if (pts <= s.last_pts) pts = s.last_pts + 1;
+  s.last_pts = pts;
   out->pts = pts;
-  out->quality = codec->global_quality;
-  encode(out.get());
-  ++count;
+  out->quality = s.codec->global_quality;
+  s.encode(out.get());
+  ++s.count;
 }
 
 const std::string& Writer::encoder() const { return state_->encoder_name; }
-
-void Writer::write(const Frame& frame) { state_->write_frame(frame, nullptr); }
-
-void Writer::write(const std::shared_ptr<const Frame>& frame) {
-  state_->write_frame(*frame, frame);
-}
 
 void Writer::finish() {
   State& s = *state_;

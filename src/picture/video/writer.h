@@ -72,9 +72,6 @@ class Writer {
 
   // Frames come in presentation order. Throws Error, for example when the disk is full.
   void write(const Frame& frame);
-  // The encoder may read the frame's own memory, and keeps the frame for as long. The picture must
-  // not change after the call.
-  void write(const std::shared_ptr<const Frame>& frame);
   void finish();
   // libav's name of the encoder, such as "libx264"; "png" for numbered png.
   const std::string& encoder() const;

@@ -2,7 +2,6 @@
 #include "picture/video/writer.h"
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -43,41 +42,6 @@ StreamInfo stream_of(const image::Colour& colour) {
   info.height = kHeight;
   info.colour = colour;
   return info;
-}
-
-TEST_F(Video, LentFramesGiveTheBytesOfCopiedOnes) {
-  for (const Format format : {Format::kMp4, Format::kMkv, Format::kAvi}) {
-    for (const image::Chroma chroma :
-         {image::Chroma::k420, image::Chroma::k422, image::Chroma::k444}) {
-      image::Colour colour;
-      colour.chroma = chroma;
-      const fs::path copied = folder_ / ("copied" + std::string(extension(format)));
-      const fs::path lent = folder_ / ("lent" + std::string(extension(format)));
-      Writer copies(copied, stream_of(colour), {.format = format});
-      Writer lends(lent, stream_of(colour), {.format = format});
-      for (std::int64_t k = 0; k < 30; ++k) {
-        const auto frame = std::make_shared<const Frame>(noise(k, colour));
-        copies.write(*frame);
-        lends.write(frame);
-      }
-      copies.finish();
-      lends.finish();
-      EXPECT_EQ(sha256_of_file(copied), sha256_of_file(lent)) << extension(format);
-      EXPECT_GT(fs::file_size(lent), 30u * kWidth * kHeight / 4);  // noise does not shrink
-    }
-  }
-}
-
-TEST_F(Video, KeepsNoLentFrameAfterItsEnd) {
-  std::weak_ptr<const Frame> last;
-  {
-    const auto frame = std::make_shared<const Frame>(noise(0, {}));
-    last = frame;
-    Writer writer(folder_ / "short.mkv", stream_of({}), {.format = Format::kMkv});
-    writer.write(frame);
-    writer.finish();
-  }
-  EXPECT_TRUE(last.expired());
 }
 
 fs::path written(const fs::path& file, const WriterOptions& options, std::string* encoder) {

@@ -105,7 +105,7 @@ void Outputs::check_truth(const char* what) const {
                 {(folder_ / "truth.jsonl").string()});
 }
 
-void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
+void Outputs::write(const video::Frame& frame,
                     const annotation::Frame& truth,
                     const std::vector<insertion::MaskFile>& masks) {
   writer_.write(frame);
@@ -125,7 +125,7 @@ void Outputs::write(const std::shared_ptr<const video::Frame>& frame,
                         : std::optional(evision_frame(truth, intruder)),
                     camera_ned_m);
   }
-  sheet_.add(frame->picture, truth);
+  sheet_.add(frame.picture, truth);
 }
 
 void Outputs::finish(const scene::Scene& scene,

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,8 +38,7 @@ class Outputs {
           const video::StreamInfo& info,
           int threads);
 
-  // The encoder may read the frame's own memory: the picture must not change after the call.
-  void write(const std::shared_ptr<const video::Frame>& frame,
+  void write(const video::Frame& frame,
              const annotation::Frame& truth,
              const std::vector<insertion::MaskFile>& masks);
   // Closes all files and writes the annotation, the preview and, last, sequence.json. `scene` is

@@ -236,8 +236,7 @@ Tally make_frames(FrameMaker& maker, Outputs& outputs, const Options& options, C
   const auto write = tbb::make_filter<WorkPtr, void>(in_order, [&](const WorkPtr& work) {
     if (options.stop.stop_requested()) return;
     const Timed timed(clocks.write);
-    const std::shared_ptr<const video::Frame> frame(work, &work->frame);
-    outputs.write(frame, work->truth, work->masks);
+    outputs.write(work->frame, work->truth, work->masks);
     add_frame(tally, *work);
     if (options.progress)
       options.progress({tally.frames, maker.resolved().info.frame_count_estimate});

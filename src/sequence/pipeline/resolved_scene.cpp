@@ -254,7 +254,6 @@ video::Reader open_background(const scene::Scene& scene, const Options& options)
   reader_options.picture_rate_hz = scene.background.frame_rate_hz;
   reader_options.threads = options.threads;
   reader_options.with_cuts = true;
-  reader_options.avoids_copies = true;
   video::Reader reader(scene.background.video, reader_options, options.warn);
   if (!reader.info().is_rate_stated)
     throw Error(
