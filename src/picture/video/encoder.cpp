@@ -82,13 +82,7 @@ void fill_frame(AVFrame& frame, const Picture& picture) {
     }
     return;
   }
-  for (int i = 0; i < picture.plane_count; ++i) {
-    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
-    for (int y = 0; y < plane.height; ++y)
-      std::memcpy(frame.data[i] + static_cast<std::ptrdiff_t>(y) * frame.linesize[i],
-                  plane.row(y),
-                  static_cast<std::size_t>(plane.width));
-  }
+  copy_planes(picture, frame);
 }
 
 }  // namespace
@@ -128,21 +122,8 @@ void check_size(const StreamInfo& info,
 }
 
 AVPixelFormat pixel_format(const Colour& colour, Format format) {
-  const bool jpeg = format == Format::kAvi;
   if (colour.matrix == Matrix::kRgb) return AV_PIX_FMT_BGR0;
-  switch (colour.chroma) {
-    case Chroma::kNone:
-      return AV_PIX_FMT_GRAY8;
-    case Chroma::k420:
-      return jpeg ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_YUV420P;
-    case Chroma::k422:
-      return jpeg ? AV_PIX_FMT_YUVJ422P : AV_PIX_FMT_YUV422P;
-    case Chroma::k440:
-      return jpeg ? AV_PIX_FMT_YUVJ440P : AV_PIX_FMT_YUV440P;
-    case Chroma::k444:
-      return jpeg ? AV_PIX_FMT_YUVJ444P : AV_PIX_FMT_YUV444P;
-  }
-  return AV_PIX_FMT_NONE;
+  return planar_format(colour.chroma, format == Format::kAvi);
 }
 
 void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored, Format format) {
@@ -315,20 +296,10 @@ Opened open_h264(const EncoderInput& input, const WriterOptions& options) {
   return open_own(input, options, "libx264");
 }
 
-FramePtr blank_frame(const AVCodecContext& encoder) {
-  FramePtr frame(av_frame_alloc());
-  if (!frame) throw std::bad_alloc();
-  frame->format = encoder.pix_fmt;
-  frame->width = encoder.width;
-  frame->height = encoder.height;
-  frame->color_range = encoder.color_range;
-  frame->colorspace = encoder.colorspace;
-  return frame;
-}
-
 // The frame in the memory of the encoder's device.
 FramePtr on_device(const AVCodecContext& encoder, const AVFrame& frame) {
-  FramePtr result = blank_frame(encoder);
+  FramePtr result(av_frame_alloc());
+  if (!result) throw std::bad_alloc();
   int done = av_hwframe_get_buffer(encoder.hw_frames_ctx, result.get(), 0);
   if (done >= 0) done = av_hwframe_transfer_data(result.get(), &frame, 0);
   if (done < 0) throw Error("the encoder's device takes no frame: " + reason(done));
@@ -351,12 +322,14 @@ FramePtr copied_frame(const AVCodecContext& encoder,
                       const image::Picture& picture,
                       const image::Colour& stored,
                       Format format) {
-  FramePtr frame = blank_frame(encoder);
   const bool is_on_device = encoder.hw_frames_ctx != nullptr;
-  if (is_on_device) frame->format = AV_PIX_FMT_NV12;
-  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  FramePtr frame =
+      new_frame(is_on_device ? AV_PIX_FMT_NV12 : encoder.pix_fmt, encoder.width, encoder.height);
   fill_frame_as(*frame, picture, stored, format);
-  return is_on_device ? on_device(encoder, *frame) : std::move(frame);
+  if (is_on_device) frame = on_device(encoder, *frame);
+  frame->color_range = encoder.color_range;
+  frame->colorspace = encoder.colorspace;
+  return frame;
 }
 
 }  // namespace airtruth::video

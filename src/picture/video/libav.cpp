@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <new>
+#include <utility>
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
@@ -120,12 +122,9 @@ AVPixelFormat plain_kin(AVPixelFormat format) {
 }
 
 FramePtr in_format(const AVFrame& frame, AVPixelFormat format) {
-  struct FreeScaler {
-    void operator()(SwsContext* p) const { sws_freeContext(p); }
-  };
-  const std::unique_ptr<SwsContext, FreeScaler> scaler(sws_alloc_context());
-  FramePtr result(av_frame_alloc());
-  check(scaler != nullptr && result != nullptr, "memory is at hand");
+  const ScalerPtr scaler(sws_alloc_context());
+  FramePtr result = new_frame(format, frame.width, frame.height);
+  check(scaler != nullptr, "memory is at hand");
   av_opt_set_int(scaler.get(), "srcw", frame.width, 0);
   av_opt_set_int(scaler.get(), "srch", frame.height, 0);
   av_opt_set_int(scaler.get(), "src_format", frame.format, 0);
@@ -139,10 +138,6 @@ FramePtr in_format(const AVFrame& frame, AVPixelFormat format) {
   check(sws_init_context(scaler.get(), nullptr, nullptr) >= 0,
         "libswscale knows what it said it knows");
   av_frame_copy_props(result.get(), &frame);
-  result->format = format;
-  result->width = frame.width;
-  result->height = frame.height;
-  check(av_frame_get_buffer(result.get(), 0) >= 0, "memory is at hand");
   sws_scale(
       scaler.get(), frame.data, frame.linesize, 0, frame.height, result->data, result->linesize);
   return result;
@@ -195,6 +190,40 @@ Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colo
                    layout.shift,
                    picture.planes[static_cast<std::size_t>(i)]);
   return picture;
+}
+
+AVPixelFormat planar_format(Chroma chroma, bool jpeg) {
+  switch (chroma) {
+    case Chroma::kNone:
+      return AV_PIX_FMT_GRAY8;
+    case Chroma::k420:
+      return jpeg ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_YUV420P;
+    case Chroma::k422:
+      return jpeg ? AV_PIX_FMT_YUVJ422P : AV_PIX_FMT_YUV422P;
+    case Chroma::k440:
+      return jpeg ? AV_PIX_FMT_YUVJ440P : AV_PIX_FMT_YUV440P;
+    case Chroma::k444:
+      return jpeg ? AV_PIX_FMT_YUVJ444P : AV_PIX_FMT_YUV444P;
+  }
+  return AV_PIX_FMT_NONE;
+}
+
+FramePtr new_frame(AVPixelFormat format, int width, int height) {
+  FramePtr frame(av_frame_alloc());
+  if (!frame) throw std::bad_alloc();
+  frame->format = format;
+  frame->width = width;
+  frame->height = height;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  return frame;
+}
+
+void copy_planes(const Picture& picture, AVFrame& frame) {
+  for (int i = 0; i < picture.plane_count; ++i) {
+    const Plane& plane = picture.planes[static_cast<std::size_t>(i)];
+    av_image_copy_plane(
+        frame.data[i], frame.linesize[i], plane.row(0), plane.stride, plane.width, plane.height);
+  }
 }
 
 Orientation orientation_of(const std::int32_t* m) {

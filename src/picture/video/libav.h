@@ -36,10 +36,14 @@ struct FreeFrame {
 struct FreePacket {
   void operator()(AVPacket* p) const { av_packet_free(&p); }
 };
+struct FreeScaler {
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
+};
 using InputPtr = std::unique_ptr<AVFormatContext, FreeInput>;
 using CodecPtr = std::unique_ptr<AVCodecContext, FreeCodec>;
 using FramePtr = std::unique_ptr<AVFrame, FreeFrame>;
 using PacketPtr = std::unique_ptr<AVPacket, FreePacket>;
+using ScalerPtr = std::unique_ptr<SwsContext, FreeScaler>;
 
 // libav's own description of an error code.
 std::string reason(int error);
@@ -96,6 +100,16 @@ AVColorSpace space_of(image::Matrix matrix);
 
 // The samples of a decoded frame as a Picture of that colour, which must fit the layout.
 image::Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour);
+
+// The format of grey or Y'CbCr with a plane for each component. `jpeg`: the one of JPEG's full range
+// (yuvj*) where there is one.
+AVPixelFormat planar_format(image::Chroma chroma, bool jpeg = false);
+
+// A frame with memory for its samples. Throws std::bad_alloc.
+FramePtr new_frame(AVPixelFormat format, int width, int height);
+
+// Copies the planes of a Picture to those of a frame of the same layout.
+void copy_planes(const image::Picture& picture, AVFrame& frame);
 
 // How a stored picture is shown: left and right are exchanged first, then the picture is rotated.
 struct Orientation {

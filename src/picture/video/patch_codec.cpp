@@ -2,7 +2,6 @@
 #include "picture/video/patch_codec.h"
 
 #include <algorithm>
-#include <cstring>
 #include <list>
 #include <vector>
 
@@ -14,22 +13,6 @@ namespace {
 
 using image::Chroma;
 using image::Picture;
-
-AVPixelFormat format_for(Chroma chroma) {
-  switch (chroma) {
-    case Chroma::kNone:
-      return AV_PIX_FMT_GRAY8;
-    case Chroma::k420:
-      return AV_PIX_FMT_YUV420P;
-    case Chroma::k422:
-      return AV_PIX_FMT_YUV422P;
-    case Chroma::k444:
-      return AV_PIX_FMT_YUV444P;
-    case Chroma::k440:
-      break;
-  }
-  return AV_PIX_FMT_NONE;
-}
 
 void check_av(int result, const char* what) {
   if (result < 0) throw Error(std::string(what) + ": " + reason(result));
@@ -53,7 +36,7 @@ class Loop {
   Loop(int width, int height, Chroma chroma, int quantiser);
   bool fits(const Picture& picture) const {
     return encoder_->width == picture.width && encoder_->height == picture.height &&
-           encoder_->pix_fmt == format_for(picture.colour.chroma);
+           encoder_->pix_fmt == planar_format(picture.colour.chroma);
   }
   // Returns the second of two pictures after decoding. The first is a key picture, and the second
   // is predicted from it.
@@ -76,7 +59,7 @@ Loop::Loop(int width, int height, Chroma chroma, int quantiser) {
   encoder_.reset(avcodec_alloc_context3(encoder));
   encoder_->width = width;
   encoder_->height = height;
-  encoder_->pix_fmt = format_for(chroma);
+  encoder_->pix_fmt = planar_format(chroma);
   encoder_->time_base = {1, 25};
   encoder_->thread_count = 1;
   encoder_->max_b_frames = 0;
@@ -102,18 +85,8 @@ Loop::Loop(int width, int height, Chroma chroma, int quantiser) {
 }
 
 void Loop::encode(const Picture& picture, AVPictureType type) {
-  const FramePtr frame(av_frame_alloc());
-  frame->format = encoder_->pix_fmt;
-  frame->width = picture.width;
-  frame->height = picture.height;
-  check_av(av_frame_get_buffer(frame.get(), 0), "out of memory");
-  for (int i = 0; i < picture.plane_count; ++i) {
-    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
-    for (int y = 0; y < plane.height; ++y)
-      std::memcpy(frame->data[i] + static_cast<std::ptrdiff_t>(y) * frame->linesize[i],
-                  plane.row(y),
-                  static_cast<std::size_t>(plane.width));
-  }
+  const FramePtr frame = new_frame(encoder_->pix_fmt, picture.width, picture.height);
+  copy_planes(picture, *frame);
   frame->pict_type = type;
   frame->pts = pts_++;
   check_av(avcodec_send_frame(encoder_.get(), frame.get()), "cannot encode with libx264");
@@ -143,10 +116,8 @@ void Loop::run(const Picture& reference, const Picture& patch, Picture& decoded)
         "a decoder gives back the picture's size");
   for (int i = 0; i < decoded.plane_count; ++i) {
     image::Plane& plane = decoded.planes[static_cast<std::size_t>(i)];
-    for (int y = 0; y < plane.height; ++y)
-      std::memcpy(plane.row(y),
-                  last_->data[i] + static_cast<std::ptrdiff_t>(y) * last_->linesize[i],
-                  static_cast<std::size_t>(plane.width));
+    av_image_copy_plane(
+        plane.row(0), plane.stride, last_->data[i], last_->linesize[i], plane.width, plane.height);
   }
   avcodec_flush_buffers(decoder_.get());
 }
@@ -170,9 +141,7 @@ PatchCodec::~PatchCodec() = default;
 PatchCodec::PatchCodec(PatchCodec&&) noexcept = default;
 PatchCodec& PatchCodec::operator=(PatchCodec&&) noexcept = default;
 
-bool PatchCodec::can_code(const image::Colour& colour) {
-  return format_for(colour.chroma) != AV_PIX_FMT_NONE;
-}
+bool PatchCodec::can_code(const image::Colour& colour) { return colour.chroma != Chroma::k440; }
 
 Picture PatchCodec::coded(const Picture& patch, const Picture& reference) {
   check(can_code(patch.colour), "H.264 has the picture's layout");

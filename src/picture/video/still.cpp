@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,50 +28,26 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-FramePtr frame_of(const image::Rgb8& rgb, AVPixelFormat format) {
-  FramePtr frame(av_frame_alloc());
-  frame->format = format;
-  frame->width = rgb.width;
-  frame->height = rgb.height;
-  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
-  if (format == AV_PIX_FMT_RGB24) {
-    for (int y = 0; y < rgb.height; ++y)
-      std::memcpy(frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0],
-                  rgb.at(0, y),
-                  static_cast<std::size_t>(rgb.width) * 3);
-    return frame;
-  }
-  const image::Picture picture = image::picture_from_rgb8(
-      rgb,
-      {image::Chroma::k444, image::Matrix::kBt601, image::Range::kFull, image::Siting::kCenter});
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (int y = 0; y < rgb.height; ++y)
-      std::memcpy(frame->data[i] + static_cast<std::ptrdiff_t>(y) * frame->linesize[i],
-                  picture.planes[i].row(y),
-                  static_cast<std::size_t>(rgb.width));
-  }
-  frame->color_range = AVCOL_RANGE_JPEG;
+// A frame with one plane of packed samples, `row_bytes` to a row.
+FramePtr packed_frame(
+    AVPixelFormat format, int width, int height, const std::uint8_t* samples, int row_bytes) {
+  FramePtr frame = new_frame(format, width, height);
+  av_image_copy_plane(frame->data[0], frame->linesize[0], samples, row_bytes, row_bytes, height);
   return frame;
 }
 
-struct FreeScaler {
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
-};
-
-AVPixelFormat planar_format(const image::Colour& colour) {
-  if (colour.matrix == image::Matrix::kRgb) return AV_PIX_FMT_GBRP;
-  switch (colour.chroma) {
-    case image::Chroma::kNone:
-      return AV_PIX_FMT_GRAY8;
-    case image::Chroma::k422:
-      return AV_PIX_FMT_YUV422P;
-    case image::Chroma::k440:
-      return AV_PIX_FMT_YUV440P;
-    case image::Chroma::k444:
-      return AV_PIX_FMT_YUV444P;
-    default:
-      return AV_PIX_FMT_YUV420P;
-  }
+FramePtr frame_of(const image::Rgb8& rgb, AVPixelFormat format) {
+  if (format == AV_PIX_FMT_RGB24)
+    return packed_frame(format, rgb.width, rgb.height, rgb.at(0, 0), 3 * rgb.width);
+  FramePtr frame = new_frame(format, rgb.width, rgb.height);
+  copy_planes(image::picture_from_rgb8(rgb,
+                                       {image::Chroma::k444,
+                                        image::Matrix::kBt601,
+                                        image::Range::kFull,
+                                        image::Siting::kCenter}),
+              *frame);
+  frame->color_range = AVCOL_RANGE_JPEG;
+  return frame;
 }
 
 int sws_matrix(image::Matrix matrix) {
@@ -82,11 +58,13 @@ int sws_matrix(image::Matrix matrix) {
 // The JPEG form: BT.601, full range. Halved chroma stays halved, without a conversion to RGB.
 FramePtr jpeg_frame(const image::Picture& picture) {
   keep_libav_quiet();
-  const AVPixelFormat from = planar_format(picture.colour);
+  const AVPixelFormat from = picture.colour.matrix == image::Matrix::kRgb
+                                 ? AV_PIX_FMT_GBRP
+                                 : planar_format(picture.colour.chroma);
   const AVPixelFormat to = from == AV_PIX_FMT_YUV420P ? AV_PIX_FMT_YUVJ420P : AV_PIX_FMT_YUVJ444P;
   const int w = picture.width;
   const int h = picture.height;
-  const std::unique_ptr<SwsContext, FreeScaler> scaler(sws_getContext(
+  const ScalerPtr scaler(sws_getContext(
       w, h, from, w, h, to, SWS_BILINEAR | SWS_ACCURATE_RND, nullptr, nullptr, nullptr));
   if (!scaler) throw std::bad_alloc();
   const bool is_full = picture.colour.range == image::Range::kFull || from == AV_PIX_FMT_GBRP;
@@ -98,11 +76,7 @@ FramePtr jpeg_frame(const image::Picture& picture) {
                            0,
                            1 << 16,
                            1 << 16);
-  FramePtr frame(av_frame_alloc());
-  frame->format = to;
-  frame->width = w;
-  frame->height = h;
-  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
+  FramePtr frame = new_frame(to, w, h);
   const std::uint8_t* data[4] = {};
   int strides[4] = {};
   for (int i = 0; i < picture.plane_count; ++i) {
@@ -196,19 +170,13 @@ std::string jpeg_of(const image::Rgb8& rgb, int quality) {
 }
 
 std::string png_of(const Grey& grey) {
-  const auto width = static_cast<std::size_t>(grey.width);
-  check(grey.samples.size() == width * static_cast<std::size_t>(grey.height),
+  check(grey.samples.size() ==
+            static_cast<std::size_t>(grey.width) * static_cast<std::size_t>(grey.height),
         "a grey picture has a sample for each pixel");
-  FramePtr frame(av_frame_alloc());
-  frame->format = AV_PIX_FMT_GRAY8;
-  frame->width = grey.width;
-  frame->height = grey.height;
-  if (av_frame_get_buffer(frame.get(), 0) < 0) throw std::bad_alloc();
-  for (int y = 0; y < grey.height; ++y)
-    std::memcpy(frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0],
-                grey.samples.data() + static_cast<std::size_t>(y) * width,
-                width);
-  return encoded(frame, 0, {});
+  return encoded(
+      packed_frame(AV_PIX_FMT_GRAY8, grey.width, grey.height, grey.samples.data(), grey.width),
+      0,
+      {});
 }
 
 Grey read_grey(const fs::path& path) {
