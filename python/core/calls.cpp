@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calls.h"
 
-#include <chrono>
 #include <utility>
 
 #include <airtruth/error.h>
@@ -69,25 +68,18 @@ std::optional<py::error_already_set> raised_by(const std::function<void()>& look
 
 }  // namespace
 
-std::optional<py::error_already_set> await(std::mutex& mutex,
-                                           std::condition_variable& changed,
-                                           const std::function<bool()>& is_done,
-                                           const std::function<bool()>& goes_on,
-                                           const std::function<void()>& look) {
+std::optional<py::error_already_set> await(
+    const std::function<bool(std::chrono::milliseconds)>& wait,
+    const std::function<bool()>& goes_on,
+    const std::function<void()>& look) {
   constexpr std::chrono::milliseconds kLook{50};
   std::optional<py::error_already_set> raised;
   const py::gil_scoped_release released;
-  std::unique_lock lock(mutex);
-  while (!changed.wait_for(lock, kLook, is_done)) {
-    lock.unlock();
-    {
-      const py::gil_scoped_acquire held;
-      if (!raised) {
-        raised = raised_by(look);
-        if (raised && !goes_on()) return raised;
-      }
-    }
-    lock.lock();
+  while (!wait(kLook)) {
+    const py::gil_scoped_acquire held;
+    if (raised) continue;
+    raised = raised_by(look);
+    if (raised && !goes_on()) return raised;
   }
   return raised;
 }
@@ -133,11 +125,11 @@ void Worker::run(const std::function<void()>& work, const std::function<void()>&
   post(work);
   std::exception_ptr failure;
   const auto raised = await(
-      mutex_,
-      changed_,
-      [&] {
-        if (work_ == nullptr) failure = failure_;
-        return work_ == nullptr;
+      [&](std::chrono::milliseconds most) {
+        std::unique_lock lock(mutex_);
+        const bool is_done = changed_.wait_for(lock, most, [&] { return work_ == nullptr; });
+        if (is_done) failure = failure_;
+        return is_done;
       },
       [&] {
         stop_.request_stop();

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -75,51 +77,30 @@ class HeardProgress {
   std::optional<std::pair<std::int64_t, std::int64_t>> news_;
 };
 
-// Waits without the GIL until is_done(), which is called with the mutex locked, and every 50 ms
-// lets Python handle its signals and calls look(), with the GIL held. Where a handler
-// (KeyboardInterrupt) or look() raises, the exception is returned: at once, or, where goes_on()
-// says so, when all is done.
-std::optional<py::error_already_set> await(std::mutex& mutex,
-                                           std::condition_variable& changed,
-                                           const std::function<bool()>& is_done,
-                                           const std::function<bool()>& goes_on,
-                                           const std::function<void()>& look);
+// Waits without the GIL until wait() returns true, which it returns false from where the given time
+// passes before all is done. After each false it lets Python handle its signals and calls look(),
+// with the GIL held. Where a handler (KeyboardInterrupt) or look() raises, the exception is
+// returned: at once, or, where goes_on() says so, when all is done.
+std::optional<py::error_already_set> await(
+    const std::function<bool(std::chrono::milliseconds)>& wait,
+    const std::function<bool()>& goes_on,
+    const std::function<void()>& look);
 
 // The result of a long computation that cannot be stopped. An exception of a signal's handler
 // leaves it to end by itself, so that `work` must own what it uses.
 template <typename Work>
 auto left_alone(Work work) {
-  struct State {
-    explicit State(Work wanted) : work(std::move(wanted)) {}
-    Work work;
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::optional<decltype(work())> result;
-    std::exception_ptr failure;
-  };
-  const auto state = std::make_shared<State>(std::move(work));
-  std::thread([state] {
-    std::optional<decltype(work())> result;
-    std::exception_ptr failure;
-    try {
-      result.emplace(state->work());
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    const std::lock_guard lock(state->mutex);
-    state->result = std::move(result);
-    state->failure = failure;
-    state->changed.notify_all();
-  }).detach();
+  std::packaged_task<decltype(work())()> task(std::move(work));
+  auto result = task.get_future();
+  std::thread(std::move(task)).detach();
   const auto raised = await(
-      state->mutex,
-      state->changed,
-      [&] { return state->result || state->failure; },
+      [&](std::chrono::milliseconds most) {
+        return result.wait_for(most) == std::future_status::ready;
+      },
       [] { return false; },
       [] {});
   if (raised) throw *raised;
-  if (state->failure) std::rethrow_exception(state->failure);
-  return std::move(*state->result);
+  return result.get();
 }
 
 // A thread that runs the calls of one object, one after the other. An exception of a signal's
