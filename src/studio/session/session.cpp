@@ -6,11 +6,15 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <stop_token>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -22,7 +26,6 @@
 #include "studio/messages/request.h"
 #include "studio/session/answers.h"
 #include "studio/session/gallery.h"
-#include "studio/session/job.h"
 #include "studio/session/jpeg.h"
 #include "studio/session/measure.h"
 #include "studio/session/near_miss.h"
@@ -78,6 +81,19 @@ PixelBox within(const PixelBox& box, const PixelBox& whole) {
       .value_or(PixelBox{0, 0, std::min(2, whole.width), std::min(2, whole.height)});
 }
 
+// Begins something long that runs beside the pictures, behind them in its claim on the processor.
+// What `job` runs ends first. `work` does not throw.
+template <typename Work>
+void begin_job(std::jthread& job, Work work) {
+  job = std::jthread();
+  job = std::jthread([work = std::move(work)](const std::stop_token& stop) {
+    // Threads that the work starts inherit it.
+    constexpr int kNice = 10;
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+    work(stop);
+  });
+}
+
 // Aircraft and hashes are kept for all that the session does.
 Options with_inputs(Options options) {
   if (!options.pipeline.shared)
@@ -103,8 +119,8 @@ class Session::Impl {
     // The worker begins jobs, so it ends before them.
     worker_.end();
     beside_.end();
-    for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->cancel();
-    for (Job* job : {&motion_job_, &camera_job_, &asked_job_}) job->stop();
+    for (std::jthread* job : {&motion_job_, &camera_job_, &asked_job_}) job->request_stop();
+    for (std::jthread* job : {&motion_job_, &camera_job_, &asked_job_}) *job = std::jthread();
   }
 
   void take(Client client, const std::string& message) {
@@ -210,7 +226,7 @@ class Session::Impl {
       case Act::kRender:
         return render(client, request.id);
       case Act::kCancel:
-        asked_job_.cancel();
+        asked_job_.request_stop();
         return ways_.send(client, ok(request.id, Json::object()));
     }
   }
@@ -410,7 +426,7 @@ class Session::Impl {
     if (key == motion_wanted_) return;
     motion_wanted_ = key;
     set_state(motion_state_, "measuring");
-    motion_job_.start([this, scene, key](const std::stop_token& stop) {
+    begin_job(motion_job_, [this, scene, key](const std::stop_token& stop) {
       std::shared_ptr<const setup::MotionSource> motion;
       std::string problem;
       pipeline::Options options = for_job(stop, "motion");
@@ -445,11 +461,11 @@ class Session::Impl {
         [](const std::string&) {});
     if (key == camera_wanted_) return;
     camera_wanted_ = key;
-    camera_job_.cancel();
+    camera_job_.request_stop();
     if (key.empty()) return set_state(camera_state_, "stated");
     if (measured_.calibrated.count(key) > 0) return set_state(camera_state_, "measured");
     set_state(camera_state_, "measuring");
-    camera_job_.start([this, scene, key](const std::stop_token& stop) {
+    begin_job(camera_job_, [this, scene, key](const std::stop_token& stop) {
       std::string problem;
       try_to([&] { pipeline::calibration_of(scene, for_job(stop, "calibrate")); },
              [&](const std::string& line) { problem = line; });
@@ -499,7 +515,7 @@ class Session::Impl {
   void ask_for(Client client, std::int64_t id, Do act) {
     if (is_asked_) throw Error("one is running; expected to cancel it, or to wait");
     is_asked_ = true;
-    asked_job_.start([this, client, id, act](const std::stop_token& stop) {
+    begin_job(asked_job_, [this, client, id, act](const std::stop_token& stop) {
       std::string text;
       try_to([&] { text = ok(id, act(stop)); },
              [&](const std::string& line) { text = error(id, line); });
@@ -567,9 +583,9 @@ class Session::Impl {
   // Of the thread beside it, which pictures of the scene do not wait for.
   Gallery gallery_;
   Thumbnails thumbnails_;
-  Job motion_job_;
-  Job camera_job_;
-  Job asked_job_;
+  std::jthread motion_job_;
+  std::jthread camera_job_;
+  std::jthread asked_job_;
   Worker worker_;
   Worker beside_;
 };
