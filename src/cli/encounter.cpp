@@ -20,7 +20,7 @@ namespace airtruth::cli {
 namespace {
 
 // Largest number of encounters: a choice.
-constexpr std::uint64_t kMaxCount = 100'000'000;
+constexpr std::int64_t kMaxCount = 100'000'000;
 
 // The option of a member of SampleRequest: "cpa_time_s" is --cpa-time, "hmd_m" --hmd-m.
 std::string option_of(std::string member) {
@@ -32,7 +32,6 @@ std::string option_of(std::string member) {
 struct Sample : sets::SampleRequest {
   Sample() { name_of = option_of; }
   std::string out;
-  int jobs = 0;
   bool overwrite = false;
 };
 
@@ -63,7 +62,7 @@ void sample(const Sample& arguments, Context& context) {
   Console& console = context.console();
   const sets::SampledSet set = sets::sampled_set(arguments);
   sets::SetOptions options;
-  options.count = arguments.count;
+  options.count = arguments.size();
   options.jobs = arguments.jobs;
   follow(options, context, "drawing", "encounters");
   sets::SetSummary summary;
@@ -140,7 +139,7 @@ void add_sample(CLI::App& group, Context& context) {
   command->add_option("-o,--out", arguments->out, "File to write: .csv, .daa, .txt or .dat")
       ->required();
   command->add_option("--count,-n", arguments->count, "Tracks or encounters (default: 100)")
-      ->check(CLI::Range(std::uint64_t{1}, kMaxCount));
+      ->check(CLI::Range(std::int64_t{1}, kMaxCount));
   command->add_option("--seed", arguments->seed, "The same seed gives the same file (default: 1)");
   command
       ->add_option("--duration",

@@ -72,7 +72,7 @@ DrawEncounter geometric(const SampleRequest& request, const track::Track& own) {
       .climb_mps = distribution(request, "climb_mps", request.climb_mps, {0}),
       .turn_rate_dps = distribution(request, "turn_rate_dps", request.turn_rate_dps, {0}),
       .cpa_time_s = distribution(request, "cpa_time_s", {cpa_time_of(request, own)}, {})};
-  return geometric_pairs(pairing::GeometricSampler(options, request.seed, request.count), own);
+  return geometric_pairs(pairing::GeometricSampler(options, request.seed, request.size()), own);
 }
 
 std::shared_ptr<const encounter_model::Sampler> sampler_of(const SampleRequest& request,

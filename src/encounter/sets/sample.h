@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
-#include <vector>
+
+#include <airtruth/encounters.h>
 
 #include "encounter/sets/draw_encounter.h"
 
@@ -15,31 +16,17 @@ namespace airtruth::sets {
 // In place of a model: steady flight from stated ranges.
 inline constexpr const char* kGeometric = "geometric";
 
-// What is empty is not stated, and has the value beside it. Ranges are one number, or the edges of
-// bins.
-struct SampleRequest {
+struct SampleRequest : EncounterOptions {
   std::string model;  // an encounter model of MIT-LL, or kGeometric
-  std::string own;    // a file of encounters, whose first aircraft is the own one
-  std::uint64_t count = 100;
-  std::uint64_t seed = 1;
-  std::optional<int> duration_s;  // that of the own track, else 60
-  std::vector<std::size_t> domain, airspace;
-  std::vector<double> altitude_ft;    // lowest and highest at the start
-  std::optional<double> cpa_time_s;   // the middle of the own track
-  std::vector<double> hmd_m;          // -500 to 500
-  std::vector<double> vmd_m;          // -150 to 150
-  std::vector<double> hmd_shares;     // the bins' widths
-  std::vector<double> vmd_shares;     // the bins' widths
-  std::vector<double> course_deg;     // -180 to 180
-  std::vector<double> speed_mps;      // 30 to 80
-  std::vector<double> climb_mps;      // 0
-  std::vector<double> turn_rate_dps;  // 0
   // What the user calls a member of this struct; for messages.
   std::function<std::string(const std::string& member)> name_of = [](const std::string& member) {
     return member;
   };
 
   bool is_geometric() const { return model == kGeometric; }
+  std::uint64_t size() const {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(0, count));
+  }
 };
 
 struct SampledSet {

@@ -9,28 +9,6 @@
 namespace airtruth {
 namespace {
 
-sets::SampleRequest request_of(const std::string& model, const EncounterOptions& options) {
-  sets::SampleRequest request;
-  request.model = model;
-  request.own = options.own;
-  request.count = options.count < 0 ? 0 : static_cast<std::uint64_t>(options.count);
-  request.seed = options.seed;
-  request.duration_s = options.duration_s;
-  request.domain = options.domain;
-  request.airspace = options.airspace;
-  request.altitude_ft = options.altitude_ft;
-  request.cpa_time_s = options.cpa_time_s;
-  request.hmd_m = options.hmd_m;
-  request.hmd_shares = options.hmd_shares;
-  request.vmd_m = options.vmd_m;
-  request.vmd_shares = options.vmd_shares;
-  request.course_deg = options.course_deg;
-  request.speed_mps = options.speed_mps;
-  request.climb_mps = options.climb_mps;
-  request.turn_rate_dps = options.turn_rate_dps;
-  return request;
-}
-
 std::array<double, 3> numbers_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 void add_rows(SampledEncounters& result, const track::Track& track, std::int64_t aircraft) {
@@ -47,10 +25,10 @@ void add_rows(SampledEncounters& result, const track::Track& track, std::int64_t
 }  // namespace
 
 SampledEncounters sample_encounters(const std::string& model, const EncounterOptions& options) {
-  const sets::SampleRequest request = request_of(model, options);
+  const sets::SampleRequest request{options, model};
   const sets::SampledSet set = sets::sampled_set(request);
   const sets::DrawnSet drawn =
-      sets::draw_set(set.draw, {request.count, options.jobs, {}, options.stop});
+      sets::draw_set(set.draw, {request.size(), options.jobs, {}, options.stop});
   SampledEncounters result;
   for (const track::Track& track : drawn.encounters.front().aircraft)
     result.aircraft_names.push_back(track.name);
