@@ -75,7 +75,7 @@ void report_missing(const camera_file::Calibration& found, Console& console) {
 // Reports which values do not come from the clip alone, and which are doubtful.
 void report_sources(const camera_file::Calibration& found, Console& console) {
   for (const auto& [key, source] : texts(found.quantities, &camera_file::Quantity::source)) {
-    const measured::Estimate& value = found.quantities.at(key).value();
+    const Estimate& value = found.quantities.at(key).value();
     console.result(fmt::format("{} = {:.3g} +- {:.2g}: {}", key, value.value, value.sigma, source));
   }
   for (const auto& [key, doubt] : texts(found.quantities, &camera_file::Quantity::doubt))
@@ -124,12 +124,12 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   if (clips.size() > 1 && !arguments.plot.empty())
     throw Error("--plot draws one clip; expected one video beside it");
   files.begin();
-  camera_file::CameraOptions options{.lens = arguments.lens,
-                                     .mask = arguments.mask,
-                                     .altitude_m = arguments.altitude_m,
-                                     .heading_deg = arguments.heading_deg,
-                                     .gamma = arguments.gamma,
-                                     .profile = arguments.profile};
+  CalibrateOptions options{.lens = arguments.lens,
+                           .mask = arguments.mask,
+                           .altitude_m = arguments.altitude_m,
+                           .heading_deg = arguments.heading_deg,
+                           .gamma = arguments.gamma,
+                           .profile = arguments.profile};
   follow(options, context, "measuring");
   const camera_file::Calibration found = camera_file::calibrate_camera(clips, options);
   Console& console = context.console();

@@ -13,7 +13,6 @@
 namespace airtruth::air {
 
 using measured::ColourEstimate;
-using measured::Estimate;
 using measured::Measured;
 using measured::NotMeasured;
 

@@ -9,7 +9,6 @@
 // The direction of the sun from the light of the sky.
 namespace airtruth::air {
 
-using measured::Estimate;
 using measured::Measured;
 using measured::NotMeasured;
 

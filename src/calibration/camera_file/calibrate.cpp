@@ -326,8 +326,7 @@ class Session {
       const FoundHorizon& found = horizons.found[i];
       if (!found) continue;
       const YawPitchRoll attitude = horizon::attitude_from_up(found->up_in_cam);
-      result_.horizons.push_back(
-          {sampled_[i].frame, attitude.pitch_deg, attitude.roll_deg, found->separation});
+      result_.horizons.push_back({sampled_[i].frame, attitude.pitch_deg, attitude.roll_deg});
     }
   }
 
@@ -383,7 +382,7 @@ CameraProfile profile_of(const std::string& name, const video::StreamInfo& info)
   return known != nullptr ? *known : usual_camera();
 }
 
-void check_ranges(const CameraOptions& options) {
+void check_ranges(const CalibrateOptions& options) {
   if (options.altitude_m && !(*options.altitude_m > 0 && std::isfinite(*options.altitude_m)))
     throw Error(
         fmt::format("the altitude is {} m; expected a number above 0", *options.altitude_m));
@@ -402,7 +401,7 @@ Calibration calibrate(const fs::path& video, const Options& options) {
   return Session(video, options).run();
 }
 
-Calibration calibrate_camera(const std::vector<fs::path>& clips, const CameraOptions& options) {
+Calibration calibrate_camera(const std::vector<fs::path>& clips, const CalibrateOptions& options) {
   check_ranges(options);
   if (clips.empty()) throw Error("there is no clip; expected one video or more");
   if (!options.profile.empty()) camera_profile(options.profile);  // its name is known

@@ -6,8 +6,9 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
-#include <string>
 #include <vector>
+
+#include <airtruth/calibration.h>
 
 #include "calibration/camera_file/calibration.h"
 #include "camera/lens/lens.h"
@@ -43,23 +44,9 @@ struct Options {
 // clip is too short or too still to show is not measured (quantities.h).
 Calibration calibrate(const fs::path& video, const Options& options);
 
-// What is known of a camera beside its clips.
-struct CameraOptions {
-  fs::path lens;  // calibration; empty: none
-  fs::path mask;  // of the own aircraft; empty: none
-  std::optional<double> altitude_m;
-  double heading_deg = 0;
-  double gamma = 0;  // 0: sRGB's curve
-  // camera_profile(); empty: recognised_profile() of the first clip, else usual_camera()
-  std::string profile;
-  Warn warn;
-  std::stop_token stop;
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
-};
-
 // Measures the clips of one camera, joins them (join.h) and combines them with a profile
 // (profile.h). Throws Error for options out of their range, clips that cannot be joined and a
 // profile of another size.
-Calibration calibrate_camera(const std::vector<fs::path>& clips, const CameraOptions& options);
+Calibration calibrate_camera(const std::vector<fs::path>& clips, const CalibrateOptions& options);
 
 }  // namespace airtruth::camera_file

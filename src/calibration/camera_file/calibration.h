@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/calibration.h>
+
 #include "calibration/camera_file/quantities.h"
 #include "calibration/measured/measured.h"
 #include "calibration/optics/edge_profile.h"
@@ -22,17 +24,6 @@
 // are the values of scene::CameraModel. Each value has a standard error, or the reason why the clip
 // does not show it.
 namespace airtruth::camera_file {
-
-// The horizon found in one frame.
-struct FrameHorizon {
-  std::int64_t frame = 0;
-  // Pitch of the camera, positive upwards.
-  double pitch_deg = 0;
-  // Roll of the camera, positive with the right wing down.
-  double roll_deg = 0;
-  // The distance between the colours of sky and ground, in their standard deviations.
-  double separation = 0;
-};
 
 // The result of a calibration.
 struct Calibration {
@@ -62,7 +53,7 @@ struct Calibration {
   std::vector<double> yaw_from_first_deg;
   std::vector<sensor::NoisePoint> noise;
   optics::EdgeProfile edge;
-  std::vector<FrameHorizon> horizons;
+  std::vector<HorizonAttitude> horizons;
   // A frame with its sky tinted, for the plots.
   std::optional<image::Rgb8> sky_picture;
 };

@@ -60,7 +60,7 @@ Plot horizon_plot(const Calibration& c) {
             .y = {.label = "degrees"}};
   Series pitch{.name = "pitch", .mark = plot::Mark::kPoints, .style = plot::style_of(0)};
   Series roll{.name = "roll", .mark = plot::Mark::kPoints, .style = plot::style_of(2)};
-  for (const FrameHorizon& h : c.horizons) {
+  for (const HorizonAttitude& h : c.horizons) {
     pitch.x.push_back(double(h.frame));
     pitch.y.push_back(h.pitch_deg);
     roll.x.push_back(double(h.frame));

@@ -166,7 +166,7 @@ std::span<const CameraProfile> camera_profiles() {
 }
 
 const CameraProfile& camera_profile(const std::string& name, const Where& where) {
-  static const CameraProfile none{.name = kNoProfile};
+  static const CameraProfile none{{.name = kNoProfile}, {}, {}};
   if (name == kNoProfile) return none;
   std::vector<std::string> names;
   for (const CameraProfile& profile : camera_profiles()) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <airtruth/calibration.h>
+
 #include "calibration/camera_file/calibration.h"
 #include "foundation/base/error.h"
 
@@ -23,16 +25,9 @@
 // the cameras by more than three common errors stays: it is of another kind of camera.
 namespace airtruth::camera_file {
 
-struct CameraProfile {
-  // Name of the profile, such as "gopro-karma"; empty if it does not describe one single camera.
-  std::string name;
-  // Description of the camera.
-  std::string camera;
-  // Picture size of the measured clips, px; 0 if they have several sizes.
-  int width = 0;
-  int height = 0;
-  // The number of measured clips.
-  int clips = 0;
+// The name is empty if the profile does not describe one single camera, and the size is 0 if the
+// measured clips have several.
+struct CameraProfile : airtruth::CameraProfile {
   // The tags by which its files are known, and how their values begin; empty: by none.
   std::map<std::string, std::string> tags;
   // Values and errors by the keys of quantities.h. An error is that of one further clip of

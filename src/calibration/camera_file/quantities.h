@@ -4,7 +4,8 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include <airtruth/calibration.h>
 
 #include "calibration/measured/measured.h"
 
@@ -19,23 +20,11 @@
 namespace airtruth::camera_file {
 
 using measured::ColourEstimate;
-using measured::Estimate;
 using measured::Measured;
 using measured::NotMeasured;
 
-// One quantity as a camera file states it.
-struct Quantity {
-  // One estimate, or three (red, green, blue); none if the quantity is not measured.
-  std::vector<Estimate> values;
-  // The reason why it is not measured.
-  std::string missing;
-  // A remark about the value.
-  std::string note;
-  // The origin of a value that does not come from this clip alone (profile.h).
-  std::string source;
-  // A measurement that contradicts the value by more than the errors allow.
-  std::string doubt;
-
+// One quantity. Its `name` is empty here: kQuantityKeys has it.
+struct Quantity : CalibratedQuantity {
   bool is_measured() const { return !values.empty(); }
   // The estimate of a quantity with one; the quantity must be measured.
   const Estimate& value() const { return values.at(0); }

@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include <airtruth/calibration.h>
+
 // What a measurement returns: a value with its standard error, or the reason why the clip does not
 // show it. A measurement that is not possible is never an error.
 //
@@ -17,12 +19,6 @@
 //
 // and of a clip that shows it, *share is {0.5, 0.02}: half of the frame interval, +- 2 % of it.
 namespace airtruth::measured {
-
-// A value and its standard error, both in the unit of the quantity that they belong to.
-struct Estimate {
-  double value = 0;
-  double sigma = 0;
-};
 
 // One estimate per channel: red, green, blue of linear light.
 using ColourEstimate = std::array<Estimate, 3>;

@@ -12,7 +12,6 @@
 // edges of a clip.
 namespace airtruth::optics {
 
-using measured::Estimate;
 using measured::Measured;
 using measured::NotMeasured;
 

@@ -9,7 +9,6 @@
 
 namespace airtruth::sensor {
 
-using measured::Estimate;
 using measured::Measured;
 using measured::NotMeasured;
 
