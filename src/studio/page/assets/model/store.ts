@@ -29,77 +29,44 @@ export interface Draft {
   pixel: [number, number];
 }
 
-// All that the page knows. Parts read it and are told which members changed.
-export interface Everything {
-  connected: boolean;
-  everConnected: boolean;
-  file: string;
-  out: string;  // the folder of rendered videos
-  clip: Clip|null;
-  state: State|null;
-  plan: Plan|null;
-  planProblem: string|null;     // why there is no plan of the scene as it is
-  picture: PictureHeader|null;  // of the picture that is shown: its boxes and lines
-  pending: number;              // edits that the server has not answered
-  notices: Notice[];
-  progress: Progress|null;
-  busy: 'render'|'calibrate'|null;
-  measured: MeasuredValue[]|null;
-  film: Rendered|null;
-  groups: AircraftGroup[]|null;
-  // view settings
-  frame: number;
-  playing: boolean;
-  speed: number;
-  selected: Path|null;
-  moment: number|null;
-  draft: Draft|null;
-  look: Look|null;
-  tab: Tab;
-  showsAircraft: boolean;
-  showsBoxes: boolean;
-  showsHorizon: boolean;
-  showsMotion: boolean;
-  dialog: 'gallery'|'render'|'help'|null;
-  addsAt: [number, number]|null;  // where the gallery's choice is put
-  replaces: Path|null;            // the flyer whose aircraft the gallery changes
-}
-
-export type Member = keyof Everything;
-
-const beginning: Everything = {
+// All that the page knows, as it is at the beginning. Parts read it and are told which members changed.
+const beginning = {
   connected: false,
   everConnected: false,
   file: '',
-  out: '',
-  clip: null,
-  state: null,
-  plan: null,
-  planProblem: null,
-  picture: null,
-  pending: 0,
-  notices: [],
-  progress: null,
-  busy: null,
-  measured: null,
-  film: null,
-  groups: null,
+  out: '',  // the folder of rendered videos
+  clip: null as Clip | null,
+  state: null as State | null,
+  plan: null as Plan | null,
+  planProblem: null as string | null,     // why there is no plan of the scene as it is
+  picture: null as PictureHeader | null,  // of the picture that is shown: its boxes and lines
+  pending: 0,                             // edits that the server has not answered
+  notices: [] as Notice[],
+  progress: null as Progress | null,
+  busy: null as 'render' | 'calibrate' | null,
+  measured: null as MeasuredValue[] | null,
+  film: null as Rendered | null,
+  groups: null as AircraftGroup[] | null,
+  // view settings
   frame: 0,
   playing: false,
   speed: 1,
-  selected: null,
-  moment: null,
-  draft: null,
-  look: null,
-  tab: 'flyers',
+  selected: null as Path | null,
+  moment: null as number | null,
+  draft: null as Draft | null,
+  look: null as Look | null,
+  tab: 'flyers' as Tab,
   showsAircraft: true,
   showsBoxes: true,
   showsHorizon: false,
   showsMotion: false,
-  dialog: null,
-  addsAt: null,
-  replaces: null,
+  dialog: null as 'gallery' | 'render' | 'help' | null,
+  addsAt: null as [number, number] | null,  // where the gallery's choice is put
+  replaces: null as Path | null,            // the flyer whose aircraft the gallery changes
 };
+
+export type Everything = typeof beginning;
+export type Member = keyof Everything;
 
 // What a reload of the page keeps.
 const KEPT: Member[] =
