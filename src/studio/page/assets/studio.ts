@@ -10,7 +10,7 @@ import {HeightView} from './parts/height_view';
 import {HelpDialog} from './parts/help_dialog';
 import {LightPanel} from './parts/light_panel';
 import {NoticeBar} from './parts/notice_bar';
-import {provide} from './parts/part';
+import {provide, token} from './parts/part';
 import {PictureView} from './parts/picture_view';
 import {PlanView} from './parts/plan_view';
 import {RenderDialog} from './parts/render_dialog';
@@ -39,10 +39,8 @@ const ELEMENTS: Record<string, CustomElementConstructor> = {
   'airtruth-studio': StudioPage,
 };
 
-const token = new URLSearchParams(location.search).get('token') ?? '';
-const studio = new Studio(
-    new Store(sessionStorage), new Connection(`ws://${location.host}/ws?token=${encodeURIComponent(token)}`),
-    sessionStorage);
+const studio =
+    new Studio(new Store(sessionStorage), new Connection(`ws://${location.host}/ws?token=${token}`), sessionStorage);
 provide(studio);
 for (const [name, element] of Object.entries(ELEMENTS)) customElements.define(name, element);
 window.addEventListener('pagehide', () => studio.end());

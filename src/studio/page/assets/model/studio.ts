@@ -2,7 +2,7 @@
 import {Connection, Lost, Refused} from './connection';
 import type {AircraftGroup, Change, Clip, MeasuredValue, NearMiss, Path, Plan, Rendered, ServerEvent, State, Table, Told} from './contract';
 import {type Edit, Edits, type Unsent} from './edits';
-import {type Choice, type Flyer, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
+import {type Choice, type Flyer, type Moment, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
 import {type Point, clamp, seenNear} from './geometry';
 import {Pictures} from './pictures';
 import type {Store} from './store';
@@ -68,6 +68,28 @@ export class Studio {
   get isIdle(): boolean {
     return this.wholes === 0 && this.edits.isIdle && !this.planAsked && !this.planStale && this.pictures.isWhole &&
         this.rest === undefined;
+  }
+
+  // The selected flyer.
+  get flyer(): Flyer|null {
+    return flyerAt(this.store.now.state, this.store.now.selected);
+  }
+
+  // A moment of its path.
+  moment(index: number): Moment|null {
+    const {flyer} = this;
+    const {clip} = this.store.now;
+    return (flyer && clip && momentsOf(flyer, clip)[index]) ?? null;
+  }
+
+  // Chooses a moment of its path and goes to its frame; null where it has none.
+  choose(index: number): Moment|null {
+    const moment = this.moment(index);
+    if (moment) {
+      this.store.put({moment: index});
+      this.show(moment.frame);
+    }
+    return moment;
   }
 
   // A name for edits that are one step of undo.
@@ -145,8 +167,8 @@ export class Studio {
 
   // A moment of the selected path at the frame shown: at a pixel, or where the path is then.
   addMoment(at: Point|null = null): void {
-    const {state, clip, plan, frame, selected} = this.store.now;
-    const flyer = flyerAt(state, selected);
+    const {clip, plan, frame, selected} = this.store.now;
+    const {flyer} = this;
     const track = trackOf(plan, selected);
     if (!clip || !this.hasMoments(flyer)) return;
     const seen = track && seenNear(track, frame);
@@ -157,8 +179,8 @@ export class Studio {
   }
 
   removeMoment(): void {
-    const {state, clip, selected, moment} = this.store.now;
-    const flyer = flyerAt(state, selected);
+    const {clip, moment} = this.store.now;
+    const {flyer} = this;
     if (!clip || !this.hasMoments(flyer)) return;
     if (moment === null)
       return this.store.say('info', 'Choose a moment first. On the heading of a flyer, Delete deletes the flyer.');
@@ -187,21 +209,20 @@ export class Studio {
 
   // To the next or the last moment of the selected path.
   goToMoment(step: 1|- 1): void {
-    const {state, clip, selected, frame} = this.store.now;
-    const flyer = flyerAt(state, selected);
+    const {clip, frame} = this.store.now;
+    const {flyer} = this;
     if (!clip || !this.hasMoments(flyer)) return;
     const moments = momentsOf(flyer, clip);
     const next = step > 0 ? moments.findIndex((one) => one.frame > frame) :
                             moments.length - 1 - [...moments].reverse().findIndex((one) => one.frame < frame);
     if (next < 0 || next >= moments.length) return;
-    this.store.put({moment: next});
-    this.show(moments[next].frame);
+    this.choose(next);
   }
 
   // Lets the selected path go on straight from the frame shown, past the own aircraft.
   async nearMiss({above_m, ...wanted}: NearMiss): Promise<void> {
-    const {state, selected, frame} = this.store.now;
-    const flyer = flyerAt(state, selected);
+    const {frame} = this.store.now;
+    const {flyer} = this;
     if (!flyer || !this.isConnected()) return;
     await this.edits.whenIdle();
     try {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Change, Clip, Json, Path, Table} from '../model/contract';
-import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, flyerAt, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
+import type {Change, Clip, Json, Table} from '../model/contract';
+import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
 import {round, speedOf, velocityAt} from '../model/geometry';
 import type {Member} from '../model/store';
+import type {Studio} from '../model/studio';
 import {NumberField, type NumberOptions, choiceField} from './fields';
 import {NearMissForm} from './near_miss_form';
-import {Part, attribute, h, text} from './part';
+import {Part, attribute, h, text, token} from './part';
 
 interface KeyOptions extends Omit<NumberOptions, 'taken'> {
   key: string[];
@@ -72,7 +73,7 @@ export class FlyerPanel extends Part {
     max: MOST_MISS_M,
     taken:
         (value) => {
-          const flyer = flyerAt(this.now.state, this.now.selected);
+          const {flyer} = this.studio;
           const {plan, clip} = this.now;
           if (flyer && plan && clip) this.studio.edit(withMiss(flyer, plan, clip, value));
         }
@@ -83,7 +84,7 @@ export class FlyerPanel extends Part {
   protected build(): void {}
 
   protected update(): void {
-    const flyer = flyerAt(this.now.state, this.now.selected);
+    const {flyer} = this.studio;
     const {clip, plan} = this.now;
     if (!flyer || !clip) return;
     const moments = momentsOf(flyer, clip);
@@ -110,7 +111,6 @@ export class FlyerPanel extends Part {
     const title = this.querySelector('.what .title');
     if (title) text(title, flyer.title);
     const name = flyer.kind === 'aircraft' ? flyer.title : flyer.kind;
-    const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     // What cannot be loaded, a model file and what is on the lens have no picture.
     this.portrait.hidden = !track || flyer.statement === 'lens' || /\.\w+$/.test(name);
     if (!this.portrait.hidden)
@@ -119,7 +119,7 @@ export class FlyerPanel extends Part {
 
   private shape(flyer: Flyer, moments: Moment[]): void {
     this.fields = [];
-    this.rows = moments.map((_, k) => new MomentRow(this, k));
+    this.rows = moments.map((_, k) => new MomentRow(this, this.studio, k));
     const path = flyer.path;
     const isNatural = flyer.kind === 'bird' || flyer.kind === 'multirotor' || flyer.kind === 'balloon';
     const keys = isNatural ? FLOCK.filter(({key}) => flyer.kind === 'bird' || key[0] === 'size_m') : [];
@@ -162,7 +162,7 @@ export class FlyerPanel extends Part {
   }
 
   private take(options: KeyOptions, value: number): void {
-    const flyer = flyerAt(this.now.state, this.now.selected);
+    const {flyer} = this.studio;
     if (!flyer) return;
     const to = options.key[0] === 'count' ? Math.round(value) : value;
     const {plan, clip} = this.now;
@@ -180,7 +180,7 @@ export class FlyerPanel extends Part {
   }
 
   private restate(how: typeof toApproach|typeof toMoments): void {
-    const flyer = flyerAt(this.now.state, this.now.selected);
+    const {flyer} = this.studio;
     const {clip, plan} = this.now;
     const track = flyer && trackOf(plan, flyer.path);
     const changes = flyer && track && clip && plan ?
@@ -192,17 +192,11 @@ export class FlyerPanel extends Part {
       this.studio.store.say('info', 'This path cannot be stated so: it is not in the clip.');
   }
 
-  // Edits of a row, called by it.
-  set(path: Path, to: Json): void {
-    this.studio.edit([{set: path, to}]);
-  }
-
   // A moment's size, in the other words.
   sizeIn(index: number, key: 'range_m'|'width_px'): void {
-    const flyer = flyerAt(this.now.state, this.now.selected);
-    const {clip, plan} = this.now;
-    const moment = flyer && clip && momentsOf(flyer, clip)[index];
-    const handle = flyer && trackOf(plan, flyer.path)?.handles[index];
+    const {flyer} = this.studio;
+    const moment = this.studio.moment(index);
+    const handle = flyer && trackOf(this.now.plan, flyer.path)?.handles[index];
     const known = handle?.[key];
     if (!moment || !known) return;
     const other = key === 'range_m' ? 'width_px' : 'range_m';
@@ -210,20 +204,6 @@ export class FlyerPanel extends Part {
       {remove: [...moment.path, other]},
       {set: [...moment.path, key], to: key === 'range_m' ? writtenRange(known) : writtenWidth(known)}
     ]);
-  }
-
-  choose(index: number): void {
-    const flyer = flyerAt(this.now.state, this.now.selected);
-    const {clip} = this.now;
-    const moment = flyer && clip && momentsOf(flyer, clip)[index];
-    if (!moment) return;
-    this.studio.store.put({moment: index});
-    this.studio.show(moment.frame);
-  }
-
-  moment(index: number): Moment|null {
-    const flyer = flyerAt(this.now.state, this.now.selected);
-    return (flyer && this.now.clip && momentsOf(flyer, this.now.clip)[index]) || null;
   }
 
   frameTime(time_s: number): number {
@@ -265,7 +245,7 @@ class MomentRow {
         ...['time, s', 'x, px', 'y, px', 'range or width', ''].map((name) => h('span', {role: 'columnheader'}, name)));
   }
 
-  constructor(private panel: FlyerPanel, private index: number) {
+  constructor(private panel: FlyerPanel, private studio: Studio, private index: number) {
     const field = (label: string, unit: string, step: number, taken: (value: number) => void) =>
         new NumberField({label: `${label} of moment ${index + 1}`, unit, step, isLabelHidden: true, taken});
     this.time = field('Time', 's', 0.1, (value) => this.setTime(this.panel.frameTime(value)));
@@ -308,17 +288,16 @@ class MomentRow {
 
   // From outside the row; within it a time that was just entered is the one to be shown.
   private entered(event: FocusEvent): void {
-    if (!this.element.contains(event.relatedTarget as Node | null)) this.panel.choose(this.index);
+    if (!this.element.contains(event.relatedTarget as Node | null)) this.studio.choose(this.index);
   }
 
   private set(key: string, to: Json): void {
-    const moment = this.panel.moment(this.index);
-    if (moment) this.panel.set([...moment.path, key], to);
+    const moment = this.studio.moment(this.index);
+    if (moment) this.studio.edit([{set: [...moment.path, key], to}]);
   }
 
   private setPixel(axis: 0|1, value: number): void {
-    const moment = this.panel.moment(this.index);
-    if (moment)
-      this.panel.set([...moment.path, 'pixel'], axis === 0 ? [value, moment.pixel[1]] : [moment.pixel[0], value]);
+    const moment = this.studio.moment(this.index);
+    if (moment) this.set('pixel', axis === 0 ? [value, moment.pixel[1]] : [moment.pixel[0], value]);
   }
 }

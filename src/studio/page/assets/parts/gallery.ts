@@ -4,7 +4,7 @@ import type {Choice} from '../model/flyers';
 import {round} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
-import {h} from './part';
+import {h, token} from './part';
 
 const SEARCH_AFTER_MS = 150;
 const FLOCK = 8;
@@ -97,7 +97,6 @@ export class Gallery extends DialogPart {
   }
 
   private card(group: AircraftGroup): HTMLElement {
-    const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     const names = group.liveries.length ? group.liveries : [group.name];
     const addressOf = (name: string) => `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`;
     const picture = h('img', {alt: '', loading: 'lazy', width: 150, height: 150, src: addressOf(group.picture)});

@@ -8,6 +8,9 @@ export function provide(studio: Studio): void {
   theStudio = studio;
 }
 
+// What the page's addresses prove themselves with to the server.
+export const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
+
 export const say = (line: string): void => theStudio!.store.say('info', line);
 
 // A part of the page: an element that is built once, and brought up to date when a member of the store that it watches

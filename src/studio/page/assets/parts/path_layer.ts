@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx, Clip, LinePoint, Path} from '../model/contract';
-import {type Flyer, type Moment, flyerAt, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel} from '../model/flyers';
+import {type Flyer, type Moment, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel} from '../model/flyers';
 import {type Point, clamp, degrees, freePlace, mix, round} from '../model/geometry';
 import type {Studio} from '../model/studio';
 import {distance} from './overlay_layer';
@@ -132,11 +132,10 @@ export class PathLayer {
   // A press on a handle holds it and shows its time; one on a path selects it.
   down(event: PointerEvent): boolean {
     const handle = (event.target as Element).closest<SVGGElement>('.handle');
-    const {state, clip, selected} = this.studio.store.now;
-    if (handle && state && clip) {
-      const flyer = flyerAt(state, selected);
+    if (handle) {
+      const {flyer} = this.studio;
       const index = Number(handle.dataset.index);
-      const moment = flyer && momentsOf(flyer, clip)[index];
+      const moment = this.studio.moment(index);
       if (!flyer || !moment) return false;
       const at = this.pixelAt(event);
       // In another frame the camera looks elsewhere, and at the rim it is not: then the handle comes to the pointer.
@@ -151,8 +150,8 @@ export class PathLayer {
         last: moment.pixel,
         isMoved: false
       };
-      this.studio.store.put({moment: index, playing: false});
-      this.studio.show(moment.frame);
+      this.studio.store.put({playing: false});
+      this.studio.choose(index);
       this.studio.dragging(true);
       return true;
     }
@@ -200,12 +199,9 @@ export class PathLayer {
   }
 
   private size(index: number, factor: number, moved_ms: number): void {
-    const {state, clip, selected} = this.studio.store.now;
-    const flyer = flyerAt(state, selected);
-    const moment = flyer && clip && momentsOf(flyer, clip)[index];
-    if (!moment) return;
-    const change = nearer(moment, factor);
-    if (!change) return;
+    const moment = this.studio.moment(index);
+    const change = moment && nearer(moment, factor);
+    if (!moment || !change) return;
     if (moved_ms - this.wheelMerge.at > PAUSE_MS) this.wheelMerge.name = this.studio.merge('size');
     this.wheelMerge.at = moved_ms;
     this.studio.show(moment.frame);
@@ -225,9 +221,9 @@ export class PathLayer {
     const step = event.shiftKey ? 10 : 1;
     const moves: Record<string, Point> =
         {ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step]};
-    const {state, clip, selected, draft} = this.studio.store.now;
-    const flyer = flyerAt(state, selected);
-    const moment = flyer && clip && momentsOf(flyer, clip)[index];
+    const {draft} = this.studio.store.now;
+    const {flyer} = this.studio;
+    const moment = this.studio.moment(index);
     if (!flyer || !moment || event.ctrlKey || event.altKey || event.metaKey) return;
     const by = moves[event.key];
     if (by) {
@@ -285,12 +281,7 @@ export class PathLayer {
   }
 
   private focused(index: number): void {
-    if (this.held || this.studio.store.now.moment === index) return;
-    const {state, clip, selected} = this.studio.store.now;
-    const flyer = flyerAt(state, selected);
-    const moment = flyer && clip && momentsOf(flyer, clip)[index];
-    this.studio.store.put({moment: index});
-    if (moment) this.studio.show(moment.frame);
+    if (!this.held && this.studio.store.now.moment !== index) this.studio.choose(index);
   }
 
   private renewHandle(element: SVGGElement, {moment, flyer, index, at, points_deg, words, label}: Handle): void {

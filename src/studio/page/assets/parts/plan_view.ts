@@ -269,13 +269,8 @@ export class PlanView extends SideView<Drag> {
     const index = Number(target.dataset.index ?? 0);
     if (!isSame(path, this.now.selected)) this.studio.select(path);
     if (!kind) return;
-    if (kind === 'moment') {
-      // What is drawn may be older than the scene.
-      const moment = this.now.clip && momentsOf(flyer, this.now.clip)[index];
-      if (!moment) return;
-      this.studio.store.put({moment: index});
-      this.studio.show(moment.frame);
-    }
+    // What is drawn may be older than the scene.
+    if (kind === 'moment' && !this.studio.choose(index)) return;
     this.drag = {kind, flyer, index, merge: this.studio.merge(kind)};
     this.svg.setPointerCapture(event.pointerId);
     this.studio.dragging(true);

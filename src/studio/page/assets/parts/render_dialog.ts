@@ -4,7 +4,7 @@ import {clamp} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
 import {tick} from './fields';
-import {attribute, h, s, text} from './part';
+import {attribute, h, s, text, token} from './part';
 
 const MOST_AHEAD_S = 0.5;  // of one film to the other, beyond which it does not catch up by its speed
 const CATCH_UP = 4;        // of its speed, for each second that it is ahead
@@ -123,7 +123,6 @@ export class RenderDialog extends DialogPart {
   private load(film: Rendered): void {
     this.shown = film;
     this.boxesOf = new Map(film.boxes);
-    const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     // A number of its own makes the browser ask again after another render.
     const address = (which: string) => `/film?token=${token}&which=${which}&of=${Date.now()}`;
     this.original.hidden = false;

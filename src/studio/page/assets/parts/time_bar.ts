@@ -2,7 +2,7 @@
 import {flyersOf, isSame, momentsOf} from '../model/flyers';
 import {clamp, round} from '../model/geometry';
 import type {Member} from '../model/store';
-import {Part, attribute, h, s, text} from './part';
+import {Part, attribute, h, s, text, token} from './part';
 
 const THUMB_HEIGHT = 48;
 const THUMB_WIDTH = 160;  // asked of the server
@@ -100,7 +100,6 @@ export class TimeBar extends Part {
     const shown = `${of} ${frames.join()}`;
     if (shown === this.shown) return;
     this.shown = shown;
-    const token = encodeURIComponent(new URLSearchParams(location.search).get('token') ?? '');
     this.thumbs.replaceChildren(
         ...frames.map((frame) => h('img', {
                         alt: '',
