@@ -3,7 +3,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,16 +23,10 @@
 namespace airtruth::cli {
 namespace {
 
-struct CalibrateArguments {
+struct CalibrateArguments : CalibrateOptions {
   std::vector<std::string> videos;
   std::string out;
-  std::string lens;
-  std::string mask;
   std::string plot;
-  std::string profile;
-  std::optional<double> altitude_m;
-  double heading_deg = 0;
-  double gamma = 0;
   bool overwrite = false;
 };
 
@@ -113,7 +106,7 @@ void write_results(const CalibrateArguments& arguments,
   files.commit();
 }
 
-void calibrate(const CalibrateArguments& arguments, Context& context) {
+void calibrate(CalibrateArguments arguments, Context& context) {
   RunFiles files;
   for (const std::string& video : arguments.videos) files.reads(video);
   files.reads(arguments.lens).reads(arguments.mask);
@@ -124,14 +117,8 @@ void calibrate(const CalibrateArguments& arguments, Context& context) {
   if (clips.size() > 1 && !arguments.plot.empty())
     throw Error("--plot draws one clip; expected one video beside it");
   files.begin();
-  CalibrateOptions options{.lens = arguments.lens,
-                           .mask = arguments.mask,
-                           .altitude_m = arguments.altitude_m,
-                           .heading_deg = arguments.heading_deg,
-                           .gamma = arguments.gamma,
-                           .profile = arguments.profile};
-  follow(options, context, "measuring");
-  const camera_file::Calibration found = camera_file::calibrate_camera(clips, options);
+  follow(arguments, context, "measuring");
+  const camera_file::Calibration found = camera_file::calibrate_camera(clips, arguments);
   Console& console = context.console();
   console.end_progress();
   write_results(arguments, found, files);

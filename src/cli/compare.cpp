@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -12,21 +11,15 @@
 namespace airtruth::cli {
 namespace {
 
-struct CompareArguments {
+struct CompareArguments : comparison::Options {
   std::string real;
   std::string boxes;
   std::string scene;
   std::string out;
   double origin_px = 0;
-  int pairs = 6;
-  std::int64_t frames = 0;
-  bool match = true;
-  std::vector<std::string> types;
-  std::optional<double> camera_pitch_deg;
-  bool overwrite = false;
 };
 
-void compare(const CompareArguments& arguments, Context& context) {
+void compare(CompareArguments arguments, Context& context) {
   RunFiles()
       .reads(arguments.real)
       .reads(arguments.boxes)
@@ -34,19 +27,12 @@ void compare(const CompareArguments& arguments, Context& context) {
       .replaces(arguments.out)
       .check();
   Console& console = context.console();
-  comparison::Options options;
-  options.overwrite = arguments.overwrite;
-  options.pairs = arguments.pairs;
-  options.most_frames = arguments.frames;
-  options.match = arguments.match;
-  options.types = arguments.types;
-  options.camera_pitch_deg = arguments.camera_pitch_deg;
-  follow(options, context, "comparing");
+  follow(arguments, context, "comparing");
   const auto found = comparison::compare(arguments.real,
                                          match::read_boxes(arguments.boxes, arguments.origin_px),
                                          scene::read_scene(arguments.scene),
                                          arguments.out,
-                                         options);
+                                         arguments);
   console.end_progress();
   std::string text = fmt::format("{}: {} frames", found.folder.string(), found.frames);
   if (found.pose)
@@ -67,7 +53,8 @@ void add_match_options(CLI::App& command, CompareArguments& arguments) {
   command.add_option("--pairs", arguments.pairs, "Pairs in the figure")
       ->check(CLI::Range(1, 40))
       ->capture_default_str();
-  command.add_option("--frames", arguments.frames, "At most so many frames from the first box on")
+  command
+      .add_option("--frames", arguments.most_frames, "At most so many frames from the first box on")
       ->check(CLI::PositiveNumber);
   command.add_flag(
       "--match,!--no-match",

@@ -25,16 +25,13 @@
 namespace airtruth::cli {
 namespace {
 
-struct MotionArguments {
+struct MotionArguments : setup::ClipMotionOptions {
   std::string video;
   std::string out;
-  std::string mask;
   std::string plot;
   std::string stabilised;
-  std::string model = "auto";
-  std::string lens;
-  std::string reference = "first_frame";
-  double smoothing_s = 1;
+  std::string model_name = "auto";
+  std::string reference_name = "first_frame";
   bool overwrite = false;
 };
 
@@ -61,8 +58,7 @@ void stabilise(const MotionArguments& arguments,
 }
 
 void check_files(const MotionArguments& arguments, RunFiles& files) {
-  for (const std::string& file : {arguments.video, arguments.mask, arguments.lens})
-    files.reads(file);
+  files.reads(arguments.video).reads(arguments.mask).reads(arguments.lens);
   for (const std::string& file : {arguments.out, arguments.stabilised, arguments.plot})
     files.writes(file, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
@@ -86,7 +82,7 @@ void report_frames(const std::vector<motion::FrameMotion>& all,
                    Console& console) {
   std::size_t measured = 0;
   for (const auto& frame : all) measured += motion::is_known(frame.state) ? 1 : 0;
-  const bool is_chosen = arguments.model == "auto" && arguments.lens.empty();
+  const bool is_chosen = arguments.model_name == "auto" && arguments.lens.empty();
   console.result(
       fmt::format("{}: {} frames, measured in {}{}",
                   arguments.out,
@@ -95,18 +91,14 @@ void report_frames(const std::vector<motion::FrameMotion>& all,
                   is_chosen ? " (homography; with --lens rotation, the default of scenes)" : ""));
 }
 
-void measure(const MotionArguments& arguments, Context& context) {
+void measure(MotionArguments arguments, Context& context) {
   RunFiles files;
   check_files(arguments, files);
   Console& console = context.console();
-  setup::ClipMotionOptions options;
-  options.model = *enum_named<scene::MotionModel>(arguments.model);
-  options.lens = arguments.lens;
-  options.mask = arguments.mask;
-  options.reference = *enum_named<scene::MotionReference>(arguments.reference);
-  options.smoothing_s = arguments.smoothing_s;
-  follow(options, context, "measuring");
-  const setup::ClipMotion found = setup::clip_motion(arguments.video, options);
+  arguments.model = *enum_named<scene::MotionModel>(arguments.model_name);
+  arguments.reference = *enum_named<scene::MotionReference>(arguments.reference_name);
+  follow(arguments, context, "measuring");
+  const setup::ClipMotion found = setup::clip_motion(arguments.video, arguments);
   const std::vector<motion::FrameMotion>& all = found.frames;
   report_gyro(found.gyro, console);
   files.write(arguments.out, [&](const fs::path& at) {
@@ -139,7 +131,7 @@ void add_motion(CLI::App& app, Context& context) {
       ->required();
   command
       ->add_option("--model",
-                   arguments->model,
+                   arguments->model_name,
                    "rotation: on the sphere, through a known lens; homography: one plane; auto: "
                    "rotation with --lens, homography without")
       ->check(CLI::IsMember({"auto", "rotation", "homography"}))
@@ -149,7 +141,7 @@ void add_motion(CLI::App& app, Context& context) {
   command->add_option("--plot", arguments->plot, "Draw the motion here (.png)");
   command->add_option(
       "--stabilised", arguments->stabilised, "Write a steadied copy of the video here");
-  command->add_option("--reference", arguments->reference, "first_frame or smoothed")
+  command->add_option("--reference", arguments->reference_name, "first_frame or smoothed")
       ->check(CLI::IsMember({"first_frame", "smoothed"}))
       ->capture_default_str();
   command

@@ -15,28 +15,24 @@
 namespace airtruth::cli {
 namespace {
 
-struct RenderArguments {
+struct RenderArguments : pipeline::Options {
   std::string scene;
   std::string out = ".";
-  bool overwrite = false;
   bool no_cache = false;
   bool timings = false;
-  int threads = 0;
-  std::string gpu;
+  std::string device;
 };
 
 pipeline::Options options_from(const RenderArguments& arguments, Context& context) {
-  pipeline::Options options;
-  options.overwrite = arguments.overwrite;
-  options.threads = arguments.threads;
+  pipeline::Options options = arguments;
   options.use_cache = !arguments.no_cache;
-  if (arguments.gpu == "none") {
+  const std::string& device = arguments.device;
+  if (device == "none") {
     options.software_gl = true;
-  } else if (!arguments.gpu.empty()) {
-    if (arguments.gpu.find_first_not_of("0123456789") != std::string::npos ||
-        arguments.gpu.size() > 3)
-      throw Error("--gpu is '" + arguments.gpu + "'; expected a device number or none");
-    options.gpu = std::stoi(arguments.gpu);
+  } else if (!device.empty()) {
+    if (device.find_first_not_of("0123456789") != std::string::npos || device.size() > 3)
+      throw Error("--gpu is '" + device + "'; expected a device number or none");
+    options.gpu = std::stoi(device);
   }
   Console& console = context.console();
   options.warn = console.warn();
@@ -116,7 +112,7 @@ void add_render(CLI::App& app, Context& context) {
           "--threads,-j", arguments->threads, "Threads that make frames (default: all cores)")
       ->check(CLI::Range(1, 1024));
   command->add_option(
-      "--gpu", arguments->gpu, "chroma-key's OpenGL device: a number, or none for llvmpipe");
+      "--gpu", arguments->device, "chroma-key's OpenGL device: a number, or none for llvmpipe");
   command->add_flag(
       "--timings", arguments->timings, "Also print the CPU and wall time of each stage");
   command->add_flag("--no-cache",
