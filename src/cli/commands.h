@@ -12,8 +12,6 @@
 
 #include "cli/console.h"
 
-// One function per subcommand: it declares its arguments on `app` and returns the action to run
-// after they are parsed.
 namespace airtruth::cli {
 
 struct Context {
@@ -58,27 +56,10 @@ inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
 // Reads the width and height from "1280x960", the form of --size. Throws Error for any other form.
 std::pair<int, int> size_from(const std::string& text);
 
-void add_render(CLI::App& app, Context& context);
-void add_scene(CLI::App& app, Context& context);
-void add_preview(CLI::App& app, Context& context);
-void add_studio(CLI::App& app, Context& context);
-void add_motion(CLI::App& app, Context& context);
-void add_calibrate(CLI::App& app, Context& context);
-void add_lens(CLI::App& app, Context& context);
-void add_log(CLI::App& app, Context& context);
-void add_mask(CLI::App& app, Context& context);
-void add_aircraft(CLI::App& app, Context& context);
-void add_overlay(CLI::App& app, Context& context);
-void add_inspect(CLI::App& app, Context& context);
-void add_synth(CLI::App& app, Context& context);
-void add_evision(CLI::App& app, Context& context);
-void add_dataset(CLI::App& app, Context& context);
-void add_track(CLI::App& app, Context& context);
-void add_detect(CLI::App& app, Context& context);
-void add_evaluate(CLI::App& app, Context& context);
-void add_compare(CLI::App& app, Context& context);
-void add_encounter(CLI::App& app, Context& context);
-void add_demo(CLI::App& app, Context& context);
-void add_describe(CLI::App& app, Context& context);
+// Declares a subcommand with its arguments, and what it does once they are parsed.
+using Add = void(CLI::App& app, Context& context);
+Add add_render, add_scene, add_preview, add_studio, add_motion, add_calibrate, add_lens, add_log,
+    add_mask, add_aircraft, add_overlay, add_inspect, add_synth, add_evision, add_dataset,
+    add_track, add_detect, add_evaluate, add_compare, add_encounter, add_demo, add_describe;
 
 }  // namespace airtruth::cli

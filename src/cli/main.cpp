@@ -144,32 +144,16 @@ int run(CLI::App& app,
 }
 
 // In the order of --help.
-void add_commands(CLI::App& app, cli::Context& context) {
-  cli::add_demo(app, context);
+constexpr cli::Add* kCommands[] = {
+    cli::add_demo,
 #ifndef AIRTRUTH_DEMO_ALONE  // of the program airtruth-demo, which is built in half the time
-  cli::add_render(app, context);
-  cli::add_scene(app, context);
-  cli::add_preview(app, context);
-  cli::add_studio(app, context);
-  cli::add_overlay(app, context);
-  cli::add_inspect(app, context);
-  cli::add_motion(app, context);
-  cli::add_calibrate(app, context);
-  cli::add_mask(app, context);
-  cli::add_lens(app, context);
-  cli::add_log(app, context);
-  cli::add_aircraft(app, context);
-  cli::add_synth(app, context);
-  cli::add_encounter(app, context);
-  cli::add_dataset(app, context);
-  cli::add_track(app, context);
-  cli::add_detect(app, context);
-  cli::add_evaluate(app, context);
-  cli::add_compare(app, context);
-  cli::add_evision(app, context);
-  cli::add_describe(app, context);
+    cli::add_render,   cli::add_scene,    cli::add_preview,   cli::add_studio,    cli::add_overlay,
+    cli::add_inspect,  cli::add_motion,   cli::add_calibrate, cli::add_mask,      cli::add_lens,
+    cli::add_log,      cli::add_aircraft, cli::add_synth,     cli::add_encounter, cli::add_dataset,
+    cli::add_track,    cli::add_detect,   cli::add_evaluate,  cli::add_compare,   cli::add_evision,
+    cli::add_describe,
 #endif
-}
+};
 
 }  // namespace
 
@@ -193,7 +177,7 @@ int main(int argc, char** argv) {
     if (!console) console.emplace(options);
     return *console;
   };
-  add_commands(app, context);
+  for (cli::Add* add : kCommands) add(app, context);
   const int code = run(app, argc, argv, options, console);
   return code != 0 ? code : context.exit_code;
 }
