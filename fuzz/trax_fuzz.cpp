@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "runners/tracking/trax_message.h"
-#include "runners/tracking/trax_session.h"
+#include "runners/tracking/trax_tracker.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace airtruth;

@@ -8,7 +8,7 @@
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 #include "runners/tracking/am3.h"
-#include "runners/tracking/trax_session.h"
+#include "runners/tracking/trax_tracker.h"
 
 namespace airtruth::tracking {
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -14,7 +15,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 #include "runners/tracking/trax_message.h"
-#include "runners/tracking/trax_session.h"
+#include "runners/tracking/trax_tracker.h"
 #include "support/process_end.h"
 
 namespace airtruth::tracking {
@@ -180,20 +181,24 @@ image::Picture picture() {
   return made;
 }
 
-SessionOptions options(const std::string& command, double seconds = 20) {
-  return {.command = command, .start_s = seconds, .frame_s = seconds, .stop = {}};
+TrackerOptions within(double seconds) {
+  return {.start_s = seconds, .answer_s = seconds, .stop = {}};
+}
+
+std::unique_ptr<Tracker> started(const std::string& command) {
+  return make_trax_tracker("trax:" + command, within(20));
 }
 
 // What a run of a few frames with a tracker ends in; "" for a good end.
-std::string fault_of(const SessionOptions& settings) {
+std::string fault_of_named(const std::string& name, double seconds = 20) {
   const image::Picture one = picture();
   try {
-    Session session(settings);
-    session.load(one);
-    session.initialize({1, 2, 3, 4});
+    const auto tracker = make_trax_tracker(name, within(seconds));
+    tracker->load(one);
+    tracker->init({1, 2, 3, 4});
     for (int i = 0; i < 3; ++i) {
-      session.load(one);
-      session.frame();
+      tracker->load(one);
+      tracker->update();
     }
     return "";
   } catch (const process::Failure& error) {
@@ -201,30 +206,33 @@ std::string fault_of(const SessionOptions& settings) {
   }
 }
 
-std::string fault_of(const std::string& command) { return fault_of(options(command)); }
+std::string fault_of(const std::string& command) { return fault_of_named("trax:" + command); }
 
 // Of one that never answers: a deadline that is soon over.
-std::string hang_of(const std::string& command) { return fault_of(options(command, 1)); }
+std::string hang_of(const std::string& command) { return fault_of_named("trax:" + command, 1); }
 
-TEST(Session, OfVersionFour) {
+TEST(TraxTracker, OfVersionFour) {
   const image::Picture one = picture();
-  Session session(
-      options(answering(R"(echo chatter; echo "@@TRAX:state 5,6,7,8 confidence=0.25")")));
-  EXPECT_EQ(session.hello().name, "Still");
-  session.load(one);
-  EXPECT_EQ(session.initialize({1, 2, 3, 4}).box, (Box{5, 6, 7, 8}));
-  session.load(one);
-  const Reply reply = session.frame();
-  EXPECT_EQ(reply.box, (Box{5, 6, 7, 8}));
-  EXPECT_EQ(reply.confidence, 0.25);
-  EXPECT_GT(reply.seconds, 0);
-  session.load(one);
-  EXPECT_EQ(session.initialize({2, 2, 3, 4}).box, (Box{5, 6, 7, 8}));
-  EXPECT_THAT(session.log(), HasSubstr("chatter"));
+  const std::string command =
+      answering(R"(echo chatter; echo "@@TRAX:state 5,6,7,8 confidence=0.25")");
+  EXPECT_EQ(trax_name("trax:" + command, within(20)), "Still");
+  const auto tracker = started(command);
+  tracker->load(one);
+  tracker->init({1, 2, 3, 4});
+  tracker->load(one);
+  const Answer answer = tracker->update();
+  EXPECT_FALSE(answer.lost);
+  EXPECT_EQ(answer.box_px, (Box{5, 6, 7, 8}));
+  EXPECT_EQ(answer.confidence, 0.25);
+  EXPECT_GT(answer.seconds, 0);
+  tracker->load(one);
+  tracker->init({2, 2, 3, 4});
+  EXPECT_EQ(tracker->update().box_px, (Box{5, 6, 7, 8}));
+  EXPECT_THAT(tracker->log(), HasSubstr("chatter"));
 }
 
 // Every version is begun by what it knows, and gets pictures and regions in the form it asked for.
-TEST(Session, BeginsAsEachVersionExpects) {
+TEST(TraxTracker, BeginsAsEachVersionExpects) {
   for (const char* version : {"1", "2", "3"}) {
     const std::string hello = std::string("echo '@@TRAX:hello \"trax.version=") + version +
                               "\" \"trax.region=polygon\" \"trax.image=memory\"'; ";
@@ -245,23 +253,21 @@ TEST(Session, BeginsAsEachVersionExpects) {
             "");
 }
 
-TEST(Session, OverASocket) {
-  SessionOptions settings = options(
-      "python3 -c \"import os, socket\n"
-      "s = socket.create_connection(('127.0.0.1', int(os.environ['TRAX_SOCKET'])))\n"
-      "f = s.makefile('rw')\n"
-      "print('words on standard output')\n"
-      "print('@@TRAX:hello trax.version=3', file=f, flush=True)\n"
-      "for line in f:\n"
-      "    if 'quit' in line: break\n"
-      "    print('@@TRAX:state 1,2,3,4', file=f, flush=True)\"");
-  settings.transport = process::Child::Transport::kSocket;
-  EXPECT_EQ(fault_of(settings), "");
-  settings.command = "exit 7";
-  EXPECT_THAT(fault_of(settings), HasSubstr("status 7"));
+TEST(TraxTracker, OverASocket) {
+  EXPECT_EQ(
+      fault_of_named("trax-socket:python3 -c \"import os, socket\n"
+                     "s = socket.create_connection(('127.0.0.1', int(os.environ['TRAX_SOCKET'])))\n"
+                     "f = s.makefile('rw')\n"
+                     "print('words on standard output')\n"
+                     "print('@@TRAX:hello trax.version=3', file=f, flush=True)\n"
+                     "for line in f:\n"
+                     "    if 'quit' in line: break\n"
+                     "    print('@@TRAX:state 1,2,3,4', file=f, flush=True)\""),
+      "");
+  EXPECT_THAT(fault_of_named("trax-socket:exit 7"), HasSubstr("status 7"));
 }
 
-TEST(Session, ThatGoesWrongSaysHow) {
+TEST(TraxTracker, ThatGoesWrongSaysHow) {
   EXPECT_THAT(fault_of("no_such_tracker_4711 --fast"), HasSubstr("not found"));
   EXPECT_THAT(fault_of("exit 0"), HasSubstr("ended with status 0"));
   EXPECT_THAT(fault_of("echo '@@TRAX:state 1'; cat"), HasSubstr("no hello"));
@@ -286,31 +292,30 @@ TEST(Session, ThatGoesWrongSaysHow) {
 }
 
 // Endless talk on either output takes neither memory nor time from an answer.
-TEST(Session, OfABabbler) {
+TEST(TraxTracker, OfABabbler) {
   EXPECT_EQ(fault_of(answering(
                 "head -c 3000000 /dev/zero | tr '\\0' 'x'; echo; echo '@@TRAX:state 1,2,3,4'")),
             "");
-  Session session(
-      options(std::string("(yes words >&2) & ") + answering("echo '@@TRAX:state 1,2,3,4'")));
+  const auto tracker = started("(yes words >&2) & " + answering("echo '@@TRAX:state 1,2,3,4'"));
   const image::Picture one = picture();
-  session.load(one);
-  session.initialize({1, 2, 3, 4});
+  tracker->load(one);
+  tracker->init({1, 2, 3, 4});
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  session.load(one);
-  EXPECT_TRUE(session.frame().box);
-  EXPECT_LE(session.log().size(), process::Child::kMaxLog);
+  tracker->load(one);
+  EXPECT_FALSE(tracker->update().lost);
+  EXPECT_LE(tracker->log().size(), process::Child::kMaxLog);
   EXPECT_THAT(hang_of(std::string(kHello4) + "exec yes nonsense"), HasSubstr("in time"));
   EXPECT_THAT(fault_of(std::string(kHello4) + "exec yes '@@TRAX:state 1,2,3,4'"),
               HasSubstr("before it was asked"));
 }
 
 // All that a tracker started is gone after it, whatever it made of its signals.
-TEST(Session, LeavesNoProcessBehind) {
+TEST(TraxTracker, LeavesNoProcessBehind) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("airtruth_trax_" + std::to_string(::getpid()));
   {
-    Session session(options("trap '' TERM; (trap '' TERM; sleep 300) & echo $! > " + file.string() +
-                            "; " + answering("echo '@@TRAX:state 1,2,3,4'")));
+    const auto tracker = started("trap '' TERM; (trap '' TERM; sleep 300) & echo $! > " +
+                                 file.string() + "; " + answering("echo '@@TRAX:state 1,2,3,4'"));
   }
   pid_t grandchild = 0;
   std::ifstream(file) >> grandchild;
@@ -319,18 +324,18 @@ TEST(Session, LeavesNoProcessBehind) {
   EXPECT_TRUE(test_support::ends(grandchild));
 }
 
-TEST(Session, EndsAWaitWhenStopped) {
+TEST(TraxTracker, EndsAWaitWhenStopped) {
   std::stop_source stop;
-  SessionOptions settings = options(answering("exec sleep 60"));
-  settings.stop = stop.get_token();
+  TrackerOptions options = within(20);
+  options.stop = stop.get_token();
   const image::Picture one = picture();
-  Session session(settings);
-  session.load(one);
+  const auto tracker = make_trax_tracker("trax:" + answering("exec sleep 60"), options);
+  tracker->load(one);
   std::thread later([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     stop.request_stop();
   });
-  EXPECT_THROW(session.initialize({1, 2, 3, 4}), Interrupted);
+  EXPECT_THROW(tracker->init({1, 2, 3, 4}), Interrupted);
   later.join();
 }
 

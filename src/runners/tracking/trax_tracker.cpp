@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/tracking/trax_session.h"
+#include "runners/tracking/trax_tracker.h"
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
+#include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,6 +17,8 @@
 #include "foundation/base/text.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
+#include "runners/process/child.h"
+#include "runners/process/memory_place.h"
 #include "runners/results/results_folder.h"
 
 namespace airtruth::tracking {
@@ -73,21 +77,22 @@ void expect(const Message& message, Type type, const char* name) {
   if (message.type != type) throw process::Failure(std::string("it sent no ") + name);
 }
 
-Reply reply_of(const Message& message) {
-  Reply reply;
-  if (message.arguments.size() != 1)
-    throw process::Failure("its state has " + std::to_string(message.arguments.size()) +
-                           " regions; expected one");
-  reply.box = box_of(message.arguments.front());
-  reply.confidence = confidence_of(message);
-  return reply;
-}
+// Pictures for one tracker. Files lie in memory (/dev/shm) where that exists. The last two files
+// are kept.
+class Images {
+ public:
+  explicit Images(ImageKind kind) : kind_(kind) {
+    if (kind_ != ImageKind::kMemory) folder_.emplace(PlaceKind::kFolder, "a tracker's pictures");
+  }
 
-}  // namespace
+  // Returns the text by which a message refers to the picture.
+  std::string hand_over(const image::Picture& picture);
 
-Images::Images(ImageKind kind) : kind_(kind) {
-  if (kind_ != ImageKind::kMemory) folder_.emplace(PlaceKind::kFolder, "a tracker's pictures");
-}
+ private:
+  ImageKind kind_;
+  std::optional<process::MemoryPlace> folder_;
+  std::int64_t count_ = 0;
+};
 
 std::string Images::hand_over(const image::Picture& picture) {
   const image::Rgb8 rgb = image::rgb8_from_picture(picture);
@@ -108,6 +113,8 @@ std::string Images::hand_over(const image::Picture& picture) {
   if (kind_ == ImageKind::kPath) return "file://" + file.string();
   return "data:image/png;" + base64_of(read_file(file));
 }
+
+}  // namespace
 
 Hello hello_of(const Message& message) {
   Hello hello;
@@ -143,95 +150,56 @@ Hello hello_of(const Message& message) {
   return hello;
 }
 
-Session::Session(const SessionOptions& options)
-    : options_(options), child_(options.command, options.transport, options.stop, kPrefix) {
-  const Message first = *parse_line(child_.read(process::in(options.start_s)));
-  expect(first, Type::kHello, "hello");
-  hello_ = hello_of(first);
-  images_ = std::make_unique<Images>(hello_.images);
-}
-
-Session::~Session() {
-  try {
-    child_.write(line_of({Type::kQuit, {}, {}}), process::in(0.5));
-    child_.wait(process::in(1));
-  } catch (const std::exception&) {  // it is ended with its process
-  }
-}
-
-void Session::load(const image::Picture& picture) { image_ = images_->hand_over(picture); }
-
-Reply Session::ask(const std::vector<Message>& requests) {
-  if (child_.read_if_there()) throw process::Failure("it answered before it was asked");
-  const auto deadline = process::in(options_.frame_s);
-  for (const Message& request : requests) child_.write(line_of(request), deadline);
-  const Message message = *parse_line(child_.read(deadline));
-  const double took =
-      std::chrono::duration<double>(process::Clock::now() - child_.asked_at()).count();
-  expect(message, Type::kState, "state");
-  Reply reply = reply_of(message);
-  reply.seconds = took;
-  return reply;
-}
-
-Reply Session::initialize(const Box& box) {
-  check(!image_.empty(), "a picture is loaded");
-  const std::string region = hello_.takes_rectangles ? rectangle_of(box)
-                             : hello_.takes_polygons ? polygon_of(box)
-                                                     : mask_of(box);
-  std::vector<Message> requests;
-  if (hello_.version >= 4) {
-    // An empty one lets go of the object that it has.
-    if (has_object_) requests.push_back({Type::kInitialize, {}, {}});
-    requests.push_back({Type::kInitialize, {region}, {}});
-    requests.push_back({Type::kFrame, {image_}, {}});
-  } else {
-    requests.push_back({Type::kInitialize, {image_, region}, {}});
-  }
-  has_object_ = true;
-  return ask(requests);
-}
-
-Reply Session::frame() { return ask({{Type::kFrame, {image_}, {}}}); }
-
 namespace {
 
 constexpr std::string_view kStandard = "trax:";
 constexpr std::string_view kSocket = "trax-socket:";
 
-SessionOptions session_options(std::string_view name, const TrackerOptions& options) {
-  SessionOptions result;
-  const bool is_socket = name.starts_with(kSocket);
-  result.command = std::string(name.substr((is_socket ? kSocket : kStandard).size()));
-  if (result.command.find_first_not_of(' ') == std::string::npos)
-    throw Error("'" + std::string(name) + "' names no command");
-  result.transport =
-      is_socket ? process::Child::Transport::kSocket : process::Child::Transport::kStandard;
-  result.start_s = options.start_s;
-  result.frame_s = options.answer_s;
-  result.stop = options.stop;
-  return result;
-}
-
 class TraxTracker : public Tracker {
  public:
-  explicit TraxTracker(SessionOptions options)
-      : options_(std::move(options)), session_(std::make_unique<Session>(options_)) {}
+  // Throws Error for a name without a command, and process::Failure as update() does.
+  TraxTracker(std::string_view name, const TrackerOptions& options)
+      : command_(name.substr(name.find(':') + 1)),
+        transport_(name.starts_with(kSocket) ? process::Child::Transport::kSocket
+                                             : process::Child::Transport::kStandard),
+        options_(options) {
+    if (command_.find_first_not_of(' ') == std::string::npos)
+      throw Error("'" + std::string(name) + "' names no command");
+    start();
+  }
+  TraxTracker(const TraxTracker&) = delete;
+  TraxTracker& operator=(const TraxTracker&) = delete;
+  ~TraxTracker() override { end(); }
+
+  const Hello& hello() const { return hello_; }
 
   void load(const image::Picture& picture) override {
     picture_ = &picture;
-    if (session_) session_->load(picture);
+    if (child_) image_ = images_->hand_over(picture);
   }
 
   void init(const Box& box) override {
     guarded([&] {
-      if (session_ && is_begun_ && session_->hello().is_for_one_run) end();
-      if (!session_) {
-        session_ = std::make_unique<Session>(options_);
-        session_->load(*picture_);
+      if (has_object_ && hello_.is_for_one_run) end();
+      if (!child_) {
+        start();
+        load(*picture_);
       }
-      is_begun_ = true;
-      session_->initialize(box);
+      check(!image_.empty(), "a picture is loaded");
+      const std::string region = hello_.takes_rectangles ? rectangle_of(box)
+                                 : hello_.takes_polygons ? polygon_of(box)
+                                                         : mask_of(box);
+      std::vector<Message> requests;
+      if (hello_.version >= 4) {
+        // An empty one lets go of the object that it has.
+        if (has_object_) requests.push_back({Type::kInitialize, {}, {}});
+        requests.push_back({Type::kInitialize, {region}, {}});
+        requests.push_back({Type::kFrame, {image_}, {}});
+      } else {
+        requests.push_back({Type::kInitialize, {image_, region}, {}});
+      }
+      has_object_ = true;
+      ask(requests);
       last_ = box;
     });
   }
@@ -239,53 +207,86 @@ class TraxTracker : public Tracker {
   Answer update() override {
     Answer answer;
     guarded([&] {
-      check(session_ != nullptr, "a tracker is begun before it goes on");
-      const Reply reply = session_->frame();
-      answer.lost = !reply.box;
-      if (reply.box) last_ = *reply.box;
-      answer.box_px = last_;
-      answer.confidence = reply.confidence;
-      answer.seconds = reply.seconds;
+      check(child_ != nullptr, "a tracker is begun before it goes on");
+      answer = ask({{Type::kFrame, {image_}, {}}});
     });
     return answer;
   }
 
-  std::string log() const override { return log_ + (session_ ? session_->log() : ""); }
+  std::string log() const override { return log_ + (child_ ? child_->log() : ""); }
 
  private:
+  void start() {
+    auto child = std::make_unique<process::Child>(command_, transport_, options_.stop, kPrefix);
+    const Message first = *parse_line(child->read(process::in(options_.start_s)));
+    expect(first, Type::kHello, "hello");
+    hello_ = hello_of(first);
+    images_.emplace(hello_.images);
+    has_object_ = false;
+    child_ = std::move(child);
+  }
+
   void end() {
-    log_ += session_->log();
-    session_.reset();
+    if (!child_) return;
+    log_ += child_->log();
+    try {
+      child_->write(line_of({Type::kQuit, {}, {}}), process::in(0.5));
+      child_->wait(process::in(1));
+    } catch (const std::exception&) {  // it is ended with its process
+    }
+    images_.reset();
+    child_.reset();
+  }
+
+  Answer ask(const std::vector<Message>& requests) {
+    if (child_->read_if_there()) throw process::Failure("it answered before it was asked");
+    const auto deadline = process::in(options_.answer_s);
+    for (const Message& request : requests) child_->write(line_of(request), deadline);
+    const Message message = *parse_line(child_->read(deadline));
+    const double took =
+        std::chrono::duration<double>(process::Clock::now() - child_->asked_at()).count();
+    expect(message, Type::kState, "state");
+    if (message.arguments.size() != 1)
+      throw process::Failure("its state has " + std::to_string(message.arguments.size()) +
+                             " regions; expected one");
+    const std::optional<Box> box = box_of(message.arguments.front());
+    if (box) last_ = *box;
+    return {last_, confidence_of(message), !box, took};
   }
 
   void guarded(const auto& work) {
     try {
       work();
     } catch (const process::Failure&) {
-      if (session_) end();
+      end();
       throw;
     }
   }
 
-  SessionOptions options_;
-  std::unique_ptr<Session> session_;
+  std::string command_;
+  process::Child::Transport transport_;
+  TrackerOptions options_;
+  std::unique_ptr<process::Child> child_;  // null: it is over, and may be started again
+  Hello hello_;
+  std::optional<Images> images_;
   const image::Picture* picture_ = nullptr;
-  bool is_begun_ = false;
+  std::string image_;        // how a message refers to the loaded picture
+  bool has_object_ = false;  // the child was begun on one
   Box last_;
-  std::string log_;
+  std::string log_;  // of the children before
 };
 
 }  // namespace
 
 std::unique_ptr<Tracker> make_trax_tracker(std::string_view name, const TrackerOptions& options) {
   if (!name.starts_with(kStandard) && !name.starts_with(kSocket)) return nullptr;
-  return std::make_unique<TraxTracker>(session_options(name, options));
+  return std::make_unique<TraxTracker>(name, options);
 }
 
 std::string trax_name(std::string_view name, const TrackerOptions& options) {
   std::string fit;
-  const Session session(session_options(name, options));
-  for (const char c : session.hello().name) fit += results::is_of_results_name(c) ? c : '_';
+  const TraxTracker tracker(name, options);
+  for (const char c : tracker.hello().name) fit += results::is_of_results_name(c) ? c : '_';
   while (!fit.empty() && fit.front() == '.') fit.erase(0, 1);
   return fit.empty() ? "trax" : fit.substr(0, 80);
 }
