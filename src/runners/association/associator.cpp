@@ -17,20 +17,22 @@ namespace {
 
 constexpr double kLeastSizePx = 1;  // a box counts as this wide and high at least
 
-// The value that a chi-square variable with 3 degrees of freedom stays below with this probability.
-// Its distribution is erf(sqrt(x / 2)) - sqrt(2 x / pi) exp(-x / 2).
-double chi_square_of_3(double probability) {
-  const auto distribution = [](double x) {
-    return std::erf(std::sqrt(x / 2)) - std::sqrt(2 * x / kPi) * std::exp(-x / 2);
-  };
-  double low = 0;
-  double high = 100;
-  for (int halving = 0; halving < 60; ++halving) {
-    const double middle = (low + high) / 2;
-    (distribution(middle) < probability ? low : high) = middle;
-  }
-  return high;
-}
+// A declared track ends when it has had no detection for longer than this. Chosen: ByteTrack's 30
+// frames at 30 frames/s.
+constexpr double kMostMissed_s = 1;
+// Chi-square with 3 degrees of freedom stays below it with a probability of 0.99: the share of a
+// target's own detections that the gate lets through.
+constexpr double kGate = 11.344866730144359;
+// Standard error of a box's centre: px, and as a share of the box's width or height; both add in
+// squares. Chosen: a quarter of a pixel's rounding on each side of a box, and detectors' boxes that
+// move by a tenth of their size from frame to frame.
+constexpr double kCentreErrorPx = 0.5;
+constexpr double kCentreErrorOfSize = 0.1;
+// Standard error of a box's size as a share of it; the centre's error in px adds to it.
+constexpr double kSizeError = 0.2;
+// Standard deviation of the camera's turn about each axis where it is not known, rad/s. Chosen: a
+// small aircraft rolls and yaws by some ten to twenty degrees in a second.
+constexpr double kUnknownTurn_radps = 0.3;
 
 [[noreturn]] void out_of_range(const std::string& what, double value, const std::string& expected) {
   throw Error(fmt::format("association: {} is {}; expected {}", what, value, expected));
@@ -48,25 +50,9 @@ void validate(const AssociationOptions& options) {
   if (options.confident_score && !std::isfinite(*options.confident_score)) {
     out_of_range("the confident score", *options.confident_score, "a finite number");
   }
-  if (!(options.gate_probability > 0 && options.gate_probability < 1)) {
-    out_of_range("the gate's probability", options.gate_probability, "between 0 and 1");
-  }
-  for (const auto& [what, value] : {std::pair{"the longest miss", options.most_missed_s},
-                                    {"the centre's error", options.centre_error_px},
-                                    {"the centre's error", options.centre_error_of_size},
-                                    {"the size's error", options.size_error},
-                                    {"the acceleration", options.motion.acceleration_density},
-                                    {"the size's change", options.motion.size_density},
-                                    {"the unknown turn", options.unknown_turn_rps},
-                                    {"the first rate", options.motion.initial_rate}}) {
-    if (!(value > 0 && value < 1e6)) out_of_range(what, value, "a number above 0");
-  }
 }
 
-Associator::Associator(const AssociationOptions& options) : options_(options) {
-  validate(options);
-  gate_ = chi_square_of_3(options.gate_probability);
-}
+Associator::Associator(const AssociationOptions& options) : options_(options) { validate(options); }
 
 void Associator::begin(const detector::SequenceInput& sequence) {
   lens_ = sequence.lens;
@@ -101,7 +87,7 @@ void Associator::predict(const detector::FrameInput& frame) {
   time_s_ = frame.time_s;
   const Quaternion turn = frame.turn ? frame.turn->this_from_previous : Quaternion::Identity();
   const double error_rad =
-      frame.turn ? frame.turn->error_px * rad_per_px_ : options_.unknown_turn_rps * seconds;
+      frame.turn ? frame.turn->error_px * rad_per_px_ : kUnknownTurn_radps * seconds;
   for (Track& track : tracks_) {
     track.filter.predict(seconds, turn, error_rad);
     ++track.frames;
@@ -122,8 +108,7 @@ std::optional<Sighting> Associator::sighting_of(const Box& box) const {
   const double width = std::max(box.width, kLeastSizePx);
   const double height = std::max(box.height, kLeastSizePx);
   const auto variance = [&](double length) {
-    return std::pow(options_.centre_error_px, 2) +
-           std::pow(options_.centre_error_of_size * length, 2);
+    return std::pow(kCentreErrorPx, 2) + std::pow(kCentreErrorOfSize * length, 2);
   };
   Sighting sighting;
   sighting.ray_in_cam = *ray;
@@ -133,8 +118,7 @@ std::optional<Sighting> Associator::sighting_of(const Box& box) const {
   const double steradian_per_px2 = ray_from_px.col(0).cross(ray_from_px.col(1)).norm();
   sighting.log_size = std::log(width * height * steradian_per_px2) / 2;
   sighting.log_size_variance =
-      options_.size_error * options_.size_error +
-      options_.centre_error_px * options_.centre_error_px / (width * height);
+      kSizeError * kSizeError + kCentreErrorPx * kCentreErrorPx / (width * height);
   return sighting;
 }
 
@@ -165,13 +149,13 @@ void Associator::match(const std::vector<results::Detection>& detections,
     for (std::size_t s = 0; s < seen.size(); ++s) {
       const results::Detection& detection = detections[seen[s].index];
       if (seen[s].confident != confident || taken_[seen[s].index] ||
-          detection.category != track.category || !track.filter.is_near(seen[s].sighting, gate_)) {
+          detection.category != track.category || !track.filter.is_near(seen[s].sighting, kGate)) {
         continue;
       }
       const auto comparison = track.filter.compare(seen[s].sighting);
-      if (comparison.distance > gate_) continue;
+      if (comparison.distance > kGate) continue;
       pairs.push_back({t, s, comparison.distance + comparison.log_determinant});
-      const double least = gate_ + comparison.log_determinant;
+      const double least = kGate + comparison.log_determinant;
       alone = pairs.size() == 1 ? least : std::max(alone, least);
     }
   }
@@ -198,7 +182,7 @@ void Associator::declare(std::vector<results::Detection>& detections) {
 void Associator::end_tracks() {
   const int most_misses = options_.declare_n - options_.declare_m;
   std::erase_if(tracks_, [&](const Track& track) {
-    return track.number ? time_s_ - track.seen_s > options_.most_missed_s
+    return track.number ? time_s_ - track.seen_s > kMostMissed_s
                         : track.frames - track.hits > most_misses;
   });
 }
@@ -207,12 +191,8 @@ void Associator::begin_tracks(std::vector<results::Detection>& detections,
                               const std::vector<Seen>& seen) {
   for (const Seen& one : seen) {
     if (!one.confident || taken_[one.index]) continue;
-    Track track{DirectionFilter(one.sighting, options_.motion),
-                detections[one.index].category,
-                1,
-                1,
-                time_s_,
-                std::nullopt};
+    Track track{
+        DirectionFilter(one.sighting), detections[one.index].category, 1, 1, time_s_, std::nullopt};
     if (options_.declare_m == 1) {
       track.number = ++declared_;
       detections[one.index].track = track.number;

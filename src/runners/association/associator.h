@@ -34,22 +34,6 @@ struct AssociationOptions {
   int declare_n = 5;  // 1 to 1000
   // The least score of a confident detection. Empty: every detection is confident.
   std::optional<double> confident_score;
-  // A declared track ends when it has had no detection for longer than this, s. Chosen: ByteTrack's
-  // 30 frames at 30 frames/s.
-  double most_missed_s = 1;
-  // The share of a target's own detections that the gate lets through.
-  double gate_probability = 0.99;
-  // Standard error of a box's centre: px, and as a share of the box's width or height; both add in
-  // squares. Chosen: a quarter of a pixel's rounding on each side of a box, and detectors' boxes
-  // that move by a tenth of their size from frame to frame.
-  double centre_error_px = 0.5;
-  double centre_error_of_size = 0.1;
-  // Standard error of a box's size as a share of it; the centre's error in px adds to it.
-  double size_error = 0.2;
-  // Standard deviation of the camera's turn about each axis where it is not known, rad/s. Chosen: a
-  // small aircraft rolls and yaws by some ten to twenty degrees in a second.
-  double unknown_turn_rps = 0.3;
-  MotionModel motion;
 };
 
 // Throws Error where a value is out of its range.
@@ -64,7 +48,7 @@ class Associator {
 
   // The same detections in the same order, each with its track where that is declared. Where
   // a shot begins, all tracks end. Where a frame has no turn, the camera may have turned by
-  // unknown_turn_rps, and gates are as wide as that asks for. A detection where the lens has no ray
+  // 0.3 rad/s, and gates are as wide as that asks for. A detection where the lens has no ray
   // belongs to no track. FrameInput's picture is not used.
   std::vector<results::Detection> step(const detector::FrameInput& frame,
                                        std::vector<results::Detection> detections);
@@ -96,7 +80,6 @@ class Associator {
   void begin_tracks(std::vector<results::Detection>& detections, const std::vector<Seen>& seen);
 
   AssociationOptions options_;
-  double gate_ = 0;
   std::optional<lens::Lens> lens_;
   double rad_per_px_ = 0;  // in the middle of the picture
   std::vector<Track> tracks_;

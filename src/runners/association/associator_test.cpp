@@ -83,7 +83,7 @@ TEST(Declaration, WeakDetectionsKeepATrackAndNeverBeginOne) {
 
 TEST(Declaration, AMissedTrackIsTakenUpUntilItsTimeIsOver) {
   for (const auto& [missed, expected] : {std::pair{15, 1}, {40, 2}}) {
-    Associator associator({.declare_m = 2, .declare_n = 2, .most_missed_s = 1});
+    Associator associator({.declare_m = 2, .declare_n = 2});
     std::vector<std::vector<results::Detection>> frames(5, {at(200, 200)});
     frames.insert(frames.end(), static_cast<std::size_t>(missed), {});
     frames.insert(frames.end(), 3, {at(200, 200)});
@@ -302,7 +302,6 @@ TEST(Options, OutOfRangeIsAnError) {
   EXPECT_THROW(Associator({.declare_m = 4, .declare_n = 3}), Error);
   EXPECT_THROW(Associator({.declare_m = 0, .declare_n = 3}), Error);
   EXPECT_THROW(Associator({.confident_score = std::numeric_limits<double>::quiet_NaN()}), Error);
-  EXPECT_THROW(Associator({.gate_probability = 1}), Error);
 }
 
 TEST(GatedPairs, GroupsAreSolvedApart) {

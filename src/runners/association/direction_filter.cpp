@@ -30,14 +30,14 @@ Eigen::Vector2d plane_from_ray(const Vector3& ray,
 
 }  // namespace
 
-DirectionFilter::DirectionFilter(const Sighting& first, const MotionModel& model)
-    : model_(model), ray_(first.ray_in_cam), log_size_(first.log_size) {
+DirectionFilter::DirectionFilter(const Sighting& first)
+    : ray_(first.ray_in_cam), log_size_(first.log_size) {
   const Vector3 helper = std::abs(ray_.y()) < 0.9 ? Vector3::UnitY() : Vector3::UnitX();
   axes_.col(0) = helper.cross(ray_).normalized();
   axes_.col(1) = ray_.cross(axes_.col(0));
   covariance_.setZero();
   covariance_.topLeftCorner<2, 2>() = axes_.transpose() * first.ray_covariance * axes_;
-  covariance_(2, 2) = covariance_(3, 3) = model.initial_rate * model.initial_rate;
+  covariance_(2, 2) = covariance_(3, 3) = kInitialRate * kInitialRate;
   covariance_(4, 4) = first.log_size_variance;
 }
 
@@ -61,14 +61,14 @@ void DirectionFilter::predict(double seconds,
   Covariance transition = Covariance::Identity();
   transition(0, 2) = transition(1, 3) = seconds;
   covariance_ = transition * covariance_ * transition.transpose();
-  const double q = model_.acceleration_density;
+  const double q = kAccelerationDensity;
   for (const int axis : {0, 1}) {
     covariance_(axis, axis) += q * std::pow(seconds, 3) / 3 + turn_error_rad * turn_error_rad;
     covariance_(axis, axis + 2) += q * seconds * seconds / 2;
     covariance_(axis + 2, axis) += q * seconds * seconds / 2;
     covariance_(axis + 2, axis + 2) += q * seconds;
   }
-  covariance_(4, 4) += model_.size_density * seconds;
+  covariance_(4, 4) += kSizeDensity * seconds;
 }
 
 DirectionFilter::Comparison DirectionFilter::compare(const Sighting& sighting) const {

@@ -21,17 +21,14 @@
 // 0.02 rad in the frame's 0.1 s. After predict() the direction is 0.021 rad to the right.
 namespace airtruth::association {
 
-// How targets move and how they begin.
-struct MotionModel {
-  // Spectral density of the angular acceleration, rad^2/s^3, for each axis. Chosen: 0.05^2. An
-  // aircraft that passes at 60 m/s in 300 m changes its rate by up to 0.05 rad/s in a second.
-  double acceleration_density = 0.0025;
-  // Spectral density of the log size's change, 1/s. Chosen: 0.2^2. At 20 s to the closest approach
-  // size grows by 5 % in a second, at 4 s by 28 %.
-  double size_density = 0.04;
-  // Standard deviation of a new target's angular rate, rad/s. Chosen: 60 m/s across at 600 m.
-  double initial_rate = 0.1;
-};
+// Spectral density of the angular acceleration, rad^2/s^3, for each axis. Chosen: 0.05^2. An
+// aircraft that passes at 60 m/s in 300 m changes its rate by up to 0.05 rad/s in a second.
+inline constexpr double kAccelerationDensity = 0.0025;
+// Spectral density of the log size's change, 1/s. Chosen: 0.2^2. At 20 s to the closest approach
+// size grows by 5 % in a second, at 4 s by 28 %.
+inline constexpr double kSizeDensity = 0.04;
+// Standard deviation of a new target's angular rate, rad/s. Chosen: 60 m/s across at 600 m.
+inline constexpr double kInitialRate = 0.1;
 
 // A direction and a size as seen in one frame.
 struct Sighting {
@@ -50,7 +47,7 @@ class DirectionFilter {
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Innovation = Eigen::Vector3d;  // of the direction along both axes, and of the log size
 
-  DirectionFilter(const Sighting& first, const MotionModel& model);
+  explicit DirectionFilter(const Sighting& first);
 
   // To the next frame. The turn's error is the standard error of a direction through it, rad.
   void predict(double seconds, const Quaternion& this_from_previous, double turn_error_rad);
@@ -81,7 +78,6 @@ class DirectionFilter {
   // Moves the direction by a vector of the plane along its great circle, the axes with it.
   void move(const Eigen::Vector2d& step_rad);
 
-  MotionModel model_;
   Vector3 ray_;
   Eigen::Matrix<double, 3, 2> axes_;
   Eigen::Vector2d rate_ = Eigen::Vector2d::Zero();

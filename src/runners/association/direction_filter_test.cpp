@@ -23,7 +23,7 @@ double azimuth(const Vector3& ray) { return std::atan2(ray.x(), ray.z()); }
 
 // The camera turns left by 0.02 rad, so a fixed direction moves right by as much.
 TEST(DirectionFilter, ATurnOfTheCameraMovesTheDirectionAndNotTheRate) {
-  DirectionFilter filter(sighting_at({0, 0, 1}, 1e-3, std::log(0.01), 0.1), {});
+  DirectionFilter filter(sighting_at({0, 0, 1}, 1e-3, std::log(0.01), 0.1));
   filter.predict(0.1, yaw(0.02), 0);
   EXPECT_NEAR(azimuth(filter.ray_in_cam()), 0.02, 1e-12);
   EXPECT_NEAR(filter.rate_in_cam().norm(), 0, 1e-12);
@@ -32,7 +32,7 @@ TEST(DirectionFilter, ATurnOfTheCameraMovesTheDirectionAndNotTheRate) {
 // 0.3 rad/s to the right for 4 s: 1.2 rad, far beyond where a plane would do.
 TEST(DirectionFilter, AConstantRateIsLearnedOnTheSphere) {
   const double rate = 0.3;
-  DirectionFilter filter(sighting_at({0, 0, 1}, 1e-4, std::log(0.01), 0.1), {});
+  DirectionFilter filter(sighting_at({0, 0, 1}, 1e-4, std::log(0.01), 0.1));
   for (int frame = 1; frame <= 40; ++frame) {
     const double angle = rate * frame * 0.1;
     filter.predict(0.1, Quaternion::Identity(), 0);
@@ -46,25 +46,24 @@ TEST(DirectionFilter, AConstantRateIsLearnedOnTheSphere) {
 
 // One step by hand, along one axis: P = diag(s^2, w^2) becomes s^2 + w^2 dt^2 + q dt^3 / 3 + e^2.
 TEST(DirectionFilter, TheCovarianceOfAPredictionByHand) {
-  MotionModel model;
-  DirectionFilter filter(sighting_at({0, 0, 1}, 1e-3, 0, 0.3), model);
+  DirectionFilter filter(sighting_at({0, 0, 1}, 1e-3, 0, 0.3));
   const double dt = 0.2;
   const double e = 5e-4;
   filter.predict(dt, Quaternion::Identity(), e);
-  const double w = model.initial_rate;
-  const double q = model.acceleration_density;
+  const double w = kInitialRate;
+  const double q = kAccelerationDensity;
   EXPECT_NEAR(
       filter.covariance()(0, 0), 1e-6 + w * w * dt * dt + q * dt * dt * dt / 3 + e * e, 1e-15);
   EXPECT_NEAR(filter.covariance()(0, 2), w * w * dt + q * dt * dt / 2, 1e-15);
   EXPECT_NEAR(filter.covariance()(3, 3), w * w + q * dt, 1e-15);
-  EXPECT_NEAR(filter.covariance()(4, 4), 0.09 + model.size_density * dt, 1e-15);
+  EXPECT_NEAR(filter.covariance()(4, 4), 0.09 + kSizeDensity * dt, 1e-15);
   EXPECT_EQ(filter.covariance()(0, 1), 0);
 }
 
 TEST(DirectionFilter, NearIsNeverFalseWithinTheGate) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  DirectionFilter filter(sighting_at({0.1, 0.2, 1}, 2e-3, 0, 0.2), {});
+  DirectionFilter filter(sighting_at({0.1, 0.2, 1}, 2e-3, 0, 0.2));
   filter.predict(0.1, yaw(0.01), 1e-3);
   for (int trial = 0; trial < 2000; ++trial) {
     const Vector3 away = 0.03 * Vector3(normal(random), normal(random), normal(random));
@@ -77,16 +76,16 @@ TEST(DirectionFilter, NearIsNeverFalseWithinTheGate) {
 // that turns at random, whose turn is measured with an error, and sightings with Gaussian errors.
 class World {
  public:
-  World(unsigned seed, const MotionModel& model) : random_(seed), model_(model) {
+  explicit World(unsigned seed) : random_(seed) {
     ray_ = Vector3(0.3 * normal(), 0.3 * normal(), 1).normalized();
-    Vector3 rate = model.initial_rate * Vector3(normal(), normal(), normal());
+    Vector3 rate = kInitialRate * Vector3(normal(), normal(), normal());
     rate_ = rate - ray_ * ray_.dot(rate);
   }
 
   // Advances the truth and returns the measured turn.
   Quaternion advance(double dt, double turn_error) {
     // The exact discrete white acceleration: its contributions to direction and rate correlate.
-    const double q = model_.acceleration_density;
+    const double q = kAccelerationDensity;
     const Vector3 helper = std::abs(ray_.y()) < 0.9 ? Vector3::UnitY() : Vector3::UnitX();
     const Vector3 first = helper.cross(ray_).normalized();
     const Vector3 second = ray_.cross(first);
@@ -109,7 +108,7 @@ class World {
     const Quaternion turn = turned(0.01);
     ray_ = turn * ray_;
     rate_ = turn * rate_;
-    log_size_ += std::sqrt(model_.size_density * dt) * normal();
+    log_size_ += std::sqrt(kSizeDensity * dt) * normal();
     return turned(turn_error) * turn;
   }
 
@@ -135,7 +134,6 @@ class World {
 
   std::mt19937 random_;
   std::normal_distribution<double> normal_;
-  MotionModel model_;
   Vector3 ray_;
   Vector3 rate_;
   double log_size_ = std::log(0.01);
@@ -150,13 +148,12 @@ TEST(DirectionFilter, ErrorsAreAsLargeAsTheFilterSays) {
   constexpr double kDt = 1.0 / 15;
   constexpr double kError = 8e-4;
   constexpr double kTurnError = 4e-4;
-  MotionModel model;
   double after_few = 0;
   double after_many = 0;
   double innovation = 0;
   for (unsigned run = 0; run < kRuns; ++run) {
-    World world(run + 1, model);
-    DirectionFilter filter(world.seen(kError, 0.2), model);
+    World world(run + 1);
+    DirectionFilter filter(world.seen(kError, 0.2));
     for (int frame = 1; frame <= kFrames; ++frame) {
       filter.predict(kDt, world.advance(kDt, kTurnError), kTurnError);
       const Sighting seen = world.seen(kError, 0.2);
