@@ -112,8 +112,8 @@ Plot declared_plot(const scores::Assessment& assessment) {
   return plot;
 }
 
-std::string name_of(const scores::DetectionBin& bin) {
-  return bin.name.empty() ? plot::name_of_bin(bin.from, bin.to) : bin.name;
+std::string name_of(const scores::Place& place) {
+  return place.name.empty() ? plot::name_of_bin(place.from, place.to) : place.name;
 }
 
 // Every second place is shaded, so that the dots of one place are seen as a group.
@@ -125,23 +125,19 @@ void shade_places(Plot& plot) {
 }
 
 Plot by_plot(const scores::Assessment& assessment, const scores::Quantity& quantity) {
-  // By the lower bound, then by name; of detectors that differ in what they saw, the one with the
-  // most.
-  std::map<std::pair<double, std::string>, scores::DetectionBin> names;
-  const auto key = [](const scores::DetectionBin& bin) { return std::pair(bin.from, bin.name); };
+  // The trials of the detector with the most, where they differ in what they saw.
+  std::map<scores::Place, double> trials;
   const auto bins_of = [&](const scores::DetectorScore& detector) {
     const auto found = detector.by.find(quantity.key);
     return found == detector.by.end() ? std::vector<scores::DetectionBin>{} : found->second;
   };
   for (const scores::DetectorScore& detector : assessment.detectors)
     for (const scores::DetectionBin& bin : bins_of(detector))
-      if (scores::DetectionBin& most = names[key(bin)];
-          bin.detection.trials >= most.detection.trials)
-        most = bin;
+      trials[bin.place] = std::max(trials[bin.place], bin.detection.trials);
   Plot plot{.x = {.label = quantity.title + " (aircraft)"},
             .y = {.label = "probability of detection", .min = 0, .max = 1}};
-  for (const auto& [place, bin] : names)
-    plot.x.names.push_back(report::counted_place(name_of(bin), bin.detection.trials));
+  for (const auto& [place, most] : trials)
+    plot.x.names.push_back(report::counted_place(name_of(place), most));
   shade_places(plot);
   for (std::size_t k = 0; k < assessment.detectors.size(); ++k) {
     Series plain = series_of(assessment, k, plot::Mark::kDots);
@@ -149,7 +145,7 @@ Plot by_plot(const scores::Assessment& assessment, const scores::Quantity& quant
     weighted.name += ", weighted";
     weighted.is_hollow = true;
     for (const scores::DetectionBin& bin : bins_of(assessment.detectors[k])) {
-      const auto place = static_cast<double>(std::distance(names.begin(), names.find(key(bin))));
+      const auto place = static_cast<double>(std::distance(trials.begin(), trials.find(bin.place)));
       add_point(plain, place, bin.detection);
       if (bin.weighted) add_point(weighted, place, *bin.weighted);
     }

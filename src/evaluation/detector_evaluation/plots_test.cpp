@@ -27,13 +27,13 @@ scores::Assessment two_detectors() {
   first.froc.images = 100;
   first.froc.points = {{9, share(0.4, 0.3, 0.5), 0, 0, 0}, {5, share(0.8, 0.7, 0.9), 0.2, 0, 0}};
   scores::DetectionBin near, far;
-  near.from = 0, near.to = 100, near.detection = share(0.9, 0.8, 1);
-  far.from = 200, far.detection = share(0.1, 0, 0.2);  // 200 and more
+  near.place = {0, 100}, near.detection = share(0.9, 0.8, 1);
+  far.place.from = 200, far.detection = share(0.1, 0, 0.2);  // 200 and more
   first.by["range_m"] = {near, far};
   first.false_alarms_by = {{"background", 7}, {"bird", 2}};
   assessment.detectors[1].name = "second";
   scores::DetectionBin middle;
-  middle.from = 100, middle.to = 200, middle.detection = share(0.5, 0.4, 0.6);
+  middle.place = {100, 200}, middle.detection = share(0.5, 0.4, 0.6);
   assessment.detectors[1].by["range_m"] = {middle};
   assessment.detectors[1].false_alarms_by = {{"balloon", 1}};
   return assessment;
@@ -72,7 +72,7 @@ TEST(DetectionPlots, BinsOfAllDetectorsShareTheirPlaces) {
 TEST(DetectionPlots, BoundsBelowZeroAreNotJoinedByADash) {
   scores::Assessment assessment = two_detectors();
   scores::DetectionBin left;
-  left.from = -20, left.to = -10, left.detection = share(0.5, 0.4, 0.6);
+  left.place = {-20, -10}, left.detection = share(0.5, 0.4, 0.6);
   assessment.detectors[0].by["azimuth_deg"] = {left};
   const auto plots = detection_plots(assessment);
   const plot::Plot* by_bearing = plot_named(plots, "by_azimuth_deg");

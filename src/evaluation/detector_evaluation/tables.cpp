@@ -110,11 +110,11 @@ Json json_of(const evaluation::Froc& froc) {
 
 Json json_of(const scores::DetectionBin& bin) {
   Json json = Json::object();
-  if (bin.name.empty()) {
-    json["from"] = bin.from;
-    json["to"] = report::json_of_bound(bin.to);
+  if (bin.place.name.empty()) {
+    json["from"] = bin.place.from;
+    json["to"] = report::json_of_bound(bin.place.to);
   } else {
-    json["name"] = bin.name;
+    json["name"] = bin.place.name;
   }
   json.update(json_of(bin.detection));
   json["weighted"] = bin.weighted ? json_of(*bin.weighted) : Json();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <compare>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -25,47 +27,43 @@ struct AircraftInFrame {
   bool is_detected = false;
 };
 
-struct DetectionBin {
+// Where a bin lies: in an interval of values, or at a name.
+struct Place {
   // Inclusive; of bins by name both are unused.
   double from = 0;
   // Exclusive; infinite for the last bin.
   double to = std::numeric_limits<double>::infinity();
   // Of bins by name: "above", "below".
-  std::string name;
+  std::string name = {};
+
+  auto operator<=>(const Place&) const = default;
+};
+
+// Empty for a value that is unknown, or below the first edge (statistics/bins.h).
+std::optional<Place> place_of(const std::optional<double>& value, std::span<const double> edges);
+
+struct DetectionBin {
+  Place place;
   statistics::Proportion detection;
   // With the sequences' weights; empty where they have none.
   std::optional<statistics::Proportion> weighted;
 };
 
-// values[i] belongs to sightings[i]; one without a value, or below the first edge, is in no bin
-// (statistics/bins.h). Bins without a sighting are left out. `weights`: of the sequences; empty:
-// they have none.
+// places[i] belongs to sightings[i]; one without a place is in no bin. Bins are in the order of
+// their places; those without a sighting are left out. `weights`: of the sequences; empty: they
+// have none.
 std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
-                                       std::span<const std::optional<double>> values,
-                                       std::span<const double> edges,
+                                       std::span<const std::optional<Place>> places,
                                        std::span<const double> weights);
-std::vector<DetectionBin> detection_by_name(std::span<const AircraftInFrame> sightings,
-                                            std::span<const std::optional<std::string>> names,
-                                            std::span<const double> weights);
 
 // The quantities, as keys of DetectorScore::by: "range_m", "size_px" (longer side), "area_px"
 // (pixels on target), "contrast_to_noise", "azimuth_deg", "to_closest_approach_s", "horizon"
 // ("above", "below"), "background" (file names), and the keys of statistics::kWeatherEdges.
 struct Quantity {
   std::string key;
-  std::string title;          // for plots: "range, m"
-  std::vector<double> edges;  // empty: by name
-  // The first for quantities with edges, the second for those by name; of the weather neither:
-  // TruthSequence::weather has it by key.
-  std::optional<double> (*value_of)(const TruthObject& object) = nullptr;
-  std::optional<std::string> (*name_of)(const TruthSequence& sequence,
-                                        const TruthObject& object) = nullptr;
+  std::string title;  // for plots: "range, m"
+  std::function<std::optional<Place>(const TruthSequence&, const TruthObject&)> place_of;
 };
 const std::vector<Quantity>& quantities();
-
-// The value of a quantity with edges.
-std::optional<double> value_of(const Quantity& quantity,
-                               const TruthSequence& sequence,
-                               const TruthObject& object);
 
 }  // namespace airtruth::scores

@@ -8,26 +8,35 @@
 namespace airtruth::scores {
 namespace {
 
+using Places = std::vector<std::optional<Place>>;
+
+Places in_bins(const std::vector<std::optional<double>>& values) {
+  const std::vector<double> edges = {100, 200, 300};
+  Places places;
+  for (const auto& value : values) places.push_back(place_of(value, edges));
+  return places;
+}
+
+const Place kAbove = {.name = "above"};
+const Place kBelow = {.name = "below"};
+
 TEST(Breakdown, BinsHoldTheirLowerEdge) {
   const std::vector<AircraftInFrame> sightings = {
       {0, 0, 0, true}, {0, 1, 0, false}, {1, 0, 0, true}, {1, 1, 0, true}, {1, 2, 0, false}};
-  const std::vector<std::optional<double>> values = {100, 199.9, 200, 5000, std::nullopt};
-  const std::vector<double> edges = {100, 200, 300};
-  const auto bins = detection_by(sightings, values, edges, {});
+  const auto bins = detection_by(sightings, in_bins({100, 199.9, 200, 5000, std::nullopt}), {});
   ASSERT_EQ(bins.size(), 3u);
-  EXPECT_EQ(bins[0].from, 100);
-  EXPECT_EQ(bins[0].to, 200);
+  EXPECT_EQ(bins[0].place.from, 100);
+  EXPECT_EQ(bins[0].place.to, 200);
   EXPECT_EQ(bins[0].detection.value, 0.5);
   EXPECT_EQ(bins[0].detection.trials, 2);
   EXPECT_EQ(bins[1].detection.value, 1);
-  EXPECT_EQ(bins[2].from, 300);
+  EXPECT_EQ(bins[2].place.from, 300);
   EXPECT_FALSE(bins[2].weighted);
-  EXPECT_EQ(bins[2].to, std::numeric_limits<double>::infinity());
-  const std::vector<std::optional<std::string>> names = {
-      "above", "above", "below", std::nullopt, "below"};
-  const auto by_name = detection_by_name(sightings, names, {});
+  EXPECT_EQ(bins[2].place.to, std::numeric_limits<double>::infinity());
+  const auto by_name =
+      detection_by(sightings, Places{kAbove, kAbove, kBelow, std::nullopt, kBelow}, {});
   ASSERT_EQ(by_name.size(), 2u);
-  EXPECT_EQ(by_name[0].name, "above");
+  EXPECT_EQ(by_name[0].place.name, "above");
   EXPECT_EQ(by_name[0].detection.value, 0.5);
   EXPECT_EQ(by_name[1].detection.value, 0.5);
 }
@@ -37,10 +46,8 @@ TEST(Breakdown, BinsHoldTheirLowerEdge) {
 TEST(Breakdown, WeightedSharesByHand) {
   const std::vector<AircraftInFrame> sightings = {
       {0, 0, 0, true}, {0, 1, 0, false}, {1, 0, 0, true}, {1, 1, 0, false}};
-  const std::vector<std::optional<double>> values = {150, 160, 170, 250};
-  const std::vector<double> edges = {100, 200, 300};
   const std::vector<double> weights = {3, 1};
-  const auto bins = detection_by(sightings, values, edges, weights);
+  const auto bins = detection_by(sightings, in_bins({150, 160, 170, 250}), weights);
   ASSERT_EQ(bins.size(), 2u);
   EXPECT_NEAR(bins[0].detection.value, 2.0 / 3, 1e-12);
   ASSERT_TRUE(bins[0].weighted);
@@ -57,8 +64,7 @@ TEST(Breakdown, WeightedSharesByHand) {
   for (const AircraftInFrame& one : sightings) all.add(one.sequence, one.is_detected);
   EXPECT_EQ(all.proportion().value, 0.5);
   EXPECT_EQ(all.proportion(weights).value, 0.5);
-  const std::vector<std::optional<std::string>> names = {"above", "below", "above", "below"};
-  const auto by_name = detection_by_name(sightings, names, weights);
+  const auto by_name = detection_by(sightings, Places{kAbove, kBelow, kAbove, kBelow}, weights);
   EXPECT_EQ(by_name[0].weighted->value, 1);
   EXPECT_EQ(by_name[1].weighted->value, 0);
 }
@@ -66,9 +72,7 @@ TEST(Breakdown, WeightedSharesByHand) {
 // A sequence that the model never has says nothing of it.
 TEST(Breakdown, NoWeightIsNoShare) {
   const std::vector<AircraftInFrame> sightings = {{0, 0, 0, true}, {1, 0, 0, true}};
-  const std::vector<std::optional<double>> values = {150, 250};
-  const std::vector<double> edges = {100, 200, 300};
-  const auto bins = detection_by(sightings, values, edges, std::vector<double>{1, 0});
+  const auto bins = detection_by(sightings, in_bins({150, 250}), std::vector<double>{1, 0});
   EXPECT_TRUE(bins[0].weighted);
   EXPECT_EQ(bins[1].detection.value, 1);
   EXPECT_FALSE(bins[1].weighted);

@@ -304,19 +304,12 @@ class Scoring {
 
   void break_down(const std::vector<AircraftInFrame>& sightings, std::span<const double> weights) {
     for (const Quantity& quantity : quantities()) {
-      std::vector<std::optional<double>> values;
-      std::vector<std::optional<std::string>> names;
+      std::vector<std::optional<Place>> places;
       for (const AircraftInFrame& sighting : sightings) {
         const TruthSequence& of = truth(result_.sequences[sighting.sequence]);
-        const TruthObject& object = of.frames[sighting.frame].objects[sighting.object];
-        if (quantity.edges.empty())
-          names.push_back(quantity.name_of(of, object));
-        else
-          values.push_back(value_of(quantity, of, object));
+        places.push_back(quantity.place_of(of, of.frames[sighting.frame].objects[sighting.object]));
       }
-      std::vector<DetectionBin> bins =
-          quantity.edges.empty() ? detection_by_name(sightings, names, weights)
-                                 : detection_by(sightings, values, quantity.edges, weights);
+      std::vector<DetectionBin> bins = detection_by(sightings, places, weights);
       if (!bins.empty()) result_.by[quantity.key] = std::move(bins);
     }
   }
