@@ -111,6 +111,7 @@ class Comparing {
     result.frames = static_cast<std::int64_t>(all_.size());
     result.pairs = pairs_of(all_);
     result.pose = pose_;
+    result.sun = sun_;
     std::vector<double> between, within;
     for (std::size_t i = 0; i < all_.size(); ++i) {
       between.push_back(appearance::distance(all_[i].real.histogram, all_[i].made.histogram));
@@ -150,7 +151,7 @@ class Comparing {
     std::vector<cv::Mat> few;
     auto it = std::next(masks.begin(), static_cast<std::ptrdiff_t>(masks.size() / 2));
     for (; it != masks.end() && few.size() < kPoseMasks; ++it) few.push_back(it->second);
-    const std::vector<match::TypeFit> fits =
+    const std::vector<match::PoseFit> fits =
         match::fit_types(few,
                          options_.types.empty() ? match::types_to_match() : options_.types,
                          options_.warn,
@@ -168,9 +169,8 @@ class Comparing {
                        pose_->overlap));
   }
 
-  void take(const match::TypeFit& fit, scene::Scene& scene) {
-    pose_ = Comparison::Pose{
-        fit.aircraft, fit.pose.attitude, fit.pose.overlap, fit.pose.aspect_ratio, {}};
+  void take(const match::PoseFit& fit, scene::Scene& scene) {
+    pose_ = fit;
     scene.intruders[0].aircraft = fit.aircraft;
     load(scene);
   }
@@ -226,7 +226,7 @@ class Comparing {
     return frames;
   }
 
-  void match_light(const std::vector<match::TypeFit>& fits,
+  void match_light(const std::vector<match::PoseFit>& fits,
                    const std::vector<match::SunFrame>& frames,
                    scene::Scene& scene) {
     const std::vector<match::SunFrame> one = {frames[0]};
@@ -240,12 +240,12 @@ class Comparing {
     for (std::size_t i = 0; i < fits.size(); ++i) {
       take(fits[i], scene);
       const auto sun = fit_now(one, kPoseSpacingDeg);
-      if (!sun || !(sun->difference_codes < least * fits[i].pose.overlap)) continue;
-      least = sun->difference_codes / fits[i].pose.overlap;
+      if (!sun || !(sun->difference_codes < least * fits[i].overlap)) continue;
+      least = sun->difference_codes / fits[i].overlap;
       best = i;
     }
     take(fits[best], scene);
-    match::TypeFit painted = fits[best];
+    match::PoseFit painted = fits[best];
     least = std::numeric_limits<double>::infinity();
     for (const std::string& name : paints_of(fits[best].aircraft)) {
       scene.intruders[0].aircraft = name;
@@ -254,10 +254,10 @@ class Comparing {
         least = sun->difference_codes, painted.aircraft = name;
     }
     take(painted, scene);
-    pose_->sun = fit_now(frames, kSunSpacingDeg);
-    if (!pose_->sun) return;
-    scene.light.sun_azimuth_deg = pose_->sun->azimuth_deg;
-    scene.light.sun_elevation_deg = pose_->sun->elevation_deg;
+    sun_ = fit_now(frames, kSunSpacingDeg);
+    if (!sun_) return;
+    scene.light.sun_azimuth_deg = sun_->azimuth_deg;
+    scene.light.sun_elevation_deg = sun_->elevation_deg;
     scene.light.sun_is_stated = true;
   }
 
@@ -375,7 +375,8 @@ class Comparing {
   double rate_hz_ = 0;
   fleet::Aircraft aircraft_;
   YawPitchRoll attitude_;
-  std::optional<Comparison::Pose> pose_;
+  std::optional<match::PoseFit> pose_;
+  std::optional<match::SunFit> sun_;
   std::vector<Compared> all_;
   std::vector<FigureRow> figure_;
 };

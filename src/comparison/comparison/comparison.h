@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "comparison/match/pose.h"
 #include "comparison/match/real.h"
 #include "comparison/match/sun.h"
 #include "foundation/base/files.h"
@@ -52,16 +53,10 @@ struct Comparison {
   fs::path folder;
   std::int64_t frames = 0;
   std::vector<Pair> pairs;
-  struct Pose {
-    std::string aircraft;
-    // The attitude in the scene, whose camera looks north.
-    YawPitchRoll attitude;
-    double overlap = 0;  // of both silhouettes, 0..1; and the real one's aspect over ours
-    double aspect_ratio = 1;
-    // Empty where too little is visible to determine the sun.
-    std::optional<match::SunFit> sun;
-  };
-  std::optional<Pose> pose;    // set where it was searched
+  // Set where it was searched. The attitude is that in the scene, whose camera looks north.
+  std::optional<match::PoseFit> pose;
+  // Empty where it was not searched, and where too little is visible to determine it.
+  std::optional<match::SunFit> sun;
   double colour_distance = 0;  // median Hellinger distance between real and inserted
   // The same distance between the real aircraft and itself half a clip later.
   double colour_distance_within = 0;

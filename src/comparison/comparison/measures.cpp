@@ -150,14 +150,14 @@ std::string table_of(const Comparison& c) {
         c.pose->attitude.roll_deg,
         c.pose->overlap,
         c.pose->aspect_ratio);
-  if (c.pose && c.pose->sun)
+  if (c.sun)
     text += fmt::format(
         "the sun from {:.0f} degrees, {:.0f} above the horizon (the camera looks to 0): light and "
         "dark correlate by {:.2f}, {:.0f} code values apart\n\n",
-        c.pose->sun->azimuth_deg,
-        c.pose->sun->elevation_deg,
-        c.pose->sun->correlation,
-        c.pose->sun->difference_codes);
+        c.sun->azimuth_deg,
+        c.sun->elevation_deg,
+        c.sun->correlation,
+        c.sun->difference_codes);
   text += "| | real | inserted |\n|---|---:|---:|\n";
   for (const Pair& p : c.pairs)
     text += fmt::format(
@@ -180,11 +180,11 @@ std::string json_of(const Comparison& c, const fs::path& real) {
                     {"roll_deg", c.pose->attitude.roll_deg},
                     {"overlap", c.pose->overlap},
                     {"aspect_ratio", c.pose->aspect_ratio}};
-  if (c.pose && c.pose->sun)
-    json["pose"]["sun"] = {{"azimuth_deg", c.pose->sun->azimuth_deg},
-                           {"elevation_deg", c.pose->sun->elevation_deg},
-                           {"correlation", c.pose->sun->correlation},
-                           {"difference_codes", c.pose->sun->difference_codes}};
+  if (c.sun)
+    json["pose"]["sun"] = {{"azimuth_deg", c.sun->azimuth_deg},
+                           {"elevation_deg", c.sun->elevation_deg},
+                           {"correlation", c.sun->correlation},
+                           {"difference_codes", c.sun->difference_codes}};
   for (const Pair& p : c.pairs)
     json["measures"].push_back({{"name", p.name},
                                 {"real", number(p.real)},

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "aircraft/fleet/fleet.h"
+#include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
 #include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
@@ -255,14 +256,10 @@ std::vector<Candidate> closed_in(const std::vector<cv::Mat>& masks,
   return all;
 }
 
-PoseFit pose_of(const Candidate& best) {
-  return {attitude_of(best.eye), best.score.overlap, best.score.aspect_ratio};
-}
-
-bool is_unlike(const TypeFit& fit, const std::vector<TypeFit>& others) {
-  return std::none_of(others.begin(), others.end(), [&](const TypeFit& other) {
-    return degrees(world_from_body(fit.pose.attitude)
-                       .angularDistance(world_from_body(other.pose.attitude))) < kUnlikeDeg;
+bool is_unlike(const PoseFit& fit, const std::vector<PoseFit>& others) {
+  return std::none_of(others.begin(), others.end(), [&](const PoseFit& other) {
+    return degrees(world_from_body(fit.attitude).angularDistance(world_from_body(other.attitude))) <
+           kUnlikeDeg;
   });
 }
 
@@ -301,14 +298,6 @@ std::vector<Contender> contenders_among(const std::vector<std::string>& types,
 
 }  // namespace
 
-PoseFit fit_pose(const std::vector<cv::Mat>& masks,
-                 const model::Mesh& mesh,
-                 const std::stop_token& stop) {
-  check(!masks.empty(), "a pose is fitted to masks");
-  const Views views(mesh);
-  return pose_of(closed_in(masks, views, coarse_fits({masks[0]}, views, stop), stop)[0]);
-}
-
 std::vector<std::string> types_to_match() {
   return {"738/738-default",
           "747/744-Default",
@@ -322,15 +311,15 @@ std::vector<std::string> types_to_match() {
           "c172/ei-mcf"};
 }
 
-std::vector<TypeFit> fit_types(const std::vector<cv::Mat>& masks,
+std::vector<PoseFit> fit_types(const std::vector<cv::Mat>& masks,
                                const std::vector<std::string>& types,
                                const Warn& warn_to,
                                const std::stop_token& stop) {
-  std::vector<std::pair<double, TypeFit>> fits;
+  std::vector<std::pair<double, PoseFit>> fits;
   for (const Contender& one : contenders_among(types, masks[0], warn_to, stop)) {
-    std::vector<TypeFit> of_type;
+    std::vector<PoseFit> of_type;
     for (const Candidate& fit : closed_in(masks, Views(one.aircraft.mesh), one.coarse, stop)) {
-      const TypeFit next{one.name, pose_of(fit)};
+      const PoseFit next{one.name, attitude_of(fit.eye), fit.score.overlap, fit.score.aspect_ratio};
       if (of_type.size() >= kPosesOfAType || !is_unlike(next, of_type)) continue;
       of_type.push_back(next);
       fits.emplace_back(total_of(fit), next);
@@ -338,7 +327,7 @@ std::vector<TypeFit> fit_types(const std::vector<cv::Mat>& masks,
   }
   std::stable_sort(
       fits.begin(), fits.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<TypeFit> result;
+  std::vector<PoseFit> result;
   for (const auto& [total, fit] : fits)
     if (total >= kNearBest * fits[0].first) result.push_back(fit);
   return result;

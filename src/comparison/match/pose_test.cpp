@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "aircraft/fleet/fleet.h"
+#include "aircraft/model/mesh.h"
 #include "comparison/appearance/segment.h"
 #include "foundation/image/colour.h"
 #include "labels/projection/exact_box.h"
@@ -58,7 +59,7 @@ TEST(Pose, AnAircraftOfKnownAttitudeIsFoundAgainInItsPicture) {
   for (const YawPitchRoll& truth : {YawPitchRoll{-60, -12, 5}, YawPitchRoll{160, 20, 15}}) {
     const cv::Mat mask = mask_in_the_sky(aircraft.mesh, truth, 45);
     ASSERT_FALSE(mask.empty());
-    const PoseFit fit = fit_pose({mask}, aircraft.mesh);
+    const PoseFit fit = fit_types({mask}, {"738/738-Delta"}, {})[0];
     EXPECT_GT(fit.overlap, 0.8) << truth.yaw_deg;
     EXPECT_NEAR(fit.aspect_ratio, 1, 0.15) << truth.yaw_deg;
     EXPECT_LT(angle_deg(fit.attitude, truth), 15)
@@ -72,14 +73,14 @@ TEST(Pose, TheTypeIsFoundAmongOthers) {
   const cv::Mat mask = mask_in_the_sky(aircraft.mesh, {100, 20, 10}, 40);
   ASSERT_FALSE(mask.empty());
   std::string said;
-  const std::vector<TypeFit> fits = fit_types({mask},
+  const std::vector<PoseFit> fits = fit_types({mask},
                                               {"738/738-Delta", "no-such/aircraft", "c172/news"},
                                               [&](const std::string& message) { said += message; });
   ASSERT_FALSE(fits.empty());
   EXPECT_EQ(fits[0].aircraft, "c172/news");
   for (std::size_t i = 1; i < fits.size(); ++i)
     EXPECT_TRUE(fits[i].aircraft != fits[0].aircraft ||
-                angle_deg(fits[i].pose.attitude, fits[0].pose.attitude) >= 30);
+                angle_deg(fits[i].attitude, fits[0].attitude) >= 30);
   EXPECT_NE(said.find("no-such/aircraft"), std::string::npos);
 }
 
