@@ -20,12 +20,6 @@ struct Samples {
   int height = 0;
   int channels = 1;
   std::vector<std::uint8_t> values;  // width * height * channels
-
-  const std::uint8_t* at(int x, int y) const {
-    return values.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                            static_cast<std::size_t>(x)) *
-                               static_cast<std::size_t>(channels);
-  }
 };
 
 Samples make_samples(int width, int height, int channels);  // zeros

@@ -2,10 +2,10 @@
 #include "runners/network/network_input.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 
+#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/image/colour.h"
@@ -15,26 +15,25 @@ namespace {
 
 constexpr std::uint8_t kLetterboxGrey = 114;  // YOLOv5's
 
-std::array<std::uint8_t, 256> full_from_coded(image::Range range) {
-  std::array<std::uint8_t, 256> table{};
-  for (int coded = 0; coded < 256; ++coded) {
-    const double full = range == image::Range::kFull ? coded : (coded - 16) * 255.0 / 219.0;
-    table[static_cast<std::size_t>(coded)] =
-        static_cast<std::uint8_t>(std::lround(std::clamp(full, 0.0, 255.0)));
-  }
-  return table;
+// Shares the samples.
+cv::Mat mat_of(const Samples& samples) {
+  return {samples.height,
+          samples.width,
+          CV_8UC(samples.channels),
+          const_cast<std::uint8_t*>(samples.values.data())};
 }
 
 Samples grey_of_luma(const image::Picture& picture) {
+  const image::Plane& luma = picture.luma();
+  const cv::Mat coded(picture.height,
+                      picture.width,
+                      CV_8UC1,
+                      luma.samples.get(),
+                      static_cast<std::size_t>(luma.stride));
+  const bool is_full = picture.colour.range == image::Range::kFull;
+  const double scale = is_full ? 1 : 255.0 / 219;  // from 16..235
   Samples grey = make_samples(picture.width, picture.height, 1);
-  const auto table = full_from_coded(picture.colour.range);
-  for (int y = 0; y < grey.height; ++y) {
-    const std::uint8_t* row = picture.luma().row(y);
-    std::transform(row,
-                   row + grey.width,
-                   grey.values.begin() + static_cast<std::ptrdiff_t>(y) * grey.width,
-                   [&](std::uint8_t coded) { return table[coded]; });
-  }
+  coded.convertTo(mat_of(grey), CV_8U, scale, is_full ? 0 : -16 * scale);
   return grey;
 }
 
@@ -45,25 +44,17 @@ Samples rgb_of(const image::Picture& picture) {
   return samples;
 }
 
-cv::Mat mat_of(Samples& samples) {
-  return {samples.height, samples.width, CV_8UC(samples.channels), samples.values.data()};
-}
-
 // The part of the frame from (x, y), with the last column and row repeated beyond the frame.
 Samples part_of(const Samples& frame, int x, int y, int width, int height) {
+  const cv::Rect inside(x, y, std::min(width, frame.width - x), std::min(height, frame.height - y));
   Samples part = make_samples(width, height, frame.channels);
-  const int inside = std::min(width, frame.width - x);
-  const auto channels = static_cast<std::size_t>(frame.channels);
-  std::uint8_t* to = part.values.data();
-  for (int row = 0; row < height; ++row) {
-    const std::uint8_t* from = frame.at(x, std::min(y + row, frame.height - 1));
-    std::memcpy(to, from, static_cast<std::size_t>(inside) * channels);
-    to += static_cast<std::size_t>(inside) * channels;
-    const std::uint8_t* last = frame.at(frame.width - 1, std::min(y + row, frame.height - 1));
-    for (int column = inside; column < width; ++column, to += channels) {
-      std::memcpy(to, last, channels);
-    }
-  }
+  cv::copyMakeBorder(mat_of(frame)(inside),
+                     mat_of(part),
+                     0,
+                     height - inside.height,
+                     0,
+                     width - inside.width,
+                     cv::BORDER_REPLICATE);
   return part;
 }
 
@@ -127,16 +118,10 @@ Samples samples_of(const image::Picture& picture, NetworkInput::Layout layout) {
   }
   Samples rgb = rgb_of(picture);
   if (layout == NetworkInput::Layout::kRgb) return rgb;
-  if (layout == NetworkInput::Layout::kBgr) {
-    for (std::size_t i = 0; i + 2 < rgb.values.size(); i += 3) {
-      std::swap(rgb.values[i], rgb.values[i + 2]);
-    }
-    return rgb;
-  }
-  Samples grey = make_samples(picture.width, picture.height, 1);
-  cv::Mat to = mat_of(grey);
-  cv::cvtColor(mat_of(rgb), to, cv::COLOR_RGB2GRAY);
-  return grey;
+  const bool is_grey = layout == NetworkInput::Layout::kGrey;
+  Samples samples = make_samples(picture.width, picture.height, is_grey ? 1 : 3);
+  cv::cvtColor(mat_of(rgb), mat_of(samples), is_grey ? cv::COLOR_RGB2GRAY : cv::COLOR_RGB2BGR);
+  return samples;
 }
 
 std::vector<Piece> pieces_of(const image::Picture& picture, const NetworkInput& input) {
