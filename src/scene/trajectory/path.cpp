@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,14 +18,6 @@
 #include "scene/trajectory/spline.h"
 
 namespace airtruth::trajectory {
-
-// The interface of every kind of path. Path calls at() only with times from start_s() to end_s().
-struct Path::Impl {
-  virtual ~Impl() = default;
-  virtual double start_s() const = 0;
-  virtual double end_s() const = 0;
-  virtual State at(double time_s) const = 0;
-};
 
 namespace {
 
@@ -114,13 +107,11 @@ State state_along(const Vector3& position,
 }
 
 // Neighbouring points may be equal: the object then stands still.
-class AtTimes : public Path::Impl {
+class AtTimes {
  public:
   AtTimes(std::vector<double> times, std::vector<Vector3> points, const AttitudeOverride& stated)
       : spline_(std::move(times), std::move(points)), kept_(spline_), stated_(stated) {}
-  double start_s() const override { return spline_.begin(); }
-  double end_s() const override { return spline_.end(); }
-  State at(double t) const override {
+  State at(double t) const {
     return state_along(spline_.at(t, 0), spline_.at(t, 1), spline_.at(t, 2), stated_, kept_, t);
   }
 
@@ -143,38 +134,9 @@ std::vector<Vector3> unwrapped_angles(const Samples& samples) {
   return angles;
 }
 
-// Position and its derivatives follow the samples. Angles follow the samples where they state them
-// and the path elsewhere.
-class Sampled : public Path::Impl {
- public:
-  Sampled(const Samples& samples, const AttitudeOverride& stated)
-      : along_(samples.times_s, samples.positions_ned_m, stated),
-        angles_(samples.times_s, unwrapped_angles(samples)),
-        has_angle_(samples.has_angle),
-        stated_(stated) {}
-  double start_s() const override { return angles_.begin(); }
-  double end_s() const override { return angles_.end(); }
-  State at(double t) const override {
-    State state = along_.at(t);
-    YawPitchRoll attitude = yaw_pitch_roll(state.world_from_body);
-    const Vector3 angle = angles_.at(t, 0);
-    if (has_angle_[0] && !stated_.yaw_deg) attitude.yaw_deg = angle[0];
-    if (has_angle_[1] && !stated_.pitch_deg) attitude.pitch_deg = angle[1];
-    if (has_angle_[2] && !stated_.roll_deg) attitude.roll_deg = angle[2];
-    state.world_from_body = world_from_body(attitude);
-    return state;
-  }
-
- private:
-  AtTimes along_;
-  CubicSpline angles_;
-  std::array<bool, 3> has_angle_;
-  AttitudeOverride stated_;
-};
-
 // A path at constant speed. The arc length comes from five-point Gauss-Legendre quadrature on equal
 // parts of each span (Abramowitz and Stegun, eq. 25.4.30).
-class AtSpeed : public Path::Impl {
+class AtSpeed {
  public:
   AtSpeed(std::vector<double> knots,
           std::vector<Vector3> points,
@@ -197,9 +159,8 @@ class AtSpeed : public Path::Impl {
       }
     }
   }
-  double start_s() const override { return 0; }
-  double end_s() const override { return length_.back() / speed_; }
-  State at(double t) const override {
+  double end_s() const { return length_.back() / speed_; }
+  State at(double t) const {
     const double u = parameter(t * speed_);
     const Vector3 slope = spline_.at(u, 1);
     const Vector3 bend = spline_.at(u, 2);
@@ -252,84 +213,30 @@ class AtSpeed : public Path::Impl {
   std::vector<double> length_;
 };
 
-class Uniform : public Path::Impl {
- public:
-  Uniform(const Vector3& position, const Vector3& velocity, const YawPitchRoll& attitude)
-      : position_(position), velocity_(velocity), attitude_(world_from_body(attitude)) {}
-  double start_s() const override { return -std::numeric_limits<double>::infinity(); }
-  double end_s() const override { return std::numeric_limits<double>::infinity(); }
-  State at(double t) const override { return {position_ + t * velocity_, velocity_, attitude_}; }
+State steady_state(const SteadyFlight& flight, const AttitudeOverride& stated, double time_s) {
+  const double after_s = time_s - flight.time_s;
+  const double rate = radians(flight.turn_rate_dps);
+  const double course = radians(flight.course_deg);
+  const double speed_mps = flight.ground_speed_mps;
+  // The chord of a turn by an angle has the direction of half the angle and the length of the arc
+  // times sin(angle / 2) / (angle / 2).
+  const double half_angle = 0.5 * rate * after_s;
+  const double share = std::abs(half_angle) < 1e-6 ? 1 - half_angle * half_angle / 6
+                                                   : std::sin(half_angle) / half_angle;
+  const double chord_m = speed_mps * after_s * share;
+  const Vector3 moved(chord_m * std::cos(course + half_angle),
+                      chord_m * std::sin(course + half_angle),
+                      -flight.climb_mps * after_s);
+  const double now = course + 2 * half_angle;
+  const Vector3 velocity(speed_mps * std::cos(now), speed_mps * std::sin(now), -flight.climb_mps);
+  const Vector3 acceleration(-velocity.y() * rate, velocity.x() * rate, 0);
+  return state_with(flight.position_ned_m + moved,
+                    velocity,
+                    attitude_along(velocity, acceleration, degrees(now)),
+                    stated);
+}
 
- private:
-  Vector3 position_;
-  Vector3 velocity_;
-  Quaternion attitude_;
-};
-
-class Steady : public Path::Impl {
- public:
-  Steady(const SteadyFlight& flight, const AttitudeOverride& stated)
-      : flight_(flight), stated_(stated) {}
-  double start_s() const override { return -std::numeric_limits<double>::infinity(); }
-  double end_s() const override { return std::numeric_limits<double>::infinity(); }
-  State at(double t) const override {
-    const double after_s = t - flight_.time_s;
-    const double rate = radians(flight_.turn_rate_dps);
-    const double course = radians(flight_.course_deg);
-    const double speed_mps = flight_.ground_speed_mps;
-    // The chord of a turn by an angle has the direction of half the angle and the length of the arc
-    // times sin(angle / 2) / (angle / 2).
-    const double half_angle = 0.5 * rate * after_s;
-    const double share = std::abs(half_angle) < 1e-6 ? 1 - half_angle * half_angle / 6
-                                                     : std::sin(half_angle) / half_angle;
-    const double chord_m = speed_mps * after_s * share;
-    const Vector3 moved(chord_m * std::cos(course + half_angle),
-                        chord_m * std::sin(course + half_angle),
-                        -flight_.climb_mps * after_s);
-    const double now = course + 2 * half_angle;
-    const Vector3 velocity(
-        speed_mps * std::cos(now), speed_mps * std::sin(now), -flight_.climb_mps);
-    const Vector3 acceleration(-velocity.y() * rate, velocity.x() * rate, 0);
-    return state_with(flight_.position_ned_m + moved,
-                      velocity,
-                      attitude_along(velocity, acceleration, degrees(now)),
-                      stated_);
-  }
-
- private:
-  SteadyFlight flight_;
-  AttitudeOverride stated_;
-};
-
-class Shifted : public Path::Impl {
- public:
-  Shifted(Path path, double by) : path_(std::move(path)), by_(by) {}
-  double start_s() const override { return path_.start_s() + by_; }
-  double end_s() const override { return path_.end_s() + by_; }
-  State at(double t) const override {
-    return *path_.at(std::clamp(t - by_, path_.start_s(), path_.end_s()));
-  }
-
- private:
-  Path path_;
-  double by_;
-};
-
-class Displaced : public Path::Impl {
- public:
-  Displaced(Path path, const Vector3& by) : path_(std::move(path)), by_(by) {}
-  double start_s() const override { return path_.start_s(); }
-  double end_s() const override { return path_.end_s(); }
-  State at(double t) const override {
-    State state = *path_.at(t);
-    state.position_in_world += by_;
-    return state;
-  }
-
- private:
-  Path path_;
-  Vector3 by_;
-};
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 void check_waypoints(std::span<const Vector3> points) {
   if (points.size() < 2)
@@ -356,11 +263,9 @@ std::optional<State> Path::at(double time_s) const {
   // ends belong to the path.
   constexpr double kClock = 1e-9;
   if (!std::isfinite(time_s)) return std::nullopt;
-  if (!(time_s >= start_s() - kClock && time_s <= end_s() + kClock)) return std::nullopt;
-  return impl_->at(std::clamp(time_s, start_s(), end_s()));
+  if (!(time_s >= start_s_ - kClock && time_s <= end_s_ + kClock)) return std::nullopt;
+  return at_(std::clamp(time_s, start_s_, end_s_));
 }
-double Path::start_s() const { return impl_->start_s(); }
-double Path::end_s() const { return impl_->end_s(); }
 
 Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
                      double speed_mps,
@@ -372,11 +277,12 @@ Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
   std::vector<double> knots = {0};
   for (std::size_t i = 1; i < waypoints_ned_m.size(); ++i)
     knots.push_back(knots.back() + (waypoints_ned_m[i] - waypoints_ned_m[i - 1]).norm());
-  return Path(std::make_shared<AtSpeed>(
+  const auto curve = std::make_shared<const AtSpeed>(
       std::move(knots),
       std::vector<Vector3>(waypoints_ned_m.begin(), waypoints_ned_m.end()),
       speed_mps,
-      attitude));
+      attitude);
+  return Path(0, curve->end_s(), [curve](double t) { return curve->at(t); });
 }
 
 Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
@@ -399,32 +305,63 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
           i - 1,
           times_s[i - 1]));
   }
-  return Path(std::make_shared<AtTimes>(
+  const auto curve = std::make_shared<const AtTimes>(
       std::vector<double>(times_s.begin(), times_s.end()),
       std::vector<Vector3>(waypoints_ned_m.begin(), waypoints_ned_m.end()),
-      attitude));
+      attitude);
+  return Path(times_s.front(), times_s.back(), [curve](double t) { return curve->at(t); });
 }
 
 Path uniform(const Vector3& position_ned_m,
              const Vector3& velocity_ned_mps,
              const YawPitchRoll& attitude) {
-  return Path(std::make_shared<Uniform>(position_ned_m, velocity_ned_mps, attitude));
+  return Path(-kEndless,
+              kEndless,
+              [position_ned_m, velocity_ned_mps, turn = world_from_body(attitude)](double t) {
+                return State{position_ned_m + t * velocity_ned_mps, velocity_ned_mps, turn};
+              });
 }
 
 Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
-  return Path(std::make_shared<Steady>(flight, attitude));
+  return Path(-kEndless, kEndless, [flight, attitude](double t) {
+    return steady_state(flight, attitude, t);
+  });
 }
 
+// Position and its derivatives follow the samples. Angles follow the samples where they state them
+// and the path elsewhere.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude) {
-  return Path(std::make_shared<Sampled>(samples, attitude));
+  const auto along =
+      std::make_shared<const AtTimes>(samples.times_s, samples.positions_ned_m, attitude);
+  const auto angles =
+      std::make_shared<const CubicSpline>(samples.times_s, unwrapped_angles(samples));
+  const std::array<bool, 3> sampled = {samples.has_angle[0] && !attitude.yaw_deg,
+                                       samples.has_angle[1] && !attitude.pitch_deg,
+                                       samples.has_angle[2] && !attitude.roll_deg};
+  return Path(angles->begin(), angles->end(), [along, angles, sampled](double t) {
+    State state = along->at(t);
+    YawPitchRoll turned = yaw_pitch_roll(state.world_from_body);
+    const Vector3 angle = angles->at(t, 0);
+    if (sampled[0]) turned.yaw_deg = angle[0];
+    if (sampled[1]) turned.pitch_deg = angle[1];
+    if (sampled[2]) turned.roll_deg = angle[2];
+    state.world_from_body = world_from_body(turned);
+    return state;
+  });
 }
 
 Path displaced(const Path& path, const Vector3& offset_ned_m) {
-  return Path(std::make_shared<Displaced>(path, offset_ned_m));
+  return Path(path.start_s(), path.end_s(), [path, offset_ned_m](double t) {
+    State state = *path.at(t);
+    state.position_in_world += offset_ned_m;
+    return state;
+  });
 }
 
 Path shifted(const Path& path, double start_s) {
-  return Path(std::make_shared<Shifted>(path, start_s));
+  return Path(path.start_s() + start_s, path.end_s() + start_s, [path, start_s](double t) {
+    return *path.at(std::clamp(t - start_s, path.start_s(), path.end_s()));
+  });
 }
 
 }  // namespace airtruth::trajectory

@@ -3,10 +3,11 @@
 
 #include <array>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "foundation/geometry/transform.h"
@@ -43,18 +44,21 @@ constexpr double kShortestStep_s = 1e-6;
 // immutable and cheap to copy.
 class Path {
  public:
+  // `at` is called only with times from start_s to end_s, by several threads at once.
+  Path(double start_s, double end_s, std::function<State(double time_s)> at)
+      : start_s_(start_s), end_s_(end_s), at_(std::move(at)) {}
+
   // The state at a time. The result is empty before the start, after the end, and for a time that
   // is not finite.
   std::optional<State> at(double time_s) const;
-  double start_s() const;
+  double start_s() const { return start_s_; }
   // The last time of the path; +infinity for uniform and steady flight, whose start is -infinity.
-  double end_s() const;
-
-  struct Impl;
-  explicit Path(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  double end_s() const { return end_s_; }
 
  private:
-  std::shared_ptr<const Impl> impl_;
+  double start_s_;
+  double end_s_;
+  std::function<State(double time_s)> at_;
 };
 
 // A cubic spline (C2) through the waypoints, flown from time 0 at constant speed along the curve.
