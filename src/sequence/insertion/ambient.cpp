@@ -2,9 +2,7 @@
 #include "sequence/insertion/ambient.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -117,21 +115,6 @@ std::vector<Block> blocks_of(const Glance& glance,
   return blocks;
 }
 
-// Blocks of one brightness keep their order.
-std::vector<Block> by_brightness(const std::vector<Block>& blocks) {
-  // The bits of numbers from 0 on, as integers, are in the order of the numbers.
-  std::vector<std::uint64_t> order;
-  order.reserve(blocks.size());
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    order.push_back((std::uint64_t{std::bit_cast<std::uint32_t>(blocks[i].brightness)} << 32) | i);
-  std::sort(order.begin(), order.end());
-  std::vector<Block> sorted;
-  sorted.reserve(blocks.size());
-  for (const std::uint64_t entry : order)
-    sorted.push_back(blocks[static_cast<std::uint32_t>(entry)]);
-  return sorted;
-}
-
 // The luminance at a block of each kind of sky, for the share of that sky in it. A sky without a
 // share needs none, and a block outside the lens's view, whose weight is 0, has none.
 float clear_seen(const Block& block, const Skies& skies, float share) {
@@ -148,23 +131,8 @@ constexpr float kJump = 0.04F;
 
 bool is_jump(float change) { return std::abs(std::log(change)) >= kJump; }
 
-// The median of the ratios; 1 where it is certainly no jump, which a count decides faster.
-float jump_of(std::vector<float> ratios) {
-  constexpr float kSurelyNone = 0.99F * kJump;  // allows for the rounding of exp and log
-  static const float low = std::exp(-kSurelyNone);
-  static const float high = std::exp(kSurelyNone);
-  std::size_t below = 0;
-  std::size_t above = 0;
-  for (const float ratio : ratios) {
-    below += ratio < low ? 1 : 0;
-    above += ratio > high ? 1 : 0;
-  }
-  if (2 * below < ratios.size() && 2 * above < ratios.size()) return 1;
-  return median(std::move(ratios));
-}
-
-// The middle of what the blocks become, by channel; 1 where it is no jump, or where there are too
-// few that are neither dark nor near white.
+// The middle of what the blocks become, by channel; 1 where there are too few that are neither dark
+// nor near white.
 Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now) {
   // Bounds of dark and near white, linear light, and the least number of blocks between them.
   constexpr float kDarkest = 0.02F;
@@ -180,12 +148,12 @@ Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now)
           now[i][c] < kBrightest)
         ratios.push_back(now[i][c] / before[i][c]);
     if (ratios.size() < kFewest) continue;
-    change[c] = jump_of(std::move(ratios));
+    change[c] = median(std::move(ratios));
   }
   return change;
 }
 
-// Weighted mean of the blocks whose share of the total weight lies in [from, to).
+// Weighted mean of those of the sorted blocks whose share of the total weight lies in [from, to).
 Rgb mean(const std::vector<Block>& blocks, float from, float to) {
   float total = 0;
   for (const Block& block : blocks) total += block.weight;
@@ -345,6 +313,7 @@ Ambient assumed(double sun_elevation_deg) {
   return ambient;
 }
 
+// `blocks`: from the darkest to the brightest.
 Ambient measure(const std::vector<Block>& blocks, const Skies& skies, double elevation_deg) {
   if (brightness(mean(blocks, 0.5f, 1.01f)) < kBlack) return assumed(elevation_deg);
   const Seen seen = seen_in(blocks, skies);
@@ -425,14 +394,15 @@ Ambient AmbientEstimator::next(const Glance& glance,
                                bool begins_shot) {
   if (!reads_pictures()) return with_scene({});
   follow_rays(glance.size, sight);
-  const std::vector<Block> blocks =
+  std::vector<Block> blocks =
       blocks_of(glance, own_aircraft_, rays_, sight.cam_from_world.rotation.conjugate(), near);
   std::vector<Rgb> colours;
   colours.reserve(blocks.size());
   for (const Block& block : blocks) colours.push_back(block.linear);
   if (begins_shot) smooth_.reset();
   follow_exposure(colours);
-  const Ambient now = measure(by_brightness(blocks), skies_, light_.sun_elevation_deg);
+  std::ranges::stable_sort(blocks, {}, &Block::brightness);
+  const Ambient now = measure(blocks, skies_, light_.sun_elevation_deg);
   if (!smooth_ || smooth_->is_assumed != now.is_assumed) smooth_ = now;
   blend(smooth_->sun, now.sun);
   blend(smooth_->blue, now.blue);

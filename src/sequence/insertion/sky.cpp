@@ -74,27 +74,6 @@ double clear_at_zenith(double sun_elevation_deg) { return perez(1, sine(sun_elev
 // Moon and Spencer 1942.
 double overcast_at(double sine) { return (1 + 2 * sine) / 3; }
 
-}  // namespace
-
-double sun_illuminance_klx(double elevation_deg) {
-  return 127.5 * std::exp(-0.21 / sine(elevation_deg));
-}
-
-double clear_sky_illuminance_klx(double elevation_deg) {
-  return 0.8 + 15.5 * std::sqrt(sine(elevation_deg));
-}
-
-double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg) {
-  return perez(std::sin(radians(elevation_deg)), std::cos(radians(from_sun_deg))) /
-         clear_at_zenith(sun_elevation_deg);
-}
-
-double overcast_over_zenith(double elevation_deg) {
-  return overcast_at(std::sin(radians(elevation_deg)));
-}
-
-namespace {
-
 double overcast_sky(const Vector3& d) {
   return d.z() > 0 ? 0.0 : overcast_at(sine_of_elevation(d));
 }
@@ -126,6 +105,14 @@ Skies skies_of(const Vector3& to_sun_in_world) {
 }
 
 }  // namespace
+
+double sun_illuminance_klx(double elevation_deg) {
+  return 127.5 * std::exp(-0.21 / sine(elevation_deg));
+}
+
+double clear_sky_illuminance_klx(double elevation_deg) {
+  return 0.8 + 15.5 * std::sqrt(sine(elevation_deg));
+}
 
 Skies skies(const Vector3& to_sun_in_world) {
   // Scenes one after the other often have one sun.

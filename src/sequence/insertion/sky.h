@@ -12,12 +12,6 @@ namespace airtruth::insertion {
 double sun_illuminance_klx(double elevation_deg);        // square to the sun, clear sky
 double clear_sky_illuminance_klx(double elevation_deg);  // level surface, without the sun
 
-// Luminance of the clear sky relative to its zenith (Perez et al. 1993; Preetham et al. 1999, table
-// 2, turbidity 2.5), of directions at or above the horizon.
-double clear_sky_over_zenith(double elevation_deg, double from_sun_deg, double sun_elevation_deg);
-// Luminance of the overcast sky relative to its zenith (Moon and Spencer 1942).
-double overcast_over_zenith(double elevation_deg);
-
 // Skies as environments, black below the horizon, each of irradiance over pi 1 on a level surface.
 struct Skies {
   shade::Environment clear;

@@ -21,11 +21,12 @@ TEST(Sky, IlluminancesAreThoseOfTheTables) {
   EXPECT_EQ(sun_illuminance_klx(-5), sun_illuminance_klx(1));
 }
 
-// Moon and Spencer: a third at the horizon; over pi, 7/9 of the zenith on a level surface.
+// Moon and Spencer: two thirds at 30 degrees; over pi, 7/9 of the zenith on a level surface.
 TEST(Sky, AnOvercastSkyIsThatOfMoonAndSpencer) {
-  EXPECT_DOUBLE_EQ(overcast_over_zenith(0), 1.0 / 3);
-  EXPECT_DOUBLE_EQ(overcast_over_zenith(90), 1);
   const Skies all = skies(shade::to_sun(0, 45));
+  EXPECT_NEAR(all.overcast_seen(shade::to_sun(0, 30)) * all.overcast_level, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(all.overcast_seen(shade::to_sun(0, 90)) * all.overcast_level, 1, 1e-12);
+  EXPECT_NEAR(all.overcast_level, 7.0 / 9, 1e-3);
   EXPECT_NEAR(all.overcast.irradiance_over_pi(kUp)[0], 1, 0.02);
   // On a wall: 0.396 of the level surface's (Moon and Spencer 1942), without the ground's share.
   EXPECT_NEAR(all.overcast.irradiance_over_pi({1, 0, 0})[1], 0.396, 0.03);
@@ -33,10 +34,13 @@ TEST(Sky, AnOvercastSkyIsThatOfMoonAndSpencer) {
 }
 
 TEST(Sky, AClearSkyIsBrightAboutTheSunAndAtTheHorizon) {
-  EXPECT_DOUBLE_EQ(clear_sky_over_zenith(90, 50, 40), 1);
-  EXPECT_GT(clear_sky_over_zenith(40, 5, 40), clear_sky_over_zenith(40, 60, 40));
-  EXPECT_GT(clear_sky_over_zenith(3, 120, 40), clear_sky_over_zenith(60, 120, 40));
   const Skies all = skies(shade::to_sun(90, 40));
+  const auto seen = [&](double azimuth_deg, double elevation_deg) {
+    return all.clear_seen(shade::to_sun(azimuth_deg, elevation_deg));
+  };
+  EXPECT_NEAR(seen(0, 90) * all.clear_level, 1, 1e-12);
+  EXPECT_GT(seen(120, 40), seen(180, 40));
+  EXPECT_GT(seen(270, 3), seen(270, 60));
   EXPECT_NEAR(all.clear.irradiance_over_pi(kUp)[0], 1, 0.03);
   EXPECT_GT(all.clear.irradiance_over_pi({0, 1, 0})[0],
             all.clear.irradiance_over_pi({0, -1, 0})[0]);
