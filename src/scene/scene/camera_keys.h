@@ -16,9 +16,9 @@
 #include "scene/scene/scene.h"
 
 // The one table of the realism keys: what a scene and a camera file can state in [shutter], [air],
-// [optics] and [sensor]. Reading, writing, calibration, a data set's card and the table in
-// docs/formats/scene.md follow it. A new key is a field of CameraModel, a row here, the code that
-// uses the value and, where a clip shows the quantity, the code that measures it.
+// [optics] and [sensor]. Reading, writing, calibration and a data set's card follow it. A new key
+// is a field of CameraModel, a row here and in docs/formats/scene.md, the code that uses the value
+// and, where a clip shows the quantity, the code that measures it.
 //
 // Example: the row "sensor.codec_step" makes `codec_step = 8` of [sensor] a number from 0 to 128 in
 // CameraModel::codec_step. `codec_step = "auto"` leaves the member empty and adds
@@ -45,18 +45,14 @@ struct CameraKey {
   std::variant<Number, Colour, Direction> member;
   // Of the number, or of each number of a colour.
   Limits limits{};
-  std::string_view unit;
-  // How calibration measures the quantity; empty: it is only stated, and never "auto".
-  std::string_view measured;
+  // True where calibration measures the quantity; else it is only stated, and never "auto".
+  bool is_measured = false;
   IfUnmeasured if_unmeasured = IfUnmeasured::kError;
-  // The file below src/ that reads the member for rendering.
-  std::string_view read_by;
   // The other key of the same table that excludes this one.
   std::string_view excluded_by;
   // The effect on the intruder, as a data set's card names it, where the value is above 0. Empty:
   // the key makes no effect of its own.
   std::string_view effect;
-  std::string_view meaning;
 
   constexpr std::string_view table() const {
     return std::string_view(name).substr(0, std::string_view(name).find('.'));
@@ -64,7 +60,6 @@ struct CameraKey {
   constexpr std::string_view key() const {
     return std::string_view(name).substr(std::string_view(name).find('.') + 1);
   }
-  constexpr bool is_measured() const { return !measured.empty(); }
 };
 
 // The tables, in the order of files.
@@ -75,118 +70,72 @@ inline constexpr auto kCameraModelKeys = std::to_array<CameraKey>({
     {.name = "shutter.exposure_s",
      .member = &CameraModel::exposure_s,
      .limits = kExposureTime,
-     .unit = "s",
-     .measured = "the detail lost along the motion, against a neighbour at rest",
-     .read_by = "sequence/setup/from_scene.cpp",
-     .effect = "motion blur of the exposure",
-     .meaning = "time for which each row is exposed"},
+     .is_measured = true,
+     .effect = "motion blur of the exposure"},
     {.name = "shutter.angle_deg",
      .member = &CameraModel::angle_deg,
      .limits = kShutterAngle,
-     .unit = "degrees",
-     .read_by = "sequence/pipeline/resolved_scene.cpp",
      .excluded_by = "exposure_s",
-     .effect = "motion blur of the exposure",
-     .meaning = "the exposure as a share of the frame interval, which is 360 degrees; excludes "
-                "`exposure_s`"},
+     .effect = "motion blur of the exposure"},
     {.name = "shutter.readout_s",
      .member = &CameraModel::readout_s,
      .limits = kExposureTime,
-     .unit = "s",
-     .measured = "the picture's shear against the change of its speed",
-     .read_by = "sequence/setup/from_scene.cpp",
-     .effect = "rolling shutter",
-     .meaning = "time from the first row to the last; 0: a global shutter"},
-    {.name = "shutter.readout",
-     .member = &CameraModel::readout,
-     .read_by = "sequence/setup/from_scene.cpp",
-     .meaning = "direction in which rows or columns are read; default `down`. A measured "
-                "`readout_s` brings its own"},
+     .is_measured = true,
+     .effect = "rolling shutter"},
+    {.name = "shutter.readout", .member = &CameraModel::readout},
     {.name = "air.extinction_per_km",
      .member = &CameraModel::extinction_per_km,
      .limits = kExtinction,
-     .unit = "1/km",
-     .measured = "the same ground seen again from nearer",
-     .read_by = "sequence/insertion/paint.cpp",
-     .effect = "haze",
-     .meaning = "extinction of light by the air, for red, green and blue"},
+     .is_measured = true,
+     .effect = "haze"},
     {.name = "air.airlight",
      .member = &CameraModel::airlight,
      .limits = kLinearLight,
-     .unit = "linear light",
-     .measured = "what the ground fades to; else the sky at the horizon",
-     .read_by = "sequence/insertion/paint.cpp",
-     .meaning = "light of the air itself; default: the background around the intruder"},
+     .is_measured = true},
     {.name = "optics.point_spread_px",
      .member = &CameraModel::point_spread_px,
      .limits = kSpread,
-     .unit = "px",
-     .measured = "the width of straight, sharp edges",
-     .read_by = "sequence/insertion/paint.cpp",
-     .effect = "point spread",
-     .meaning = "standard deviation of a Gaussian"},
+     .is_measured = true,
+     .effect = "point spread"},
     {.name = "optics.sharpening",
      .member = &CameraModel::sharpening,
      .limits = kSharpening,
-     .measured = "the median overshoot of those edges",
-     .read_by = "sequence/setup/from_scene.cpp",
-     .effect = "sharpening",
-     .meaning = "amount of an unsharp mask"},
+     .is_measured = true,
+     .effect = "sharpening"},
     {.name = "optics.sharpening_px",
      .member = &CameraModel::sharpening_px,
      .limits = kSpread,
-     .unit = "px",
-     .measured = "the reach of that overshoot",
-     .read_by = "sequence/setup/from_scene.cpp",
-     .meaning = "standard deviation of the unsharp mask's Gaussian; default 1"},
+     .is_measured = true},
     {.name = "sensor.noise_gain",
      .member = &CameraModel::noise_gain,
      .limits = kVariance,
-     .measured = "the noise of flat areas over their brightness",
-     .read_by = "sequence/setup/from_scene.cpp",
-     .effect = "sensor noise",
-     .meaning = "variance of linear light x is `noise_gain` x + `noise_floor`"},
+     .is_measured = true,
+     .effect = "sensor noise"},
     {.name = "sensor.noise_floor",
      .member = &CameraModel::noise_floor,
      .limits = kVariance,
-     .measured = "the noise of flat areas over their brightness",
-     .read_by = "sequence/setup/from_scene.cpp",
-     .effect = "sensor noise",
-     .meaning = "variance of the noise in the dark"},
+     .is_measured = true,
+     .effect = "sensor noise"},
     {.name = "sensor.noise_correlation_px",
      .member = &CameraModel::noise_correlation_px,
      .limits = kSpread,
-     .unit = "px",
-     .measured = "the correlation of neighbouring samples of that noise",
-     .read_by = "sequence/setup/from_scene.cpp",
-     .meaning = "standard deviation of the Gaussian over white noise"},
+     .is_measured = true},
     {.name = "sensor.chroma_spread_px",
      .member = &CameraModel::chroma_spread_px,
      .limits = kSpread,
-     .unit = "px",
-     .measured = "the width of edges of colour beyond that of luma's",
+     .is_measured = true,
      .if_unmeasured = IfUnmeasured::kLeftOut,
-     .read_by = "sequence/setup/from_scene.cpp",
-     .effect = "soft chroma",
-     .meaning = "standard deviation of the Gaussian by which chroma is softer than luma"},
+     .effect = "soft chroma"},
     {.name = "sensor.codec_step",
      .member = &CameraModel::codec_step,
      .limits = kCodecStep,
-     .unit = "code values",
-     .measured = "the quantiser that the clip's decoder reports (H.264)",
+     .is_measured = true,
      .if_unmeasured = IfUnmeasured::kLeftOutWithAuto,
-     .read_by = "sequence/insertion/paint.cpp",
-     .effect = "the codec's quantiser",
-     .meaning = "step of H.264's quantiser, 0.625 x 2^(QP/6): the inserted picture goes through "
-                "libx264 at the nearest whole QP ([decision "
-                "17](../decisions/0017-the-codec-is-a-real-encoder.md)); 0: none"},
+     .effect = "the codec's quantiser"},
     {.name = "sensor.gamma",
      .member = &CameraModel::gamma,
      .limits = kGamma,
-     .read_by = "sequence/setup/from_scene.cpp",
-     .effect = "a tone curve other than sRGB's",
-     .meaning = "exponent of the tone curve: sRGB's line near black, then a power; default: sRGB's "
-                "own curve"},
+     .effect = "a tone curve other than sRGB's"},
 });
 
 // Calls visit(name, member of each model) for every key that calibration can measure on a clip:
@@ -197,7 +146,7 @@ void for_each_camera_key(const Visit& visit, Models&... models) {
     std::visit(
         [&]<typename Member>(Member member) {
           if constexpr (!std::is_same_v<Member, CameraKey::Direction>)
-            if (key.is_measured()) visit(key.name, models.*member...);
+            if (key.is_measured) visit(key.name, models.*member...);
         },
         key.member);
 }

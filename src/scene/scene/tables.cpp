@@ -165,7 +165,7 @@ CameraModel camera_model_in(const TableReader& parent) {
         table.exclude(key.excluded_by, {key.key()});
     for (const CameraKey& key : kCameraModelKeys) {
       if (key.table() != name) continue;
-      if (key.is_measured() && table.says(key.key(), kAutomaticWord))
+      if (key.is_measured && table.says(key.key(), kAutomaticWord))
         model.automatic.emplace_back(key.name);
       else
         std::visit([&](auto member) { read(table, key, model.*member); }, key.member);
