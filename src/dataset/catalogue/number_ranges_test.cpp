@@ -243,12 +243,16 @@ class NumberRanges : public testing::Test {
     std::set<std::string> walked;
     for (const Base& base : bases) {
       SCOPED_TRACE(base.text);
-      std::optional<scene::KeyLog> log(std::in_place);
-      ASSERT_EQ(error_of([&] { base.use(base.text, false); }), "");
-      known.insert(log->known().begin(), log->known().end());
-      read.insert(log->read().begin(), log->read().end());
-      Keys keys{log->numbers(), log->wholes()};
-      log.reset();
+      Keys keys;
+      scene::call_on_key_use([&](const std::string& path, const scene::KeyUse& use) {
+        if (std::holds_alternative<scene::KnownKey>(use)) known.insert(path);
+        if (std::holds_alternative<scene::ReadKey>(use)) read.insert(path);
+        if (const auto* number = std::get_if<scene::NumberKey>(&use)) keys.numbers[path] = *number;
+        if (const auto* whole = std::get_if<scene::WholeKey>(&use)) keys.wholes[path] = *whole;
+      });
+      const std::string error = error_of([&] { base.use(base.text, false); });
+      scene::call_on_key_use({});
+      ASSERT_EQ(error, "");
       ASSERT_EQ(error_of([&] { base.use(base.text, true); }), "");
       std::erase_if(keys.numbers,
                     [&](const auto& key) { return !walked.insert(key.first).second; });

@@ -2,7 +2,9 @@
 #include "scene/scene/table_reader.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -73,7 +75,13 @@ std::string element_name(std::string_view key, std::size_t i) {
   return fmt::format("{}[{}]", key, i);
 }
 
+thread_local std::function<void(const std::string&, const KeyUse&)> t_on_key_use;
+
 }  // namespace
+
+void call_on_key_use(std::function<void(const std::string& path, const KeyUse& use)> call) {
+  t_on_key_use = std::move(call);
+}
 
 TableReader::Keys keys(std::string_view words) {
   TableReader::Keys result;
@@ -102,7 +110,7 @@ TableReader::TableReader(const toml::table& table,
       path_(std::move(path)),
       file_(file),
       keys_(keys.begin(), keys.end()) {
-  for (const std::string& key : keys_) KeyLog::note_known(path_of(key));
+  for (const std::string& key : keys_) note(key, KnownKey{});
   refuse_unknown();
 }
 
@@ -123,12 +131,16 @@ void TableReader::refuse_unknown() const {
 const toml::node* TableReader::node(std::string_view key) const {
   check(std::find(keys_.begin(), keys_.end(), key) != keys_.end(),
         "a key that is read is a key that is known");
-  KeyLog::note_read(path_of(key));
+  note(key, ReadKey{});
   return table_->get(key);
 }
 
 std::string TableReader::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+void TableReader::note(std::string_view key, const KeyUse& use) const {
+  if (t_on_key_use) t_on_key_use(path_of(key), use);
 }
 
 Where TableReader::place(const toml::node& node) const {
@@ -183,7 +195,7 @@ double TableReader::checked_number(const toml::node& node,
 
 std::optional<double> TableReader::number(std::string_view key, const Limits& limits) const {
   const toml::node* const value = node(key);
-  KeyLog::note_numbers(path_of(key), NumberShape::kOne, {limits});
+  note(key, NumberKey{NumberShape::kOne, {limits}});
   if (!value) return std::nullopt;
   return checked_number(*value, std::string(key), limits);
 }
@@ -192,7 +204,7 @@ std::optional<std::int64_t> TableReader::whole(std::string_view key,
                                                std::int64_t low,
                                                std::int64_t high) const {
   const toml::node* const value = node(key);
-  KeyLog::note_whole(path_of(key), low, high);
+  note(key, WholeKey{low, high});
   if (!value) return std::nullopt;
   const std::string expected = high == std::numeric_limits<std::int64_t>::max()
                                    ? fmt::format("a whole number not below {}", low)
@@ -283,7 +295,7 @@ const toml::array& TableReader::array(std::string_view key, std::string_view exp
 
 std::optional<std::vector<double>> TableReader::numbers(std::string_view key,
                                                         const Limits& each) const {
-  KeyLog::note_numbers(path_of(key), NumberShape::kList, {each});
+  note(key, NumberKey{NumberShape::kList, {each}});
   if (!has(key)) return std::nullopt;
   const toml::array& values = array(key, "an array of numbers");
   std::vector<double> result;
@@ -308,7 +320,7 @@ std::vector<double> TableReader::tuple_of(const toml::array& values,
 
 std::optional<std::vector<double>> TableReader::tuple(std::string_view key,
                                                       const std::vector<Limits>& limits) const {
-  KeyLog::note_numbers(path_of(key), NumberShape::kTuple, limits);
+  note(key, NumberKey{NumberShape::kTuple, limits});
   if (!has(key)) return std::nullopt;
   return tuple_of(
       array(key, fmt::format("an array of {} numbers", limits.size())), std::string(key), limits);
@@ -322,7 +334,7 @@ std::optional<Vector3> TableReader::vector(std::string_view key, const Limits& e
 
 std::optional<std::vector<Vector3>> TableReader::points(std::string_view key,
                                                         const Limits& each) const {
-  KeyLog::note_numbers(path_of(key), NumberShape::kPoints, {each, each, each});
+  note(key, NumberKey{NumberShape::kPoints, {each, each, each}});
   if (!has(key)) return std::nullopt;
   const toml::array& values = array(key, "an array of [north, east, down]");
   std::vector<Vector3> result;
@@ -374,37 +386,6 @@ void TableReader::exclude(std::string_view key, const Keys& others) const {
 void TableReader::refuse(const Keys& keys, std::string_view kind) const {
   for (const std::string_view key : keys)
     if (has(key)) fail(key, fmt::format("{} has no effect with kind = \"{}\"", key, kind));
-}
-
-namespace {
-
-thread_local KeyLog* t_key_log = nullptr;
-
-}  // namespace
-
-KeyLog::KeyLog() {
-  check(t_key_log == nullptr, "one key log lives at a time");
-  t_key_log = this;
-}
-
-KeyLog::~KeyLog() { t_key_log = nullptr; }
-
-void KeyLog::note_known(const std::string& path) {
-  if (t_key_log != nullptr) t_key_log->known_.insert(path);
-}
-
-void KeyLog::note_read(const std::string& path) {
-  if (t_key_log != nullptr) t_key_log->read_.insert(path);
-}
-
-void KeyLog::note_numbers(const std::string& path,
-                          NumberShape shape,
-                          const std::vector<Limits>& limits) {
-  if (t_key_log != nullptr) t_key_log->numbers_[path] = {shape, limits};
-}
-
-void KeyLog::note_whole(const std::string& path, std::int64_t low, std::int64_t high) {
-  if (t_key_log != nullptr) t_key_log->wholes_[path] = {low, high};
 }
 
 namespace {

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
+#include <functional>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <toml++/toml.h>
@@ -23,12 +23,34 @@
 // not installed.
 namespace airtruth::scene {
 
+enum class NumberShape { kOne, kList, kTuple, kPoints };
+
+struct NumberKey {
+  NumberShape shape = NumberShape::kOne;
+  // One range for all numbers, or one for each place of a tuple or point.
+  std::vector<Limits> limits;
+};
+struct WholeKey {
+  std::int64_t low = 0;
+  std::int64_t high = 0;
+};
+
+// What a reader does with a key: a table may have it; it is read; it is read as a number.
+struct KnownKey {};
+struct ReadKey {};
+using KeyUse = std::variant<KnownKey, ReadKey, NumberKey, WholeKey>;
+
+// While it is set, every TableReader of the thread calls it for each use of a key, so that a test
+// can visit every key of a format without its own list. A key is named by its path:
+// "background[0].lens.focal_px".
+void call_on_key_use(std::function<void(const std::string& path, const KeyUse& use)> call);
+
 class TableReader {
  public:
   using Keys = std::vector<std::string_view>;
 
   // Throws where the table holds a key that is not in `keys`. `title` is the table's name in
-  // messages: "[lens]". `path` is the table's place in the file, as KeyLog uses it:
+  // messages: "[lens]". `path` is the table's place in the file, as call_on_key_use() has it:
   // "background[0].lens", "" at the top.
   TableReader(const toml::table& table,
               std::string title,
@@ -92,6 +114,7 @@ class TableReader {
  private:
   const toml::node* node(std::string_view key) const;
   std::string path_of(std::string_view key) const;
+  void note(std::string_view key, const KeyUse& use) const;
   Where place(const toml::node& node) const;
   double checked_number(const toml::node& node,
                         const std::string& name,
@@ -118,51 +141,6 @@ bool is_plain_file_name(std::string_view name);
 
 // The number as messages show it: the shortest text that parses to the same number.
 std::string shown(double number);
-
-// Records the keys that readers of TOML tables use, so that a test can visit every key of a format
-// without its own list. This header is not installed.
-
-enum class NumberShape { kOne, kList, kTuple, kPoints };
-
-struct NumberKey {
-  NumberShape shape = NumberShape::kOne;
-  // One range for all numbers, or one for each place of a tuple or point.
-  std::vector<Limits> limits;
-};
-struct WholeKey {
-  std::int64_t low = 0;
-  std::int64_t high = 0;
-};
-
-// While a KeyLog exists, every TableReader of the same thread records the keys that it accepts, the
-// keys that it reads and their ranges. A key is named by its path: "background[0].lens.focal_px". A
-// thread holds one KeyLog at a time.
-class KeyLog {
- public:
-  KeyLog();
-  ~KeyLog();
-  KeyLog(const KeyLog&) = delete;
-  KeyLog& operator=(const KeyLog&) = delete;
-
-  const std::set<std::string>& known() const { return known_; }
-  const std::set<std::string>& read() const { return read_; }
-  const std::map<std::string, NumberKey>& numbers() const { return numbers_; }
-  const std::map<std::string, WholeKey>& wholes() const { return wholes_; }
-
-  // TableReader calls these functions. They do nothing while the thread has no KeyLog.
-  static void note_known(const std::string& path);
-  static void note_read(const std::string& path);
-  static void note_numbers(const std::string& path,
-                           NumberShape shape,
-                           const std::vector<Limits>& limits);
-  static void note_whole(const std::string& path, std::int64_t low, std::int64_t high);
-
- private:
-  std::set<std::string> known_;
-  std::set<std::string> read_;
-  std::map<std::string, NumberKey> numbers_;
-  std::map<std::string, WholeKey> wholes_;
-};
 
 // Throws Error where the text nests deeper than any scene does: arrays in arrays, or
 // a.long.dotted.key. The TOML parser and the destructors of its result are recursive, so a hostile
