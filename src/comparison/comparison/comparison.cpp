@@ -76,7 +76,7 @@ scene::Scene scene_beside(const scene::Scene& given,
   intruder.yaw_deg = attitude.yaw_deg;
   intruder.pitch_deg = attitude.pitch_deg;
   intruder.roll_deg = attitude.roll_deg;
-  scene.output.video = scene::OutputVideo::kMkv;  // what is compared is not encoded once more
+  scene.output.video = video::Format::kMkv;  // what is compared is not encoded once more
   return scene;
 }
 

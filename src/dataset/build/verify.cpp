@@ -178,7 +178,7 @@ class Check {
                 const annotation::Frame& frame,
                 const image::Picture& picture) {
     if (!finished.scene) return;
-    const bool is_lossless = finished.scene->output.video == scene::OutputVideo::kMkv;
+    const bool is_lossless = finished.scene->output.video == video::Format::kMkv;
     for (const annotation::Intruder& intruder : frame.intruders) {
       const auto box = annotation::box_to_show(intruder);
       if (!box || !intruder.contrast_to_noise) continue;

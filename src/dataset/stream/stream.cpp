@@ -39,7 +39,7 @@ struct Clip {
 
 // Scenes whose render() keeps every sample.
 catalogue::Catalogue adapted(catalogue::Catalogue catalogue) {
-  catalogue.output.video = scene::OutputVideo::kMkv;
+  catalogue.output.video = video::Format::kMkv;
   catalogue.output.masks = false;
   return catalogue;
 }

@@ -8,35 +8,15 @@
 #include <string_view>
 
 #include "foundation/base/error.h"
-#include "foundation/base/names.h"
+#include "foundation/image/video_format.h"
 #include "picture/video/reader.h"
 
 namespace airtruth::video {
-
-// H.264 in mp4, FFV1 in mkv (lossless), MJPEG in avi, or numbered png.
-enum class Format { kMp4, kMkv, kAvi, kPng };
-
-constexpr auto enum_names(Format) {
-  return std::to_array<EnumName<Format>>(
-      {{Format::kMp4, "mp4"}, {Format::kMkv, "mkv"}, {Format::kAvi, "avi"}, {Format::kPng, "png"}});
-}
 
 // The format of a file's ending. A missing or other ending is an Error that lists the endings.
 Format format_of_file(const std::filesystem::path& path);
 // For example ".mp4"; "" for png (a folder of 000000.png ...).
 const char* extension(Format format);
-
-// Who encodes H.264. libx264 gives the same bytes on every machine; the hardware of a machine gives
-// its own. kAuto is the first of NVENC, VAAPI and Quick Sync that can be opened, else libx264.
-enum class Encoder { kX264, kAuto, kNvenc, kVaapi, kQsv };
-
-constexpr auto enum_names(Encoder) {
-  return std::to_array<EnumName<Encoder>>({{Encoder::kX264, "x264"},
-                                           {Encoder::kAuto, "auto"},
-                                           {Encoder::kNvenc, "nvenc"},
-                                           {Encoder::kVaapi, "vaapi"},
-                                           {Encoder::kQsv, "qsv"}});
-}
 
 struct WriterOptions {
   Format format = Format::kMp4;

@@ -14,6 +14,7 @@
 #include "foundation/base/names.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/within_frame.h"
+#include "foundation/image/video_format.h"
 #include "scene/scene/distractor.h"
 
 // A scene file as a value: what the user wrote, with types and ranges checked, and before any other
@@ -40,7 +41,8 @@
 namespace airtruth::scene {
 
 // The choices that a scene file states as a word: each is an enum with the words of the file. The
-// words stand in no other place. lens::ModelKind and Readout are choices of [lens] and [shutter].
+// words stand in no other place. lens::ModelKind and Readout are choices of [lens] and [shutter],
+// video::Format and video::Encoder of [output].
 
 // [motion] model: how the camera's shake is modelled. kAuto means kRotation, and kHomography for
 // the compositing method kChromaKey.
@@ -67,28 +69,6 @@ enum class CompositeMethod { kMatte, kChromaKey };
 constexpr auto enum_names(CompositeMethod) {
   return std::to_array<EnumName<CompositeMethod>>(
       {{CompositeMethod::kMatte, "matte"}, {CompositeMethod::kChromaKey, "chroma-key"}});
-}
-
-// [output] video: the format of the written video; kPng is a folder of pictures.
-enum class OutputVideo { kMp4, kMkv, kAvi, kPng };
-
-constexpr auto enum_names(OutputVideo) {
-  return std::to_array<EnumName<OutputVideo>>({{OutputVideo::kMp4, "mp4"},
-                                               {OutputVideo::kMkv, "mkv"},
-                                               {OutputVideo::kAvi, "avi"},
-                                               {OutputVideo::kPng, "png"}});
-}
-
-// [output] encoder: who encodes H.264. kAuto is the machine's hardware where it has one of the
-// others, else kX264, which alone gives the same bytes on every machine.
-enum class OutputEncoder { kX264, kAuto, kNvenc, kVaapi, kQsv };
-
-constexpr auto enum_names(OutputEncoder) {
-  return std::to_array<EnumName<OutputEncoder>>({{OutputEncoder::kX264, "x264"},
-                                                 {OutputEncoder::kAuto, "auto"},
-                                                 {OutputEncoder::kNvenc, "nvenc"},
-                                                 {OutputEncoder::kVaapi, "vaapi"},
-                                                 {OutputEncoder::kQsv, "qsv"}});
 }
 
 // [background]: the onboard video and the range of its frames that is rendered.
@@ -344,12 +324,13 @@ struct Composite {
 
 // [output]: the files that are written.
 struct Output {
-  OutputVideo video = OutputVideo::kMp4;
+  // A folder of pictures for kPng.
+  video::Format video = video::Format::kMp4;
   int quality = 18;
   // For kMp4: the longest time between two key frames, from which alone a reader can begin.
   double keyframe_s = 0.5;
   // For kMp4.
-  OutputEncoder encoder = OutputEncoder::kX264;
+  video::Encoder encoder = video::Encoder::kX264;
   Where encoder_where;
   // True: each intruder's alpha is written as well, frame by frame.
   bool masks = false;

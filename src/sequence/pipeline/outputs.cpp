@@ -25,11 +25,11 @@ namespace {
 
 video::WriterOptions writer_options(const scene::Output& output, int threads) {
   video::WriterOptions options;
-  options.format = setup::format_of(output.video);
+  options.format = output.video;
   options.quality = output.quality;
   options.keyframe_s = output.keyframe_s;
   options.threads = threads;
-  options.encoder = setup::encoder_of(output.encoder);
+  options.encoder = output.encoder;
   options.encoder_where = output.encoder_where;
   return options;
 }
@@ -86,7 +86,7 @@ Outputs::Outputs(const fs::path& folder,
                  int threads)
     : folder_(folder),
       lens_(annotation::facts_of(lens)),
-      video_(folder / (scene.name + video::extension(setup::format_of(scene.output.video)))),
+      video_(folder / (scene.name + video::extension(scene.output.video))),
       writer_(video_, info, writer_options(scene.output, threads)),
       truth_(folder / "truth.jsonl", std::ios::binary),
       aircraft_(aircraft_of(scene)),

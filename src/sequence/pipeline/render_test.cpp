@@ -218,7 +218,7 @@ TEST_F(Sequence, OneThreadAndThreeWriteTheSameFiles) {
                crossing("a", "738/738-Ryanair", 120) + crossing("b", "c172/news", 60),
                "",
                "[motion]\nmodel = \"homography\"\n");
-  scene.output.video = scene::OutputVideo::kMp4;
+  scene.output.video = video::Format::kMp4;
   Options options;
   options.threads = 1;
   const auto with_one = file_bytes(rendered(scene, options).folder);

@@ -121,7 +121,7 @@ Finished open_finished(const fs::path& folder) {
   finished.has_encounters = record.has("encounters");
   finished.encounters = pipeline::read_encounter_records(record);
   finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
-  const auto format = setup::format_of(finished.scene->output.video);
+  const auto format = finished.scene->output.video;
   finished.video = folder / (finished.name + video::extension(format));
   if (!fs::exists(finished.video))
     throw Error("is missing; the folder is not whole", {finished.video.string()});

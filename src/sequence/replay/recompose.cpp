@@ -103,10 +103,10 @@ std::vector<std::string> frame_faults(const Finished& sequence,
   if (annotation::jsonl_line(again.truth, sequence.truth.lens) !=
       annotation::jsonl_line(truth, sequence.truth.lens))
     faults.push_back("has another truth when it is computed again");
-  const scene::OutputVideo format = sequence.scene->output.video;
-  if (format == scene::OutputVideo::kPng) return faults;  // sRGB, rounded on the way
+  const video::Format format = sequence.scene->output.video;
+  if (format == video::Format::kPng) return faults;  // sRGB, rounded on the way
   const std::string found =
-      picture_fault(again.frame.picture, stored, truth, format == scene::OutputVideo::kMkv);
+      picture_fault(again.frame.picture, stored, truth, format == video::Format::kMkv);
   if (!found.empty()) faults.push_back(found);
   return faults;
 }

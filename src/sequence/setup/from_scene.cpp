@@ -176,14 +176,6 @@ Shutter shutter_of(const scene::CameraModel& model) {
 
 image::ToneCurve tone_of(const scene::CameraModel& model) { return {model.gamma.value_or(0)}; }
 
-video::Format format_of(scene::OutputVideo video) {
-  return enum_named<video::Format>(enum_name(video)).value();
-}
-
-video::Encoder encoder_of(scene::OutputEncoder encoder) {
-  return enum_named<video::Encoder>(enum_name(encoder)).value();
-}
-
 scene::CameraModel camera_in_weather(const scene::Scene& scene) {
   scene::CameraModel model = scene.camera_model;
   const auto scale = [](std::optional<double>& value, double factor) {

@@ -51,11 +51,6 @@ Shutter shutter_of(const scene::CameraModel& model);
 // [sensor] gamma: the curve from linear light to code values; sRGB's where gamma is not stated.
 image::ToneCurve tone_of(const scene::CameraModel& model);
 
-// [output] video: the format of the written file.
-video::Format format_of(scene::OutputVideo video);
-// [output] encoder: who encodes H.264.
-video::Encoder encoder_of(scene::OutputEncoder encoder);
-
 // The camera model of what is inserted: that of the clip, changed by [weather].
 scene::CameraModel camera_in_weather(const scene::Scene& scene);
 // [weather]: the factor on the light of sky and ground, by channel. The sun's has sun_share beside.

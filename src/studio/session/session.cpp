@@ -19,6 +19,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/unfinished.h"
+#include "picture/video/writer.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
@@ -547,8 +548,7 @@ class Session::Impl {
       options.overwrite = true;
       const scene::Scene scene = scene::read_scene(file);
       const pipeline::Summary summary = pipeline::render(scene, options_.out, options);
-      const fs::path film =
-          summary.folder / (scene.name + video::extension(setup::format_of(scene.output.video)));
+      const fs::path film = summary.folder / (scene.name + video::extension(scene.output.video));
       const Json boxes = boxes_of_film(summary.folder / "truth.jsonl");
       ways_.post([this, film] { rendered_ = film; });
       return Json{{"folder", summary.folder.string()},
