@@ -58,7 +58,7 @@ Background background_from(const TableReader& table) {
   background.first_frame = table.whole("first_frame", 0, kMost).value_or(0);
   background.frame_count = table.whole("frame_count", 1, kMost);
   background.frame_rate_hz = table.number("frame_rate_hz", scene::kFrameRate_hz);
-  const scene::Limits weight{.expected = "a weight from 0.001 to 1e6", .low = 0.001, .high = 1e6};
+  const scene::Limits weight{"a weight from 0.001 to 1e6", 0.001, 1e6};
   background.weight = table.number("weight", weight).value_or(background.weight);
   background.lens = scene::lens_in(table);
   background.motion = scene::motion_in(table);
@@ -194,8 +194,7 @@ StreamTable stream_in(const TableReader& root) {
   constexpr std::int64_t kMostFrames = 64;  // chosen: two seconds
   constexpr std::int64_t kMostReuse = 1000;
   constexpr std::int64_t kMostMemory_mb = 1'000'000;
-  constexpr scene::Limits kSide{
-      .expected = "a side in pixels, 16 to 16384", .low = 16, .high = 16384};
+  constexpr scene::Limits kSide{"a side in pixels, 16 to 16384", 16, 16384};
   const TableReader table = root.table("stream",
                                        {"picture",
                                         "size_px",

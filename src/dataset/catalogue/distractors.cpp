@@ -20,14 +20,11 @@ using scene::Limits;
 using scene::TableReader;
 
 constexpr std::int64_t kMostOfAKind = 100;  // of one rule in one sequence: chosen
-constexpr Limits kBodySize{
-    .expected = "[low, high] in metres from 0.05 to 20", .low = 0.05, .high = 20};
-constexpr Limits kSpreadM{.expected = "[low, high] in metres from 0 to 1e4", .low = 0, .high = 1e4};
-constexpr Limits kSpotPx{
-    .expected = "[low, high] in pixels from 1 to 5000", .low = 1, .high = 5000};
-constexpr Limits kSpotSpeed{
-    .expected = "[low, high] in pixels a second from 1 to 1e6", .low = 1, .high = 1e6};
-constexpr Limits kOpacity{.expected = "[low, high] from 0.01 to 1", .low = 0.01, .high = 1};
+constexpr Limits kBodySize{"[low, high] in metres from 0.05 to 20", 0.05, 20};
+constexpr Limits kSpreadM{"[low, high] in metres from 0 to 1e4", 0, 1e4};
+constexpr Limits kSpotPx{"[low, high] in pixels from 1 to 5000", 1, 5000};
+constexpr Limits kSpotSpeed{"[low, high] in pixels a second from 1 to 1e6", 1, 1e6};
+constexpr Limits kOpacity{"[low, high] from 0.01 to 1", 0.01, 1};
 
 const TableReader::Keys kAirKeys = scene::keys(
     "size_m range_m size_px azimuth_deg elevation_deg heading_deg climb_deg "

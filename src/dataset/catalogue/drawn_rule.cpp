@@ -51,12 +51,9 @@ std::optional<DaytimeRange> daytime_from(const TableReader& table) {
   if (!table.has("time_of_day_h")) return std::nullopt;
   DaytimeRange daytime;
   daytime.hours = range_or_type(
-      table,
-      "time_of_day_h",
-      {.expected = "[low, high] in hours from 0 to 24, or \"type\"", .low = 0, .high = 24});
-  daytime.latitude_deg =
-      table.number("latitude_deg", {.expected = "degrees from -90 to 90", .low = -90, .high = 90})
-          .value_or(daytime.latitude_deg);
+      table, "time_of_day_h", {"[low, high] in hours from 0 to 24, or \"type\"", 0, 24});
+  daytime.latitude_deg = table.number("latitude_deg", {"degrees from -90 to 90", -90, 90})
+                             .value_or(daytime.latitude_deg);
   daytime.day_of_year = static_cast<int>(table.whole("day_of_year", 1, 366).value_or(172));
   const auto light = daylight_hours(daytime.latitude_deg, daytime.day_of_year);
   const Range asked = daytime.hours.value_or(Range{0, 24});
@@ -72,8 +69,7 @@ std::optional<DaytimeRange> daytime_from(const TableReader& table) {
 
 void read_intruders(const TableReader& table, double usual_negatives, Drawn& drawn) {
   drawn.negatives =
-      table.number("negatives", {.expected = "a share from 0 to 1", .low = 0, .high = 1})
-          .value_or(usual_negatives);
+      table.number("negatives", {"a share from 0 to 1", 0, 1}).value_or(usual_negatives);
   drawn.numbers_intruders = table.has("intruders");
   drawn.intruders = whole_range(table, "intruders", kMaxIntruders).value_or(drawn.intruders);
 }
@@ -199,9 +195,7 @@ void read_paths(const TableReader& table, Drawn& drawn) {
   drawn.speed_mps = range_or_type(table, "speed_mps", scene::kSpeed);
   drawn.climb_deg = range_or_type(table, "climb_deg", scene::kPitch);
   drawn.bank_deg = range_or_type(
-      table,
-      "bank_deg",
-      {.expected = "[low, high] in degrees from -85 to 85, or \"type\"", .low = -85, .high = 85});
+      table, "bank_deg", {"[low, high] in degrees from -85 to 85, or \"type\"", -85, 85});
   drawn.bank_suits_type = table.has("bank_deg") && !drawn.bank_deg;
 }
 

@@ -37,8 +37,8 @@ constexpr const char* kGeometric = "geometric";
 constexpr std::int64_t kMaxFrames = 86'000;
 // The rate for which the closest approach is drawn where the rule states no time.
 constexpr double kUsualRateHz = 30;
-constexpr Limits kClimb{.expected = "metres a second from -300 to 300", .low = -300, .high = 300};
-constexpr Limits kShareOfBin{.expected = "a share from 0 to 1e9", .low = 0, .high = 1e9};
+constexpr Limits kClimb{"metres a second from -300 to 300", -300, 300};
+constexpr Limits kShareOfBin{"a share from 0 to 1e9", 0, 1e9};
 
 // A number, or the edges of bins; with the shares of the bins at `shares_key`, if that is not "".
 pairing::Distribution distribution_in(const TableReader& table,
@@ -67,7 +67,7 @@ pairing::Distribution distribution_in(const TableReader& table,
 
 std::vector<std::size_t> bins_in(const TableReader& table, const char* key) {
   std::vector<std::size_t> bins;
-  const Limits limits{.expected = "numbers of the model's bins, from 1", .low = 1, .high = 1000};
+  const Limits limits{"numbers of the model's bins, from 1", 1, 1000};
   for (const double number : table.numbers(key, limits).value_or(std::vector<double>{})) {
     if (number != std::floor(number))
       table.fail(key, fmt::format("{} holds {}; expected whole numbers", key, number));
@@ -78,7 +78,7 @@ std::vector<std::size_t> bins_in(const TableReader& table, const char* key) {
 
 encounter_model::Cut cut_in(const TableReader& table) {
   encounter_model::Cut cut{bins_in(table, "domains"), bins_in(table, "airspaces"), {}};
-  const Limits altitude{.expected = "feet from 0 to 1e5", .low = 0, .high = 1e5};
+  const Limits altitude{"feet from 0 to 1e5", 0, 1e5};
   if (const auto range = table.tuple("altitude_ft", {altitude, altitude}))
     cut.altitude_ft = {(*range)[0], (*range)[1]};
   return cut;
@@ -134,11 +134,11 @@ EncounterRule rule_from(const TableReader& table, const Catalogue& catalogue) {
   rule.length_s = static_cast<int>(std::ceil(double(rule.frame_count) / kSlowestRateHz)) + 1;
   rule.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
   rule.types = types_in(table);
-  const Limits share{.expected = "a share from 0 to 1", .low = 0, .high = 1};
+  const Limits share{"a share from 0 to 1", 0, 1};
   rule.negatives = table.number("negatives", share).value_or(catalogue.negatives);
   rule.two_intruders = table.number("two_intruders", share).value_or(0);
   rule.in_view = table.truth("in_view").value_or(true);
-  const Limits seen{.expected = "seconds from 0 to 3600", .low = 0, .high = 3600};
+  const Limits seen{"seconds from 0 to 3600", 0, 3600};
   rule.seen_s = table.number("seen_s", seen).value_or(rule.seen_s);
   if (!rule.in_view && table.has("seen_s"))
     table.fail("seen_s", "seen_s is for in_view = true, and in_view is false");

@@ -26,10 +26,9 @@ struct Limits {
 };
 
 // Angles.
-inline constexpr Limits kTurn{.expected = "degrees from -360 to 360", .low = -360, .high = 360};
-inline constexpr Limits kPitch{.expected = "degrees from -90 to 90", .low = -90, .high = 90};
-inline constexpr Limits kFisheyeView{
-    .expected = "degrees from 0.01 to 360", .low = 0.01, .high = 360};
+inline constexpr Limits kTurn{"degrees from -360 to 360", -360, 360};
+inline constexpr Limits kPitch{"degrees from -90 to 90", -90, 90};
+inline constexpr Limits kFisheyeView{"degrees from 0.01 to 360", 0.01, 360};
 inline constexpr Limits kPinholeView{
     .expected = "degrees from 0.01, below 180 (a fisheye reaches further)",
     .low = 0.01,
@@ -37,80 +36,58 @@ inline constexpr Limits kPinholeView{
     .without_high = true};
 
 // Positions, times and speeds. The bound 1e9 is also that of path files (trajectory/path_file.cpp).
-inline constexpr Limits kPosition{.expected = "metres from -1e9 to 1e9", .low = -1e9, .high = 1e9};
-inline constexpr Limits kTime{.expected = "seconds from -1e9 to 1e9", .low = -1e9, .high = 1e9};
-inline constexpr Limits kWeight{.expected = "a number from 1e-9 to 1e9", .low = 1e-9, .high = 1e9};
-inline constexpr Limits kFrameRate_hz{
-    .expected = "frames a second from 0.001 to 1e6", .low = 0.001, .high = 1e6};
-inline constexpr Limits kVelocity{
-    .expected = "metres a second from -1e4 to 1e4", .low = -1e4, .high = 1e4};
-inline constexpr Limits kSpeed{
-    .expected = "metres a second from 0.001 to 1e4", .low = 0.001, .high = 1e4};
+inline constexpr Limits kPosition{"metres from -1e9 to 1e9", -1e9, 1e9};
+inline constexpr Limits kTime{"seconds from -1e9 to 1e9", -1e9, 1e9};
+inline constexpr Limits kWeight{"a number from 1e-9 to 1e9", 1e-9, 1e9};
+inline constexpr Limits kFrameRate_hz{"frames a second from 0.001 to 1e6", 0.001, 1e6};
+inline constexpr Limits kVelocity{"metres a second from -1e4 to 1e4", -1e4, 1e4};
+inline constexpr Limits kSpeed{"metres a second from 0.001 to 1e4", 0.001, 1e4};
 // A miss distance: beyond it two aircraft do not meet.
-inline constexpr Limits kMiss{.expected = "metres from -1e5 to 1e5", .low = -1e5, .high = 1e5};
-inline constexpr Limits kClimb{
-    .expected = "metres a second from -1000 to 1000", .low = -1000, .high = 1000};
-inline constexpr Limits kThreshold{.expected = "metres from 0 to 1e5", .low = 0, .high = 1e5};
-inline constexpr Limits kThresholdTime{
-    .expected = "seconds from 0 to 3600", .low = 0, .high = 3600};
-inline constexpr Limits kKeyframeSpacing{
-    .expected = "seconds from 0.001 to 60", .low = 0.001, .high = 60};
-inline constexpr Limits kLookahead{.expected = "seconds from 1 to 3600", .low = 1, .high = 3600};
-inline constexpr Limits kTurnRate{
-    .expected = "degrees a second from -90 to 90", .low = -90, .high = 90};
-inline constexpr Limits kSmoothing{
-    .expected = "seconds from 0.001 to 1e4", .low = 0.001, .high = 1e4};
-inline constexpr Limits kModelScale{
-    .expected = "a number from 1e-6 to 1e6", .low = 1e-6, .high = 1e6};
+inline constexpr Limits kMiss{"metres from -1e5 to 1e5", -1e5, 1e5};
+inline constexpr Limits kClimb{"metres a second from -1000 to 1000", -1000, 1000};
+inline constexpr Limits kThreshold{"metres from 0 to 1e5", 0, 1e5};
+inline constexpr Limits kThresholdTime{"seconds from 0 to 3600", 0, 3600};
+inline constexpr Limits kKeyframeSpacing{"seconds from 0.001 to 60", 0.001, 60};
+inline constexpr Limits kLookahead{"seconds from 1 to 3600", 1, 3600};
+inline constexpr Limits kTurnRate{"degrees a second from -90 to 90", -90, 90};
+inline constexpr Limits kSmoothing{"seconds from 0.001 to 1e4", 0.001, 1e4};
+inline constexpr Limits kModelScale{"a number from 1e-6 to 1e6", 1e-6, 1e6};
 
 // The lens.
-inline constexpr Limits kFocal{.expected = "pixels from 1 to 1e6", .low = 1, .high = 1e6};
-inline constexpr Limits kPrincipalPoint{
-    .expected = "pixels from -1e6 to 1e6", .low = -1e6, .high = 1e6};
-inline constexpr Limits kDistortion{
-    .expected = "a number from -1e12 to 1e12", .low = -1e12, .high = 1e12};
+inline constexpr Limits kFocal{"pixels from 1 to 1e6", 1, 1e6};
+inline constexpr Limits kPrincipalPoint{"pixels from -1e6 to 1e6", -1e6, 1e6};
+inline constexpr Limits kDistortion{"a number from -1e12 to 1e12", -1e12, 1e12};
 
 // A place in the picture; it may lie outside the image.
-inline constexpr Limits kPixel{.expected = "pixels from -1e5 to 1e5", .low = -1e5, .high = 1e5};
+inline constexpr Limits kPixel{"pixels from -1e5 to 1e5", -1e5, 1e5};
 
 // Light, air, optics and sensor.
-inline constexpr Limits kExposureFactor{
-    .expected = "a number from 1e-6 to 1e4", .low = 1e-6, .high = 1e4};
-inline constexpr Limits kAlbedo{.expected = "a number from 0 to 1", .low = 0, .high = 1};
-inline constexpr Limits kLinearLight{// Linear light; 1 is white.
-                                     .expected = "a number from 0 to 1e4",
-                                     .low = 0,
-                                     .high = 1e4};
-inline constexpr Limits kExtinction{
-    // Extinction in 1/km. At the upper bound the range of sight is 0.4 m.
-    .expected = "a number from 0 to 1e4",
-    .low = 0,
-    .high = 1e4};
-inline constexpr Limits kGamma{.expected = "a number from 1.2 to 3", .low = 1.2, .high = 3};
-inline constexpr Limits kShutterAngle{.expected = "degrees from 0 to 360", .low = 0, .high = 360};
-inline constexpr Limits kExposureTime{.expected = "seconds from 0 to 1", .low = 0, .high = 1};
-inline constexpr Limits kSpread{.expected = "pixels from 0 to 10", .low = 0, .high = 10};
-inline constexpr Limits kSharpening{.expected = "a number from 0 to 3", .low = 0, .high = 3};
-inline constexpr Limits kVariance{.expected = "a variance from 0 to 0.1", .low = 0, .high = 0.1};
-inline constexpr Limits kCodecStep{.expected = "code values from 0 to 128", .low = 0, .high = 128};
+inline constexpr Limits kExposureFactor{"a number from 1e-6 to 1e4", 1e-6, 1e4};
+inline constexpr Limits kAlbedo{"a number from 0 to 1", 0, 1};
+// Linear light; 1 is white.
+inline constexpr Limits kLinearLight{"a number from 0 to 1e4", 0, 1e4};
+// Extinction in 1/km. At the upper bound the range of sight is 0.4 m.
+inline constexpr Limits kExtinction{"a number from 0 to 1e4", 0, 1e4};
+inline constexpr Limits kGamma{"a number from 1.2 to 3", 1.2, 3};
+inline constexpr Limits kShutterAngle{"degrees from 0 to 360", 0, 360};
+inline constexpr Limits kExposureTime{"seconds from 0 to 1", 0, 1};
+inline constexpr Limits kSpread{"pixels from 0 to 10", 0, 10};
+inline constexpr Limits kSharpening{"a number from 0 to 3", 0, 3};
+inline constexpr Limits kVariance{"a variance from 0 to 0.1", 0, 0.1};
+inline constexpr Limits kCodecStep{"code values from 0 to 128", 0, 128};
 
 // Weather: factors on what the clip shows.
-inline constexpr Limits kExposureChange{
-    .expected = "a factor from 1/16 to 16", .low = 0.0625, .high = 16};
-inline constexpr Limits kWhiteBalanceChange{
-    .expected = "a factor from 0.25 to 4", .low = 0.25, .high = 4};
-inline constexpr Limits kBlurChange{.expected = "a factor from 0 to 10", .low = 0, .high = 10};
-inline constexpr Limits kVisibility{.expected = "metres from 1 to 1e6", .low = 1, .high = 1e6};
+inline constexpr Limits kExposureChange{"a factor from 1/16 to 16", 0.0625, 16};
+inline constexpr Limits kWhiteBalanceChange{"a factor from 0.25 to 4", 0.25, 4};
+inline constexpr Limits kBlurChange{"a factor from 0 to 10", 0, 10};
+inline constexpr Limits kVisibility{"metres from 1 to 1e6", 1, 1e6};
 
 // Catalogues.
-inline constexpr Limits kShare{.expected = "a number from 0 to 1", .low = 0, .high = 1};
-inline constexpr Limits kOwnSpeed{
-    .expected = "metres a second from 0 to 1000", .low = 0, .high = 1000};
-inline constexpr Limits kAltitude{.expected = "metres from 1 to 20000", .low = 1, .high = 20000};
-inline constexpr Limits kRangeToAircraft{
-    .expected = "metres from 0.1 to 1e6", .low = 0.1, .high = 1e6};
+inline constexpr Limits kShare{"a number from 0 to 1", 0, 1};
+inline constexpr Limits kOwnSpeed{"metres a second from 0 to 1000", 0, 1000};
+inline constexpr Limits kAltitude{"metres from 1 to 20000", 1, 20000};
+inline constexpr Limits kRangeToAircraft{"metres from 0.1 to 1e6", 0.1, 1e6};
 
-inline constexpr Limits kApparentSize{
-    .expected = "pixels from 0.1 to 1e5", .low = 0.1, .high = 1e5};
+inline constexpr Limits kApparentSize{"pixels from 0.1 to 1e5", 0.1, 1e5};
 
 }  // namespace airtruth::scene

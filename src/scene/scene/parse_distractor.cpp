@@ -23,18 +23,17 @@ const TableReader::Keys kAirKeys = keys(
 const TableReader::Keys kLensKeys = {
     "pixel", "velocity_px_s", "size_px", "length_px", "softness", "opacity", "begin_s", "end_s"};
 
-constexpr Limits kSize{.expected = "metres from 0.05 to 20", .low = 0.05, .high = 20};
-constexpr Limits kAspect{.expected = "a number from 2 to 30", .low = 2, .high = 30};
-constexpr Limits kStrokeRate{.expected = "strokes a second from 0 to 100", .low = 0, .high = 100};
-constexpr Limits kStrokes{.expected = "strokes from -1e6 to 1e6", .low = -1e6, .high = 1e6};
-constexpr Limits kColour{.expected = "a number from 0 to 1", .low = 0, .high = 1};
-constexpr Limits kFlockRadius{.expected = "metres from 0 to 1e4", .low = 0, .high = 1e4};
-constexpr Limits kSpotSize{.expected = "pixels from 1 to 5000", .low = 1, .high = 5000};
-constexpr Limits kSpotSpeed{
-    .expected = "pixels a second from -1e6 to 1e6", .low = -1e6, .high = 1e6};
+constexpr Limits kSize{"metres from 0.05 to 20", 0.05, 20};
+constexpr Limits kAspect{"a number from 2 to 30", 2, 30};
+constexpr Limits kStrokeRate{"strokes a second from 0 to 100", 0, 100};
+constexpr Limits kStrokes{"strokes from -1e6 to 1e6", -1e6, 1e6};
+constexpr Limits kColour{"a number from 0 to 1", 0, 1};
+constexpr Limits kFlockRadius{"metres from 0 to 1e4", 0, 1e4};
+constexpr Limits kSpotSize{"pixels from 1 to 5000", 1, 5000};
+constexpr Limits kSpotSpeed{"pixels a second from -1e6 to 1e6", -1e6, 1e6};
 constexpr Limits kOpacity{
     .expected = "a number above 0, up to 1", .low = 0, .high = 1, .without_low = true};
-constexpr Limits kAlong{.expected = "a number from -10 to 10", .low = -10, .high = 10};
+constexpr Limits kAlong{"a number from -10 to 10", -10, 10};
 
 TableReader::Keys all_keys() {
   TableReader::Keys keys = {"kind", "id", "colour", "arm_colour", "rotors", "along"};
