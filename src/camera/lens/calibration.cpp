@@ -231,16 +231,9 @@ int whole(const Values& values, const std::vector<std::string>& keys, const std:
 
 const std::vector<std::string> kMatrix = {
     "camera_matrix", "Camera_Matrix", "cameraMatrix", "CameraMatrix", "camera_mat", "K", "k"};
-const std::vector<std::string> kDistortion = {"distortion_coefficients",
-                                              "Distortion_Coefficients",
-                                              "distortion_coeffs",
-                                              "distCoeffs",
-                                              "dist_coeffs",
-                                              "dist_coeff",
-                                              "distortion",
-                                              "dist",
-                                              "D",
-                                              "d"};
+const std::vector<std::string> kDistortion = words_in(
+    "distortion_coefficients Distortion_Coefficients distortion_coeffs distCoeffs dist_coeffs "
+    "dist_coeff distortion dist D d");
 const std::vector<std::string> kWidth = {"image_width", "image_Width", "width"};
 const std::vector<std::string> kHeight = {"image_height", "image_Height", "height"};
 const std::vector<std::string> kBothSides = {
@@ -252,46 +245,14 @@ const std::vector<std::string> kIntrinsics = {"intrinsics"};
 
 // Keys that change no ray: who calibrated when and how well, and where the camera stands. ROS's
 // rectification and projection matrices are those of the rectified picture.
-const std::vector<std::string> kHarmless = {"calibration_time",
-                                            "calibration_date",
-                                            "nframes",
-                                            "nr_of_frames",
-                                            "board_width",
-                                            "board_height",
-                                            "square_size",
-                                            "marker_size",
-                                            "aspectRatio",
-                                            "aspect_ratio",
-                                            "fix_aspect_ratio",
-                                            "flags",
-                                            "flagValue",
-                                            "avg_reprojection_error",
-                                            "Avg_Reprojection_Error",
-                                            "rms",
-                                            "RMS",
-                                            "reprojection_error",
-                                            "per_view_reprojection_errors",
-                                            "Per_View_Reprojection_Errors",
-                                            "extrinsic_parameters",
-                                            "Extrinsic_Parameters",
-                                            "image_points",
-                                            "Image_points",
-                                            "grid_points",
-                                            "write_grid",
-                                            "camera_name",
-                                            "header",
-                                            "rectification_matrix",
-                                            "projection_matrix",
-                                            "R",
-                                            "P",
-                                            "r",
-                                            "p",
-                                            "cam_overlaps",
-                                            "rostopic",
-                                            "T_cam_imu",
-                                            "T_cn_cnm1",
-                                            "T_imu_cam",
-                                            "timeshift_cam_imu"};
+const std::vector<std::string> kHarmless = words_in(
+    "calibration_time calibration_date nframes nr_of_frames board_width board_height square_size "
+    "marker_size aspectRatio aspect_ratio fix_aspect_ratio flags flagValue "
+    "avg_reprojection_error Avg_Reprojection_Error rms RMS reprojection_error "
+    "per_view_reprojection_errors Per_View_Reprojection_Errors extrinsic_parameters "
+    "Extrinsic_Parameters image_points Image_points grid_points write_grid camera_name header "
+    "rectification_matrix projection_matrix R P r p cam_overlaps rostopic T_cam_imu T_cn_cnm1 "
+    "T_imu_cam timeshift_cam_imu");
 
 // Names of lens models, in any of kModels: true for a fisheye, false for a pinhole with or without
 // distortion. Throws Error for any other.

@@ -136,21 +136,8 @@ Calibration parse_agisoft_calibration(std::string_view text, const std::filesyst
   for (const char* key : absent)
     if (values[key] != 0)
       throw Error(std::string(key) + " is not 0; no lens model here has it", where(top));
-  for (const char* key : {"projection",
-                          "date",
-                          "width",
-                          "height",
-                          "f",
-                          "cx",
-                          "cy",
-                          "b1",
-                          "b2",
-                          "k1",
-                          "k2",
-                          "k3",
-                          "k4",
-                          "p1",
-                          "p2"})
+  for (const std::string& key :
+       words_in("projection date width height f cx cy b1 b2 k1 k2 k3 k4 p1 p2"))
     values.erase(key);
   for (const auto& [key, value] : values)
     if (value != 0)

@@ -11,6 +11,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "aircraft/model/mesh.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
 
@@ -299,16 +300,10 @@ std::vector<Contender> contenders_among(const std::vector<std::string>& types,
 }  // namespace
 
 std::vector<std::string> types_to_match() {
-  return {"738/738-default",
-          "747/744-Default",
-          "A320/A320-default",
-          "CR7/CR7-Default",
-          "AT7/AT7-default",
-          "Citation-Bravo/Models/Bravo-ai",
-          "beech-200/beech-200-vh-mwk",
-          "SF3/SFF-Airest",
-          "pa-28/pa-28-g-egll",
-          "c172/ei-mcf"};
+  return words_in(
+      "738/738-default 747/744-Default A320/A320-default CR7/CR7-Default AT7/AT7-default "
+      "Citation-Bravo/Models/Bravo-ai beech-200/beech-200-vh-mwk SF3/SFF-Airest pa-28/pa-28-g-egll "
+      "c172/ei-mcf");
 }
 
 std::vector<PoseFit> fit_types(const std::vector<cv::Mat>& masks,

@@ -195,15 +195,9 @@ StreamTable stream_in(const TableReader& root) {
   constexpr std::int64_t kMostReuse = 1000;
   constexpr std::int64_t kMostMemory_mb = 1'000'000;
   constexpr scene::Limits kSide{"a side in pixels, 16 to 16384", 16, 16384};
-  const TableReader table = root.table("stream",
-                                       {"picture",
-                                        "size_px",
-                                        "frames",
-                                        "intruders",
-                                        "masks",
-                                        "other_cameras",
-                                        "reuse",
-                                        "memory_mb"});
+  const TableReader table = root.table(
+      "stream",
+      scene::keys("picture size_px frames intruders masks other_cameras reuse memory_mb"));
   StreamTable stream;
   if (table.choice("picture", {"crop", "frame"}).value_or("crop") == "crop") {
     const auto size =

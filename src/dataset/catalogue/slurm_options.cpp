@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,21 +18,9 @@ namespace {
 
 // Options that a job script of airtruth sets itself, or that would make sbatch do something other
 // than submit that script (sbatch(1) of Slurm 22.05).
-constexpr std::array<std::string_view, 15> kOwnOptions = {"output",
-                                                          "open-mode",
-                                                          "requeue",
-                                                          "no-requeue",
-                                                          "dependency",
-                                                          "parsable",
-                                                          "wrap",
-                                                          "wait",
-                                                          "test-only",
-                                                          "help",
-                                                          "usage",
-                                                          "version",
-                                                          "chdir",
-                                                          "input",
-                                                          "batch"};
+const std::vector<std::string> kOwnOptions = words_in(
+    "output open-mode requeue no-requeue dependency parsable wrap wait test-only help usage "
+    "version chdir input batch");
 
 // What may stand in a value: letters, digits, and the marks of lists, node ranges, sizes, times,
 // addresses, constraints and file names. None of them means anything to sbatch's reader of #SBATCH

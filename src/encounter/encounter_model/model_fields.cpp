@@ -12,16 +12,9 @@
 namespace airtruth::encounter_model {
 namespace {
 
-const std::vector<std::string> kFields = {"labels_initial",
-                                          "G_initial",
-                                          "r_initial",
-                                          "N_initial",
-                                          "labels_transition",
-                                          "G_transition",
-                                          "r_transition",
-                                          "N_transition",
-                                          "boundaries",
-                                          "resample_rates"};
+const std::vector<std::string> kFields = words_in(
+    "labels_initial G_initial r_initial N_initial labels_transition G_transition r_transition "
+    "N_transition boundaries resample_rates");
 constexpr std::string_view kBlanks = " \t\r";
 
 // Takes the first word of `rest` away from it; empty where there is none.

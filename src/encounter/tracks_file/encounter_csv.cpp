@@ -31,16 +31,8 @@ enum EncounterColumn {
   kWeightColumn,
   kEncounterColumns
 };
-const std::vector<std::string> kEncounterColumnNames = {"encounter",
-                                                        "aircraft",
-                                                        "time_s",
-                                                        "north_m",
-                                                        "east_m",
-                                                        "down_m",
-                                                        "north_mps",
-                                                        "east_mps",
-                                                        "down_mps",
-                                                        "weight"};
+const std::vector<std::string> kEncounterColumnNames =
+    words_in("encounter aircraft time_s north_m east_m down_m north_mps east_mps down_mps weight");
 // The largest number of an encounter; a double holds every whole number up to it.
 constexpr double kLargestNumber = 1e9;
 // Added to a number, it makes -0 a plain 0 and changes no other.

@@ -44,6 +44,11 @@ TEST(Error, SaysThePlaceThenTheFact) {
   EXPECT_STREQ(Error("no place").what(), "no place");
 }
 
+TEST(Words, StandBetweenBlanks) {
+  EXPECT_THAT(words_in(" name  seed weight "), testing::ElementsAre("name", "seed", "weight"));
+  EXPECT_TRUE(words_in(" ").empty());
+}
+
 TEST(TomlString, IsReadBackAsTheSameText) {
   std::string text = "\"quoted\" \\u0041 \u00e9\u4e2d\U0001f6e9\x7f";
   for (int c = 0; c < 0x20; ++c) text += static_cast<char>(c);

@@ -25,6 +25,20 @@ inline std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
+// The words of a text, with blanks between them.
+//
+//   words_in("name seed") is {"name", "seed"}
+template <typename Text = std::string>
+std::vector<Text> words_in(std::string_view text) {
+  std::vector<Text> words;
+  while (!(text = trimmed(text)).empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    words.emplace_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return words;
+}
+
 // Whether the character controls a terminal or a parser, and shows nothing: ASCII's C0 set and DEL.
 constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 

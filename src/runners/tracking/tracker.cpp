@@ -5,6 +5,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 #include "runners/tracking/am3.h"
@@ -18,17 +19,9 @@ void refuse_unsound(const Box& box, int width, int height) {
 }
 
 std::vector<std::string> tracker_names() {
-  return {"am3",
-          "am3s",
-          "wmil",
-          "mil",
-          "opencv-mil",
-          "opencv-kcf",
-          "opencv-csrt",
-          "opencv-boosting",
-          "opencv-medianflow",
-          "opencv-tld",
-          "opencv-mosse"};
+  return words_in(
+      "am3 am3s wmil mil opencv-mil opencv-kcf opencv-csrt opencv-boosting opencv-medianflow "
+      "opencv-tld opencv-mosse");
 }
 
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOptions& options) {

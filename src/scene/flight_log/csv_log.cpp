@@ -30,17 +30,9 @@ enum Column {
   kRateZ,
   kColumns
 };
-const std::vector<std::string> kNames = {"time_s",
-                                         "latitude_deg",
-                                         "longitude_deg",
-                                         "altitude_m",
-                                         "height_m",
-                                         "yaw_deg",
-                                         "pitch_deg",
-                                         "roll_deg",
-                                         "rate_x_radps",
-                                         "rate_y_radps",
-                                         "rate_z_radps"};
+const std::vector<std::string> kNames = words_in(
+    "time_s latitude_deg longitude_deg altitude_m height_m yaw_deg pitch_deg roll_deg "
+    "rate_x_radps rate_y_radps rate_z_radps");
 using Places = std::vector<std::size_t>;
 
 std::string_view line_at_start(std::string_view text) { return text.substr(0, text.find('\n')); }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "scene/scene/camera_keys.h"
 #include "support/source_folder.h"
 
@@ -187,86 +188,18 @@ TEST(Scene, EveryKeyIsDocumentedAndInTheCompleteExample) {
   const fs::path root = test_support::source_folder();
   const std::string manual = read_file(root / "docs/formats/scene.md");
   const std::string example = read_file(root / "examples/render.toml");
-  for (const char* const key : {"kind",
-                                "size_m",
-                                "plumage",
-                                "aspect_ratio",
-                                "flap_hz",
-                                "flap_phase",
-                                "glide",
-                                "count",
-                                "spread_m",
-                                "rotors",
-                                "arm_colour",
-                                "colour",
-                                "offset_ned_m",
-                                "along",
-                                "velocity_px_s",
-                                "size_px",
-                                "length_px",
-                                "softness",
-                                "opacity",
-                                "begin_s",
-                                "end_s",
-                                "name",
-                                "seed",
-                                "video",
-                                "mask",
-                                "first_frame",
-                                "frame_count",
-                                "model",
-                                "vertical_fov_deg",
-                                "focal_px",
-                                "principal_point_px",
-                                "distortion",
-                                "file",
-                                "position_ned_m",
-                                "velocity_ned_mps",
-                                "attitude_yaw_pitch_roll_deg",
-                                "path_file",
-                                "reference",
-                                "smoothing_s",
-                                "white_balance",
-                                "blur",
-                                "noise",
-                                "sun_share",
-                                "sun_azimuth_deg",
-                                "sun_elevation_deg",
-                                "exposure",
-                                "sky_colour",
-                                "ground_colour",
-                                "ground_albedo",
-                                "id",
-                                "aircraft",
-                                "model_forward",
-                                "model_up",
-                                "model_scale",
-                                "spin_time_s",
-                                "waypoints_ned_m",
-                                "speed_mps",
-                                "times_s",
-                                "start_s",
-                                "yaw_deg",
-                                "pitch_deg",
-                                "roll_deg",
-                                "cpa_time_s",
-                                "cpa_right_m",
-                                "cpa_above_m",
-                                "course_deg",
-                                "climb_mps",
-                                "turn_rate_dps",
-                                "time_s",
-                                "pixel",
-                                "range_m",
-                                "width_px",
-                                "beyond_horizon",
-                                "volumes",
-                                "lookahead_s",
-                                "quality",
-                                "method",
-                                "keyframe_s",
-                                "encoder",
-                                "masks"}) {
+  for (const std::string& key : words_in(
+           "kind size_m plumage aspect_ratio flap_hz flap_phase glide count spread_m rotors "
+           "arm_colour colour offset_ned_m along velocity_px_s size_px length_px softness "
+           "opacity begin_s end_s name seed video mask first_frame frame_count model "
+           "vertical_fov_deg focal_px principal_point_px distortion file position_ned_m "
+           "velocity_ned_mps attitude_yaw_pitch_roll_deg path_file reference smoothing_s "
+           "white_balance blur noise sun_share sun_azimuth_deg sun_elevation_deg exposure "
+           "sky_colour ground_colour ground_albedo id aircraft model_forward model_up "
+           "model_scale spin_time_s waypoints_ned_m speed_mps times_s start_s yaw_deg pitch_deg "
+           "roll_deg cpa_time_s cpa_right_m cpa_above_m course_deg climb_mps turn_rate_dps "
+           "time_s pixel range_m width_px beyond_horizon volumes lookahead_s quality method "
+           "keyframe_s encoder masks")) {
     EXPECT_NE(manual.find(std::string("`") + key + "`"), std::string::npos) << key;
     EXPECT_NE(example.find(std::string(key) + " = "), std::string::npos) << key;
   }

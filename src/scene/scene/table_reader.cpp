@@ -83,15 +83,7 @@ void call_on_key_use(std::function<void(const std::string& path, const KeyUse& u
   t_on_key_use = std::move(call);
 }
 
-TableReader::Keys keys(std::string_view words) {
-  TableReader::Keys result;
-  while (!words.empty()) {
-    const std::size_t end = std::min(words.find(' '), words.size());
-    result.push_back(words.substr(0, end));
-    words.remove_prefix(std::min(end + 1, words.size()));
-  }
-  return result;
-}
+TableReader::Keys keys(std::string_view words) { return words_in<std::string_view>(words); }
 
 bool is_plain_file_name(std::string_view name) {
   return !name.empty() && name.size() <= 200 && name != "." && name != ".." &&
