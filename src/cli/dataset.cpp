@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,7 @@
 #include "dataset/labelled/import.h"
 #include "dataset/set_report/report.h"
 #include "foundation/base/error.h"
+#include "foundation/base/median.h"
 #include "foundation/base/text.h"
 #include "foundation/run_files/run_files.h"
 
@@ -345,13 +348,10 @@ std::string plan_line(const catalogue::Catalogue& catalogue, const catalogue::It
 }
 
 // "8 to 120 px, half of them below 31 px"
-std::string spread_words(const build::Spread& spread, const char* unit) {
-  return fmt::format("{:.0f} to {:.0f} {}, half of them below {:.0f} {}",
-                     spread.low(),
-                     spread.high(),
-                     unit,
-                     spread.median(),
-                     unit);
+std::string spread_words(const std::vector<double>& values, const char* unit) {
+  const auto [low, high] = std::ranges::minmax(values);
+  return fmt::format(
+      "{:.0f} to {:.0f} {}, half of them below {:.0f} {}", low, high, unit, median(values), unit);
 }
 
 void say_what_is_drawn(const build::Plan& plan, Console& console) {
@@ -374,8 +374,8 @@ void say_what_is_drawn(const build::Plan& plan, Console& console) {
   if (!types.empty())
     console.result(
         fmt::format("types: {} ({} types, {} liveries)", types, plan.aircraft.size(), liveries));
-  if (plan.sizes_px.count() > 0) console.result("sizes: " + spread_words(plan.sizes_px, "px"));
-  if (plan.ranges_m.count() > 0) console.result("ranges: " + spread_words(plan.ranges_m, "m"));
+  if (!plan.sizes_px.empty()) console.result("sizes: " + spread_words(plan.sizes_px, "px"));
+  if (!plan.ranges_m.empty()) console.result("ranges: " + spread_words(plan.ranges_m, "m"));
   if (plan.draws > 0)
     console.result(fmt::format("in view: {} draws for the intruders of encounter models; {} never",
                                plan.draws,

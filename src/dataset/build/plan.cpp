@@ -2,7 +2,6 @@
 #include "dataset/build/plan.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "dataset/build/inputs.h"
@@ -72,8 +71,8 @@ class Planner {
         static_cast<double>(frames) * facts.size * kBytesPerFrame + kBytesPerSequence * facts.size;
     count_things(item.scene);
     for (const catalogue::Encounter& encounter : item.drawn.encounters) {
-      if (encounter.size_px) plan_.sizes_px.add(*encounter.size_px);
-      if (encounter.range_m) plan_.ranges_m.add(*encounter.range_m);
+      if (encounter.size_px) plan_.sizes_px.push_back(*encounter.size_px);
+      if (encounter.range_m) plan_.ranges_m.push_back(*encounter.range_m);
     }
     const double rate_hz = facts.files.frame_rate_hz > 0 ? facts.files.frame_rate_hz : 30;
     fly(item, frames > 0 ? static_cast<double>(frames - 1) / rate_hz : 1e9);
@@ -207,26 +206,6 @@ class Planner {
 };
 
 }  // namespace
-
-void Spread::add(double value) {
-  // Number of values that are kept for the median: it bounds memory.
-  constexpr std::size_t kMaxKept = 65'536;
-  low_ = count_ == 0 ? value : std::min(low_, value);
-  high_ = count_ == 0 ? value : std::max(high_, value);
-  if (count_++ % every_ != 0) return;
-  kept_.push_back(value);
-  if (kept_.size() < kMaxKept) return;
-  for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
-  kept_.resize(kMaxKept / 2);
-  every_ *= 2;
-}
-
-double Spread::median() const {
-  std::vector<double> sorted = kept_;
-  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
-}
 
 Plan plan_of(const catalogue::Catalogue& catalogue,
              const std::function<void(const catalogue::Item&)>& each,

@@ -12,25 +12,6 @@
 
 namespace airtruth::build {
 
-// Minimum, maximum and median of many numbers in bounded memory. Beyond 65,536 numbers the median
-// is that of every second one, every fourth one, and so on.
-class Spread {
- public:
-  void add(double value);
-  std::int64_t count() const { return count_; }
-  // These require at least one number.
-  double low() const { return low_; }
-  double high() const { return high_; }
-  double median() const;
-
- private:
-  std::int64_t count_ = 0;
-  std::int64_t every_ = 1;
-  double low_ = 0;
-  double high_ = 0;
-  std::vector<double> kept_;
-};
-
 // Summary of what a catalogue would make. Nothing is rendered; only the headers of videos are read.
 struct Plan {
   std::int64_t sequences = 0;
@@ -46,8 +27,8 @@ struct Plan {
   // Number of intruders by type and by livery: "738" -> "738/738-Ryanair" -> 12. A model file is
   // its own type.
   std::map<std::string, std::map<std::string, std::int64_t>> aircraft;
-  Spread sizes_px;  // that were drawn
-  Spread ranges_m;  // that were drawn
+  std::vector<double> sizes_px;  // that were drawn
+  std::vector<double> ranges_m;  // that were drawn
   // Intruders whose path is beyond the limits of their class.
   std::int64_t not_flyable = 0;
   // Descriptions of the first kMaxNamed of these: "NAME: why".
