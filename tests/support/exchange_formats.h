@@ -7,6 +7,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/exchange/exchange.h"
+#include "support/error_of.h"
 
 // What the tests of formats have in common.
 namespace airtruth::exchange {
@@ -45,12 +46,7 @@ class Folder {
 
 // The message of what reading throws.
 inline std::string error_of(Format format, const fs::path& source) {
-  try {
-    read_clips(format, source, {}, {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { read_clips(format, source, {}, {}); });
 }
 
 }  // namespace airtruth::exchange

@@ -9,6 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 // What the tests of video files have in common.
@@ -61,12 +62,7 @@ inline std::string all_planes(Reader& reader, int* frames = nullptr) {
 }
 
 inline std::string error_of(const fs::path& path, const ReaderOptions& options = {}) {
-  try {
-    Reader reader(path, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { Reader reader(path, options); });
 }
 
 }  // namespace airtruth::video

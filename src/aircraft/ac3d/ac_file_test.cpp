@@ -25,6 +25,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 
 namespace airtruth::ac3d {
 namespace {
@@ -37,12 +38,7 @@ std::string ac(const std::string& objects) {
 }
 
 std::string ac_fault(const std::string& text) {
-  try {
-    parse_ac(text, "a.ac");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_ac(text, "a.ac"); });
 }
 
 const std::string kTriangle =

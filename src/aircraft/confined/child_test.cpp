@@ -20,6 +20,7 @@
 #include "aircraft/wrapper/model_files.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 
 namespace airtruth::confined {
 namespace {
@@ -202,12 +203,7 @@ TEST(ModelWire, WhatDoesNotHoldIsRefused) {
   const auto refused = [](const auto& spoil) {
     RawModel model = small_model();
     spoil(model);
-    try {
-      model_from_bytes(bytes_of(model));
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
+    return test_support::error_of([&] { model_from_bytes(bytes_of(model)); });
   };
   EXPECT_EQ(refused([](RawModel&) {}), "no error");
   const float nan = std::nanf("");

@@ -10,6 +10,7 @@
 #include "aircraft/wrapper/wrapper.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 
 namespace airtruth::fleet {
 namespace {
@@ -25,12 +26,7 @@ class Models : public testing::Test {
 };
 
 std::string error_of(const std::string& name, const model::LoadOptions& options = {}) {
-  try {
-    load_aircraft(name, options);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { load_aircraft(name, options); });
 }
 
 // A tetrahedron-like shape with three unequal arms: 10 towards -x (nose), 4

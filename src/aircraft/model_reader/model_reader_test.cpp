@@ -9,6 +9,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 
 namespace airtruth::model_reader {
 namespace {
@@ -31,12 +32,7 @@ class Formats : public testing::Test {
                                 [&](const std::string& warning) { warnings_ += warning; });
   }
   std::string fault(const std::string& name, const std::string& bytes) {
-    try {
-      load(name, bytes);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { load(name, bytes); });
   }
   fs::path folder_;
   std::string warnings_;

@@ -15,6 +15,7 @@
 #include <webp/encode.h>
 
 #include "foundation/base/error.h"
+#include "support/error_of.h"
 
 namespace airtruth::texture_file {
 namespace {
@@ -28,12 +29,7 @@ Pixel at(const Picture& picture, int x, int y) {
 }
 
 std::string fault_of(const std::string& bytes, const PictureLimits& limits = {}) {
-  try {
-    read_picture(bytes, limits);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { read_picture(bytes, limits); });
 }
 
 // Rows from the top down, as libpng writes them.

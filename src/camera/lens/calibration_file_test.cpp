@@ -10,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 
 namespace airtruth::lens {
 namespace {
@@ -17,12 +18,7 @@ namespace {
 const ImageSize kProfileSize{1280, 960};
 
 std::string error_of(std::string_view text, const char* name, ImageSize size = kProfileSize) {
-  try {
-    parse_calibration(text, name, size);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_calibration(text, name, size); });
 }
 
 std::string profile(const std::string& extra = "") {

@@ -11,6 +11,7 @@
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 #include "support/small_catalogue.h"
 #include "support/temporary_folder.h"
 
@@ -20,12 +21,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string error_of(const std::string& text) {
-  try {
-    catalogue::parse_catalogue(text, "c.toml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { catalogue::parse_catalogue(text, "c.toml"); });
 }
 
 TEST(Catalogue, AProductMakesEveryCombinationOnce) {
@@ -198,12 +194,8 @@ TEST_F(Build, AWarningIsSaidOnceForABackground) {
 
 TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
   const auto error = [&](const std::string& text) -> std::string {
-    try {
-      build_set(catalogue::parse_catalogue(text, "c.toml"), root_ / "never", {});
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
+    return test_support::error_of(
+        [&] { build_set(catalogue::parse_catalogue(text, "c.toml"), root_ / "never", {}); });
   };
   const std::string text = test_support::kCatalogue;
   EXPECT_THAT(error(text + "[[aircraft]]\nname = \"none\"\naircraft = \"738/738-Ryanaair\"\n"),
@@ -252,12 +244,7 @@ TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   const catalogue::Catalogue other = catalogue::parse_catalogue(
       std::string(test_support::kCatalogue) + "quality = 20\n", "c.toml");
   const auto error_of_build = [&](const catalogue::Catalogue& one) -> std::string {
-    try {
-      build_set(one, root_ / "set", little);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { build_set(one, root_ / "set", little); });
   };
   EXPECT_THAT(error_of_build(other), HasSubstr("catalogue"));
   EXPECT_EQ(error_of_build(catalogue), "no error");

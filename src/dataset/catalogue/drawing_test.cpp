@@ -18,6 +18,7 @@
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "support/error_of.h"
 #include "support/small_catalogue.h"
 
 namespace airtruth::catalogue {
@@ -32,12 +33,7 @@ Catalogue with_random(const std::string& keys) {
 }
 
 std::string random_error(const std::string& keys) {
-  try {
-    with_random(keys);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { with_random(keys); });
 }
 
 const Drawn& rule_of(const Catalogue& catalogue) {

@@ -12,6 +12,7 @@
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "sequence/setup/from_scene.h"
+#include "support/error_of.h"
 #include "support/small_catalogue.h"
 
 namespace airtruth::catalogue {
@@ -25,12 +26,7 @@ Catalogue catalogue_with_random(const std::string& keys) {
 }
 
 std::string error_of(const std::string& keys) {
-  try {
-    catalogue_with_random(keys);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { catalogue_with_random(keys); });
 }
 
 const std::string kApproach =

@@ -18,6 +18,7 @@
 #include "foundation/base/files.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/from_scene.h"
+#include "support/error_of.h"
 #include "support/small_encounter_model.h"
 #include "support/temporary_folder.h"
 
@@ -44,12 +45,7 @@ class EncounterModel : public testing::Test {
     return parse_catalogue(kBackground + keys, folder_ / "c.toml");
   }
   std::string fault_of(const std::string& keys) const {
-    try {
-      with(keys);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { with(keys); });
   }
   test_support::TemporaryFolder temporary_;
   fs::path folder_ = temporary_.path();

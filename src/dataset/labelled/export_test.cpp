@@ -21,6 +21,7 @@
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/replay/finished.h"
+#include "support/error_of.h"
 #include "support/small_catalogue.h"
 #include "support/temporary_folder.h"
 
@@ -201,12 +202,7 @@ TEST_F(Made, AnExportKilledBeforeItsOptionsAreWrittenIsBegunAnew) {
 
 TEST_F(Made, AnExportOverSomethingElseIsRefused) {
   const auto error = [](const fs::path& out, const ExportOptions& options) -> std::string {
-    try {
-      export_set(set(), out, options);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { export_set(set(), out, options); });
   };
   const fs::path out = fresh();
   fs::create_directories(out);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "support/error_of.h"
 
 namespace airtruth::sequences {
 namespace {
@@ -25,12 +26,7 @@ TEST(Condition, HoldsWithinItsRangeAndNotWithoutTheFact) {
 
 TEST(Condition, AFaultIsOneLine) {
   const auto error = [](const char* text) -> std::string {
-    try {
-      condition_from(text);
-    } catch (const Error& found) {
-      return found.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { condition_from(text); });
   };
   EXPECT_EQ(error("noise"), "--where: is 'noise'; expected KEY=LOW..HIGH, as in noise=1..2");
   EXPECT_THAT(error("noise=.."), testing::HasSubstr("expected KEY=LOW..HIGH"));

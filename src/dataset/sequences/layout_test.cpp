@@ -6,11 +6,13 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::sequences {
 namespace {
 
+using test_support::error_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -22,16 +24,6 @@ class LayoutTest : public testing::Test {
   void add_sequence(const fs::path& place) const {
     fs::create_directories(root_ / "sequences" / place);
     write_file(root_ / "sequences" / place / "sequence.json", "{}");
-  }
-
-  template <typename Call>
-  static std::string error_of(const Call& call) {
-    try {
-      call();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
   }
 
   test_support::TemporaryFolder temporary_;

@@ -21,6 +21,7 @@
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/render.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::stream {
@@ -374,12 +375,7 @@ TEST_F(StreamOfFlights, ACropShowsOneAircraftWholeAndAShareOfSamplesHasNone) {
 
 TEST_F(StreamOfFlights, WhatAStreamCannotUseIsSaidAtOnce) {
   const auto message = [&](const std::string& text) -> std::string {
-    try {
-      stream_of(text).sample(0);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { stream_of(text).sample(0); });
   };
   EXPECT_THAT(message(background("flight3") + kRule + "[stream]\nsize_px = [400, 96]\n"),
               HasSubstr("size_px is 400 x 96; the frames of background 'flight3' are 320 x 240"));

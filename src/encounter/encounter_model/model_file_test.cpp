@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "support/error_of.h"
 #include "support/small_encounter_model.h"
 
 namespace airtruth::encounter_model {
@@ -26,12 +27,7 @@ std::string changed(const std::string& from, const std::string& to) {
 }
 
 std::string fault_of(const std::string& text) {
-  try {
-    parse_model(text, "model.txt");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_model(text, "model.txt"); });
 }
 
 TEST(ModelFile, TablesFollowTheGraph) {

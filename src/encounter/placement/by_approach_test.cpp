@@ -10,6 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 #include "foundation/geometry/units.h"
+#include "support/error_of.h"
 
 namespace airtruth::placement {
 namespace {
@@ -172,12 +173,7 @@ TEST(ByApproach, TheStatedApproachIsTheNearestOfTheWholePaths) {
 // ------------------------------------------------------------------------------------ bad input
 
 std::string message_of(const scene::Encounter& encounter, const Path& own) {
-  try {
-    path_to_approach(encounter, own);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { path_to_approach(encounter, own); });
 }
 
 TEST(ByApproach, NumbersThatContradictEachOtherAreAnError) {

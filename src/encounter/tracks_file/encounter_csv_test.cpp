@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "support/error_of.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -22,12 +23,7 @@ constexpr const char* kCsv =
     "4,own,0,1,2,3,1\n";
 
 std::string fault_of_encounter_csv(const std::string& text) {
-  try {
-    parse_encounter_csv(text, "a.csv");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_encounter_csv(text, "a.csv"); });
 }
 
 std::string changed(const std::string& from, const std::string& to) {

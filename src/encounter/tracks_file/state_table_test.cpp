@@ -11,6 +11,7 @@
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
+#include "support/error_of.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -34,12 +35,7 @@ std::string changed(std::string text, const std::string& from, const std::string
 }
 
 std::string fault_of_state_table(const std::string& text) {
-  try {
-    parse_state_table(text, "a.daa");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_state_table(text, "a.daa"); });
 }
 
 TEST(StateTable, UnitsAndAxesOfDaa) {

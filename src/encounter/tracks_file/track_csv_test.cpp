@@ -6,6 +6,7 @@
 
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
+#include "support/error_of.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -16,12 +17,7 @@ using ::testing::HasSubstr;
 constexpr const char* kTrack = "time_s,x_ft,y_ft,z_ft\n0,0,0,1500\n1,200,0,1510\n2,399,17,1520\n";
 
 std::string fault_of_track_csv(const std::string& text) {
-  try {
-    parse_encounters(text, "a.csv");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_encounters(text, "a.csv"); });
 }
 
 TEST(TrackCsv, FeetBecomeMetresNorthEastDown) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "support/error_of.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -42,12 +43,7 @@ Bytes two_encounters() {
 }
 
 std::string fault_of_waypoint(const std::string& bytes) {
-  try {
-    parse_waypoints(bytes, "a.dat");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_waypoints(bytes, "a.dat"); });
 }
 
 TEST(WaypointFile, ReadsFeetAndUpdates) {

@@ -7,6 +7,8 @@
 
 #include "foundation/json/parse_json.h"
 
+#include "support/error_of.h"
+
 namespace airtruth {
 namespace {
 
@@ -16,12 +18,7 @@ JsonDocument json(std::string_view text) { return {text, {"a.json"}}; }
 
 template <typename Read>
 std::string error_of(std::string_view text, const Read& read) {
-  try {
-    read(json(text));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { read(json(text)); });
 }
 
 TEST(JsonObject, ReadsEachKindOfValue) {
@@ -117,12 +114,7 @@ TEST(JsonObject, AnUnknownKeyIsNamedAtItsLineWithTheNearest) {
   const std::string text = "{\n\"width\": 1,\n\"hieght\": 2}";
   const JsonDocument document(text, {"a.json"});
   const auto fault = [&](const std::vector<std::string>& known) -> std::string {
-    try {
-      document.with_lines_of(text).expect_keys_among(known);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { document.with_lines_of(text).expect_keys_among(known); });
   };
   EXPECT_EQ(fault({"width", "hieght"}), "no error");
   EXPECT_EQ(fault({"width", "height"}),

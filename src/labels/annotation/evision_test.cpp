@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::annotation {
@@ -59,12 +60,7 @@ std::string evision_xml(const std::vector<std::optional<EvisionFrame>>& frames,
 Evision form() { return parse_evision(kForm, "a.xml"); }
 
 std::string message_of(const std::string& text) {
-  try {
-    parse_evision(text, "a.xml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_evision(text, "a.xml"); });
 }
 
 std::string with(const std::string& from, const std::string& to) {

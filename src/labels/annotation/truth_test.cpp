@@ -12,6 +12,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 #include "support/source_folder.h"
 
 namespace airtruth::annotation {
@@ -146,12 +147,7 @@ TEST(Truth, InconsistentTruthIsOurMistake) {
 }
 
 std::string line_message(const std::string& line) {
-  try {
-    parse_jsonl_line(line, "truth.jsonl", 7);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_jsonl_line(line, "truth.jsonl", 7); });
 }
 
 std::string with(const std::function<void(Json&)>& spoil) {

@@ -10,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 
 namespace airtruth::network {
 namespace {
@@ -42,12 +43,7 @@ ModelDescription read(const std::string& text) {
 std::string fault(const std::string& from, const std::string& to) {
   std::string text = kWhole;
   text.replace(text.find(from), from.size(), to);
-  try {
-    read(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { read(text); });
 }
 
 TEST(ModelDescription, IsReadWhole) {

@@ -13,6 +13,7 @@
 #include "foundation/base/files.h"
 #include "runners/network/network_detector.h"
 #include "runners/network/network_input.h"
+#include "support/error_of.h"
 #include "support/onnx_bytes.h"
 
 namespace airtruth::network {
@@ -62,12 +63,7 @@ class Networks : public testing::Test {
     return make_network_detector(folder_ / "a.onnx", {.threads = threads});
   }
   std::string fault(const std::string& onnx, const std::string& json) {
-    try {
-      make(onnx, json, 1);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { make(onnx, json, 1); });
   }
   static std::vector<results::Detection> detect(detector::Detector& detector,
                                                 const image::Picture& picture) {

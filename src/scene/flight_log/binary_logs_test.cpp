@@ -11,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "scene/flight_log/flight_log.h"
 #include "scene/flight_log/gpmf.h"
+#include "support/error_of.h"
 
 namespace airtruth::flight_log {
 namespace {
@@ -163,12 +164,7 @@ TEST(Ulog, ALogCutOffAnywhereIsReadUpToThereOrRefused) {
 
 TEST(Ulog, WrongDefinitionsAreErrors) {
   const auto error_of = [](const std::string& messages) {
-    try {
-      parse_flight_log(ulog_header() + messages, "a.ulg");
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
+    return test_support::error_of([&] { parse_flight_log(ulog_header() + messages, "a.ulg"); });
   };
   EXPECT_EQ(error_of(subscription(0, "vehicle_attitude")),
             "a.ulg: subscribes 'vehicle_attitude' before its format (byte 16)");

@@ -8,17 +8,13 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "support/error_of.h"
 
 namespace airtruth::flight_log {
 namespace {
 
 std::string error_of(std::string_view text, const char* name) {
-  try {
-    parse_flight_log(text, name);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_flight_log(text, name); });
 }
 
 TEST(DjiSubtitles, TheKeysOfTodaysFirmwareAreRead) {

@@ -9,6 +9,7 @@
 #include "labels/annotation/object_class.h"
 #include "scene/scene/flock.h"
 #include "scene/scene/scene.h"
+#include "support/error_of.h"
 
 namespace airtruth::scene {
 namespace {
@@ -160,12 +161,7 @@ TEST(DistractorKeys, AThousandThingsAreTheMost) {
   for (int i = 0; i < 5; ++i) most += flock(200);
   EXPECT_EQ(parse_scene(most, "s.toml").intruders.size(), 1000u);
   const auto error = [](const std::string& text) -> std::string {
-    try {
-      parse_scene(text, "s.toml");
-    } catch (const Error& found) {
-      return found.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { parse_scene(text, "s.toml"); });
   };
   EXPECT_THAT(error(most + "[[distractor]]\nkind = \"dirt\"\npixel = [1, 1]\n"),
               testing::HasSubstr("beyond the 1000 intruders and distractors"));

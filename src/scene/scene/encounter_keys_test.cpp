@@ -5,6 +5,7 @@
 
 #include "foundation/base/error.h"
 #include "scene/scene/scene.h"
+#include "support/error_of.h"
 
 namespace airtruth::scene {
 namespace {
@@ -20,12 +21,7 @@ Intruder intruder_with(const std::string& path) {
 }
 
 std::string encounter_message_of(const std::string& path) {
-  try {
-    parse_scene(encounter_scene_text(path), "s.toml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_scene(encounter_scene_text(path), "s.toml"); });
 }
 
 const std::string kEncounter =

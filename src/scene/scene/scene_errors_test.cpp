@@ -5,6 +5,7 @@
 
 #include "foundation/base/files.h"
 #include "scene/scene/scene.h"
+#include "support/error_of.h"
 
 namespace airtruth::scene {
 namespace {
@@ -24,12 +25,7 @@ struct Parts {
 };
 
 std::string message_of(const std::string& text, const std::string& file = "s.toml") {
-  try {
-    parse_scene(text, file);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { parse_scene(text, file); });
 }
 
 std::string with_top(const std::string& top) { return message_of(Parts{.top = top}.text()); }

@@ -8,21 +8,13 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
+#include "support/error_of.h"
 
 namespace airtruth::trajectory {
 namespace {
 
 using Points = std::vector<Vector3>;
-
-template <typename Make>
-std::string error_of(Make make) {
-  try {
-    make();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test_support::error_of;
 
 TEST(AtSpeed, TwoPointsAreAStraightLine) {
   const Path path = spline_at_speed(Points{{0, 0, -100}, {300, 400, -100}}, 50);

@@ -14,6 +14,7 @@
 #include "sequence/insertion/masks.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/setup/world.h"
+#include "support/error_of.h"
 
 namespace airtruth::insertion {
 namespace {
@@ -194,12 +195,9 @@ TEST_F(BehindAHill, WhatIsBelowTheHorizonIsHidden) {
 
 TEST_F(BehindAHill, MasksThatCannotBeRight) {
   const auto message_of = [&](const std::string& mask) -> std::string {
-    try {
+    return test_support::error_of([&] {
       made(balloon(60, 0, 12) + fmt::format("[[occluder]]\nrange_m = 50\nmask = \"{}\"\n", mask));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    });
   };
   video::Grey grey{kFrame.width, kFrame.height, std::vector<std::uint8_t>(320 * 240, 0)};
   write_file(folder_ / "black.png", video::png_of(grey));

@@ -8,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::setup {
@@ -40,12 +41,7 @@ struct OwnLog : testing::Test {
     return yaw_pitch_roll(path.at(time_s)->world_from_body);
   }
   static std::string error_of(const scene::Scene& scene) {
-    try {
-      camera_path(scene.camera);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+    return test_support::error_of([&] { camera_path(scene.camera); });
   }
   test_support::TemporaryFolder folder;
 };
@@ -102,16 +98,13 @@ TEST_F(OwnLog, WhatDoesNotFitIsAnErrorAtTheScenesLine) {
   EXPECT_THAT(error_of(scene_of(folder / "missing.csv", "log_offset_s = 1\n")),
               testing::HasSubstr("missing.csv"));
   const auto parse_error = [&](const std::string& camera, const std::string& background) {
-    try {
+    return test_support::error_of([&] {
       scene::parse_scene("[background]\nvideo = \"a.mp4\"\n" + background +
                              "[lens]\nvertical_fov_deg = 60\n[camera]\n" + camera +
                              "[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = "
                              "[[0,0,0],[1,0,0]]\nspeed_mps = 1\n",
                          "s.toml");
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
+    });
   };
   EXPECT_THAT(parse_error("log_offset_s = 1\n", ""),
               testing::HasSubstr("log_offset_s is stated without a log"));

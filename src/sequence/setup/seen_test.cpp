@@ -12,6 +12,7 @@
 #include "sequence/setup/moment.h"
 #include "sequence/setup/shared_inputs.h"
 #include "sequence/setup/world.h"
+#include "support/error_of.h"
 
 namespace airtruth::setup {
 namespace {
@@ -216,12 +217,8 @@ TEST(Seen, PlacingByTheMeasuredMotionMovesPathAndScene) {
 
 std::string message_of(const std::vector<scene::Seen>& seen) {
   const World world = empty_world(lens::pinhole_from_vertical_fov(50, {1280, 720}));
-  try {
-    placed_as_seen(cessna(seen), world, frames(rotation_of), nullptr);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of(
+      [&] { placed_as_seen(cessna(seen), world, frames(rotation_of), nullptr); });
 }
 
 TEST(Seen, SaysWhatCannotBe) {

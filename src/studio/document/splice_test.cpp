@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "studio/document/tree.h"
+#include "support/error_of.h"
 
 namespace airtruth::document {
 namespace {
@@ -19,12 +20,7 @@ std::string with(const std::string& text, const std::string& change) {
   return changed(text, change_from(nlohmann::ordered_json::parse(change), "change"), "a.toml");
 }
 std::string message(const std::string& text, const std::string& change) {
-  try {
-    with(text, change);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { with(text, change); });
 }
 
 const std::string kScene =

@@ -7,6 +7,7 @@
 #include "foundation/base/error.h"
 #include "studio/messages/request.h"
 #include "studio/messages/target.h"
+#include "support/error_of.h"
 
 namespace airtruth::messages {
 namespace {
@@ -14,12 +15,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string fault_of(const std::string& text) {
-  try {
-    request_from(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return test_support::error_of([&] { request_from(text); });
 }
 
 TEST(RequestText, AFrameIsAskedForWithWhatItShows) {
