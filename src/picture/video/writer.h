@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "foundation/base/error.h"
 #include "foundation/image/video_format.h"
