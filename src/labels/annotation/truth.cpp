@@ -155,8 +155,7 @@ struct Line {
 Line line_from(std::string_view text, const Where& where) {
   const JsonDocument object(text, where);
   Line line{frame_from(object), lens_from(object.object("lens"))};
-  for (const auto& found : {fault(line.frame), fault(line.lens)})
-    if (found) throw Error(*found, where);
+  if (const auto found = fault(line.frame)) throw Error(*found, where);
   return line;
 }
 
@@ -184,39 +183,6 @@ Truth read_truth(const std::filesystem::path& file) {
 }
 
 namespace {
-
-bool finite(double value) { return std::isfinite(value); }
-bool finite(std::int64_t) { return true; }
-bool finite(State) { return true; }
-bool finite(const PixelBox&) { return true; }
-bool finite(const Vector3& v) { return v.allFinite(); }
-bool finite(const Pixel& p) { return p.allFinite(); }
-bool finite(const YawPitchRoll& a) {
-  return finite(a.yaw_deg) && finite(a.pitch_deg) && finite(a.roll_deg);
-}
-bool finite(const Box& b) {
-  return finite(b.x) && finite(b.y) && finite(b.width) && finite(b.height);
-}
-
-bool finite(const EncounterTruth& truth);
-
-template <typename T>
-bool finite(const std::optional<T>& value) {
-  return !value || finite(*value);
-}
-
-bool finite(const EncounterTruth& truth) {
-  bool all = true;
-  each_measure([&](const char*, const auto& value) { all = all && finite(value); }, truth.measures);
-  for (const VolumeTruth& volume : truth.volumes) all = all && finite(volume.to_violation_s);
-  return all;
-}
-
-bool all_finite(const Intruder& intruder) {
-  bool all = true;
-  each_field([&](const char*, const auto& value) { all = all && finite(value); }, intruder);
-  return all;
-}
 
 bool is_fraction(double value) { return value >= 0 && value <= 1; }
 
@@ -262,7 +228,6 @@ std::optional<std::string> fault_of_place(const Intruder& i) {
 }
 
 std::optional<std::string> fault(const Intruder& i) {
-  if (!all_finite(i)) return "holds a number that is not finite";
   if (!is_object_class(i.object_class))
     return fmt::format(
         "is of the class '{}'; expected aircraft, bird, multirotor, balloon, glint, dirt or insect",
@@ -298,25 +263,11 @@ std::optional<std::string> fault(const Intruder& i) {
 
 std::optional<std::string> fault(const Frame& frame) {
   if (frame.frame < 0) return "frame is below 0";
-  if (!finite(frame.time_s) || !finite(frame.camera_position_ned_m) ||
-      !finite(frame.camera_attitude_yaw_pitch_roll_deg) ||
-      !frame.shake.frame_from_reference.allFinite() ||
-      !frame.shake.frame_from_reference_per_s.allFinite() || !finite(frame.shake.rate_radps))
-    return "holds a number that is not finite";
   if (frame.shake.rotation && !(std::abs(frame.shake.rotation->norm() - 1) < 1e-6))
     return "has a rotation that is no unit quaternion";
   for (const Intruder& intruder : frame.intruders)
     if (const auto found = fault(intruder))
       return fmt::format("intruder '{}' {}", intruder.id, *found);
-  return std::nullopt;
-}
-
-std::optional<std::string> fault(const LensFacts& lens) {
-  const auto all = [](const auto& values) {
-    return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  };
-  if (!all(lens.focal_px) || !all(lens.principal_point_px) || !all(lens.distortion))
-    return "lens holds a number that is not finite";
   return std::nullopt;
 }
 
@@ -390,12 +341,16 @@ OrderedJson json(const LensFacts& lens) {
           {"distortion", lens.distortion}};
 }
 
+bool is_finite(const OrderedJson& json) {
+  if (json.is_structured()) return std::all_of(json.begin(), json.end(), is_finite);
+  return !json.is_number_float() || std::isfinite(json.get<double>());
+}
+
 }  // namespace
 
 std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
-  if (const auto found = fault(frame))
-    check(false, "truth of frame " + std::to_string(frame.frame) + ": " + *found);
-  if (const auto found = fault(lens)) check(false, *found);
+  const std::string where = "truth of frame " + std::to_string(frame.frame) + ": ";
+  if (const auto found = fault(frame)) check(false, where + *found);
   OrderedJson object;
   object["frame"] = frame.frame;
   object["time_s"] = frame.time_s;
@@ -415,6 +370,7 @@ std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
   OrderedJson intruders = OrderedJson::array();
   for (const Intruder& intruder : frame.intruders) intruders.push_back(json(intruder));
   object["intruders"] = std::move(intruders);
+  check(is_finite(object), where + "holds a number that is not finite");
   return object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 

@@ -150,9 +150,8 @@ struct Truth {
 Truth read_truth(const std::filesystem::path& file);
 
 // Describes the first inconsistency of a frame's truth; empty where it is consistent. The rules
-// are: numbers are finite, a visible box is present exactly where the intruder is visible, a
-// position is present exactly where it is in the world, and fractions lie within 0..1.
+// are: a visible box is present exactly where the intruder is visible, a position is present
+// exactly where it is in the world, and fractions lie within 0..1.
 std::optional<std::string> fault(const Frame& frame);
-std::optional<std::string> fault(const LensFacts& lens);
 
 }  // namespace airtruth::annotation
