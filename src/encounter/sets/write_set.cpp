@@ -12,6 +12,7 @@
 
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 
 namespace airtruth::sets {
@@ -112,12 +113,13 @@ SetSummary write_set(const std::filesystem::path& file,
   }
   SetSummary summary;
   const auto aircraft = static_cast<std::uint32_t>(draw(0).encounter.aircraft.size());
-  tracks_file::TracksWriter writer(file, static_cast<std::uint32_t>(options.count), aircraft);
-  for_each_block(draw, options, format, [&](const Block& block) {
-    add(summary, block.summary);
-    writer.append(block.bytes);
+  write_file(file, [&](const AddBytes& add_bytes) {
+    add_bytes(tracks_file::head_of(format, static_cast<std::uint32_t>(options.count), aircraft));
+    for_each_block(draw, options, format, [&](const Block& block) {
+      add(summary, block.summary);
+      add_bytes(block.bytes);
+    });
   });
-  writer.finish();
   return summary;
 }
 

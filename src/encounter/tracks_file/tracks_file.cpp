@@ -2,13 +2,9 @@
 #include "encounter/tracks_file/tracks_file.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "encounter/tracks_file/encounter_csv.h"
 #include "encounter/tracks_file/state_table.h"
@@ -18,7 +14,6 @@
 #include "encounter/tracks_file/waypoint_file.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/unfinished.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -88,42 +83,10 @@ constexpr std::size_t kMaxEncounters = 0xffffffff;
 
 }  // namespace
 
-struct TracksWriter::Part {
-  fs::path file;
-  fs::path part = part_path(file);
-  Unfinished unfinished = Unfinished::path(part);
-  std::FILE* stream = std::fopen(part.c_str(), "wbe");
-
-  [[noreturn]] void fail() const {
-    throw Error(fmt::format("cannot write: {}", std::strerror(errno)), {file.string()});
-  }
-  ~Part() {
-    if (stream != nullptr) std::fclose(stream);
-    ::unlink(part.c_str());
-  }
-};
-
-TracksWriter::TracksWriter(const fs::path& file, std::uint32_t encounters, std::uint32_t aircraft)
-    : part_(new Part{file}) {
-  if (part_->stream == nullptr) part_->fail();
-  const TracksFormat format = tracks_format_of(file);
-  if (format == TracksFormat::kCsv) append(encounter_csv_head());
-  if (format == TracksFormat::kWaypoints) append(waypoint_head(encounters, aircraft));
-}
-
-TracksWriter::~TracksWriter() = default;
-
-void TracksWriter::append(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), part_->stream) != bytes.size()) part_->fail();
-}
-
-void TracksWriter::finish() {
-  if (std::fflush(part_->stream) != 0) part_->fail();
-  if (::fsync(::fileno(part_->stream)) != 0 && errno != EINVAL && errno != EROFS) part_->fail();
-  if (std::fclose(std::exchange(part_->stream, nullptr)) != 0) part_->fail();
-  part_->unfinished.finish([&] {
-    if (::rename(part_->part.c_str(), part_->file.c_str()) != 0) part_->fail();
-  });
+std::string head_of(TracksFormat format, std::uint32_t encounters, std::uint32_t aircraft) {
+  if (format == TracksFormat::kCsv) return encounter_csv_head();
+  if (format == TracksFormat::kWaypoints) return waypoint_head(encounters, aircraft);
+  return {};
 }
 
 std::string bytes_of(const track::Encounter& encounter,
@@ -152,10 +115,11 @@ void write_encounters(const fs::path& file, const std::vector<track::Encounter>&
             "would hold {} encounters; expected up to {}", encounters.size(), kMaxEncounters),
         {file.string()});
   const auto aircraft = static_cast<std::uint32_t>(encounters.front().aircraft.size());
-  TracksWriter writer(file, static_cast<std::uint32_t>(encounters.size()), aircraft);
-  for (std::size_t i = 0; i < encounters.size(); ++i)
-    writer.append(bytes_of(encounters[i], format, i + 1, aircraft));
-  writer.finish();
+  write_file(file, [&](const AddBytes& add) {
+    add(head_of(format, static_cast<std::uint32_t>(encounters.size()), aircraft));
+    for (std::size_t i = 0; i < encounters.size(); ++i)
+      add(bytes_of(encounters[i], format, i + 1, aircraft));
+  });
 }
 
 }  // namespace airtruth::tracks_file

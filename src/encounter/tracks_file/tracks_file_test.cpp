@@ -84,10 +84,10 @@ TEST_F(TracksFile, WhatCannotBeWrittenLeavesNothing) {
   EXPECT_THROW(write_encounters(folder_ / "none" / "a.csv", {encounter_of(2)}), Error);
   EXPECT_THROW(write_encounters(folder_ / "a.dat", {encounter_of(2), encounter_of(1)}), Error);
   EXPECT_EQ(files(), 0u);
-  write_encounters(folder_ / "a.csv", {encounter_of(1)});
-  const std::string before = read_file(folder_ / "a.csv");
-  { TracksWriter(folder_ / "a.csv", 1, 1).append("half"); }
-  EXPECT_EQ(read_file(folder_ / "a.csv"), before);
+  write_encounters(folder_ / "a.dat", {encounter_of(1)});
+  const std::string before = read_file(folder_ / "a.dat");
+  EXPECT_THROW(write_encounters(folder_ / "a.dat", {encounter_of(2), encounter_of(1)}), Error);
+  EXPECT_EQ(read_file(folder_ / "a.dat"), before);
   EXPECT_EQ(files(), 1u);
 }
 
