@@ -8,9 +8,7 @@
 #include <turbojpeg.h>
 #include <webp/decode.h>
 
-#include "aircraft/texture_file/picture_bmp.h"
-#include "aircraft/texture_file/picture_sgi.h"
-#include "aircraft/texture_file/picture_tga.h"
+#include "aircraft/texture_file/picture_formats.h"
 #include "foundation/base/error.h"
 #include "foundation/base/huge_pages.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/texture_file/picture_bmp.h"
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
+#include "aircraft/texture_file/picture_formats.h"
 #include "foundation/base/error.h"
 
 // Microsoft, "Bitmap Storage": a file header of 14 bytes, an information header, a palette, and

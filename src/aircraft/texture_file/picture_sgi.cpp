@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/texture_file/picture_sgi.h"
-
 #include <string>
 #include <utility>
 
+#include "aircraft/texture_file/picture_formats.h"
 #include "foundation/base/error.h"
 
 // The SGI Image File Format 0.97 (Paul Haeberli): big-endian, channels one after another, rows from

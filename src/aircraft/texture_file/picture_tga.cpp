@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/texture_file/picture_tga.h"
-
 #include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 
+#include "aircraft/texture_file/picture_formats.h"
 #include "foundation/base/error.h"
 
 // Truevision TGA File Format Specification 2.0: little-endian.

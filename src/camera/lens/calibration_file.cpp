@@ -12,7 +12,6 @@
 #include <fmt/ranges.h>
 
 #include "camera/lens/calibration.h"
-#include "camera/lens/photogrammetry.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"

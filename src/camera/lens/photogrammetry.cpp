@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/lens/photogrammetry.h"
-
 #include <charconv>
 #include <map>
 #include <optional>
@@ -10,6 +8,7 @@
 
 #include <pugixml.hpp>
 
+#include "camera/lens/calibration.h"
 #include "foundation/base/error.h"
 #include "foundation/base/text.h"
 

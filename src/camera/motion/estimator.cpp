@@ -5,8 +5,6 @@
 #include "camera/horizon/horizon_hold.h"
 #include "camera/motion/corners.h"
 #include "camera/motion/follower.h"
-#include "camera/motion/planar.h"
-#include "camera/motion/spherical.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::motion {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <opencv2/core.hpp>
 
+#include "camera/lens/lens.h"
 #include "camera/motion/motion.h"
 
 // The two models of motion behind Estimator.
@@ -63,5 +65,11 @@ class Follower {
   // error where a key frame is linked to others, and where tracking starts anew.
   virtual double stray_rad() const { return 0; }
 };
+
+// The model homography (planar.cpp) and the model rotation (spherical.cpp).
+std::unique_ptr<Follower> planar_follower(const cv::Mat& allowed, const Options& options);
+std::unique_ptr<Follower> spherical_follower(const lens::Lens& lens,
+                                             const cv::Mat& allowed,
+                                             const Options& options);
 
 }  // namespace airtruth::motion

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/motion/planar.h"
-
 #include <cmath>
 #include <optional>
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/motion/spherical.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
