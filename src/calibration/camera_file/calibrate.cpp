@@ -113,7 +113,7 @@ class Session {
         noise_(options.own_aircraft, options.tone),
         edges_(options.own_aircraft, options.tone),
         blur_(options.own_aircraft),
-        planar_(reader_.info().width, reader_.info().height, {}, options.own_aircraft) {
+        planar_(reader_.info().width, reader_.info().height, options.own_aircraft) {
     const video::StreamInfo& info = reader_.info();
     result_.video = video;
     result_.width = info.width;

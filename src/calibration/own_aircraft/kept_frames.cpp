@@ -69,7 +69,7 @@ cv::Mat FrameSums::features() const {
 
 KeptFrames keep_frames(video::Reader& reader, const MaskOptions& options, double scale) {
   const video::StreamInfo& info = reader.info();
-  motion::Estimator estimator(info.width, info.height, {});
+  motion::Estimator estimator(info.width, info.height);
   const std::int64_t every = std::max<std::int64_t>(1, info.frame_count_estimate / kKeptFrames);
   KeptFrames kept;
   while (const auto frame = reader.next()) {

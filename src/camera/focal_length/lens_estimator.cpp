@@ -165,7 +165,6 @@ std::pair<double, double> fitting(const Profile& profile, const Best& best) {
 struct LensEstimator::Impl {
   lens::ImageSize size;
   cv::Mat allowed;
-  motion::Options options;
   motion::Pyramid previous;
   std::vector<cv::Point2f> begun, now;
   int frames = 0;
@@ -184,7 +183,7 @@ struct LensEstimator::Impl {
   }
 
   void begin(const cv::Mat& grey) {
-    begun = now = motion::spread_corners(grey, allowed, options);
+    begun = now = motion::spread_corners(grey, allowed);
     frames = 0;
   }
 
@@ -196,7 +195,7 @@ struct LensEstimator::Impl {
       return;
     }
     std::vector<cv::Point2f> moved;
-    const auto good = motion::follow(previous, pyramid, allowed, now, moved, false, options);
+    const auto good = motion::follow(previous, pyramid, allowed, now, moved, false);
     std::vector<cv::Point2f> kept_begun, kept_now;
     std::vector<double> far;
     for (std::size_t i = 0; i < good.size(); ++i) {

@@ -23,8 +23,12 @@ constexpr int kBackLevels = 1;
 // The side of the window around a corner, px. Chosen by judgement. Twice as wide, it takes four
 // times as long, and more windows hold both far and near objects, which move differently.
 constexpr int kWindowPx = 13;
+// The largest number of corners of a picture.
+constexpr int kMaxCorners = 320;
+// The largest distance between a corner and its position after tracking forth and back.
+constexpr double kForthAndBackPx = 0.5;
 // Corners are spread over kGrid x kGrid cells. Chosen by judgement: with 16, a cell keeps two of
-// the 320 corners, and the weak ones of cells without texture displace strong ones.
+// the corners, and the weak ones of cells without texture displace strong ones.
 constexpr int kGrid = 8;
 // The least distance of a corner from the own aircraft, px by row and by column: half a window, and
 // 3 px for an outline that is soft. Twice as much loses what is between parts of the own aircraft.
@@ -117,18 +121,16 @@ void choose(const std::vector<cv::Point2f>& strongest_first,
 
 std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
                                         const cv::Mat& allowed,
-                                        const Options& options,
                                         const std::function<bool(const cv::Point2f&)>& is_far) {
-  double distance = options.min_corner_distance_px;
-  if (distance <= 0)
-    distance = std::max(6.0, std::sqrt(double(grey.cols) * grey.rows / options.max_corners) * 0.35);
+  const double distance =
+      std::max(6.0, std::sqrt(double(grey.cols) * grey.rows / kMaxCorners) * 0.35);
   std::vector<cv::Point2f> far, near;
   for (const cv::Point2f& corner : strongest_corners(grey, allowed, distance))
     (is_far && is_far(corner) ? far : near).push_back(corner);
-  const int share = std::max(2, 5 * options.max_corners / (4 * kGrid * kGrid));
+  const int share = std::max(2, 5 * kMaxCorners / (4 * kGrid * kGrid));
   std::vector<cv::Point2f> chosen;
-  choose(far, grey.size(), kFarInCell * share, options.max_corners / 2, chosen);
-  choose(near, grey.size(), share, options.max_corners, chosen);
+  choose(far, grey.size(), kFarInCell * share, kMaxCorners / 2, chosen);
+  choose(near, grey.size(), share, kMaxCorners, chosen);
   return chosen;
 }
 
@@ -169,8 +171,7 @@ std::vector<bool> follow(const Pyramid& from,
                          const cv::Mat& allowed,
                          const std::vector<cv::Point2f>& corners,
                          std::vector<cv::Point2f>& moved,
-                         bool guessed,
-                         const Options& options) {
+                         bool guessed) {
   std::vector<bool> good(corners.size(), false);
   if (corners.empty()) return good;
   const auto found =
@@ -182,7 +183,7 @@ std::vector<bool> follow(const Pyramid& from,
     const bool inside = p.x >= 0 && p.y >= 0 && p.x <= static_cast<float>(allowed.cols - 1) &&
                         p.y <= static_cast<float>(allowed.rows - 1);
     if (found[i] == 0 || found_back[i] == 0 || !inside) continue;
-    if (cv::norm(back[i] - corners[i]) > options.forward_backward_px) continue;
+    if (cv::norm(back[i] - corners[i]) > kForthAndBackPx) continue;
     good[i] = allowed.at<unsigned char>(static_cast<int>(p.y), static_cast<int>(p.x)) != 0;
   }
   return good;
@@ -260,9 +261,7 @@ std::vector<Step> Steps::fine(const Levels& now, const Guess& guess) const {
   return steps;
 }
 
-std::vector<Step> Steps::alone(const Levels& now,
-                               const cv::Mat& allowed,
-                               const Options& options) const {
+std::vector<Step> Steps::alone(const Levels& now, const cv::Mat& allowed) const {
   // OpenCV's positions are those of the middles of samples.
   constexpr float kHalf = 0.5f;
   std::vector<cv::Point2f> from;
@@ -271,7 +270,7 @@ std::vector<Step> Steps::alone(const Levels& now,
                       static_cast<float>(corner.middle().y()) - kHalf);
   std::vector<cv::Point2f> to;
   const auto good = airtruth::motion::follow(
-      pyramid_of(levels_.front()), pyramid_of(now.front()), allowed, from, to, false, options);
+      pyramid_of(levels_.front()), pyramid_of(now.front()), allowed, from, to, false);
   std::vector<Step> steps;
   for (std::size_t i = 0; i < good.size(); ++i)
     if (good[i]) steps.push_back({corners_[i].middle(), Pixel(to[i].x + kHalf, to[i].y + kHalf)});

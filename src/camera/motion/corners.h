@@ -7,7 +7,6 @@
 
 #include <opencv2/core.hpp>
 
-#include "camera/motion/motion.h"
 #include "camera/motion/patch.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
@@ -29,20 +28,17 @@ cv::Mat allowed_area(int width, int height, const image::Mask* own_aircraft);
 // together, because the strip along the horizon has few cells.
 std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
                                         const cv::Mat& allowed,
-                                        const Options& options,
                                         const std::function<bool(const cv::Point2f&)>& is_far = {});
 
 // Tracks corners by pyramidal Lucas-Kanade, and tracks them back as a check. On entry `moved` holds
 // a guess of each position (used when `guessed`); on return it holds the positions found. The
-// result states which corners were found inside the allowed area and returned to within
-// options.forward_backward_px.
+// result states which corners were found inside the allowed area and returned to their places.
 std::vector<bool> follow(const Pyramid& from,
                          const Pyramid& to,
                          const cv::Mat& allowed,
                          const std::vector<cv::Point2f>& corners,
                          std::vector<cv::Point2f>& moved,
-                         bool guessed,
-                         const Options& options);
+                         bool guessed);
 
 // The positions of a corner in two frames, in pixels of the picture (corner origin).
 struct Step {
@@ -69,7 +65,7 @@ class Steps {
   std::vector<Step> fine(const Levels& now, const Guess& guess) const;
   // All corners, each by itself through the whole pyramid and back, which costs several
   // times as much and holds where half of the picture moves by itself.
-  std::vector<Step> alone(const Levels& now, const cv::Mat& allowed, const Options& options) const;
+  std::vector<Step> alone(const Levels& now, const cv::Mat& allowed) const;
 
  private:
   std::optional<Step> follow(const Pixel& from, const Levels& now, int finest) const;

@@ -69,12 +69,9 @@ struct Estimator::Impl {
   std::optional<HorizonWatch> horizon;  // of the model rotation
 };
 
-Estimator::Estimator(int width, int height, const Options& options, const image::Mask* own_aircraft)
+Estimator::Estimator(int width, int height, const image::Mask* own_aircraft)
     : impl_(std::make_unique<Impl>(
-          Impl{width,
-               height,
-               planar_follower(allowed_area(width, height, own_aircraft), options),
-               {}})) {}
+          Impl{width, height, planar_follower(allowed_area(width, height, own_aircraft)), {}})) {}
 
 Estimator::Estimator(const lens::Lens& lens,
                      const Options& options,
@@ -83,7 +80,7 @@ Estimator::Estimator(const lens::Lens& lens,
   impl_ = std::make_unique<Impl>(
       Impl{width,
            height,
-           spherical_follower(lens, allowed_area(width, height, own_aircraft), options),
+           spherical_follower(lens, allowed_area(width, height, own_aircraft), options.seed),
            HorizonWatch(lens, own_aircraft)});
 }
 

@@ -15,10 +15,7 @@ namespace airtruth::motion {
 class Estimator {
  public:
   // Model homography.
-  Estimator(int width,
-            int height,
-            const Options& options,
-            const image::Mask* own_aircraft = nullptr);
+  Estimator(int width, int height, const image::Mask* own_aircraft = nullptr);
   // Model rotation.
   Estimator(const lens::Lens& lens,
             const Options& options,

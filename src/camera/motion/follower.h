@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -11,6 +12,11 @@
 
 // The two models of motion behind Estimator.
 namespace airtruth::motion {
+
+// The largest reprojection error of an inlier.
+constexpr double kInlierPx = 1;
+// A frame with fewer inliers is not measured.
+constexpr int kMinInliers = 12;
 
 // The number of consecutive bridged frames after which tracking starts anew: half a second of a
 // video of 30 frames/s. Chosen by judgement. Twice as many find corners again after a longer gap,
@@ -39,9 +45,8 @@ inline CornerLoss corner_loss(std::size_t fresh,
                               std::size_t before,
                               std::size_t survivors,
                               int bridged_in_row,
-                              int min_inliers,
                               bool begins_shot) {
-  const auto fewest = static_cast<std::size_t>(min_inliers);
+  constexpr std::size_t fewest = kMinInliers;
   const bool textured = fresh >= 2 * fewest && before >= 2 * fewest;
   const bool cut = begins_shot || (textured && static_cast<double>(survivors) <
                                                    kCutShare * static_cast<double>(before));
@@ -66,10 +71,11 @@ class Follower {
   virtual double stray_rad() const { return 0; }
 };
 
-// The model homography (planar.cpp) and the model rotation (spherical.cpp).
-std::unique_ptr<Follower> planar_follower(const cv::Mat& allowed, const Options& options);
+// The model homography (planar.cpp) and the model rotation (spherical.cpp), with the seed of
+// RANSAC's random samples.
+std::unique_ptr<Follower> planar_follower(const cv::Mat& allowed);
 std::unique_ptr<Follower> spherical_follower(const lens::Lens& lens,
                                              const cv::Mat& allowed,
-                                             const Options& options);
+                                             std::uint64_t seed);
 
 }  // namespace airtruth::motion

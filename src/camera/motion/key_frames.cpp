@@ -95,7 +95,7 @@ Quaternion KeyFrames::add(const Levels& now,
     if (const auto patch = LevelPatch::around(now, 0, corner))
       if (const auto ray = view.bearing(patch->middle()))
         key.landmarks.push_back({*patch, *ray, 0});
-  link(key.id, sightings, is_inlier, limits.min_inliers);
+  link(key.id, sightings, is_inlier);
   keys_.push_back(std::move(key));
   if (keys_.size() > kMaxKeyFrames) drop_oldest();
   refine(limits);
@@ -104,15 +104,14 @@ Quaternion KeyFrames::add(const Levels& now,
 
 void KeyFrames::link(int id,
                      const std::vector<Sighting>& sightings,
-                     const std::vector<bool>& is_inlier,
-                     int min_inliers) {
+                     const std::vector<bool>& is_inlier) {
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     Link link{keys_[k].id, id, {}};
     for (std::size_t i = 0; i < sightings.size(); ++i)
       if (sightings[i].key == k && is_inlier[i])
         link.seen.push_back(
             {keys_[k].landmarks[sightings[i].landmark].in_key_cam, sightings[i].in_cam});
-    if (static_cast<int>(link.seen.size()) >= min_inliers) links_.push_back(std::move(link));
+    if (static_cast<int>(link.seen.size()) >= kMinInliers) links_.push_back(std::move(link));
   }
 }
 
@@ -146,7 +145,7 @@ void KeyFrames::refine(const FitLimits& limits) {
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (std::size_t k = 1; k < keys_.size(); ++k) {
       const std::vector<Bearings> all = bearings_of(keys_[k], limits);
-      if (static_cast<int>(all.size()) < limits.min_inliers) continue;
+      if (static_cast<int>(all.size()) < kMinInliers) continue;
       if (const auto fit = limits.fit(all)) keys_[k].cam_from_reference = fit->cam_from_reference;
     }
 }

@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 
 #include "camera/lens/lens.h"
+#include "camera/motion/follower.h"
 #include "camera/motion/patch.h"
 #include "camera/motion/rotation_fit.h"
 #include "foundation/geometry/transform.h"
@@ -53,14 +54,13 @@ struct Sighting {
 // How fits treat bearings.
 struct FitLimits {
   double limit_rad = 0;  // the largest residual of an inlier
-  int min_inliers = 0;
   std::uint64_t seed = 0;
   // The up direction in the reference camera, where a horizon is known (rotation_fit.h).
   std::optional<Vector3> up_in_reference;
 
   Bearings bearings(const Vector3& in_reference, const Vector3& in_cam, std::int64_t frames) const;
   std::optional<RotationFit> fit(const std::vector<Bearings>& bearings) const {
-    return fit_rotation(bearings, limit_rad, min_inliers, seed);
+    return fit_rotation(bearings, limit_rad, kMinInliers, seed);
   }
 };
 
@@ -114,10 +114,7 @@ class KeyFrames {
     std::vector<Bearings> seen;
   };
 
-  void link(int id,
-            const std::vector<Sighting>& sightings,
-            const std::vector<bool>& is_inlier,
-            int min_inliers);
+  void link(int id, const std::vector<Sighting>& sightings, const std::vector<bool>& is_inlier);
   void drop_oldest();
   std::vector<Bearings> bearings_of(const Key& key, const FitLimits& limits) const;
   void refine(const FitLimits& limits);

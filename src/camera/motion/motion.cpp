@@ -180,11 +180,6 @@ disk_cache::Key CacheKey::entry() const {
       .add(mask_sha256)
       .add(first_frame)
       .add(lens)
-      .add(options.max_corners)
-      .add(options.min_corner_distance_px)
-      .add(options.forward_backward_px)
-      .add(options.ransac_px)
-      .add(options.min_inliers)
       .add(options.seed);
 }
 

@@ -70,18 +70,9 @@ struct FrameMotion {
 enum class Reference { kFirstFrame, kSmoothed };
 
 struct Options {
-  int max_corners = 320;
-  // The least distance between two corners; 0 derives it from the size of the image.
-  double min_corner_distance_px = 0;
-  // The largest distance between a corner and its position after tracking forth and back.
-  double forward_backward_px = 0.5;
-  // The largest reprojection error of an inlier.
-  double ransac_px = 1.0;
-  // A frame with fewer inliers is not measured.
-  int min_inliers = 12;
   // For kSmoothed: the standard deviation of the Gaussian window over time.
   double smoothing_s = 1.0;
-  // The seed of RANSAC's random samples.
+  // The seed of the random samples of RANSAC, for the model rotation.
   std::uint64_t seed = 1;
 };
 

@@ -86,7 +86,7 @@ image::Picture blank() {
 
 TEST(Estimator, FollowsAKnownMotionBesideMovingClutter) {
   const cv::Mat texture = wall();
-  Estimator estimator(kWidth, kHeight, {});
+  Estimator estimator(kWidth, kHeight);
   Random random(9);
   std::vector<double> step_errors;
   Homography last = Homography::Identity();
@@ -118,7 +118,7 @@ TEST(Estimator, FollowsAKnownMotionBesideMovingClutter) {
 
 TEST(Estimator, SaysWhenItDoesNotKnow) {
   const cv::Mat texture = wall();
-  Estimator estimator(kWidth, kHeight, {});
+  Estimator estimator(kWidth, kHeight);
   for (int k = 0; k < 5; ++k) estimator.next(frame(texture, k), k / 30.0);
   const FrameMotion before = estimator.next(frame(texture, 5), 5 / 30.0);
   const FrameMotion bridged = estimator.next(blank(), 6 / 30.0);
@@ -141,7 +141,7 @@ TEST(Estimator, FlagsACut) {
   cv::Mat other;
   cv::flip(texture, other, -1);
   cv::bitwise_not(other, other);
-  Estimator estimator(kWidth, kHeight, {});
+  Estimator estimator(kWidth, kHeight);
   for (int k = 0; k < 4; ++k) estimator.next(frame(texture, k), k / 30.0);
   EXPECT_EQ(estimator.next(frame(other, 4), 4 / 30.0).state, State::kCut);
   EXPECT_EQ(estimator.next(frame(other, 5), 5 / 30.0).state, State::kMeasured);
@@ -149,7 +149,7 @@ TEST(Estimator, FlagsACut) {
 
 // The loss of corners would reveal a cut, but a picture of sky alone has no corners.
 TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
-  Estimator estimator(kWidth, kHeight, {});
+  Estimator estimator(kWidth, kHeight);
   for (int k = 0; k < 4; ++k) estimator.next(blank(), k / 30.0);
   EXPECT_EQ(estimator.next(blank(), 4 / 30.0).state, State::kBridged);
   EXPECT_EQ(estimator.next(blank(), 5 / 30.0, false, true).state, State::kCut);
@@ -160,7 +160,7 @@ TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
 // the rest of the picture continues.
 TEST(Estimator, WhereMostCornersAreFollowedThereIsNoCut) {
   const cv::Mat texture = wall();
-  Estimator estimator(kWidth, kHeight, {});
+  Estimator estimator(kWidth, kHeight);
   for (int k = 0; k < 4; ++k) estimator.next(frame(texture, k), k / 30.0);
   image::Picture covered = frame(texture, 4);
   for (int y = 0; y < kHeight; ++y)
@@ -180,7 +180,7 @@ TEST(Smoothed, DoesNotRunAcrossACut) {
   Options options;
   options.smoothing_s = 0.3;
   constexpr int kShot = 20;
-  Estimator both(kWidth, kHeight, options), second(kWidth, kHeight, options);
+  Estimator both(kWidth, kHeight), second(kWidth, kHeight);
   std::vector<FrameMotion> spliced, alone;
   for (int k = 0; k < 2 * kShot; ++k) {
     const double time_s = k / 30.0;
@@ -206,7 +206,7 @@ TEST(Estimator, IgnoresTheOwnAircraft) {
   const int top = kHeight * 55 / 100;
   for (int y = top; y < kHeight; ++y)
     std::fill_n(mask.free.begin() + y * kWidth, kWidth, static_cast<unsigned char>(0));
-  Estimator estimator(kWidth, kHeight, {}, &mask);
+  Estimator estimator(kWidth, kHeight, &mask);
   FrameMotion motion;
   for (int k = 0; k < 20; ++k) {
     image::Picture picture = frame(texture, k);
@@ -231,7 +231,7 @@ TEST(Estimator, TwoRunsAgreeToTheBit) {
   std::vector<std::string> runs;
   for (int threads : {1, 2}) {
     cv::setNumThreads(threads);
-    Estimator estimator(kWidth, kHeight, {});
+    Estimator estimator(kWidth, kHeight);
     std::vector<FrameMotion> all;
     for (int k = 0; k < 8; ++k) all.push_back(estimator.next(frame(texture, k), k / 30.0));
     runs.push_back(csv_of(all));
@@ -329,7 +329,7 @@ TEST(Cache, KnowsTheFramesItHolds) {
     EXPECT_EQ(cached(cache, shorter)->size(), 3u);
   }
   CacheKey other = key;
-  other.options.ransac_px = 2;
+  other.options.seed = 2;
   EXPECT_FALSE(cached(cache, other));
   cache.keep(key.entry(), "to the end\nno motion");
   EXPECT_FALSE(cached(cache, key));

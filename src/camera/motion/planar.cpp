@@ -91,7 +91,6 @@ void measure(ModelFit& fit,
 std::optional<ModelFit> fit_within(const std::vector<cv::Point2f>& key,
                                    const std::vector<cv::Point2f>& moved,
                                    cv::Size image,
-                                   const Options& options,
                                    double limit_px) {
   cv::Mat mask;
   cv::Mat h = opencv_plugin::functions().find_homography(
@@ -106,8 +105,7 @@ std::optional<ModelFit> fit_within(const std::vector<cv::Point2f>& key,
   ModelFit fit;
   fit.frame_from_key = eigen_from(h);
   measure(fit, key, moved, (use_homography ? 1.0 : 1.5) * limit_px);
-  if (fit.inliers < options.min_inliers ||
-      fit.inliers < kMinInlierShare * static_cast<double>(key.size()))
+  if (fit.inliers < kMinInliers || fit.inliers < kMinInlierShare * static_cast<double>(key.size()))
     return std::nullopt;
   return fit;
 }
@@ -118,17 +116,15 @@ std::optional<ModelFit> fit_within(const std::vector<cv::Point2f>& key,
 // the inliers covers enough of the image (the square root of its share of the area is at least
 // 0.35). Otherwise, for example with clouds along a horizon, it is a similarity, since a homography
 // from a thin band of points extrapolates badly. The result is empty where there are fewer than
-// options.min_inliers inliers, or where the map is no motion that a camera makes between two key
-// frames.
+// kMinInliers inliers, or where the map is no motion that a camera makes between two key frames.
 std::optional<ModelFit> fit_model(const std::vector<cv::Point2f>& key,
                                   const std::vector<cv::Point2f>& moved,
-                                  cv::Size image,
-                                  const Options& options) {
-  if (static_cast<int>(key.size()) < options.min_inliers) return std::nullopt;
+                                  cv::Size image) {
+  if (static_cast<int>(key.size()) < kMinInliers) return std::nullopt;
   // A plane map is not exact for a wide lens or near ground, so a second fit with a larger limit
   // follows before the function gives up. A larger rms_px shows that it was needed.
-  for (double limit_px : {options.ransac_px, kLooser * options.ransac_px})
-    if (const auto fit = fit_within(key, moved, image, options, limit_px)) return fit;
+  for (double limit_px : {kInlierPx, kLooser * kInlierPx})
+    if (const auto fit = fit_within(key, moved, image, limit_px)) return fit;
   return std::nullopt;
 }
 
@@ -148,7 +144,7 @@ Homography ours_from_cv(const Homography& h) {
 
 class Planar : public Follower {
  public:
-  Planar(const cv::Mat& allowed, const Options& options) : options_(options), allowed_(allowed) {}
+  explicit Planar(const cv::Mat& allowed) : allowed_(allowed) {}
   FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override;
 
  private:
@@ -162,7 +158,6 @@ class Planar : public Follower {
                        const std::vector<cv::Point2f>& moved,
                        const cv::Mat& grey);
 
-  Options options_;
   cv::Mat allowed_;
   // The key frame: its corners, their positions in the latest frame, and its map from the first
   // frame (OpenCV's pixels).
@@ -177,7 +172,7 @@ class Planar : public Follower {
 };
 
 void Planar::make_key(const cv::Mat& grey) {
-  key_corners_ = now_corners_ = spread_corners(grey, allowed_, options_);
+  key_corners_ = now_corners_ = spread_corners(grey, allowed_);
   key_count_ = key_corners_.size();
   key_from_first_ = now_from_first_;
 }
@@ -188,7 +183,7 @@ void Planar::track(const Pyramid& now,
                    std::vector<cv::Point2f>& key,
                    std::vector<cv::Point2f>& moved) const {
   std::vector<cv::Point2f> forward;
-  const auto good = follow(previous_, now, allowed_, now_corners_, forward, false, options_);
+  const auto good = follow(previous_, now, allowed_, now_corners_, forward, false);
   for (std::size_t i = 0; i < good.size(); ++i) {
     if (!good[i]) continue;
     key.push_back(key_corners_[i]);
@@ -244,16 +239,16 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
   std::vector<cv::Point2f> moved;
   const std::size_t before = now_corners_.size();
   track(now, key, moved);
-  const auto fit = fit_model(key, moved, grey.size(), options_);
+  const auto fit = fit_model(key, moved, grey.size());
   if (fit && is_followed(begins_shot, fit->inliers, before)) {
     const FrameMotion motion = measured(*fit, key, moved, grey);
     previous_ = std::move(now);
     return motion;
   }
   ++bridged_in_row_;
-  const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_, options_);
-  const CornerLoss loss = corner_loss(
-      fresh.size(), before, moved.size(), bridged_in_row_, options_.min_inliers, begins_shot);
+  const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_);
+  const CornerLoss loss =
+      corner_loss(fresh.size(), before, moved.size(), bridged_in_row_, begins_shot);
   if (loss.starts_anew) {
     // Tracking starts anew from this frame; the position of the last linked frame is kept.
     previous_ = std::move(now);
@@ -267,8 +262,8 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
 
 }  // namespace
 
-std::unique_ptr<Follower> planar_follower(const cv::Mat& allowed, const Options& options) {
-  return std::make_unique<Planar>(allowed, options);
+std::unique_ptr<Follower> planar_follower(const cv::Mat& allowed) {
+  return std::make_unique<Planar>(allowed);
 }
 
 }  // namespace airtruth::motion

@@ -18,7 +18,7 @@ namespace airtruth::motion {
 namespace {
 
 // Both constants are chosen by judgement.
-constexpr double kStepLimit = 3;         // the limit of an inlier of the first guess, in ransac_px
+constexpr double kStepLimit = 3;         // the limit of an inlier of the first guess, in kInlierPx
 constexpr double kUnknownTurnRad = 0.5;  // the error of the rotation after tracking was lost
 // The share of few coarse corners that must move as one for the rest to be looked for where these
 // lead. On 1,001 and 969 frames of two real flights 98 % of the frames have more; with a fifth of
@@ -27,11 +27,10 @@ constexpr double kMinCommonShare = 0.75;
 
 class Spherical : public Follower {
  public:
-  Spherical(const lens::Lens& lens, const cv::Mat& allowed, const Options& options)
-      : view_(lens, allowed), options_(options) {
-    limits_.limit_rad = options.ransac_px / lens.focal_px();
-    limits_.min_inliers = options.min_inliers;
-    limits_.seed = options.seed;
+  Spherical(const lens::Lens& lens, const cv::Mat& allowed, std::uint64_t seed)
+      : view_(lens, allowed) {
+    limits_.limit_rad = kInlierPx / lens.focal_px();
+    limits_.seed = seed;
   }
 
   FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override;
@@ -67,7 +66,6 @@ class Spherical : public Follower {
   FrameMotion lost(const Levels& now, std::size_t survivors, bool begins_shot);
 
   View view_;
-  Options options_;
   FitLimits limits_;
   KeyFrames keys_;
   Steps previous_;
@@ -111,7 +109,7 @@ Spherical::Guess Spherical::guess(const Levels& now) const {
   if (fit && fit->inliers >= kMinCommonShare * static_cast<double>(few.size())) {
     result.steps = steps_beside(now, fit->cam_from_reference);
   } else {
-    result.steps = previous_.alone(now, view_.allowed(), options_);
+    result.steps = previous_.alone(now, view_.allowed());
     fit = limits_.fit(bearings_of(result.steps));
     if (!fit) fit = rough_fit(result.steps);
   }
@@ -138,7 +136,7 @@ std::optional<RotationFit> Spherical::fit(const std::vector<Sighting>& sightings
     ++fit->inliers;
     squares += (all[i].in_cam - fit->cam_from_reference * all[i].in_reference).squaredNorm();
   }
-  if (fit->inliers < options_.min_inliers) return std::nullopt;
+  if (fit->inliers < kMinInliers) return std::nullopt;
   fit->rms_rad = std::sqrt(squares / fit->inliers);
   return fit;
 }
@@ -155,7 +153,7 @@ std::function<bool(const cv::Point2f&)> Spherical::far_corners() const {
 
 std::vector<Pixel> Spherical::new_corners(const Levels& now) const {
   std::vector<Pixel> corners;
-  for (const cv::Point2f& c : spread_corners(now.front(), view_.allowed(), options_, far_corners()))
+  for (const cv::Point2f& c : spread_corners(now.front(), view_.allowed(), far_corners()))
     corners.emplace_back(c.x + 0.5, c.y + 0.5);
   return corners;
 }
@@ -206,9 +204,9 @@ FrameMotion Spherical::unmeasured(State state) const {
 
 FrameMotion Spherical::lost(const Levels& now, std::size_t survivors, bool begins_shot) {
   ++bridged_in_row_;
-  const std::size_t fresh = spread_corners(now.front(), view_.allowed(), options_).size();
-  const CornerLoss loss = corner_loss(
-      fresh, previous_.size(), survivors, bridged_in_row_, options_.min_inliers, begins_shot);
+  const std::size_t fresh = spread_corners(now.front(), view_.allowed()).size();
+  const CornerLoss loss =
+      corner_loss(fresh, previous_.size(), survivors, bridged_in_row_, begins_shot);
   if (loss.starts_anew) {
     keys_.clear();
     make_key(now, {}, {});
@@ -243,8 +241,8 @@ FrameMotion Spherical::next(const cv::Mat& grey, bool damaged, bool begins_shot)
 
 std::unique_ptr<Follower> spherical_follower(const lens::Lens& lens,
                                              const cv::Mat& allowed,
-                                             const Options& options) {
-  return std::make_unique<Spherical>(lens, allowed, options);
+                                             std::uint64_t seed) {
+  return std::make_unique<Spherical>(lens, allowed, seed);
 }
 
 }  // namespace airtruth::motion

@@ -57,9 +57,7 @@ TEST(MotionYardstick, FrameToFrameErrorAtTheCornersIsBelowAThirdOfAPixel) {
     Homography before = Homography::Identity();
   };
   std::array<Model, 2> models = {
-      {{"homography",
-        motion::Estimator(options.width, options.height, {}, &flight.own_aircraft()),
-        {}},
+      {{"homography", motion::Estimator(options.width, options.height, &flight.own_aircraft()), {}},
        {"rotation", motion::Estimator(flight.lens(), {}, &flight.own_aircraft()), {}}}};
   Homography truth_before = Homography::Identity();
   for (int k = 0; k < kFrames; ++k) {
@@ -137,7 +135,7 @@ Yardstick measure(const lens::Lens& lens, int frames, double clutter) {
   options.clutter = clutter;
   const Flight flight(options);
   motion::Estimator rotation(lens, {}, &flight.own_aircraft());
-  motion::Estimator homography(options.width, options.height, {}, &flight.own_aircraft());
+  motion::Estimator homography(options.width, options.height, &flight.own_aircraft());
   std::vector<double> errors_deg, rotation_px, homography_px;
   Yardstick result;
   const auto cam_from_world = [&](int k) {

@@ -183,7 +183,7 @@ MotionSource MotionSource::of_frames(MotionInputs inputs, std::span<const video:
 
 motion::Estimator MotionSource::estimator() const {
   return lens_ ? motion::Estimator(*lens_, options_, mask_)
-               : motion::Estimator(size_.width, size_.height, options_, mask_);
+               : motion::Estimator(size_.width, size_.height, mask_);
 }
 
 void MotionSource::set_pass(std::vector<motion::FrameMotion> against_first) {
