@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -43,18 +44,17 @@ std::optional<LockedPlace> make_locked_place(PlaceKind kind,
                                              std::string_view begins) {
   for (;;) {
     std::string name = (folder / std::string(begins).append("XXXXXX")).string();
-    int file = -1;
+    Descriptor file;
     if (kind == PlaceKind::kFile)
-      file = ::mkostemp(name.data(), O_CLOEXEC);
+      file.reset(::mkostemp(name.data(), O_CLOEXEC));
     else if (::mkdtemp(name.data()) != nullptr)
-      file = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+      file.reset(::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     else
       return std::nullopt;
     // A run that clears away may take the new place for a dead one's before it is locked.
-    if (file < 0 && (kind == PlaceKind::kFile || errno != ENOENT)) return std::nullopt;
-    if (file >= 0 && try_lock(file, name) != Lock::kBusy && is_open_as(file, name))
-      return LockedPlace{name, file};
-    if (file >= 0) ::close(file);
+    if (!file.is_open() && (kind == PlaceKind::kFile || errno != ENOENT)) return std::nullopt;
+    if (file.is_open() && try_lock(file.get(), name) != Lock::kBusy && is_open_as(file.get(), name))
+      return LockedPlace{name, std::move(file)};
   }
 }
 
@@ -62,10 +62,10 @@ void remove_dead_places(const std::filesystem::path& folder, std::string_view be
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     if (!entry.path().filename().string().starts_with(begins)) continue;
-    const int file = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) continue;
-    if (try_lock(file, entry.path()) == Lock::kTaken) fs::remove_all(entry.path(), ignored);
-    ::close(file);
+    const Descriptor file(
+        ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (file.is_open() && try_lock(file.get(), entry.path()) == Lock::kTaken)
+      fs::remove_all(entry.path(), ignored);
   }
 }
 
@@ -84,42 +84,28 @@ RunLock::RunLock(const std::filesystem::path& locked,
                  Sharing sharing,
                  const char* busy) {
   const bool is_folder = fs::is_directory(locked);
-  file_ =
-      ::open(locked.c_str(), is_folder ? O_RDONLY | O_CLOEXEC : O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0)
+  file_.reset(::open(
+      locked.c_str(), is_folder ? O_RDONLY | O_CLOEXEC : O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  if (!file_.is_open())
     throw Error(std::string(is_folder ? "cannot open: " : "cannot create: ") + std::strerror(errno),
                 {locked.string()});
-  try {
-    const Lock lock = try_lock(file_, locked, sharing);
-    if (lock == Lock::kBusy) throw Error(busy, {folder.string()});
-    if (lock == Lock::kUnsupported) warn_of_no_locks(folder, to);
-  } catch (const Error&) {
-    ::close(file_);
-    throw;
-  }
+  const Lock lock = try_lock(file_.get(), locked, sharing);
+  if (lock == Lock::kBusy) throw Error(busy, {folder.string()});
+  if (lock == Lock::kUnsupported) warn_of_no_locks(folder, to);
 }
-
-RunLock::~RunLock() { ::close(file_); }
 
 WaitingLock::WaitingLock(const std::filesystem::path& file, const std::stop_token& stop) {
   constexpr std::chrono::milliseconds kBetweenTries(100);
   std::error_code ignored;
   std::filesystem::create_directories(file.parent_path(), ignored);
-  file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (file_ < 0)
+  file_.reset(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+  if (!file_.is_open())
     throw Error(std::string("cannot create: ") + std::strerror(errno), {file.string()});
-  try {
-    while (try_lock(file_, file) == Lock::kBusy) {
-      if (stop.stop_requested()) throw Interrupted();
-      std::this_thread::sleep_for(kBetweenTries);
-    }
-  } catch (...) {
-    ::close(file_);
-    throw;
+  while (try_lock(file_.get(), file) == Lock::kBusy) {
+    if (stop.stop_requested()) throw Interrupted();
+    std::this_thread::sleep_for(kBetweenTries);
   }
 }
-
-WaitingLock::~WaitingLock() { ::close(file_); }
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <stop_token>
 #include <string_view>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/base/log.h"
 
 // The state of files: who works on one, whether its content is still the same, and whether an
@@ -27,7 +28,7 @@ bool is_open_as(int file, const std::filesystem::path& name);
 // on its descriptor tells others that the run lives.
 struct LockedPlace {
   std::filesystem::path path;
-  int descriptor = -1;  // the caller closes it
+  Descriptor descriptor;
 };
 enum class PlaceKind { kFile, kFolder };
 // Empty, with errno, where it cannot be made.
@@ -52,12 +53,9 @@ class RunLock {
           const Warn& to,
           Sharing sharing = Sharing::kAlone,
           const char* busy = "another run is writing this folder now");
-  RunLock(const RunLock&) = delete;
-  RunLock& operator=(const RunLock&) = delete;
-  ~RunLock();
 
  private:
-  int file_ = -1;
+  Descriptor file_;
 };
 
 // An advisory lock (flock) on a file, for work that only one thread or process should do at a time,
@@ -73,12 +71,9 @@ class RunLock {
 class WaitingLock {
  public:
   WaitingLock(const std::filesystem::path& file, const std::stop_token& stop);
-  WaitingLock(const WaitingLock&) = delete;
-  WaitingLock& operator=(const WaitingLock&) = delete;
-  ~WaitingLock();
 
  private:
-  int file_ = -1;
+  Descriptor file_;
 };
 
 // Identifies a file and its content at one time: a file that is written or replaced has another

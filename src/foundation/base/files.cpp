@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/unfinished.h"
@@ -22,26 +23,11 @@ namespace {
 
 std::string reason() { return std::strerror(errno); }
 
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 // Calls take(bytes) for each block of the file.
 template <typename Take>
 void read_blocks(const fs::path& path, Take take) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) throw Error("cannot open: " + reason(), {path.string()});
+  if (!file.is_open()) throw Error("cannot open: " + reason(), {path.string()});
   struct stat status {};
   if (::fstat(file.get(), &status) == 0 && S_ISDIR(status.st_mode))
     throw Error("is a folder; expected a file", {path.string()});
@@ -127,7 +113,7 @@ namespace {
 // Removes a part whose writer is dead: nobody holds its lock.
 void remove_dead_part(const fs::path& part) {
   const Descriptor file(::open(part.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  if (file.get() >= 0 && try_lock(file.get(), part) == Lock::kTaken && is_open_as(file.get(), part))
+  if (file.is_open() && try_lock(file.get(), part) == Lock::kTaken && is_open_as(file.get(), part))
     ::unlink(part.c_str());
 }
 
@@ -144,11 +130,10 @@ Descriptor new_part(const fs::path& path, fs::path& part) {
   remove_dead_part(part);
   for (;;) {
     Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
-    if (file.get() < 0 && errno != EEXIST)
+    if (!file.is_open() && errno != EEXIST)
       throw Error("cannot create: " + reason(), {path.string()});
     // Another writer may have taken the new file for a dead one before it was locked.
-    if (file.get() >= 0 && try_lock(file.get(), part) != Lock::kBusy &&
-        is_open_as(file.get(), part))
+    if (file.is_open() && try_lock(file.get(), part) != Lock::kBusy && is_open_as(file.get(), part))
       return file;
     part.replace_filename(std::string(".").append(random_digits()).append(".part"));
   }
@@ -186,7 +171,7 @@ void write_file(const fs::path& path,
 
 void flush_files(const fs::path& folder) {
   const Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (file.get() < 0 || ::syncfs(file.get()) != 0)
+  if (!file.is_open() || ::syncfs(file.get()) != 0)
     throw Error("cannot write: " + reason(), {folder.string()});
 }
 

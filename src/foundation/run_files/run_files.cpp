@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
@@ -69,25 +70,25 @@ class CommitLock {
  public:
   explicit CommitLock(const fs::path& folder) : name_(folder / kCommitLock) {
     for (;;) {
-      file_ = ::open(name_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644);
-      if (file_ < 0) return;  // another user's, or no permission: the moves fail by themselves
-      const Lock lock = try_lock(file_, name_);
-      if (lock == Lock::kUnsupported || (lock == Lock::kTaken && is_open_as(file_, name_))) return;
-      ::close(file_);
+      file_.reset(::open(name_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644));
+      if (!file_.is_open())
+        return;  // another user's, or no permission: the moves fail by themselves
+      const Lock lock = try_lock(file_.get(), name_);
+      if (lock == Lock::kUnsupported || (lock == Lock::kTaken && is_open_as(file_.get(), name_)))
+        return;
+      file_.reset();
       std::this_thread::sleep_for(std::chrono::milliseconds(lock == Lock::kBusy ? 2 : 0));
     }
   }
   CommitLock(const CommitLock&) = delete;
   CommitLock& operator=(const CommitLock&) = delete;
   ~CommitLock() {
-    if (file_ < 0) return;
-    ::unlink(name_.c_str());
-    ::close(file_);
+    if (file_.is_open()) ::unlink(name_.c_str());
   }
 
  private:
   fs::path name_;
-  int file_ = -1;
+  Descriptor file_;
 };
 
 }  // namespace
@@ -114,7 +115,6 @@ class RunFiles::Hidden {
   ~Hidden() {
     unfinished_.reset();
     remove();
-    if (lock_ >= 0) ::close(lock_);
   }
 
   const fs::path& path() const { return path_; }
@@ -144,11 +144,11 @@ class RunFiles::Hidden {
 
  private:
   void make() {
-    const auto made = make_locked_place(PlaceKind::kFolder, parent_, kHiddenBegins);
+    auto made = make_locked_place(PlaceKind::kFolder, parent_, kHiddenBegins);
     if (!made)
       throw Error(std::string("cannot create: ") + std::strerror(errno), {parent_.string()});
     path_ = made->path;
-    lock_ = made->descriptor;
+    lock_ = std::move(made->descriptor);
   }
 
   void remove() const {
@@ -160,7 +160,7 @@ class RunFiles::Hidden {
   fs::path parent_;
   fs::path first_made_;
   fs::path path_;
-  int lock_ = -1;
+  Descriptor lock_;
   std::optional<Unfinished> unfinished_;
 };
 

@@ -30,34 +30,15 @@ using Clock = std::chrono::steady_clock;
 constexpr int kPollMs = 50;       // the interval at which a stop request is noticed
 constexpr int kLowestOwnFd = 10;  // above the standard streams, which may be closed
 
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() { reset(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-  int release() { return std::exchange(fd_, -1); }
-  void reset(int fd = -1) {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = fd;
-  }
-
- private:
-  int fd_;
-};
-
 [[noreturn]] void fail_to_start(const Program& program, int error, const fs::path& path = {}) {
   throw Error(std::string(program.what) + " cannot be started: " + std::strerror(error),
               {path.string()});
 }
 
 // Moves a descriptor away from 0, 1 and 2, which the child's end of the socket is copied to.
-int moved_up(const Program& program, int fd) {
-  const int moved = ::fcntl(fd, F_DUPFD_CLOEXEC, kLowestOwnFd);
-  const int error = errno;
-  ::close(fd);
-  if (moved < 0) fail_to_start(program, error);
+Descriptor moved_up(const Program& program, const Descriptor& from) {
+  Descriptor moved(::fcntl(from.get(), F_DUPFD_CLOEXEC, kLowestOwnFd));
+  if (!moved.is_open()) fail_to_start(program, errno);
   return moved;
 }
 
@@ -137,15 +118,10 @@ Process::Process(const Program& program,
   std::array<int, 2> sockets{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
     fail_to_start(program, errno);
-  Descriptor ours;
-  Descriptor theirs;
-  try {
-    ours.reset(moved_up(program, sockets[0]));
-  } catch (...) {
-    ::close(sockets[1]);
-    throw;
-  }
-  theirs.reset(moved_up(program, sockets[1]));
+  Descriptor ours(sockets[0]);
+  Descriptor theirs(sockets[1]);
+  ours = moved_up(program, ours);
+  theirs = moved_up(program, theirs);
   const std::string path = path_of(program).string();
   std::vector<std::string> words = {program.name, std::to_string(::getpid())};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -164,7 +140,7 @@ Process::Process(const Program& program,
     process_ = -1;
     fail_to_start(program, failed, path);
   }
-  socket_ = ours.release();
+  socket_ = std::move(ours);
 }
 
 void Process::set_deadline(double seconds, std::string late) {
@@ -175,8 +151,7 @@ void Process::set_deadline(double seconds, std::string late) {
 
 int Process::end() {
   if (process_ < 0) return 0;
-  ::close(socket_);
-  socket_ = -1;
+  socket_.reset();
   ::kill(process_, SIGKILL);
   int status = 0;
   while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
@@ -190,7 +165,7 @@ std::size_t Process::transfer(short event, const Operation& operation) {
   for (;;) {
     if (stop_.stop_requested()) throw Interrupted();
     if (Clock::now() > deadline_) throw Error(late_);
-    pollfd wanted{socket_, event, 0};
+    pollfd wanted{socket_.get(), event, 0};
     const int ready = ::poll(&wanted, 1, kPollMs);
     if (ready <= 0) continue;  // a timeout or a signal: check for a stop again
     const auto done = operation();
@@ -200,12 +175,12 @@ std::size_t Process::transfer(short event, const Operation& operation) {
 }
 
 std::size_t Process::read_some(char* data, std::size_t size) {
-  return transfer(POLLIN, [&] { return ::recv(socket_, data, size, MSG_DONTWAIT); });
+  return transfer(POLLIN, [&] { return ::recv(socket_.get(), data, size, MSG_DONTWAIT); });
 }
 
 std::size_t Process::write_some(const char* data, std::size_t size) {
   return transfer(POLLOUT,
-                  [&] { return ::send(socket_, data, size, MSG_DONTWAIT | MSG_NOSIGNAL); });
+                  [&] { return ::send(socket_.get(), data, size, MSG_DONTWAIT | MSG_NOSIGNAL); });
 }
 
 std::string end_in_words(int status) {

@@ -9,6 +9,7 @@
 
 #include <sys/types.h>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/sandbox/messages.h"
 
 // A program of ours that reads an untrusted file in a child process, which can only answer through
@@ -64,7 +65,7 @@ class Process : public Channel {
   std::stop_token stop_;
   std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::time_point::max();
   std::string late_;
-  int socket_ = -1;
+  Descriptor socket_;
   pid_t process_ = -1;
 };
 

@@ -18,6 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/base/error.h"
 
 extern char** environ;
@@ -38,25 +39,18 @@ void close_file(int& file) {
 }
 
 struct Pipe {
-  int read = -1;
-  int write = -1;
+  Descriptor read;
+  Descriptor write;
   Pipe() {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail_system("make a pipe");
-    read = ends[0];
-    write = ends[1];
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  ~Pipe() {
-    close_file(read);
-    close_file(write);
+    read.reset(ends[0]);
+    write.reset(ends[1]);
   }
 };
 
-int take(int& end) {
-  const int file = end;
-  end = -1;
+int take(Descriptor& end) {
+  const int file = end.release();
   ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) | O_NONBLOCK);
   return file;
 }
@@ -148,7 +142,7 @@ Child::Child(const std::string& command,
   Pipe from;
   Pipe chatter;
   if (transport == Transport::kStandard) {
-    process_ = spawn(command, to.read, from.write, chatter.write, "");
+    process_ = spawn(command, to.read.get(), from.write.get(), chatter.write.get(), "");
     to_ = take(to.write);
     from_ = take(from.read);
   } else {
@@ -164,11 +158,11 @@ Child::Child(const std::string& command,
       fail_system("listen on the loopback device");
     }
     // Its input is at its end from the start.
-    close_file(to.write);
+    to.write.reset();
     process_ = spawn(command,
-                     to.read,
-                     chatter.write,
-                     chatter.write,
+                     to.read.get(),
+                     chatter.write.get(),
+                     chatter.write.get(),
                      fmt::format("TRAX_SOCKET={}", ntohs(place.sin_port)));
   }
   chatter_ = take(chatter.read);

@@ -5,8 +5,7 @@
 #include <cstring>
 #include <string>
 #include <system_error>
-
-#include <unistd.h>
+#include <utility>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -28,19 +27,18 @@ MemoryPlace::MemoryPlace(PlaceKind kind, const char* what_for) {
   const fs::path folder = memory_folder();
   // Other users' places cannot be opened, or not removed.
   remove_dead_places(folder, kBegins);
-  const auto made = make_locked_place(kind, folder, kBegins);
+  auto made = make_locked_place(kind, folder, kBegins);
   if (!made)
     throw Error(std::string("cannot create memory for ") + what_for + ": " + std::strerror(errno),
                 {folder.string()});
   path_ = made->path;
-  descriptor_ = made->descriptor;
+  descriptor_ = std::move(made->descriptor);
   unfinished_.emplace(Unfinished::path(path_));
 }
 
 MemoryPlace::~MemoryPlace() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
-  ::close(descriptor_);
 }
 
 }  // namespace airtruth::process

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/unfinished.h"
 
@@ -22,11 +23,11 @@ class MemoryPlace {
 
   const std::filesystem::path& path() const { return path_; }
   // Of a file: open to read and write.
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.get(); }
 
  private:
   std::filesystem::path path_;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   std::optional<Unfinished> unfinished_;
 };
 

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <unistd.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
@@ -51,27 +50,22 @@ StagedFolder::StagedFolder(fs::path final_folder, bool overwrite, const Warn& to
   if (!failed) fs::create_directory(part_, failed);
   if (failed)
     throw Error("cannot create the output folder: " + failed.message(), {parent.string()});
-  lock_ = ::open(part_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (lock_ < 0)
+  lock_.reset(::open(part_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (!lock_.is_open())
     throw Error(std::string("cannot open the output folder: ") + std::strerror(errno),
                 {part_.string()});
-  const Lock lock = try_lock(lock_, part_);
-  if (lock == Lock::kBusy) {
-    ::close(lock_);
-    throw Error("another run is writing this folder now", {final_.string()});
-  }
+  const Lock lock = try_lock(lock_.get(), part_);
+  if (lock == Lock::kBusy) throw Error("another run is writing this folder now", {final_.string()});
   if (lock == Lock::kUnsupported) warn_of_no_locks(final_, to);
   try {
     clear(part_);
     recover();
     refuse_what_exists(final_, overwrite);
   } catch (const fs::filesystem_error& error) {
-    ::close(lock_);
     throw Error("cannot clear what an earlier run left: " + error.code().message(),
                 {part_.string()});
   } catch (const Error&) {
     fs::remove(part_, failed);
-    ::close(lock_);
     throw;
   }
   unfinished_.emplace([this] { remove_part(); });
@@ -80,7 +74,6 @@ StagedFolder::StagedFolder(fs::path final_folder, bool overwrite, const Warn& to
 StagedFolder::~StagedFolder() {
   unfinished_.reset();
   if (!committed_) remove_part();
-  ::close(lock_);
 }
 
 void StagedFolder::remove_part() const {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/base/unfinished.h"
@@ -36,7 +37,7 @@ class StagedFolder {
   fs::path part_;
   // The previous folder, until it is removed.
   fs::path old_;
-  int lock_ = -1;
+  Descriptor lock_;
   bool committed_ = false;
   // The uppermost of the parent folders that were created; empty: none.
   fs::path first_made_;

@@ -97,10 +97,6 @@ Journal::Journal(const std::filesystem::path& file)
     : path_(std::filesystem::absolute(file).parent_path() /
             ("." + file.filename().string() + ".studio-journal")) {}
 
-Journal::~Journal() {
-  if (file_ >= 0) ::close(file_);
-}
-
 std::optional<History> Journal::read() const {
   if (!std::filesystem::exists(path_)) return std::nullopt;
   const std::string bytes = read_file(path_, 2 * kMostBytes);
@@ -132,7 +128,8 @@ void Journal::undo(const History& history) { append("{\"undo\":1}\n", history); 
 void Journal::redo(const History& history) { append("{\"redo\":1}\n", history); }
 
 void Journal::append(const std::string& line, const History& history) {
-  if (file_ < 0 || bytes_ + line.size() > kMostBytes) return write_anew(history, file_ < 0);
+  if (!file_.is_open() || bytes_ + line.size() > kMostBytes)
+    return write_anew(history, !file_.is_open());
   write(line);
 }
 
@@ -147,16 +144,15 @@ void Journal::write_anew(const History& history, bool with_steps) {
     for (std::size_t i = 0; i < history.redo_count(); ++i) text += "{\"undo\":1}\n";
   }
   write_file(path_, text);
-  if (file_ >= 0) ::close(file_);
-  file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (file_ < 0) throw Error(std::generic_category().message(errno), {path_.string()});
+  file_.reset(::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (!file_.is_open()) throw Error(std::generic_category().message(errno), {path_.string()});
   bytes_ = text.size();
 }
 
 void Journal::write(const std::string& line) {
   std::size_t done = 0;
   while (done < line.size()) {
-    const ssize_t wrote = ::write(file_, line.data() + done, line.size() - done);
+    const ssize_t wrote = ::write(file_.get(), line.data() + done, line.size() - done);
     if (wrote < 0 && errno == EINTR) continue;
     if (wrote <= 0) throw Error(std::generic_category().message(errno), {path_.string()});
     done += static_cast<std::size_t>(wrote);
@@ -166,12 +162,11 @@ void Journal::write(const std::string& line) {
 }
 
 void Journal::flush() {
-  if (file_ >= 0 && !std::exchange(is_flushed_, true)) ::fdatasync(file_);
+  if (file_.is_open() && !std::exchange(is_flushed_, true)) ::fdatasync(file_.get());
 }
 
 void Journal::remove() {
-  if (file_ >= 0) ::close(file_);
-  file_ = -1;
+  file_.reset();
   bytes_ = 0;
   std::error_code ignored;
   std::filesystem::remove(path_, ignored);

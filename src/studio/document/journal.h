@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "foundation/base/descriptor.h"
+
 // What was done to a scene since it was saved, on the disk: a crash loses nothing.
 namespace airtruth::document {
 
@@ -59,9 +61,6 @@ class Journal {
 
   // ".NAME.studio-journal" beside the file.
   explicit Journal(const std::filesystem::path& file);
-  ~Journal();
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
 
   // What an earlier process left; a last line that it had not finished is left out. Empty where
   // there is none. Throws Error where the file is no journal.
@@ -84,7 +83,7 @@ class Journal {
   void write(const std::string& line);
 
   std::filesystem::path path_;
-  int file_ = -1;
+  Descriptor file_;
   std::size_t bytes_ = 0;
   bool is_flushed_ = true;
 };
