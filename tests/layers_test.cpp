@@ -309,16 +309,20 @@ TEST(Modules, HaveTheNamespaceOfTheirFolder) {
 // Sources of these modules are the implementations of one interface, which one header declares: a
 // command, a format, a method.
 TEST(Modules, HaveAHeaderForEachSource) {
-  const std::map<std::string, std::string> interfaces = {{"cli", "commands.h"},
-                                                         {"labels/exchange", "parts.h"},
-                                                         {"scene/flight_log", "formats.h"},
-                                                         {"scene/scene", "scene.h"},
-                                                         {"scene/trajectory", "path"},
-                                                         {"show/drawing", "pictures.h"},
-                                                         {"runners/classical", "classical.h"},
-                                                         {"runners/network", "inference.h"},
-                                                         {"runners/results", "results_folder.h"},
-                                                         {"runners/tracking", "tracker.h"}};
+  const std::map<std::string, std::string> interfaces = {
+      {"aircraft/texture_file", "picture_formats.h"},
+      {"camera/lens", "calibration.h"},
+      {"camera/motion", "follower.h"},
+      {"cli", "commands.h"},
+      {"labels/exchange", "parts.h"},
+      {"scene/flight_log", "formats.h"},
+      {"scene/scene", "scene.h"},
+      {"scene/trajectory", "path"},
+      {"show/drawing", "pictures.h"},
+      {"runners/classical", "classical.h"},
+      {"runners/network", "inference.h"},
+      {"runners/results", "results_folder.h"},
+      {"runners/tracking", "tracker.h"}};
   const std::regex entry_point(R"re(\n(int main\(|extern "C"))re");
   for (const fs::path& path : all_sources()) {
     if (path.extension() != ".cpp" || !is_source(path)) continue;
