@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that describe a camera: a camera.toml reads back from its own text, and the lens of a
-// calibration maps its rays to the pixels that they come from. All else is an Error.
+// The files that describe a camera: a camera.toml reads back from its own text, the lens of a
+// calibration maps its rays to the pixels that they come from, and a path has a first place. All
+// else is an Error.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "camera/lens/calibration_file.h"
 #include "foundation/base/error.h"
 #include "scene/scene/scene.h"
+#include "scene/trajectory/path.h"
 
 namespace {
 
@@ -55,6 +57,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       read_lens(text, name);
     } catch (const Error&) {
     }
+  }
+  try {
+    const trajectory::Path path = trajectory::parse_path_csv(text, "a.csv");
+    (void)path.at(path.start_s());
+  } catch (const Error&) {
   }
   return 0;
 }
