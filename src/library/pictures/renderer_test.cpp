@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kWidth = 160;
 constexpr int kHeight = 120;
-constexpr int kFrames = 12;
+constexpr int kFrames = 8;
 
 // One background for all tests.
 class InMemory : public testing::Test {

@@ -221,12 +221,12 @@ TEST(CloseMinusOpen, DoesNotRespondToEdgesAndLines) {
 
 // A picture whose sides are no multiples of the blocks is looked at up to its rim.
 TEST(Classical, SeesAnObjectAtEachRim) {
-  constexpr int kColumns = 326, kRows = 250;
+  constexpr int kColumns = 166, kRows = 122;
   std::mt19937 random(8);
   std::normal_distribution<double> noise(0, 1.5);
   for (const char* name : {"cmo", "cmo-hmm"})
     for (const Pixel& centre :
-         {Pixel(322.5, 120.5), Pixel(3.5, 120.5), Pixel(160.5, 246.5), Pixel(160.5, 3.5)}) {
+         {Pixel(162.5, 60.5), Pixel(3.5, 60.5), Pixel(80.5, 118.5), Pixel(80.5, 3.5)}) {
       const auto detector = make_classical(name);
       detector->begin(sequence_of(kColumns, kRows));
       int frames_seen = 0;

@@ -70,7 +70,7 @@ TEST(LogRates, AClipThatDoesNotTurnOrIsOfAnotherFlightIsRefused) {
               testing::StartsWith("it lasts 5.0 s and the clip 10.0 s"));
   // The same turn again and again fits at many offsets.
   FlightLog weaving;
-  for (int i = 0; i <= 6000; ++i)
+  for (int i = 0; i <= 2000; ++i)
     weaving.attitudes.push_back({i / 50.0, {10 * std::sin(i / 50.0 * kPi), 0, 0}});
   std::vector<motion::FrameMotion> motion = measured();
   for (motion::FrameMotion& frame : motion)
