@@ -1,110 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/labelled/truth_table.h"
 
-#include <array>
+#include <cstdint>
 #include <optional>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "foundation/base/text.h"
+#include "labels/annotation/truth_fields.h"
 #include "labels/exchange/text.h"
 
 namespace airtruth::labelled {
 namespace {
 
-// A row as it is written: the names of its columns and its cells.
-class Row {
- public:
+// A row as it is written: the names of its columns and its cells. A value of several numbers has a
+// column for each of them.
+struct Row {
+  using Numbers = std::vector<double>;
+
   void add(const std::string& name, const std::string& cell) {
-    names_.push_back(name);
-    cells_.push_back(cell);
+    names.push_back(name);
+    cells.push_back(cell);
   }
   void add(const std::string& name, std::optional<double> value) {
     add(name, value ? exchange::number(*value) : std::string());
   }
-  template <std::size_t kCount>
-  void add(const std::string& name,
-           const std::array<const char*, kCount>& parts,
-           const std::optional<std::array<double, kCount>>& values) {
-    for (std::size_t i = 0; i < kCount; ++i)
-      add(name + "_" + parts[i], values ? std::optional((*values)[i]) : std::nullopt);
+  void add(const std::string& name, const std::optional<Vector3>& v) {
+    const bool is_in_camera = name == "position_in_cam_m";
+    add(name,
+        is_in_camera ? "x y z" : "north east down",
+        v ? Numbers{v->x(), v->y(), v->z()} : Numbers());
+  }
+  void add(const std::string& name, const std::optional<YawPitchRoll>& a) {
+    add(name, "yaw pitch roll", a ? Numbers{a->yaw_deg, a->pitch_deg, a->roll_deg} : Numbers());
+  }
+  void add(const std::string& name, const std::optional<Pixel>& p) {
+    add(name, "x y", p ? Numbers{p->x(), p->y()} : Numbers());
+  }
+  template <typename AnyBox>
+  void add(const std::string& name, const std::optional<AnyBox>& b) {
+    add(name,
+        "x y width height",
+        b ? Numbers{double(b->x), double(b->y), double(b->width), double(b->height)} : Numbers());
   }
 
-  std::vector<std::string> names() && { return std::move(names_); }
-  std::vector<std::string> cells() && { return std::move(cells_); }
+  // No numbers: the value is not defined.
+  void add(const std::string& name, std::string_view parts, const Numbers& numbers) {
+    const std::vector<std::string> words = words_in(parts);
+    for (std::size_t i = 0; i < words.size(); ++i)
+      add(name + "_" + words[i], numbers.empty() ? std::nullopt : std::optional(numbers[i]));
+  }
 
- private:
-  std::vector<std::string> names_, cells_;
+  std::vector<std::string> names, cells;
 };
-
-constexpr std::array<const char*, 3> kNed{"north", "east", "down"}, kCam{"x", "y", "z"},
-    kTurns{"yaw", "pitch", "roll"};
-constexpr std::array<const char*, 4> kBox{"x", "y", "width", "height"};
-constexpr std::array<const char*, 2> kPixel{"x", "y"};
-
-std::optional<std::array<double, 3>> numbers(const std::optional<Vector3>& v) {
-  return v ? std::optional(std::array{v->x(), v->y(), v->z()}) : std::nullopt;
-}
-std::optional<std::array<double, 3>> numbers(const std::optional<YawPitchRoll>& a) {
-  return a ? std::optional(std::array{a->yaw_deg, a->pitch_deg, a->roll_deg}) : std::nullopt;
-}
-template <typename AnyBox>
-std::optional<std::array<double, 4>> numbers(const std::optional<AnyBox>& b) {
-  return b ? std::optional(
-                 std::array{double(b->x), double(b->y), double(b->width), double(b->height)})
-           : std::nullopt;
-}
-
-void add_encounter(Row& row, const std::optional<annotation::EncounterTruth>& truth) {
-  using separation::Measures;
-  const auto add = [&](const char* name, auto member) {
-    row.add(name, truth ? std::optional<double>(truth->measures.*member) : std::nullopt);
-  };
-  add("horizontal_m", &Measures::horizontal_m);
-  add("above_m", &Measures::above_m);
-  add("closing_speed_mps", &Measures::closing_speed_mps);
-  add("bearing_deg", &Measures::bearing_deg);
-  add("bearing_rate_dps", &Measures::bearing_rate_dps);
-  add("relative_bearing_deg", &Measures::relative_bearing_deg);
-  add("line_of_sight_rate_dps", &Measures::line_of_sight_rate_dps);
-  add("tcpa_s", &Measures::tcpa_s);
-  add("dcpa_m", &Measures::dcpa_m);
-  add("hmd_m", &Measures::hmd_m);
-  add("vmd_m", &Measures::vmd_m);
-  add("tau_mod_s", &Measures::tau_mod_s);
-  add("tcoa_s", &Measures::tcoa_s);
-}
 
 Row row_of(const annotation::Intruder& intruder) {
   Row row;
   row.add("id", intruder.id);
   row.add("aircraft", intruder.aircraft);
-  row.add("position_ned_m", kNed, numbers(intruder.position_ned_m));
-  row.add("velocity_ned_mps", kNed, numbers(intruder.velocity_ned_mps));
-  row.add("attitude_yaw_pitch_roll_deg", kTurns, numbers(intruder.attitude_yaw_pitch_roll_deg));
-  row.add("position_in_cam_m", kCam, numbers(intruder.position_in_cam_m));
-  row.add("range_rate_mps", intruder.range_rate_mps);
-  row.add("azimuth_deg", intruder.azimuth_deg);
-  row.add("elevation_deg", intruder.elevation_deg);
-  row.add("nominal_azimuth_deg", intruder.nominal_azimuth_deg);
-  row.add("nominal_elevation_deg", intruder.nominal_elevation_deg);
-  row.add("exact_box_px", kBox, numbers(intruder.exact_box_px));
-  row.add("covered_box_px", kBox, numbers(intruder.covered_box_px));
-  row.add("visible_box_px", kBox, numbers(intruder.visible_box_px));
-  row.add("visible_area_px", double(intruder.visible_area_px));
-  row.add("alpha_sum_px", intruder.alpha_sum_px);
-  row.add("centroid_px",
-          kPixel,
-          intruder.centroid_px
-              ? std::optional(std::array{intruder.centroid_px->x(), intruder.centroid_px->y()})
-              : std::nullopt);
-  row.add("hidden_by_own_aircraft", intruder.hidden_by_own_aircraft);
-  row.add("hidden_by_occluder", intruder.hidden_by_occluder);
-  row.add("hidden_by_intruder", intruder.hidden_by_intruder);
-  row.add("cut_by_frame", intruder.cut_by_frame);
-  add_encounter(row, intruder.encounter);
+  annotation::each_field(
+      [&]<typename Value>(const std::string& key, const Value& value) {
+        // The label has range, contrast and area in columns of its own. The encounter comes last.
+        constexpr bool is_elsewhere =
+            std::is_same_v<Value, annotation::State> ||
+            std::is_same_v<Value, std::optional<std::int64_t>> ||
+            std::is_same_v<Value, std::optional<annotation::EncounterTruth>>;
+        if constexpr (!is_elsewhere)
+          if (key != "range_m" && key != "contrast_to_noise") row.add(key, value);
+      },
+      intruder);
+  const auto& encounter = intruder.encounter;
+  const auto measures = encounter ? encounter->measures : separation::Measures();
+  annotation::each_measure(
+      [&](const char* key, std::optional<double> value) {
+        row.add(key, encounter ? value : std::nullopt);
+      },
+      measures);
   return row;
 }
 
@@ -171,15 +146,15 @@ std::string line_of(std::vector<std::string> cells) {
 
 }  // namespace
 
-std::vector<std::string> truth_columns() { return row_of(annotation::Intruder()).names(); }
+std::vector<std::string> truth_columns() { return row_of(annotation::Intruder()).names; }
 
 std::vector<std::string> truth_cells(const annotation::Intruder& intruder) {
-  return row_of(intruder).cells();
+  return row_of(intruder).cells;
 }
 
 std::string encounters_header() {
   std::vector<std::string> names = {"part", "sequence", "weight", "id", "aircraft"};
-  for (const std::string& name : row_of(pipeline::EncounterRecord()).names()) names.push_back(name);
+  for (const std::string& name : row_of(pipeline::EncounterRecord()).names) names.push_back(name);
   return line_of(names);
 }
 
@@ -190,7 +165,7 @@ std::string encounter_lines(const replay::Finished& sequence, const std::string&
   for (const pipeline::EncounterRecord& record : sequence.encounters) {
     std::vector<std::string> cells = {
         part, sequence.name, weight, record.id, aircraft_of(sequence, record.id)};
-    for (const std::string& cell : row_of(record).cells()) cells.push_back(cell);
+    for (const std::string& cell : row_of(record).cells) cells.push_back(cell);
     text += line_of(cells);
   }
   return text;

@@ -2,9 +2,9 @@
 #pragma once
 
 // The fields of a frame's truth with their keys in truth.jsonl, in the order of the file: the one
-// list from which a line is written, read and checked, and by which the public records
-// (<airtruth/truth.h>) are copied. `visit(key, member...)` gets the member of each of the given
-// records, which name their members alike.
+// list from which a line is written, read and checked, by which the public records
+// (<airtruth/truth.h>) are copied, and by which a table of the truth has its columns. `visit(key,
+// member...)` gets the member of each of the given records, which name their members alike.
 namespace airtruth::annotation {
 
 // Of EncounterTruth::measures, without the range, which is the intruder's.
