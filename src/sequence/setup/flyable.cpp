@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -52,28 +51,20 @@ std::optional<double> turn_bank_deg(const trajectory::Path& path, double time_s)
   return degrees(std::atan(speed_mps * turn_rad / (2 * kTurnStep_s) / kStandardGravityMps2));
 }
 
-// What a class limits, in the order of BeyondLimit::Quantity, and how an excess of it reads.
+using fleet::FlightLimits;
+
+// What a class limits, and how an excess of it reads.
 struct Limited {
-  double fleet::FlightLimits::*limit;
+  double FlightLimits::*limit;
   double sign;  // -1: the limit is the least, not the most
   const char* words;
 };
 constexpr std::array<Limited, 5> kLimited = {{
-    {&fleet::FlightLimits::fastest_mps,
-     1,
-     "at {:.2f} s it flies {:.1f} m/s, the fastest of its class {:.0f} m/s"},
-    {&fleet::FlightLimits::slowest_mps,
-     -1,
-     "at {:.2f} s it flies {:.1f} m/s, the slowest of its class {:.0f} m/s"},
-    {&fleet::FlightLimits::most_bank_deg,
-     1,
-     "at {:.2f} s it banks {:.1f} degrees, its class at most {:.0f}"},
-    {&fleet::FlightLimits::most_climb_mps,
-     1,
-     "at {:.2f} s it climbs {:.1f} m/s, its class at most {:.0f} m/s"},
-    {&fleet::FlightLimits::most_descent_mps,
-     1,
-     "at {:.2f} s it descends {:.1f} m/s, its class at most {:.0f} m/s"},
+    {&FlightLimits::fastest_mps, 1, "flies {:.1f} m/s, the fastest of its class {:.0f} m/s"},
+    {&FlightLimits::slowest_mps, -1, "flies {:.1f} m/s, the slowest of its class {:.0f} m/s"},
+    {&FlightLimits::most_bank_deg, 1, "banks {:.1f} degrees, its class at most {:.0f}"},
+    {&FlightLimits::most_climb_mps, 1, "climbs {:.1f} m/s, its class at most {:.0f} m/s"},
+    {&FlightLimits::most_descent_mps, 1, "descends {:.1f} m/s, its class at most {:.0f} m/s"},
 }};
 
 // The quantities at a time, in the same order; empty where the path is not there.
@@ -88,49 +79,44 @@ std::optional<std::array<double, 5>> flown(const trajectory::Path& path, double 
                     velocity.z()};
 }
 
+// The greatest excess of a limit; 0: none.
+struct Excess {
+  double by = 0;
+  double time_s = 0;  // on the path's clock
+  double value = 0;   // m/s, or degrees of bank
+};
+
 }  // namespace
 
-std::vector<BeyondLimit> beyond_limits(const std::string& aircraft,
-                                       const trajectory::Path& path,
-                                       double begin_s,
-                                       double end_s) {
-  const fleet::FlightLimits* limits = fleet::flight_limits(aircraft);
+std::string words_beyond_limits(const std::string& aircraft,
+                                const trajectory::Path& path,
+                                double begin_s,
+                                double end_s) {
+  const FlightLimits* limits = fleet::flight_limits(aircraft);
   begin_s = std::max(begin_s, path.start_s());
   end_s = std::min(end_s, path.end_s());
-  if (limits == nullptr || !(end_s >= begin_s)) return {};
-  std::array<BeyondLimit, 5> worst;
-  std::array<double, 5> excess{};
+  if (limits == nullptr || !(end_s >= begin_s)) return "";
+  std::array<Excess, kLimited.size()> worst;
   for (const double time_s : sampled_times(begin_s, end_s)) {
     const auto values = flown(path, time_s);
     for (std::size_t k = 0; values && k < kLimited.size(); ++k) {
       const double limit = limits->*kLimited[k].limit;
       const double sign = kLimited[k].sign;
       const double by = sign * ((*values)[k] - limit);
-      if (!(sign * (*values)[k] > limit * (sign + kToleratedShare)) || by <= excess[k]) continue;
-      excess[k] = by;
-      worst[k] = {static_cast<BeyondLimit::Quantity>(k), time_s, (*values)[k], limit};
+      if (!(sign * (*values)[k] > limit * (sign + kToleratedShare)) || by <= worst[k].by) continue;
+      worst[k] = {by, time_s, (*values)[k]};
     }
   }
-  std::vector<BeyondLimit> result;
-  for (std::size_t k = 0; k < kLimited.size(); ++k)
-    if (excess[k] > 0) result.push_back(worst[k]);
-  return result;
-}
-
-std::string words_beyond_limits(const std::string& aircraft,
-                                const trajectory::Path& path,
-                                double begin_s,
-                                double end_s) {
   std::string words;
-  for (const BeyondLimit& beyond : beyond_limits(aircraft, path, begin_s, end_s))
-    words += (words.empty() ? "" : "; ") +
-             fmt::format(fmt::runtime(kLimited[static_cast<std::size_t>(beyond.quantity)].words),
-                         beyond.time_s,
-                         beyond.value,
-                         beyond.limit);
-  if (words.empty()) return words;
-  const std::string_view name = fleet::flight_limits(aircraft)->name;
-  return fmt::format("{} ({}) cannot fly its path: {}", aircraft, name, words);
+  for (std::size_t k = 0; k < kLimited.size(); ++k) {
+    if (!(worst[k].by > 0)) continue;
+    words += words.empty() ? fmt::format("{} ({}) cannot fly its path: ", aircraft, limits->name)
+                           : std::string("; ");
+    words +=
+        fmt::format("at {:.2f} s it ", worst[k].time_s) +
+        fmt::format(fmt::runtime(kLimited[k].words), worst[k].value, limits->*kLimited[k].limit);
+  }
+  return words;
 }
 
 void warn_not_flyable(const scene::Intruder& intruder,

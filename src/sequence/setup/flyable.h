@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "foundation/base/log.h"
 #include "scene/scene/scene.h"
@@ -13,26 +12,12 @@ namespace airtruth::setup {
 
 struct World;
 
-// A limit of an aircraft's class that its path exceeds, at the instant of the greatest excess.
-struct BeyondLimit {
-  enum class Quantity { kFast, kSlow, kBank, kClimb, kDescent };
-  Quantity quantity = Quantity::kFast;
-  double time_s = 0;  // on the path's clock
-  double value = 0;   // m/s, or degrees of bank
-  double limit = 0;   // of the class (aircraft/fleet/flight_limits.h)
-};
-
-// Returns the limits of its class that an aircraft of the list exceeds on its path from begin_s to
-// end_s. The quantities are true airspeed in still air; the bank of a coordinated turn (tan bank =
-// speed x turn rate / g, whatever attitude is stated); climb; and descent. Each quantity occurs at
-// most once. Returns an empty list where the aircraft's class is unknown.
-std::vector<BeyondLimit> beyond_limits(const std::string& aircraft,
-                                       const trajectory::Path& path,
-                                       double begin_s,
-                                       double end_s);
-
-// Describes the same in one line: "c172/news (light piston) cannot fly its path: at 1.20 s it flies
-// 131.0 m/s, the fastest of its class 92 m/s; ...". Returns "" where the aircraft can fly its path.
+// Says in one line which limits of its class (aircraft/fleet/flight_limits.h) an aircraft of the
+// list exceeds on its path from begin_s to end_s, each at the instant of the greatest excess:
+// "c172/news (light piston) cannot fly its path: at 1.20 s it flies 131.0 m/s, the fastest of its
+// class 92 m/s; ...". The quantities are true airspeed in still air; the bank of a coordinated turn
+// (tan bank = speed x turn rate / g, whatever attitude is stated); climb; and descent. Returns ""
+// where the aircraft can fly its path, and where its class is unknown.
 std::string words_beyond_limits(const std::string& aircraft,
                                 const trajectory::Path& path,
                                 double begin_s,
