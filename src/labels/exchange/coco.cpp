@@ -216,9 +216,7 @@ Clips read_coco(const Reading& in) {
                                           : std::vector<fs::path>{in.source};
   if (files.empty()) throw Error("holds no annotation file (*.json)", {in.source.string()});
   Clips clips;
-  for (const fs::path& file : files) {
-    append(clips, CocoReader(file, in.warn).read());
-  }
+  for (const fs::path& file : files) append(clips, CocoReader(file, in.warn).read());
   return clips;
 }
 

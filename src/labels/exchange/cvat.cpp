@@ -386,10 +386,9 @@ Clips read_images(const fs::path& file,
     subsets[subset].push_back(std::move(picture));
   }
   Clips clips;
-  for (auto& [subset, pictures] : subsets) {
+  for (auto& [subset, pictures] : subsets)
     append(clips,
            clips_of_pictures(std::move(pictures), subset.empty() ? name : subset, file, in.warn));
-  }
   return clips;
 }
 
@@ -429,9 +428,7 @@ Clips read_cvat(const Reading& in) {
   }
   if (files.empty()) throw Error("holds no annotations.xml", {in.source.string()});
   Clips clips;
-  for (const fs::path& file : files) {
-    append(clips, clips_of_file(file, in));
-  }
+  for (const fs::path& file : files) append(clips, clips_of_file(file, in));
   return clips;
 }
 

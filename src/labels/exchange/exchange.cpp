@@ -32,6 +32,11 @@ constexpr const char* kPictures =
     "positions, velocities, attitudes, the camera's motion and lens, light, the boxes of the "
     "other two kinds, frames in which the aircraft is hidden or outside: see truth.jsonl";
 
+// What the formats of single objects lose beside.
+constexpr const char* kCutSequence =
+    "; of a sequence all before the first frame that shows the object whole and after the last "
+    "that shows it; where it begins in the video";
+
 constexpr std::array<About, 13> kAll = {{
     {Format::kCoco,
      "coco",
@@ -54,9 +59,8 @@ constexpr std::array<About, 13> kAll = {{
      read_mot,
      mot_writer,
      "box, track, visibility; range in metres as the tenth column, which its readers pass over; "
-     "the "
-     "class of a track in tracks.txt, and as the number of the class where that was asked for; "
-     "otherwise what is no aircraft is marked as not to be considered",
+     "the class of a track in tracks.txt, and as the number of the class where that was asked "
+     "for; otherwise what is no aircraft is marked as not to be considered",
      "time stamps (a frame rate alone), occlusion and truncation as such, contrast, area"},
     {Format::kVoc,
      "voc",
@@ -64,8 +68,7 @@ constexpr std::array<About, 13> kAll = {{
      read_voc,
      voc_writer,
      "box (the whole pixels that it touches), class, truncated, occluded, contrast_to_noise as a "
-     "further "
-     "element",
+     "further element",
      "track, time, visibility, range, area"},
     {Format::kCvat,
      "cvat",
@@ -81,8 +84,7 @@ constexpr std::array<About, 13> kAll = {{
      read_aot,
      aot_writer,
      "box, track, time in nanoseconds, range, above or below the horizon; the class and the "
-     "contrast "
-     "to noise as further keys of `blob`",
+     "contrast to noise as further keys of `blob`",
      "visibility, occlusion, truncation, area; the id of every aircraft is an `Airplane`, that of "
      "a bird a `Bird`, of a multirotor a `Drone`, of a balloon an `Airborne`; the range of what is "
      "no aircraft (a range marks an aircraft as planned); what is on the lens"},
@@ -92,29 +94,21 @@ constexpr std::array<About, 13> kAll = {{
      read_single_object,
      single_object_writer,
      "box",
-     "class, time, visibility, occlusion, range, contrast, area; of a sequence all before the "
-     "first frame "
-     "that shows the object whole and after the "
-     "last that shows it; where it begins in the video"},
+     "class, time, visibility, occlusion, range, contrast, area"},
     {Format::kGot10k,
      "got10k",
      "GOT-10k",
      read_single_object,
      single_object_writer,
      "box, class, absence, truncation, visibility in eighths (steps of 15 %)",
-     "time stamps, occlusion, range, contrast, area; of a sequence all before the first frame that "
-     "shows the "
-     "object whole and after the "
-     "last that shows it; where it begins in the video"},
+     "time stamps, occlusion, range, contrast, area"},
     {Format::kVot,
      "vot",
      "VOT",
      read_single_object,
      single_object_writer,
      "box, class, occlusion, range and contrast to noise by frame",
-     "time stamps, visibility, truncation, area; of a sequence all before the first frame that "
-     "shows the object whole and after the "
-     "last that shows it; where it begins in the video"},
+     "time stamps, visibility, truncation, area"},
     {Format::kEvision, "evision", "E-Vision", read_evision, nullptr},
     {Format::kCsv, "csv", "frame,x,y,w,h", read_csv, nullptr},
     {Format::kWebdataset,
@@ -139,6 +133,57 @@ constexpr std::array<About, 13> kAll = {{
 const About& about(Format format) {
   return *std::find_if(
       kAll.begin(), kAll.end(), [&](const About& a) { return a.format == format; });
+}
+
+// Gives each label the class that its category states.
+void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& warn) {
+  // By category, its class; empty where it states none.
+  std::map<std::string, std::string> classes;
+  std::map<std::string, std::int64_t> unknown;
+  for (Clip& clip : clips)
+    for (LabelledFrame& frame : clip.frames)
+      for (Label& label : frame.labels) {
+        const auto [known, is_new] = classes.try_emplace(label.category);
+        if (is_new) {
+          const auto asked = options.class_of.find(label.category);
+          known->second = asked != options.class_of.end()
+                              ? asked->second
+                              : annotation::class_of_category(label.category).value_or("");
+        }
+        // A class that the format itself states.
+        if (!annotation::is_aircraft(label.object_class) &&
+            !options.class_of.contains(label.category))
+          continue;
+        if (!known->second.empty())
+          label.object_class = known->second;
+        else if (label.category != options.category)
+          ++unknown[label.category];
+      }
+  for (const auto& [category, object_class] : options.class_of)
+    if (!classes.contains(category))
+      throw Error("no label has the category '" + category + "', for which a class is given");
+  std::vector<std::string> words;
+  for (const auto& [category, count] : unknown)
+    words.push_back(fmt::format("'{}' ({})", category, count));
+  if (!words.empty())
+    airtruth::warn(warn,
+                   fmt::format("{} categories state no class and count as aircraft: {}",
+                               words.size(),
+                               fmt::join(words, ", ")));
+}
+
+WriteOptions options_of(std::span<const Part> parts) {
+  WriteOptions options;
+  options.with_images = false;
+  std::set<std::string> categories;
+  for (const Part& part : parts) {
+    options.parts.push_back(part.name);
+    for (const Clip& clip : part.clips)
+      for (const LabelledFrame& frame : clip.frames)
+        for (const Label& label : frame.labels) categories.insert(label.category);
+  }
+  options.categories = {categories.begin(), categories.end()};
+  return options;
 }
 
 }  // namespace
@@ -236,52 +281,12 @@ std::string loss(Format format) {
     return text + a.lost +
            ", the camera's motion and lens, light, the volumes of each frame, frames in which the "
            "aircraft is hidden or outside: see truth.jsonl.\n";
-  if (*a.lost != 0) text += std::string(a.lost) + "; ";
+  if (*a.lost != 0)
+    text += std::string(a.lost) + (is_single_object(format) ? kCutSequence : "") + "; ";
   text += kPictures;
   text += ".\n\nFrames are counted anew where only every n-th was taken.\n";
   return text;
 }
-
-namespace {
-
-// Gives each label the class that its category states.
-void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& warn) {
-  // By category, its class; empty where it states none.
-  std::map<std::string, std::string> classes;
-  std::map<std::string, std::int64_t> unknown;
-  for (Clip& clip : clips)
-    for (LabelledFrame& frame : clip.frames)
-      for (Label& label : frame.labels) {
-        const auto [known, is_new] = classes.try_emplace(label.category);
-        if (is_new) {
-          const auto asked = options.class_of.find(label.category);
-          known->second = asked != options.class_of.end()
-                              ? asked->second
-                              : annotation::class_of_category(label.category).value_or("");
-        }
-        // A class that the format itself states.
-        if (!annotation::is_aircraft(label.object_class) &&
-            !options.class_of.contains(label.category))
-          continue;
-        if (!known->second.empty())
-          label.object_class = known->second;
-        else if (label.category != options.category)
-          ++unknown[label.category];
-      }
-  for (const auto& [category, object_class] : options.class_of)
-    if (!classes.contains(category))
-      throw Error("no label has the category '" + category + "', for which a class is given");
-  std::vector<std::string> words;
-  for (const auto& [category, count] : unknown)
-    words.push_back(fmt::format("'{}' ({})", category, count));
-  if (!words.empty())
-    airtruth::warn(warn,
-                   fmt::format("{} categories state no class and count as aircraft: {}",
-                               words.size(),
-                               fmt::join(words, ", ")));
-}
-
-}  // namespace
 
 std::vector<Clip> read_clips(Format format,
                              const fs::path& source,
@@ -296,24 +301,6 @@ std::vector<Clip> read_clips(Format format,
   classify(clips, options, warn);
   return clips;
 }
-
-namespace {
-
-WriteOptions options_of(std::span<const Part> parts) {
-  WriteOptions options;
-  options.with_images = false;
-  std::set<std::string> categories;
-  for (const Part& part : parts) {
-    options.parts.push_back(part.name);
-    for (const Clip& clip : part.clips)
-      for (const LabelledFrame& frame : clip.frames)
-        for (const Label& label : frame.labels) categories.insert(label.category);
-  }
-  options.categories = {categories.begin(), categories.end()};
-  return options;
-}
-
-}  // namespace
 
 void write_clips(Format format, const fs::path& folder, std::span<const Part> parts) {
   if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder)))

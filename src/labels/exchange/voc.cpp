@@ -71,7 +71,7 @@ class VocWriter : public FolderWriter {
     add_number(size, "depth", 3);
     add_number(top, "segmented", 0);
     for (const Label& label : clip.frames[i].labels) add_object(top, label, clip);
-    return bare_text_of(document);
+    return text_of(document, "\t", pugi::format_default | pugi::format_no_declaration);
   }
 
   static void add_object(pugi::xml_node top, const Label& label, const Clip& clip) {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "labels/exchange/xml_file.h"
 
-#include <charconv>
-#include <cmath>
 #include <sstream>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
+#include "labels/exchange/text.h"
 
 namespace airtruth::exchange {
 
@@ -57,15 +56,9 @@ pugi::xml_node add_text(pugi::xml_node node, const char* name, const std::string
   return child;
 }
 
-std::string text_of(const pugi::xml_document& document) {
+std::string text_of(const pugi::xml_document& document, const char* indent, unsigned flags) {
   std::ostringstream out;
-  document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
-  return out.str();
-}
-
-std::string bare_text_of(const pugi::xml_document& document) {
-  std::ostringstream out;
-  document.save(out, "\t", pugi::format_default | pugi::format_no_declaration, pugi::encoding_utf8);
+  document.save(out, indent, flags, pugi::encoding_utf8);
   return out.str();
 }
 

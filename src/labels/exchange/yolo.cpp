@@ -142,9 +142,8 @@ class YoloReader {
     if (folders.empty())
       throw Error("holds no labels/, no PART/labels/ and no obj_train_data/", {root_.string()});
     Clips clips;
-    for (const Folders& one : folders) {
+    for (const Folders& one : folders)
       append(clips, clips_of_pictures(pictures(one), "", one.labels, in_.warn));
-    }
     if (clips.empty()) throw Error("holds no labels", {folders.front().labels.string()});
     return clips;
   }
