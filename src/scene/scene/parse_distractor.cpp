@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/scene/parse_distractor.h"
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -60,13 +58,11 @@ Distractor distractor_in(const TableReader& table, DistractorKind kind) {
     one.flap_hz = table.number("flap_hz", kStrokeRate).value_or(one.flap_hz);
     one.flap_phase = table.number("flap_phase", kStrokes).value_or(one.flap_phase);
     one.glide = table.number("glide", kShare).value_or(one.glide);
+    table.refuse({"colour"}, enum_name(kind));
   } else {
     table.refuse(kBirdKeys, enum_name(kind));
-  }
-  if (kind == DistractorKind::kBird)
-    table.refuse({"colour"}, enum_name(kind));
-  else
     one.colour = colour_in(table, "colour", one.colour);
+  }
   one.arm_colour = colour_in(table, "arm_colour", one.colour);
   if (kind != DistractorKind::kMultirotor) {
     table.refuse({"rotors", "arm_colour"}, enum_name(kind));
@@ -163,33 +159,16 @@ LensMark mark_from(const TableReader& table, DistractorKind kind) {
   return mark;
 }
 
-// The ids that are in use.
-class Ids {
- public:
-  explicit Ids(const Scene& scene) {
-    for (const Intruder& intruder : scene.intruders) taken_.insert(intruder.id);
-  }
-  // The id of the table, or the kind's name and the number of this kind.
-  std::string of(const TableReader& table, DistractorKind kind) {
-    const std::int64_t number = ++count_[kind];
-    const auto stated = table.file_name("id");
-    const std::string id = stated ? *stated : fmt::format("{}-{}", enum_name(kind), number);
-    return id;
-  }
-  void take(const TableReader& table, const std::string& id) {
-    if (!taken_.insert(id).second)
-      table.fail("id", fmt::format("id '{}' is taken; expected another", id));
-  }
-
- private:
-  std::set<std::string> taken_;
-  std::map<DistractorKind, std::int64_t> count_;
-};
-
 }  // namespace
 
 void add_distractors(const TableReader& root, Scene& scene) {
-  Ids ids(scene);
+  std::set<std::string> taken;
+  for (const Intruder& intruder : scene.intruders) taken.insert(intruder.id);
+  std::map<DistractorKind, std::int64_t> count;
+  const auto take = [&](const TableReader& table, const std::string& id) {
+    if (!taken.insert(id).second)
+      table.fail("id", fmt::format("id '{}' is taken; expected another", id));
+  };
   for (const TableReader& table : root.tables("distractor", all_keys())) {
     const auto kind = table.choice<DistractorKind>("kind");
     if (!kind)
@@ -201,9 +180,11 @@ void add_distractors(const TableReader& root, Scene& scene) {
                               "flocks included, that a scene has at most",
                               kMaxThings),
                   table.where());
-    const std::string id = ids.of(table, *kind);
+    const std::int64_t number = ++count[*kind];
+    const std::string id =
+        table.file_name("id").value_or(fmt::format("{}-{}", enum_name(*kind), number));
     if (is_on_lens(*kind)) {
-      ids.take(table, id);
+      take(table, id);
       scene.lens_marks.push_back(mark_from(table, *kind));
       scene.lens_marks.back().id = id;
       continue;
@@ -218,7 +199,7 @@ void add_distractors(const TableReader& root, Scene& scene) {
                              flock.size(),
                              kMaxThings));
     for (Intruder& one : flock) {
-      ids.take(table, one.id);
+      take(table, one.id);
       scene.intruders.push_back(std::move(one));
     }
   }

@@ -12,6 +12,11 @@ namespace airtruth::scene {
 // intruder-2 and so on.
 std::vector<Intruder> intruders_from(const TableReader& root);
 
+// Adds the [[distractor]] tables of the file to the scene, whose intruders and seed are known:
+// those in the air to its intruders, flocks bird by bird, those on the lens to its marks. One
+// without an id gets its kind's name and number: bird-1, dirt-2.
+void add_distractors(const TableReader& root, Scene& scene);
+
 inline const TableReader::Keys kEncounterKeys = keys(
     "cpa_time_s cpa_right_m cpa_above_m cpa_ahead_m course_deg speed_mps "
     "climb_mps turn_rate_dps");
