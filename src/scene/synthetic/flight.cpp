@@ -173,9 +173,6 @@ struct Flight::Impl {
 
   Ground make_world();
   Moment moment(int index) const;
-  void check_index(int index) const {
-    check(index >= 0 && index < options.frame_count, "a frame outside the flight was asked for");
-  }
 
   FlightOptions options;
   lens::Lens lens;
@@ -224,7 +221,8 @@ Flight::~Flight() = default;
 Flight::Flight(Flight&&) noexcept = default;
 
 image::Picture Flight::frame(int index) const {
-  impl_->check_index(index);
+  check(index >= 0 && index < impl_->options.frame_count,
+        "a frame outside the flight was asked for");
   const int width = impl_->options.width;
   const int height = impl_->options.height;
   image::Picture picture = image::make_picture(width, height, image::Colour{});
@@ -233,17 +231,15 @@ image::Picture Flight::frame(int index) const {
                         impl_->panorama,
                         impl_->ground,
                         impl_->own,
-                        width,
                         static_cast<float>(impl_->lens.focal_px())};
-  Sensor::Exposure exposure = impl_->sensor.start();
+  Sensor::Exposure exposure(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
   tbb::parallel_for(0, tasks, [&](int task) {
-    RowPainter painter(scenery);
     Row upper(width);
     Row lower(width);
     for (int y = task * kRowsPerTask; y < std::min((task + 1) * kRowsPerTask, height); y += 2) {
-      painter.paint(y, moment, upper);
-      if (y + 1 < height) painter.paint(y + 1, moment, lower);
+      paint_row(scenery, y, moment, upper);
+      if (y + 1 < height) paint_row(scenery, y + 1, moment, lower);
       impl_->sensor.expose(index, y, upper, y + 1 < height ? lower : upper, exposure, picture);
     }
   });

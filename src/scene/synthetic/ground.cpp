@@ -88,12 +88,14 @@ struct Search {
   // Factor of the shade where it met something.
   alignas(64) Floats shade;
 
-  // The height at that distance along the ray, between four texels.
+  // The height at that distance along the ray, between the height bytes of four texels.
   [[gnu::always_inline]] float height_m(const View& tile, const Eye& eye, int i, float at_m) const {
     const float x = (eye.north_m + at_m * north[i]) * tile.per_texel;
     const float y = (eye.east_m + at_m * east[i]) * tile.per_texel;
     const Neighbours n = neighbours(x * scale[i] - 0.5F, y * scale[i] - 0.5F, first[i], wrap[i]);
-    return interpolated_height(tile.texels, n) * (Tile::kHighest_m / 65280);
+    const std::uint32_t sum =
+        weighted(tile.texels, n, [](std::uint32_t texel) { return texel >> 24; });
+    return static_cast<float>(static_cast<std::int32_t>(sum)) * (Tile::kHighest_m / 65280);
   }
 };
 

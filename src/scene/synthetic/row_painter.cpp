@@ -108,6 +108,51 @@ void draw(const Disc& disc, int y, int width, Row& row) {
   }
 }
 
+// What a pixel sees: only sky and hills, the ground (or the horizon), or nothing but the own
+// aircraft.
+enum Sees : std::uint8_t { kSky, kGround, kAircraft };
+
+std::vector<Sees> seen_by_pixels(const Scenery& scenery, int y, const Row& row) {
+  std::vector<Sees> sees(static_cast<std::size_t>(scenery.own.mask.width));
+  for (std::size_t x = 0; x < sees.size(); ++x)
+    sees[x] = above_horizon(scenery.focal_px, row.down[x]) >= 1 ? kSky : kGround;
+  const auto line = static_cast<std::size_t>(y);
+  const LinearRgb* layer = scenery.own.layer.data() + line * sees.size();
+  for (int x = scenery.own.first[line]; x < scenery.own.last[line]; ++x)
+    if (layer[x][3] >= 1) sees[static_cast<std::size_t>(x)] = kAircraft;
+  return sees;
+}
+
+// Ground and sky are blended in the pixels that the horizon crosses.
+void paint_run(const Scenery& scenery, Sees sees, const Row::Run& pixels, const Eye& eye) {
+  if (sees == kAircraft) return;
+  if (sees == kGround) scenery.ground.light(eye, pixels);
+  for (int i = 0; i < pixels.count; ++i) {
+    const float sky_share = above_horizon(scenery.focal_px, pixels.down[i]);
+    if (sky_share <= 0) continue;
+    const LinearRgb sky = scenery.panorama.at(pixels.north[i], pixels.east[i], -pixels.down[i]);
+    const LinearRgb ground = linear_rgb(pixels.red[i], pixels.green[i], pixels.blue[i]);
+    const LinearRgb light = sees == kSky ? sky : LinearRgb(ground + (sky - ground) * sky_share);
+    pixels.red[i] = light[0];
+    pixels.green[i] = light[1];
+    pixels.blue[i] = light[2];
+  }
+}
+
+void add_own_aircraft(const Scenery& scenery, int y, Row& row) {
+  const OwnAircraft& own = scenery.own;
+  const auto line = static_cast<std::size_t>(y);
+  const LinearRgb* layer =
+      own.layer.data() + line * static_cast<std::size_t>(scenery.own.mask.width);
+  for (int x = own.first[line]; x < own.last[line]; ++x) {
+    const LinearRgb& over = layer[x];
+    const auto i = static_cast<std::size_t>(x);
+    row.red[i] = row.red[i] * (1 - over[3]) + over[0];
+    row.green[i] = row.green[i] * (1 - over[3]) + over[1];
+    row.blue[i] = row.blue[i] * (1 - over[3]) + over[2];
+  }
+}
+
 }  // namespace
 
 std::vector<Disc> clutter_at(double time_s,
@@ -134,58 +179,17 @@ std::vector<Disc> clutter_at(double time_s,
   return discs;
 }
 
-RowPainter::RowPainter(const Scenery& scenery)
-    : scenery_(scenery), sees_(static_cast<std::size_t>(scenery.width)) {}
-
-void RowPainter::paint(int y, const Moment& moment, Row& row) {
-  scenery_.view.fill_in(y, moment.nodes, row);
-  sort_pixels(y, row);
-  for (std::size_t first = 0; first < sees_.size();) {
+void paint_row(const Scenery& scenery, int y, const Moment& moment, Row& row) {
+  scenery.view.fill_in(y, moment.nodes, row);
+  const std::vector<Sees> sees = seen_by_pixels(scenery, y, row);
+  for (std::size_t first = 0; first < sees.size();) {
     std::size_t end = first + 1;
-    while (end < sees_.size() && end - first < Row::kRun && sees_[end] == sees_[first]) ++end;
-    paint_run(sees_[first], row.run(first, end - first), moment.eye);
+    while (end < sees.size() && end - first < Row::kRun && sees[end] == sees[first]) ++end;
+    paint_run(scenery, sees[first], row.run(first, end - first), moment.eye);
     first = end;
   }
-  for (const Disc& disc : moment.discs) draw(disc, y, scenery_.width, row);
-  paint_own_aircraft(y, row);
-}
-
-void RowPainter::sort_pixels(int y, const Row& row) {
-  for (std::size_t x = 0; x < sees_.size(); ++x)
-    sees_[x] = above_horizon(scenery_.focal_px, row.down[x]) >= 1 ? kSky : kGround;
-  const auto line = static_cast<std::size_t>(y);
-  const LinearRgb* layer = scenery_.own.layer.data() + line * sees_.size();
-  for (int x = scenery_.own.first[line]; x < scenery_.own.last[line]; ++x)
-    if (layer[x][3] >= 1) sees_[static_cast<std::size_t>(x)] = kAircraft;
-}
-
-// Ground and sky are blended in the pixels that the horizon crosses.
-void RowPainter::paint_run(Sees sees, const Row::Run& pixels, const Eye& eye) const {
-  if (sees == kAircraft) return;
-  if (sees == kGround) scenery_.ground.light(eye, pixels);
-  for (int i = 0; i < pixels.count; ++i) {
-    const float sky_share = above_horizon(scenery_.focal_px, pixels.down[i]);
-    if (sky_share <= 0) continue;
-    const LinearRgb sky = scenery_.panorama.at(pixels.north[i], pixels.east[i], -pixels.down[i]);
-    const LinearRgb ground = linear_rgb(pixels.red[i], pixels.green[i], pixels.blue[i]);
-    const LinearRgb light = sees == kSky ? sky : LinearRgb(ground + (sky - ground) * sky_share);
-    pixels.red[i] = light[0];
-    pixels.green[i] = light[1];
-    pixels.blue[i] = light[2];
-  }
-}
-
-void RowPainter::paint_own_aircraft(int y, Row& row) const {
-  const OwnAircraft& own = scenery_.own;
-  const auto line = static_cast<std::size_t>(y);
-  const LinearRgb* layer = own.layer.data() + line * static_cast<std::size_t>(scenery_.width);
-  for (int x = own.first[line]; x < own.last[line]; ++x) {
-    const LinearRgb& over = layer[x];
-    const auto i = static_cast<std::size_t>(x);
-    row.red[i] = row.red[i] * (1 - over[3]) + over[0];
-    row.green[i] = row.green[i] * (1 - over[3]) + over[1];
-    row.blue[i] = row.blue[i] * (1 - over[3]) + over[2];
-  }
+  for (const Disc& disc : moment.discs) draw(disc, y, scenery.own.mask.width, row);
+  add_own_aircraft(scenery, y, row);
 }
 
 }  // namespace airtruth::synthetic

@@ -47,7 +47,6 @@ struct Scenery {
   const Panorama& panorama;
   const Ground& ground;
   const OwnAircraft& own;
-  int width = 0;
   float focal_px = 0;
 };
 
@@ -73,22 +72,7 @@ struct Moment {
   std::vector<Disc> discs;
 };
 
-// Draws the rows of a frame from top to bottom. Each thread has its own painter.
-class RowPainter {
- public:
-  explicit RowPainter(const Scenery& scenery);
-  void paint(int y, const Moment& moment, Row& row);
-
- private:
-  // What the pixels of a run see: only sky and hills, the ground (or the horizon), or nothing but
-  // the own aircraft.
-  enum Sees : std::uint8_t { kSky, kGround, kAircraft };
-  void sort_pixels(int y, const Row& row);
-  void paint_run(Sees sees, const Row::Run& pixels, const Eye& eye) const;
-  void paint_own_aircraft(int y, Row& row) const;
-
-  Scenery scenery_;
-  std::vector<Sees> sees_;
-};
+// Draws a row of a frame.
+void paint_row(const Scenery& scenery, int y, const Moment& moment, Row& row);
 
 }  // namespace airtruth::synthetic

@@ -143,10 +143,6 @@ Sensor::Sensor(const FlightOptions& options, std::uint32_t seed)
     for (auto& tile : grain_) tile[i] = static_cast<float>(random.normal());
 }
 
-Sensor::Exposure Sensor::start() const {
-  return Exposure(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-}
-
 // Every 16 rows use another part of the noise tile, so that no pattern repeats. Writes the noise of
 // the row and of one pixel more.
 void Sensor::copy_grain(int frame, int y, int channel, float* grain) const {

@@ -19,7 +19,6 @@ class Sensor {
 
   // Luma of a picture before sharpening, in 1/64 of a code value.
   using Exposure = std::vector<std::uint16_t>;
-  Exposure start() const;
 
   // Exposes rows y and y + 1, with an even y; at the bottom of a picture of odd height both are the
   // same row. Rows can come in any order and on any thread.

@@ -97,10 +97,4 @@ inline std::uint32_t weighted(const std::uint32_t* texels, const Neighbours& n, 
          part(texels[n.lower_right]) * (n.right * n.lower);
 }
 
-// The interpolated height byte, 0 to 65280.
-inline float interpolated_height(const std::uint32_t* texels, const Neighbours& n) {
-  return static_cast<float>(static_cast<std::int32_t>(
-      weighted(texels, n, [](std::uint32_t texel) { return texel >> 24; })));
-}
-
 }  // namespace airtruth::synthetic
