@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "aircraft/model/mesh.h"
+#include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/picture.h"
+#include "picture/shade/light.h"
 
 // The virtual image of the E-Vision paper (section II.B), rendered by OpenSceneGraph in OpenGL on
 // EGL without a screen: the intruders over a chroma key green backdrop, with averaged normals,
@@ -20,14 +22,6 @@ struct Instance {
   const model::Mesh* mesh = nullptr;
   Rigid world_from_body;
   double time_s = 0;
-};
-
-// As shade::Light.
-struct HemisphereLight {
-  Vector3 to_sun_in_world{0, 0, -1};
-  std::array<float, 3> sun = {1, 1, 1};
-  std::array<float, 3> sky = {0.3f, 0.3f, 0.3f};
-  std::array<float, 3> ground = {0.1f, 0.1f, 0.1f};
 };
 
 struct Options {
@@ -49,21 +43,18 @@ class Backdrop {
   Backdrop(const Backdrop&) = delete;
   Backdrop& operator=(const Backdrop&) = delete;
 
-  // The virtual image: sRGB over pure green. Focal length and principal point are in airtruth's
-  // pixels.
-  virtual image::Rgb8 render(const Pixel& focal_px,
-                             const Pixel& principal_point_px,
+  // The virtual image: sRGB over pure green. The light is that of sun, sky and ground alone.
+  virtual image::Rgb8 render(const lens::Pinhole& lens,
                              const Rigid& cam_from_world,
-                             const HemisphereLight& light,
+                             const shade::Light& light,
                              const std::vector<Instance>& instances) = 0;
 
   // The same picture, drawn `supersampling` times larger in each direction over transparent black
   // and averaged: linear premultiplied colour and alpha. It is the independent result with which
   // tests compare render's layer.
-  virtual std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
-                                                         const Pixel& principal_point_px,
+  virtual std::vector<std::array<float, 4>> render_alpha(const lens::Pinhole& lens,
                                                          const Rigid& cam_from_world,
-                                                         const HemisphereLight& light,
+                                                         const shade::Light& light,
                                                          const std::vector<Instance>& instances,
                                                          int supersampling) = 0;
 
@@ -79,5 +70,7 @@ std::unique_ptr<Backdrop> open_backdrop(int width, int height, const Options& op
 // The library holds a BackdropOpener of this name.
 using BackdropOpener = std::unique_ptr<Backdrop> (*)(int width, int height, const Options& options);
 constexpr const char* kBackdropSymbol = "airtruth_open_backdrop";
+// What that opener is. Throws Error where no EGL device can be opened.
+std::unique_ptr<Backdrop> make_osg_backdrop(int width, int height, const Options& options);
 
 }  // namespace airtruth::backdrop

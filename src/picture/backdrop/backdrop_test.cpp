@@ -14,10 +14,9 @@ namespace {
 
 constexpr int kWidth = 96;
 constexpr int kHeight = 64;
-const Pixel kFocal{100, 100};
-const Pixel kMiddle{48, 32};
-// HemisphereLight of equal radiance from all directions.
-const HemisphereLight kEven{{0, 0, -1}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
+const lens::Pinhole kLens{{100, 100}, {48, 32}};
+// Light of equal radiance from all directions.
+const shade::Light kEven{{0, 0, -1}, {0, 0, 0}, {1, 1, 1}, {1, 1, 1}};
 
 Options software() {
   Options options;
@@ -69,12 +68,11 @@ const std::array<int, 3> kGreen = {0, 255, 0};
 
 class BackdropTest : public testing::Test {
  protected:
-  image::Rgb8 render(const model::Mesh& mesh, const HemisphereLight& light = kEven) {
-    return backdrop_->render(kFocal, kMiddle, kCamFromWorld, light, {{&mesh, {}, 0}});
+  image::Rgb8 render(const model::Mesh& mesh, const shade::Light& light = kEven) {
+    return backdrop_->render(kLens, kCamFromWorld, light, {{&mesh, {}, 0}});
   }
   std::vector<std::array<float, 4>> render_alpha(const model::Mesh& mesh, int supersampling) {
-    return backdrop_->render_alpha(
-        kFocal, kMiddle, kCamFromWorld, kEven, {{&mesh, {}, 0}}, supersampling);
+    return backdrop_->render_alpha(kLens, kCamFromWorld, kEven, {{&mesh, {}, 0}}, supersampling);
   }
   static std::size_t at(int x, int y) { return static_cast<std::size_t>(y * kWidth + x); }
 
@@ -87,7 +85,7 @@ TEST_F(BackdropTest, SoftwareIsLlvmpipe) {
 }
 
 TEST_F(BackdropTest, WithoutIntrudersAllIsGreen) {
-  const image::Rgb8 image = backdrop_->render(kFocal, kMiddle, kCamFromWorld, kEven, {});
+  const image::Rgb8 image = backdrop_->render(kLens, kCamFromWorld, kEven, {});
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) ASSERT_EQ(colour(image, x, y), kGreen);
   }
@@ -121,7 +119,7 @@ TEST_F(BackdropTest, PrincipalPointAndFocalLengthsMoveAndStretchIt) {
   model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-1, 1, -1, 1}, 10, plain(1, 0, 0));
   const image::Rgb8 image =
-      backdrop_->render({150, 50}, {40, 20}, kCamFromWorld, kEven, {{&mesh, {}, 0}});
+      backdrop_->render({{150, 50}, {40, 20}}, kCamFromWorld, kEven, {{&mesh, {}, 0}});
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const bool inside = PixelBox{25, 15, 30, 10}.contains(x, y);
@@ -137,8 +135,8 @@ TEST_F(BackdropTest, InstanceAndCameraPosesAreApplied) {
   // at (5, 6, 7).
   const Quaternion quarter(Eigen::AngleAxisd(kPi / 2, Vector3::UnitZ()));
   const Rigid cam_from_world = Rigid{Quaternion::Identity(), {5, 6, 7}}.inverse();
-  const image::Rgb8 image = backdrop_->render(
-      kFocal, kMiddle, cam_from_world, kEven, {{&mesh, {quarter, {5, 6, 17}}, 0}});
+  const image::Rgb8 image =
+      backdrop_->render(kLens, cam_from_world, kEven, {{&mesh, {quarter, {5, 6, 17}}, 0}});
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const bool inside = PixelBox{43, 22, 10, 20}.contains(x, y);
@@ -162,12 +160,12 @@ TEST_F(BackdropTest, LightIsLambertPlusTheSkyEncodedAsSrgb) {
   add_rectangle(mesh, {-2, 2, -2, 2}, 10, plain(0.5f, 0.5f, 0.5f));
   // The plate faces the camera along the world's -z, which points up, so it sees only the sky. The
   // sun stands 60 degrees off its normal.
-  const HemisphereLight light{{std::sin(kPi / 3), 0, -std::cos(kPi / 3)},
-                              {0.8f, 0.4f, 0},
-                              {0.1f, 0.1f, 0.3f},
-                              {0.1f, 0.1f, 0.1f}};
+  const shade::Light light{{std::sin(kPi / 3), 0, -std::cos(kPi / 3)},
+                           {0.8f, 0.4f, 0},
+                           {0.1f, 0.1f, 0.3f},
+                           {0.1f, 0.1f, 0.1f}};
   const auto seen =
-      colour(backdrop_->render(kFocal, kMiddle, kCamFromWorld, light, {{&mesh, {}, 0}}), 48, 32);
+      colour(backdrop_->render(kLens, kCamFromWorld, light, {{&mesh, {}, 0}}), 48, 32);
   const auto code = [](double linear) { return 255 * (1.055 * std::pow(linear, 1 / 2.4) - 0.055); };
   EXPECT_NEAR(seen[0], code(0.5 * (0.8 * 0.5 + 0.1)), 1);
   EXPECT_NEAR(seen[1], code(0.5 * (0.4 * 0.5 + 0.1)), 1);
@@ -257,8 +255,7 @@ TEST_F(BackdropTest, PropellerTurnsAboutItsAxis) {
   part.axis_in_body = {0, 0, 1};
   part.centre_in_body = {0, 0, 10};
   part.revolutions_per_s = 1;
-  const image::Rgb8 image =
-      backdrop_->render(kFocal, kMiddle, kCamFromWorld, kEven, {{&mesh, {}, 0.25}});
+  const image::Rgb8 image = backdrop_->render(kLens, kCamFromWorld, kEven, {{&mesh, {}, 0.25}});
   EXPECT_NE(colour(image, 48, 14), kGreen);
   EXPECT_EQ(colour(image, 30, 32), kGreen);
 }
@@ -266,8 +263,7 @@ TEST_F(BackdropTest, PropellerTurnsAboutItsAxis) {
 TEST_F(BackdropTest, BehindTheCameraIsNothingAndTwiceTheSameMeshIsTwoInstances) {
   model::Mesh mesh = empty_mesh();
   add_rectangle(mesh, {-0.5f, 0.5f, -0.5f, 0.5f}, 0, plain(1, 0, 0));
-  const image::Rgb8 image = backdrop_->render(kFocal,
-                                              kMiddle,
+  const image::Rgb8 image = backdrop_->render(kLens,
                                               kCamFromWorld,
                                               kEven,
                                               {{&mesh, {Quaternion::Identity(), {-2, 0, 10}}, 0},

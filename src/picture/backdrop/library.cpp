@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library itself, airtruth-late-backdrop.so.
-#include "picture/backdrop/osg_backdrop.h"
+#include "picture/backdrop/backdrop.h"
 
 extern "C" {
 extern __attribute__((visibility("default")))

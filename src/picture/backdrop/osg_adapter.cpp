@@ -31,15 +31,13 @@ osg::Vec3f eye_direction_from_world(const Rigid& cam_from_world,
   return osg_from_vector(kEyeFromCam.cwiseProduct(direction_in_cam).normalized().cast<float>());
 }
 
-osg::Matrixd projection(const Pixel& focal_px,
-                        const Pixel& principal_point_px,
-                        const Window& window) {
-  const double x_per_px = window.near_m / focal_px.x();
-  const double y_per_px = window.near_m / focal_px.y();
-  const double left = (window.in_frame.x - principal_point_px.x()) * x_per_px;
-  const double right = (window.in_frame.right() - principal_point_px.x()) * x_per_px;
-  const double top = (principal_point_px.y() - window.in_frame.y) * y_per_px;
-  const double bottom = (principal_point_px.y() - window.in_frame.bottom()) * y_per_px;
+osg::Matrixd projection(const lens::Pinhole& lens, const Window& window) {
+  const double x_per_px = window.near_m / lens.focal_px.x();
+  const double y_per_px = window.near_m / lens.focal_px.y();
+  const double left = (window.in_frame.x - lens.principal_point_px.x()) * x_per_px;
+  const double right = (window.in_frame.right() - lens.principal_point_px.x()) * x_per_px;
+  const double top = (lens.principal_point_px.y() - window.in_frame.y) * y_per_px;
+  const double bottom = (lens.principal_point_px.y() - window.in_frame.bottom()) * y_per_px;
   return osg::Matrixd::frustum(left, right, bottom, top, window.near_m, window.far_m);
 }
 

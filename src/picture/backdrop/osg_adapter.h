@@ -4,6 +4,7 @@
 #include <osg/Matrixd>
 #include <osg/Vec3f>
 
+#include "camera/lens/lens.h"
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 
@@ -22,9 +23,7 @@ struct Window {
   double near_m = 1;
   double far_m = 2;
 };
-osg::Matrixd projection(const Pixel& focal_px,
-                        const Pixel& principal_point_px,
-                        const Window& window);
+osg::Matrixd projection(const lens::Pinhole& lens, const Window& window);
 
 inline osg::Vec3f osg_from_vector(const Eigen::Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "picture/backdrop/osg_backdrop.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
+#include "picture/backdrop/backdrop.h"
 #include "picture/backdrop/egl_context.h"
 #include "picture/backdrop/frame_buffer.h"
 #include "picture/backdrop/osg_adapter.h"
@@ -27,8 +26,7 @@ constexpr double kNearestM = 0.05;
 constexpr int kTilePx = 1024;
 
 struct PinholeView {
-  Pixel focal_px;
-  Pixel principal_point_px;
+  lens::Pinhole lens;
   Rigid cam_from_world;
 };
 
@@ -42,10 +40,10 @@ std::optional<Box> box_of_sphere(const PinholeView& view,
   if (centre.z() + radius_m <= kNearestM) return std::nullopt;
   if (centre.z() < 2 * radius_m) return frame;
   const Pixel middle =
-      view.principal_point_px + view.focal_px.cwiseProduct(centre.head<2>() / centre.z());
+      view.lens.principal_point_px + view.lens.focal_px.cwiseProduct(centre.head<2>() / centre.z());
   const double slant = centre.norm() / centre.z();
   const Pixel reach =
-      view.focal_px * (slant * radius_m / (centre.z() - radius_m)) + Pixel::Constant(2);
+      view.lens.focal_px * (slant * radius_m / (centre.z() - radius_m)) + Pixel::Constant(2);
   return Box{middle.x() - reach.x(), middle.y() - reach.y(), 2 * reach.x(), 2 * reach.y()};
 }
 
@@ -72,40 +70,31 @@ std::array<float, 4> block_mean(
 }
 
 // The scene graph with its context.
-struct Graph {
-  Graph(int frame_width, int frame_height, const Options& given)
-      : width(frame_width), height(frame_height), options(given), egl(given.gpu, given.software) {
-    // Suppresses all messages.
-    osg::setNotifyLevel(osg::ALWAYS);
-    const EglContext::Current current(egl);
-    device = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    viewer = new osgViewer::Viewer;
-    viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    window = viewer->setUpViewerAsEmbeddedInWindow(0, 0, width, height);
-    viewer->setLightingMode(osg::View::NO_LIGHT);
-    viewer->getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-    viewer->getCamera()->setCullingMode(
-        // Culling would drop small aircraft.
-        osg::CullSettings::NO_CULLING);
-    viewer->getCamera()->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    root->setStateSet(shading.state());
-    viewer->setSceneData(root);
-    viewer->realize();
-    gl = osg::GLExtensions::Get(window->getState()->getContextID(), true);
-  }
+class OsgBackdrop final : public Backdrop {
+ public:
+  OsgBackdrop(int width, int height, const Options& options);
+  ~OsgBackdrop() override;
 
-  ~Graph() {
-    const EglContext::Current current(egl);
-    green.reset();
-    tile.reset();
-    aircraft.clear();
-    viewer = nullptr;
-    window = nullptr;
-  }
+  image::Rgb8 render(const lens::Pinhole& lens,
+                     const Rigid& cam_from_world,
+                     const shade::Light& light,
+                     const std::vector<Instance>& instances) override;
+  std::vector<std::array<float, 4>> render_alpha(const lens::Pinhole& lens,
+                                                 const Rigid& cam_from_world,
+                                                 const shade::Light& light,
+                                                 const std::vector<Instance>& instances,
+                                                 int supersampling) override;
+  std::string device_name() const override { return device_; }
+
+ private:
+  struct OnDevice {
+    std::vector<osg::ref_ptr<osg::Texture2D>> textures;
+    std::vector<std::unique_ptr<OsgMesh>> instances;
+  };
 
   // Puts the instances into the scene graph. Returns the boxes of the frame that they can touch.
   std::vector<Box> stage(const PinholeView& view,
-                         const HemisphereLight& light,
+                         const shade::Light& light,
                          const std::vector<Instance>& instances);
   void draw(FrameBuffer& target,
             const PinholeView& view,
@@ -113,49 +102,74 @@ struct Graph {
             const osg::Vec4& clear_colour);
   OsgMesh& instance_of(const model::Mesh& mesh, std::size_t nth);
 
-  struct OnDevice {
-    std::vector<osg::ref_ptr<osg::Texture2D>> textures;
-    std::vector<std::unique_ptr<OsgMesh>> instances;
-  };
-
-  int width;
-  int height;
-  Options options;
-  EglContext egl;
-  std::string device;
-  osg::ref_ptr<osg::Group> root = new osg::Group;
-  Shading shading;
-  osg::ref_ptr<osgViewer::Viewer> viewer;
-  osg::ref_ptr<osgViewer::GraphicsWindowEmbedded> window;
-  osg::GLExtensions* gl = nullptr;
-  std::map<const model::Mesh*, OnDevice> aircraft;
-  double near_m = 1;
-  double far_m = 2;
+  int width_;
+  int height_;
+  Options options_;
+  EglContext egl_;
+  std::string device_;
+  osg::ref_ptr<osg::Group> root_ = new osg::Group;
+  Shading shading_;
+  osg::ref_ptr<osgViewer::Viewer> viewer_;
+  osg::ref_ptr<osgViewer::GraphicsWindowEmbedded> window_;
+  osg::GLExtensions* gl_ = nullptr;
+  std::map<const model::Mesh*, OnDevice> aircraft_;
+  double near_m_ = 1;
+  double far_m_ = 2;
   // The target of render().
-  std::unique_ptr<FrameBuffer> green;
+  std::unique_ptr<FrameBuffer> green_;
   // The target of render_alpha().
-  std::unique_ptr<FrameBuffer> tile;
+  std::unique_ptr<FrameBuffer> tile_;
 };
 
-OsgMesh& Graph::instance_of(const model::Mesh& mesh, std::size_t nth) {
-  const auto [place, is_new] = aircraft.try_emplace(&mesh);
+OsgBackdrop::OsgBackdrop(int width, int height, const Options& options)
+    : width_(width), height_(height), options_(options), egl_(options.gpu, options.software) {
+  // Suppresses all messages.
+  osg::setNotifyLevel(osg::ALWAYS);
+  const EglContext::Current current(egl_);
+  device_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  viewer_ = new osgViewer::Viewer;
+  viewer_->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+  window_ = viewer_->setUpViewerAsEmbeddedInWindow(0, 0, width, height);
+  viewer_->setLightingMode(osg::View::NO_LIGHT);
+  viewer_->getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+  viewer_->getCamera()->setCullingMode(
+      // Culling would drop small aircraft.
+      osg::CullSettings::NO_CULLING);
+  viewer_->getCamera()->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  root_->setStateSet(shading_.state());
+  viewer_->setSceneData(root_);
+  viewer_->realize();
+  gl_ = osg::GLExtensions::Get(window_->getState()->getContextID(), true);
+}
+
+OsgBackdrop::~OsgBackdrop() {
+  const EglContext::Current current(egl_);
+  green_.reset();
+  tile_.reset();
+  aircraft_.clear();
+  viewer_ = nullptr;
+  window_ = nullptr;
+}
+
+OsgMesh& OsgBackdrop::instance_of(const model::Mesh& mesh, std::size_t nth) {
+  const auto [place, is_new] = aircraft_.try_emplace(&mesh);
   OnDevice& on_device = place->second;
-  if (is_new) on_device.textures = osg_textures(mesh, options.anisotropy);
+  if (is_new) on_device.textures = osg_textures(mesh, options_.anisotropy);
   while (on_device.instances.size() <= nth)
     on_device.instances.push_back(std::make_unique<OsgMesh>(mesh, on_device.textures));
   return *on_device.instances[nth];
 }
 
-std::vector<Box> Graph::stage(const PinholeView& view,
-                              const HemisphereLight& light,
-                              const std::vector<Instance>& instances) {
-  root->removeChildren(0, root->getNumChildren());
-  shading.set_light(light, view.cam_from_world);
+std::vector<Box> OsgBackdrop::stage(const PinholeView& view,
+                                    const shade::Light& light,
+                                    const std::vector<Instance>& instances) {
+  root_->removeChildren(0, root_->getNumChildren());
+  shading_.set_light(light, view.cam_from_world);
   std::vector<Box> boxes;
   std::map<const model::Mesh*, std::size_t> used;
-  near_m = 1e9;
-  far_m = 0;
-  const Box frame{0, 0, static_cast<double>(width), static_cast<double>(height)};
+  near_m_ = 1e9;
+  far_m_ = 0;
+  const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
   for (const Instance& instance : instances) {
     check(instance.mesh != nullptr, "an instance has a mesh");
     OsgMesh& mesh = instance_of(*instance.mesh, used[instance.mesh]++);
@@ -164,99 +178,74 @@ std::vector<Box> Graph::stage(const PinholeView& view,
     if (!box || !overlap(*box, frame)) continue;
     boxes.push_back(*box);
     mesh.place(instance, view.cam_from_world);
-    root->addChild(mesh.node());
+    root_->addChild(mesh.node());
     const double distance_m = (view.cam_from_world * centre_in_world).z();
-    near_m = std::min(near_m, distance_m - mesh.radius_m() - 0.01);
-    far_m = std::max(far_m, distance_m + mesh.radius_m() + 0.01);
+    near_m_ = std::min(near_m_, distance_m - mesh.radius_m() - 0.01);
+    far_m_ = std::max(far_m_, distance_m + mesh.radius_m() + 0.01);
   }
-  near_m = std::max(near_m, kNearestM);
-  far_m = std::max(far_m, near_m + 1);
+  near_m_ = std::max(near_m_, kNearestM);
+  far_m_ = std::max(far_m_, near_m_ + 1);
   return boxes;
 }
 
-void Graph::draw(FrameBuffer& target,
-                 const PinholeView& view,
-                 const Box& in_frame,
-                 const osg::Vec4& clear_colour) {
-  osg::Camera& camera = *viewer->getCamera();
+void OsgBackdrop::draw(FrameBuffer& target,
+                       const PinholeView& view,
+                       const Box& in_frame,
+                       const osg::Vec4& clear_colour) {
+  osg::Camera& camera = *viewer_->getCamera();
   camera.setClearColor(clear_colour);
   camera.setViewport(0, 0, target.width(), target.height());
   camera.setViewMatrix(eye_from_world(view.cam_from_world));
-  camera.setProjectionMatrix(
-      projection(view.focal_px, view.principal_point_px, {in_frame, near_m, far_m}));
-  window->setDefaultFboId(target.id());
-  gl->glBindFramebuffer(GL_FRAMEBUFFER_EXT, target.id());
-  viewer->frame(0);
+  camera.setProjectionMatrix(projection(view.lens, {in_frame, near_m_, far_m_}));
+  window_->setDefaultFboId(target.id());
+  gl_->glBindFramebuffer(GL_FRAMEBUFFER_EXT, target.id());
+  viewer_->frame(0);
 }
 
-class OsgBackdrop final : public Backdrop {
- public:
-  OsgBackdrop(int width, int height, const Options& options) : graph_(width, height, options) {}
-
-  image::Rgb8 render(const Pixel& focal_px,
-                     const Pixel& principal_point_px,
-                     const Rigid& cam_from_world,
-                     const HemisphereLight& light,
-                     const std::vector<Instance>& instances) override;
-  std::vector<std::array<float, 4>> render_alpha(const Pixel& focal_px,
-                                                 const Pixel& principal_point_px,
-                                                 const Rigid& cam_from_world,
-                                                 const HemisphereLight& light,
-                                                 const std::vector<Instance>& instances,
-                                                 int supersampling) override;
-  std::string device_name() const override { return graph_.device; }
-
- private:
-  Graph graph_;
-};
-
-image::Rgb8 OsgBackdrop::render(const Pixel& focal_px,
-                                const Pixel& principal_point_px,
+image::Rgb8 OsgBackdrop::render(const lens::Pinhole& lens,
                                 const Rigid& cam_from_world,
-                                const HemisphereLight& light,
+                                const shade::Light& light,
                                 const std::vector<Instance>& instances) {
-  const PinholeView view{focal_px, principal_point_px, cam_from_world};
-  const EglContext::Current current(graph_.egl);
-  graph_.shading.set_encoding(Encoding::kSrgb);
-  graph_.stage(view, light, instances);
-  if (!graph_.green)
-    graph_.green = std::make_unique<FrameBuffer>(
-        *graph_.gl, graph_.width, graph_.height, GL_RGBA8, graph_.options.samples);
-  const Box frame{0, 0, static_cast<double>(graph_.width), static_cast<double>(graph_.height)};
-  graph_.draw(*graph_.green, view, frame, {0, 1, 0, 1});
-  const std::size_t row_bytes = 3 * static_cast<std::size_t>(graph_.width);
-  std::vector<std::uint8_t> upside_down(row_bytes * static_cast<std::size_t>(graph_.height));
-  graph_.green->read(GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
-  image::Rgb8 result = image::make_rgb8(graph_.width, graph_.height);
-  for (int y = 0; y < graph_.height; ++y)
+  const PinholeView view{lens, cam_from_world};
+  const EglContext::Current current(egl_);
+  shading_.set_encoding(Encoding::kSrgb);
+  stage(view, light, instances);
+  if (!green_)
+    green_ = std::make_unique<FrameBuffer>(*gl_, width_, height_, GL_RGBA8, options_.samples);
+  const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
+  draw(*green_, view, frame, {0, 1, 0, 1});
+  const std::size_t row_bytes = 3 * static_cast<std::size_t>(width_);
+  std::vector<std::uint8_t> upside_down(row_bytes * static_cast<std::size_t>(height_));
+  green_->read(GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
+  image::Rgb8 result = image::make_rgb8(width_, height_);
+  for (int y = 0; y < height_; ++y)
     std::memcpy(result.at(0, y),
-                upside_down.data() + row_bytes * static_cast<std::size_t>(graph_.height - 1 - y),
+                upside_down.data() + row_bytes * static_cast<std::size_t>(height_ - 1 - y),
                 row_bytes);
   return result;
 }
 
-std::vector<std::array<float, 4>> OsgBackdrop::render_alpha(const Pixel& focal_px,
-                                                            const Pixel& principal_point_px,
+std::vector<std::array<float, 4>> OsgBackdrop::render_alpha(const lens::Pinhole& lens,
                                                             const Rigid& cam_from_world,
-                                                            const HemisphereLight& light,
+                                                            const shade::Light& light,
                                                             const std::vector<Instance>& instances,
                                                             int supersampling) {
   check(supersampling >= 1 && supersampling <= kTilePx, "supersampling is 1 to 1024");
-  const PinholeView view{focal_px, principal_point_px, cam_from_world};
-  const EglContext::Current current(graph_.egl);
-  graph_.shading.set_encoding(Encoding::kLinear);
-  const std::vector<Box> boxes = graph_.stage(view, light, instances);
+  const PinholeView view{lens, cam_from_world};
+  const EglContext::Current current(egl_);
+  shading_.set_encoding(Encoding::kLinear);
+  const std::vector<Box> boxes = stage(view, light, instances);
   // Side of a tile, in pixels of the frame.
   const int tile_px = kTilePx / supersampling;
   const int size = tile_px * supersampling;
-  if (!graph_.tile || graph_.tile->width() != size)
-    graph_.tile = std::make_unique<FrameBuffer>(*graph_.gl, size, size, GL_RGBA32F_ARB, 1);
-  std::vector<std::array<float, 4>> result(static_cast<std::size_t>(graph_.width) *
-                                           static_cast<std::size_t>(graph_.height));
+  if (!tile_ || tile_->width() != size)
+    tile_ = std::make_unique<FrameBuffer>(*gl_, size, size, GL_RGBA32F_ARB, 1);
+  std::vector<std::array<float, 4>> result(static_cast<std::size_t>(width_) *
+                                           static_cast<std::size_t>(height_));
   std::vector<std::array<float, 4>> samples(static_cast<std::size_t>(size) *
                                             static_cast<std::size_t>(size));
-  for (int y0 = 0; y0 < graph_.height; y0 += tile_px) {
-    for (int x0 = 0; x0 < graph_.width; x0 += tile_px) {
+  for (int y0 = 0; y0 < height_; y0 += tile_px) {
+    for (int x0 = 0; x0 < width_; x0 += tile_px) {
       const Box in_frame{static_cast<double>(x0),
                          static_cast<double>(y0),
                          static_cast<double>(tile_px),
@@ -264,11 +253,11 @@ std::vector<std::array<float, 4>> OsgBackdrop::render_alpha(const Pixel& focal_p
       if (std::none_of(
               boxes.begin(), boxes.end(), [&](const Box& box) { return overlap(box, in_frame); }))
         continue;
-      graph_.draw(*graph_.tile, view, in_frame, {0, 0, 0, 0});
-      graph_.tile->read(GL_RGBA, GL_FLOAT, samples.data());
-      for (int y = y0; y < std::min(y0 + tile_px, graph_.height); ++y) {
-        for (int x = x0; x < std::min(x0 + tile_px, graph_.width); ++x)
-          result[static_cast<std::size_t>(y) * static_cast<std::size_t>(graph_.width) +
+      draw(*tile_, view, in_frame, {0, 0, 0, 0});
+      tile_->read(GL_RGBA, GL_FLOAT, samples.data());
+      for (int y = y0; y < std::min(y0 + tile_px, height_); ++y) {
+        for (int x = x0; x < std::min(x0 + tile_px, width_); ++x)
+          result[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                  static_cast<std::size_t>(x)] =
               block_mean(samples, size, x - x0, y - y0, supersampling);
       }

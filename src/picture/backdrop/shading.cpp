@@ -98,7 +98,7 @@ void Shading::set(const char* name, const osg::Vec3f& value) {
   state_->getOrCreateUniform(name, osg::Uniform::FLOAT_VEC3)->set(value);
 }
 
-void Shading::set_light(const HemisphereLight& light, const Rigid& cam_from_world) {
+void Shading::set_light(const shade::Light& light, const Rigid& cam_from_world) {
   const Vector3 up_in_world{0, 0, -1};
   set("to_sun_in_eye", eye_direction_from_world(cam_from_world, light.to_sun_in_world));
   set("up_in_eye", eye_direction_from_world(cam_from_world, up_in_world));

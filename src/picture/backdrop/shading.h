@@ -18,7 +18,7 @@ class Shading {
  public:
   Shading();
   osg::StateSet* state() const { return state_.get(); }
-  void set_light(const HemisphereLight& light, const Rigid& cam_from_world);
+  void set_light(const shade::Light& light, const Rigid& cam_from_world);
   void set_encoding(Encoding encoding);
 
  private:

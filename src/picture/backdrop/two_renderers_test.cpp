@@ -21,17 +21,11 @@ constexpr int kWidth = 160;
 constexpr int kHeight = 128;
 constexpr double kFocalPx = 900;
 constexpr double kTime = 0.37;
-const Pixel kFocal{kFocalPx, kFocalPx};
-const Pixel kMiddle{80.3, 63.6};
+const lens::Pinhole kLens{{kFocalPx, kFocalPx}, {80.3, 63.6}};
 
-struct HemisphereLight {
-  Vector3 to_sun_in_world = shade::to_sun(130, 40);
-  std::array<float, 3> sun = {0.9f, 0.85f, 0.8f};
-  std::array<float, 3> sky = {0.25f, 0.3f, 0.4f};
-  std::array<float, 3> ground = {0.1f, 0.09f, 0.06f};
-};
-const HemisphereLight kSunny;
-const HemisphereLight kOvercast{{0, 0, -1}, {0, 0, 0}, {0.8f, 0.9f, 1}, {0.3f, 0.25f, 0.2f}};
+const shade::Light kSunny{
+    shade::to_sun(130, 40), {0.9f, 0.85f, 0.8f}, {0.25f, 0.3f, 0.4f}, {0.1f, 0.09f, 0.06f}};
+const shade::Light kOvercast{{0, 0, -1}, {0, 0, 0}, {0.8f, 0.9f, 1}, {0.3f, 0.25f, 0.2f}};
 
 struct Precision {
   // Of the ray tracer.
@@ -61,9 +55,9 @@ backdrop::Options software() {
 
 image::Layer traced(const model::Mesh& mesh,
                     const Rigid& world_from_body,
-                    const HemisphereLight& light,
+                    const shade::Light& light,
                     int quality) {
-  const lens::Lens lens(lens::Pinhole{kFocal, kMiddle}, {kWidth, kHeight});
+  const lens::Lens lens(kLens, {kWidth, kHeight});
   render::View view;
   view.lens = &lens;
   view.world_from_cam = cam_from_world().inverse();
@@ -71,7 +65,7 @@ image::Layer traced(const model::Mesh& mesh,
   view.height = kHeight;
   const shade::Model model(mesh);
   return render::render(view,
-                        {light.to_sun_in_world, light.sun, light.sky, light.ground},
+                        light,
                         {{&model, world_from_body, kTime}},
                         {Box{0, 0, kWidth, kHeight}},
                         {.quality = quality});
@@ -79,16 +73,12 @@ image::Layer traced(const model::Mesh& mesh,
 
 Comparison compare(const model::Mesh& mesh,
                    const Rigid& world_from_body,
-                   const HemisphereLight& light,
+                   const shade::Light& light,
                    const Precision& precision = {}) {
   const image::Layer layer = traced(mesh, world_from_body, light, precision.quality);
   const auto gl = backdrop::open_backdrop(kWidth, kHeight, software());
-  const auto drawn = gl->render_alpha(kFocal,
-                                      kMiddle,
-                                      cam_from_world(),
-                                      {light.to_sun_in_world, light.sun, light.sky, light.ground},
-                                      {{&mesh, world_from_body, kTime}},
-                                      precision.supersampling);
+  const auto drawn = gl->render_alpha(
+      kLens, cam_from_world(), light, {{&mesh, world_from_body, kTime}}, precision.supersampling);
   Comparison result;
   double difference = 0;
   double total = 0;

@@ -148,13 +148,10 @@ class ChromaKey : public Painter {
                            moment.time_s});
     }
     if (instances.empty()) return;
-    const backdrop::HemisphereLight light{
+    const shade::Light light{
         setup::to_sun_in_world(scene_.light), ambient.sun, ambient.sky(), ambient.ground};
-    const image::Rgb8 virtual_image = backdrop_->render(pinhole.focal_px,
-                                                        pinhole.principal_point_px,
-                                                        moment.sight.cam_from_world,
-                                                        light,
-                                                        instances);
+    const image::Rgb8 virtual_image =
+        backdrop_->render(pinhole, moment.sight.cam_from_world, light, instances);
     const image::Picture before = picture.clone();
     composite::composite_chroma_key(picture,
                                     virtual_image,
