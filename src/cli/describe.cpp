@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -19,26 +20,21 @@ namespace {
 // Escapes text for roff, so that none of it is a command or an escape. Text in backticks becomes
 // bold.
 std::string roff(const std::string& text) {
+  static const std::map<char, const char*> escapes = {{'\\', "\\e"},
+                                                      {'-', "\\-"},
+                                                      {'\'', "\\(aq"},
+                                                      {'"', "\\(dq"},
+                                                      {'~', "\\(ti"},
+                                                      {'^', "\\(ha"},
+                                                      {'\n', " "}};
   std::string result;
   bool is_bold = false;
   for (const char c : text) {
     if (c == '`') {
       result += is_bold ? "\\fR" : "\\fB";
       is_bold = !is_bold;
-    } else if (c == '\\') {
-      result += "\\e";
-    } else if (c == '-') {
-      result += "\\-";
-    } else if (c == '\'') {
-      result += "\\(aq";
-    } else if (c == '"') {
-      result += "\\(dq";
-    } else if (c == '~') {
-      result += "\\(ti";
-    } else if (c == '^') {
-      result += "\\(ha";
-    } else if (c == '\n') {
-      result += ' ';
+    } else if (const auto escape = escapes.find(c); escape != escapes.end()) {
+      result += escape->second;
     } else {
       result += c;
     }
@@ -78,15 +74,8 @@ Value value_of(const CLI::Option& option) {
   if (colon == std::string::npos) return value;
   const std::string rest = type.substr(colon + 1);
   if (rest.starts_with('{') && rest.ends_with('}')) {
-    std::string word;
-    for (const char c : rest.substr(1)) {
-      if (c == ',' || c == '}') {
-        value.choices.push_back(word);
-        word.clear();
-      } else {
-        word += c;
-      }
-    }
+    std::istringstream words(rest.substr(1, rest.size() - 2));
+    for (std::string word; std::getline(words, word, ',');) value.choices.push_back(word);
   } else if (const std::size_t open = rest.find('['); open != std::string::npos) {
     value.limits = rest.substr(open + 1, rest.find(']') - open - 1);
   } else {
@@ -140,13 +129,25 @@ struct Page {
   std::vector<std::string> path;  // airtruth, dataset, build
 };
 
-std::string page_name(const std::vector<std::string>& path) {
-  return fmt::format("{}", fmt::join(path, "-"));
+// Adds the command and all its subcommands.
+void add_pages(const Page& page, std::vector<Page>& pages) {
+  pages.push_back(page);
+  for (const CLI::App* command : commands_of(*page.app)) {
+    Page below{command, page.path};
+    below.path.push_back(command->get_name());
+    add_pages(below, pages);
+  }
 }
 
+std::string joined(const std::vector<std::string>& words, const char* separator) {
+  return fmt::format("{}", fmt::join(words, separator));
+}
+
+std::string page_name(const std::vector<std::string>& path) { return joined(path, "-"); }
+
 std::string synopsis(const Page& page) {
-  std::string text = ".SH SYNOPSIS\n\\fB" + roff(fmt::format("{}", fmt::join(page.path, " "))) +
-                     "\\fR [\\fIOPTION\\fR]...";
+  std::string text =
+      ".SH SYNOPSIS\n\\fB" + roff(joined(page.path, " ")) + "\\fR [\\fIOPTION\\fR]...";
   if (!commands_of(*page.app).empty()) text += " \\fICOMMAND\\fR ...";
   for (const CLI::Option* option : options_of(*page.app, true))
     text += " \\fI" + roff(option->get_name(true)) + "\\fR" +
@@ -224,55 +225,38 @@ std::string manual_page(const CLI::App& root, const Page& page) {
   return text + see_also(page, is_root);
 }
 
-// The command and all its subcommands.
-void add_pages(const CLI::App& root, const Page& page, std::map<std::string, std::string>& pages) {
-  pages[page_name(page.path) + ".1"] = manual_page(root, page);
-  for (const CLI::App* command : commands_of(*page.app)) {
-    Page below{command, page.path};
-    below.path.push_back(command->get_name());
-    add_pages(root, below, pages);
-  }
-}
+// The cases of the three functions of the script.
+struct Cases {
+  std::string words;
+  std::string values;
+  std::string groups;
+};
 
-void add_cases(const CLI::App& root,
-               const Page& page,
-               std::string& words,
-               std::string& values,
-               std::string& groups) {
-  std::vector<std::string> all;
+void add_cases(const CLI::App& root, const Page& page, Cases& cases) {
   std::vector<const CLI::Option*> options = options_of(*page.app, false);
-  const std::vector<const CLI::Option*> common = options_of(root, false);
   if (page.app != &root)
-    for (const CLI::Option* option : common)
+    for (const CLI::Option* option : options_of(root, false))
       if (option->check_lname("quiet") || option->check_lname("json-log"))
         options.push_back(option);
-  const auto commands = commands_of(*page.app);
-  for (const CLI::App* command : commands) all.push_back(command->get_name());
-  const std::string name = fmt::format("{}", fmt::join(page.path, " "));
+  const std::string name = joined(page.path, " ");
+  std::vector<std::string> commands;
+  for (const CLI::App* command : commands_of(*page.app)) commands.push_back(command->get_name());
   if (!commands.empty())
-    groups += fmt::format("    {}) commands={} ;;\n",
-                          shell_word(name),
-                          shell_word(fmt::format("{}", fmt::join(all, " "))));
-  all.clear();
+    cases.groups += fmt::format(
+        "    {}) commands={} ;;\n", shell_word(name), shell_word(joined(commands, " ")));
+  std::vector<std::string> all;
   for (const CLI::Option* option : options) {
-    const auto names = spellings(*option);
-    all.insert(all.end(), names.begin(), names.end());
     const Value value = value_of(*option);
-    for (const std::string& spelling : names) {
+    for (const std::string& spelling : spellings(*option)) {
+      all.push_back(spelling);
       if (value.name.empty()) continue;
-      values += fmt::format("    {}) takes_value=1 choices={} ;;\n",
-                            shell_word(name + " " + spelling),
-                            shell_word(fmt::format("{}", fmt::join(value.choices, " "))));
+      cases.values += fmt::format("    {}) takes_value=1 choices={} ;;\n",
+                                  shell_word(name + " " + spelling),
+                                  shell_word(joined(value.choices, " ")));
     }
   }
-  words += fmt::format("    {}) options={} ;;\n",
-                       shell_word(name),
-                       shell_word(fmt::format("{}", fmt::join(all, " "))));
-  for (const CLI::App* command : commands) {
-    Page below{command, page.path};
-    below.path.push_back(command->get_name());
-    add_cases(root, below, words, values, groups);
-  }
+  cases.words +=
+      fmt::format("    {}) options={} ;;\n", shell_word(name), shell_word(joined(all, " ")));
 }
 
 constexpr const char* kScript =
@@ -328,29 +312,13 @@ _airtruth() {{
 complete -o filenames -F _airtruth airtruth
 )";
 
-// Section 1 of the manual in roff, by file name: airtruth.1, and airtruth-COMMAND.1 or
-// airtruth-GROUP-COMMAND.1 for each command. The same program gives the same bytes.
-std::map<std::string, std::string> manual_pages(const CLI::App& app) {
-  std::map<std::string, std::string> pages;
-  add_pages(app, {&app, {app.get_name()}}, pages);
-  return pages;
-}
-
-// A bash script that completes commands, options, the values of options that have a list of
-// choices, and otherwise file names.
-std::string bash_completion(const CLI::App& app) {
-  std::string words;
-  std::string values;
-  std::string groups;
-  add_cases(app, {&app, {app.get_name()}}, words, values, groups);
-  return fmt::format(
-      kScript, fmt::arg("words", words), fmt::arg("groups", groups), fmt::arg("values", values));
-}
-
 }  // namespace
 
 // This command is hidden from --help: the build calls it to make the files that a package installs
-// beside the program.
+// beside the program. They are section 1 of the manual in roff (airtruth.1, and airtruth-COMMAND.1
+// or airtruth-GROUP-COMMAND.1 for each command), and a bash script that completes commands,
+// options, the values of options that have a list of choices, and otherwise file names. The same
+// program gives the same bytes.
 void add_describe(CLI::App& app, Context&) {
   auto* command = app.add_subcommand(
       "describe", "Write manual pages and bash completion, made from the program's own help");
@@ -360,8 +328,18 @@ void add_describe(CLI::App& app, Context&) {
   command->callback([out, &app] {
     const std::filesystem::path folder = *out;
     std::filesystem::create_directories(folder / "man1");
-    for (const auto& [name, text] : manual_pages(app)) write_file(folder / "man1" / name, text);
-    write_file(folder / "airtruth.bash", bash_completion(app));
+    std::vector<Page> pages;
+    add_pages({&app, {app.get_name()}}, pages);
+    Cases cases;
+    for (const Page& page : pages) {
+      write_file(folder / "man1" / (page_name(page.path) + ".1"), manual_page(app, page));
+      add_cases(app, page, cases);
+    }
+    write_file(folder / "airtruth.bash",
+               fmt::format(kScript,
+                           fmt::arg("words", cases.words),
+                           fmt::arg("groups", cases.groups),
+                           fmt::arg("values", cases.values)));
   });
 }
 
