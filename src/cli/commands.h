@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <type_traits>
@@ -15,11 +15,14 @@
 namespace airtruth::cli {
 
 struct Context {
-  // Creates the console after parsing, when --quiet and --json-log are known.
-  std::function<Console&()> console;
+  ConsoleOptions options;
   std::stop_token stop;
   // Exit code of a command that finished its work and has faults to report.
   int exit_code = 0;
+  std::optional<Console> opened = {};
+
+  // Creates the console after parsing, when --quiet and --json-log are known.
+  Console& console() { return opened ? *opened : opened.emplace(options); }
 };
 
 // Declares a command that calls run(arguments, context) after its arguments are parsed. Returns the

@@ -2,10 +2,8 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <new>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -86,59 +84,43 @@ std::string unknown_word(const CLI::App& app) {
   return names.empty() ? "" : "there is no command '" + word + "'" + did_you_mean(word, names);
 }
 
-// --help and --version.
-int print_help(const CLI::App& app,
-               const CLI::ParseError& asked,
-               cli::Console& console,
-               const std::function<void(const std::string&)>& say) {
-  std::ostringstream text;
-  app.exit(asked, text, text);
-  try {
-    console.print(text.str());
-  } catch (const Error& error) {
-    say(error.what());
-    return kBadInput;
-  }
-  return 0;
-}
-
-int run(CLI::App& app,
-        int argc,
-        char** argv,
-        cli::ConsoleOptions& options,
-        std::optional<cli::Console>& console) {
-  const auto say = [&](const std::string& message) {
-    if (!console) console.emplace(options);
-    console->end_progress();
-    console->error(message);
-  };
+// Parses the words and runs the command. --help and --version come as a ParseError.
+int parse(CLI::App& app, int argc, char** argv, cli::Context& context) {
   try {
     app.parse(argc, argv);
-    return 0;
+    return context.exit_code;
   } catch (const CLI::ParseError& error) {
     const std::string unknown = unknown_word(app);
-    if (error.get_exit_code() == 0 && unknown.empty()) {
-      if (!console) console.emplace(options);
-      return print_help(app, error, *console, say);
+    if (error.get_exit_code() != 0 || !unknown.empty()) {
+      context.console().error((unknown.empty() ? error.what() : unknown) + " (see --help)");
+      return kBadInput;
     }
-    say((unknown.empty() ? error.what() : unknown) + " (see --help)");
-    return kBadInput;
+    std::ostringstream text;
+    app.exit(error, text, text);
+    context.console().print(text.str());
+    return 0;
+  }
+}
+
+int run(CLI::App& app, int argc, char** argv, cli::Context& context) {
+  try {
+    return parse(app, argc, argv, context);
   } catch (const Interrupted&) {
-    if (!console) console.emplace(options);
-    console->interrupted();
+    context.console().interrupted();
     return cli::kInterrupted;
   } catch (const Error& error) {
-    say(error.what());
+    context.console().error(error.what());
     return kBadInput;
   } catch (const std::filesystem::filesystem_error& error) {
-    say(Error(error.code().message(), {error.path1().string()}).what());
+    context.console().error(Error(error.code().message(), {error.path1().string()}).what());
     return kBadInput;
   } catch (const std::bad_alloc&) {
-    say("out of memory; the input asks for more than the machine, or its limit (ulimit -v), has");
+    context.console().error(
+        "out of memory; the input asks for more than the machine, or its limit (ulimit -v), has");
     return kOurFailure;
   } catch (const std::exception& error) {
-    say(std::string(error.what()) +
-        " (this is a fault of airtruth; please report it with what you ran)");
+    context.console().error(std::string(error.what()) +
+                            " (this is a fault of airtruth; please report it with what you ran)");
     return kOurFailure;
   }
 }
@@ -167,17 +149,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.fallthrough();
   app.failure_message(CLI::FailureMessage::simple);
-  cli::ConsoleOptions options;
-  app.add_flag("--quiet", options.quiet, "Print warnings and errors alone");
-  app.add_flag("--json-log", options.json_log, "Log as JSON, an object a line, on standard error");
-  std::optional<cli::Console> console;
-  cli::Context context;
-  context.stop = signals.token();
-  context.console = [&]() -> cli::Console& {
-    if (!console) console.emplace(options);
-    return *console;
-  };
+  cli::Context context{.options = {}, .stop = signals.token()};
+  app.add_flag("--quiet", context.options.quiet, "Print warnings and errors alone");
+  app.add_flag(
+      "--json-log", context.options.json_log, "Log as JSON, an object a line, on standard error");
   for (cli::Add* add : kCommands) add(app, context);
-  const int code = run(app, argc, argv, options, console);
-  return code != 0 ? code : context.exit_code;
+  return run(app, argc, argv, context);
 }
