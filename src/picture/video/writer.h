@@ -11,6 +11,9 @@
 
 namespace airtruth::video {
 
+using Format = image::VideoFormat;
+using Encoder = image::VideoEncoder;
+
 // The format of a file's ending. A missing or other ending is an Error that lists the endings.
 Format format_of_file(const std::filesystem::path& path);
 // For example ".mp4"; "" for png (a folder of 000000.png ...).

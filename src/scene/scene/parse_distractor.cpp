@@ -8,6 +8,7 @@
 
 #include "scene/scene/flock.h"
 #include "scene/scene/parse_intruder.h"
+#include "scene/scene/scene.h"
 
 namespace airtruth::scene {
 namespace {

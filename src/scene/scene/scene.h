@@ -42,7 +42,7 @@ namespace airtruth::scene {
 
 // The choices that a scene file states as a word: each is an enum with the words of the file. The
 // words stand in no other place. lens::ModelKind and Readout are choices of [lens] and [shutter],
-// video::Format and video::Encoder of [output].
+// image::VideoFormat and image::VideoEncoder of [output].
 
 // [motion] model: how the camera's shake is modelled. kAuto means kRotation, and kHomography for
 // the compositing method kChromaKey.
@@ -325,12 +325,12 @@ struct Composite {
 // [output]: the files that are written.
 struct Output {
   // A folder of pictures for kPng.
-  video::Format video = video::Format::kMp4;
+  image::VideoFormat video = image::VideoFormat::kMp4;
   int quality = 18;
   // For kMp4: the longest time between two key frames, from which alone a reader can begin.
   double keyframe_s = 0.5;
   // For kMp4.
-  video::Encoder encoder = video::Encoder::kX264;
+  image::VideoEncoder encoder = image::VideoEncoder::kX264;
   Where encoder_where;
   // True: each intruder's alpha is written as well, frame by frame.
   bool masks = false;

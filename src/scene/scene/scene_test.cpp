@@ -81,9 +81,9 @@ TEST(Scene, WhatIsNotSaidHasItsDefault) {
   const Scene scene = parse_scene(paper(), "a.toml");
   EXPECT_EQ(scene.intruders[1].id, "intruder-2");
   EXPECT_EQ(scene.composite.method, CompositeMethod::kMatte);
-  EXPECT_EQ(scene.output.video, video::Format::kMp4);
+  EXPECT_EQ(scene.output.video, image::VideoFormat::kMp4);
   EXPECT_EQ(scene.output.quality, 18);
-  EXPECT_EQ(scene.output.encoder, video::Encoder::kX264);
+  EXPECT_EQ(scene.output.encoder, image::VideoEncoder::kX264);
   EXPECT_EQ(scene.render.quality, 3);
   EXPECT_FALSE(scene.light.exposure);
   std::string unnamed = paper();

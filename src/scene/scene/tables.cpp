@@ -251,11 +251,11 @@ namespace {
 
 void take_encoder(Output& output, const TableReader& table) {
   if (!table.has("encoder")) return;
-  output.encoder = table.choice<video::Encoder>("encoder").value_or(output.encoder);
+  output.encoder = table.choice<image::VideoEncoder>("encoder").value_or(output.encoder);
   output.encoder_where = table.where("encoder");
   const bool is_hardware =
-      output.encoder != video::Encoder::kX264 && output.encoder != video::Encoder::kAuto;
-  if (is_hardware && output.video != video::Format::kMp4)
+      output.encoder != image::VideoEncoder::kX264 && output.encoder != image::VideoEncoder::kAuto;
+  if (is_hardware && output.video != image::VideoFormat::kMp4)
     throw Error(std::string("encoder is ") + enum_name(output.encoder) +
                     ", which writes H.264; expected video = \"mp4\"",
                 output.encoder_where);
@@ -307,7 +307,7 @@ Output output_in(const TableReader& parent) {
   const TableReader table =
       parent.table("output", {"video", "quality", "keyframe_s", "encoder", "masks"});
   Output output;
-  output.video = table.choice<video::Format>("video").value_or(output.video);
+  output.video = table.choice<image::VideoFormat>("video").value_or(output.video);
   output.quality = static_cast<int>(table.whole("quality", 0, 51).value_or(output.quality));
   output.keyframe_s = table.number("keyframe_s", kKeyframeSpacing).value_or(output.keyframe_s);
   take_encoder(output, table);
