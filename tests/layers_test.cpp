@@ -315,6 +315,7 @@ TEST(Modules, HaveAHeaderForEachSource) {
       {"camera/motion", "follower.h"},
       {"cli", "commands.h"},
       {"labels/exchange", "parts.h"},
+      {"picture/backdrop", "backdrop.h"},
       {"scene/flight_log", "formats.h"},
       {"scene/scene", "scene.h"},
       {"scene/trajectory", "path"},
