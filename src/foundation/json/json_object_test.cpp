@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "foundation/json/parse_json.h"
-
 #include "support/error_of.h"
 
 namespace airtruth {

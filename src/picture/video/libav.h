@@ -101,8 +101,8 @@ AVColorSpace space_of(image::Matrix matrix);
 // The samples of a decoded frame as a Picture of that colour, which must fit the layout.
 image::Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour);
 
-// The format of grey or Y'CbCr with a plane for each component. `jpeg`: the one of JPEG's full range
-// (yuvj*) where there is one.
+// The format of grey or Y'CbCr with a plane for each component. `jpeg`: the one of JPEG's full
+// range (yuvj*) where there is one.
 AVPixelFormat planar_format(image::Chroma chroma, bool jpeg = false);
 
 // A frame with memory for its samples. Throws std::bad_alloc.
