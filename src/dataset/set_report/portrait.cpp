@@ -27,7 +27,6 @@ Portrait::Point point_of(const annotation::Frame& frame, const annotation::Intru
   point.time_s = frame.time_s;
   point.range_m = intruder.range_m;
   point.azimuth_deg = intruder.azimuth_deg;
-  point.elevation_deg = intruder.elevation_deg;
   if (intruder.position_ned_m) point.position_ned_m = numbers(*intruder.position_ned_m);
   if (const auto box = annotation::box_to_show(intruder)) {
     point.width_px = box->width;

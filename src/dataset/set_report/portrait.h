@@ -30,7 +30,7 @@ struct Portrait {
   struct Point {
     std::int64_t frame = 0;
     double time_s = 0;
-    std::optional<double> range_m, azimuth_deg, elevation_deg;
+    std::optional<double> range_m, azimuth_deg;
     // Negative after the closest approach; empty where the sequence has no record of it.
     std::optional<double> to_closest_s;
     std::optional<std::array<double, 3>> position_ned_m;

@@ -81,8 +81,6 @@ struct Layout {
   bool rgb = false;
   // True for yuvj* and RGB.
   bool full_range = false;
-  // True for nv12, nv16 and nv24.
-  bool interleaved_chroma = false;
   // Number of bits above 8; they are dropped with rounding.
   int shift = 0;
 };

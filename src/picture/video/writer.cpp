@@ -95,7 +95,6 @@ void Writer::State::encode(const AVFrame* frame) {
     const int got = avcodec_receive_packet(codec.get(), packet.get());
     if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
     check_av(got, "cannot encode");
-    if (packet->duration == 0) packet->duration = 0;
     av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
     packet->stream_index = stream->index;
     const int written = av_interleaved_write_frame(output.get(), packet.get());
