@@ -124,9 +124,10 @@ def compare(arguments, shared, clip, number, stage, parts):
     print(f"{stage}: {clip}", file=sys.stderr, flush=True)
     # The onboard cameras look ahead; those on the ground look up at aircraft that fly level.
     level = ["--camera-pitch", "0"] if clip in ONBOARD else []
+    kind = ["--helicopter"] if clip.startswith("V_HELICOPTER") and not pose else []
     process = subprocess.run([arguments.program, "--quiet", "compare", "--real", video, "--boxes", boxes, "--origin", str(origin),
                               "--scene", scene, "-o", comparison, "--frames", str(arguments.frames), "--overwrite",
-                              "--no-match" if pose else "--match", *level],
+                              "--no-match" if pose else "--match", *level, *kind],
                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if process.returncode == 2:  # the clip cannot be compared; anything else is a fault of the program
         print(f"ablation: {clip} is left out: {process.stderr.strip()}", file=sys.stderr, flush=True)

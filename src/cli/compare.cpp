@@ -61,11 +61,17 @@ void add_match_options(CLI::App& command, CompareArguments& arguments) {
       arguments.match,
       "Search the type, attitude, livery and sun with which the inserted aircraft looks like the "
       "real one (the default), or take the scene's");
+  CLI::Option* types =
+      command
+          .add_option("--types",
+                      arguments.types,
+                      "Aircraft to search among (`airtruth aircraft list`), with commas between")
+          ->delimiter(',');
   command
-      .add_option("--types",
-                  arguments.types,
-                  "Aircraft to search among (`airtruth aircraft list`), with commas between")
-      ->delimiter(',');
+      .add_flag("--helicopter",
+                arguments.helicopter,
+                "The real aircraft is a helicopter: search among helicopters, not aeroplanes")
+      ->excludes(types);
   command
       .add_option("--camera-pitch",
                   arguments.camera_pitch_deg,

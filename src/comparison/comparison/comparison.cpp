@@ -151,11 +151,11 @@ class Comparing {
     std::vector<cv::Mat> few;
     auto it = std::next(masks.begin(), static_cast<std::ptrdiff_t>(masks.size() / 2));
     for (; it != masks.end() && few.size() < kPoseMasks; ++it) few.push_back(it->second);
-    const std::vector<match::PoseFit> fits =
-        match::fit_types(few,
-                         options_.types.empty() ? match::types_to_match() : options_.types,
-                         options_.warn,
-                         options_.stop);
+    const std::vector<match::PoseFit> fits = match::fit_types(
+        few,
+        options_.types.empty() ? match::types_to_match(options_.helicopter) : options_.types,
+        options_.warn,
+        options_.stop);
     take(fits[0], scene);
     const std::vector<video::Frame> read = frames_of_the_middle();
     const std::vector<match::SunFrame> frames = sun_frames(read);

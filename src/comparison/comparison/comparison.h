@@ -26,11 +26,12 @@ namespace airtruth::comparison {
 struct Options {
   bool overwrite = false;
   int pairs = 6;  // number of pairs in the figure
-  // Search for the attitude, and the type among these (empty: types_to_match(), match/pose.h),
-  // whose silhouette is the real one's, and for the sun under which light and dark are where the
-  // real one has them (match/sun.h); else all three are the scene's.
+  // Search for the attitude, and the type among these (empty: types_to_match(helicopter),
+  // match/pose.h), whose silhouette is the real one's, and for the sun under which light and dark
+  // are where the real one has them (match/sun.h); else all three are the scene's.
   bool match = true;
   std::vector<std::string> types;
+  bool helicopter = false;  // the real aircraft is one
   // Upward pitch of the camera; light comes from above in the world. Empty: camera_pitch_deg()
   // (match/place.h).
   std::optional<double> camera_pitch_deg;

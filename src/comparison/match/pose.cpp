@@ -299,7 +299,11 @@ std::vector<Contender> contenders_among(const std::vector<std::string>& types,
 
 }  // namespace
 
-std::vector<std::string> types_to_match() {
+std::vector<std::string> types_to_match(bool helicopters) {
+  if (helicopters)
+    return words_in(
+        "helicopter-light/white helicopter-turbine/white helicopter-twin/white "
+        "helicopter-tandem/white");
   return words_in(
       "738/738-default 747/744-Default A320/A320-default CR7/CR7-Default AT7/AT7-default "
       "Citation-Bravo/Models/Bravo-ai beech-200/beech-200-vh-mwk SF3/SFF-Airest pa-28/pa-28-g-egll "

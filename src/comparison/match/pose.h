@@ -24,9 +24,10 @@ struct PoseFit {
   double aspect_ratio = 1;
 };
 
-// Types of distinct appearance, one of each kind, in mostly white paint like most civil aircraft.
-// They are searched where the user states no types.
-std::vector<std::string> types_to_match();
+// Types of distinct appearance, one of each kind, in mostly white paint like most civil aircraft:
+// aeroplanes, or helicopters. They are searched where the user states no types. One silhouette of
+// a few pixels fits aircraft of both classes alike, so the class is stated and not searched.
+std::vector<std::string> types_to_match(bool helicopters);
 
 // Renders silhouettes of each type from 78 directions and searches them, mirrored and rotated in
 // the picture, for the best match with the first mask. Of the three types that match it best, it

@@ -65,6 +65,14 @@ void expect_found_again(const YawPitchRoll& truth) {
 }
 
 // Both are seen from below.
+TEST(Types, ToMatchAreInstalledAndOfTheClassThatIsAskedFor) {
+  for (const bool helicopters : {false, true})
+    for (const std::string& type : types_to_match(helicopters)) {
+      EXPECT_EQ(fleet::aircraft_fitting(type), std::vector{type});
+      EXPECT_EQ(type.starts_with("helicopter-"), helicopters) << type;
+    }
+}
+
 TEST(Pose, AnAircraftThatComesNearerNoseUpIsFoundAgainInItsPicture) {
   expect_found_again({-60, -12, 5});
 }
