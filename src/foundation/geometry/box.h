@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include <airtruth/box.h>
@@ -29,6 +30,15 @@ inline std::optional<PixelBox> intersection(const PixelBox& a, const PixelBox& b
   const int height = std::min(a.bottom(), b.bottom()) - y;
   if (width <= 0 || height <= 0) return std::nullopt;
   return PixelBox{x, y, width, height};
+}
+
+// The number of pixels, and the index of one of them where they stand row by row.
+inline std::size_t pixels_in(const PixelBox& box) {
+  return static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height);
+}
+inline std::size_t index_in(const PixelBox& box, int x, int y) {
+  return static_cast<std::size_t>(y - box.y) * static_cast<std::size_t>(box.width) +
+         static_cast<std::size_t>(x - box.x);
 }
 
 inline Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }

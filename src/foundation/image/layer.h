@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "foundation/geometry/box.h"
@@ -27,15 +28,10 @@ struct Coverage {
 
   Coverage() = default;
   explicit Coverage(const PixelBox& of, float everywhere = 0)
-      : box(of),
-        alpha(static_cast<std::size_t>(of.width) * static_cast<std::size_t>(of.height),
-              everywhere) {}
+      : box(of), alpha(pixels_in(of), everywhere) {}
 
   bool empty() const { return alpha.empty(); }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y - box.y) * static_cast<std::size_t>(box.width) +
-           static_cast<std::size_t>(x - box.x);
-  }
+  std::size_t index(int x, int y) const { return index_in(box, x, y); }
   float at(int x, int y) const { return box.contains(x, y) ? alpha[index(x, y)] : 0; }
 };
 
@@ -47,7 +43,25 @@ void each_pixel(Coverage& coverage, const Visit& visit) {
     for (int x = coverage.box.x; x < coverage.box.right(); ++x) visit(x, y, coverage.alpha[i++]);
 }
 
+// Areas of an intruder's silhouette before any point spread, in pixels, so that a difference
+// between two of them is due to occlusion alone.
+struct Areas {
+  double alone_px = 0;           // without occlusion, with the part beyond the frame's border
+  double alone_in_frame_px = 0;  // without occlusion, within the frame
+  double seen_px = 0;            // the part of alone_in_frame_px that no nearer intruder hides
+  double free_px = 0;            // the part of seen_px that the own aircraft leaves free
+  double clear_px = 0;           // the part of free_px that no other occluder hides
+  bool operator==(const Areas&) const = default;
+};
+
 struct Layer {
+  Layer() = default;
+  // Nothing on a patch.
+  explicit Layer(const PixelBox& on)
+      : patch(on),
+        pixels(pixels_in(on)),
+        depth_m(pixels.size(), std::numeric_limits<float>::infinity()) {}
+
   // The position in the frame; width == 0 means an empty layer.
   PixelBox patch{};
   // patch.height rows of patch.width pixels.
@@ -59,19 +73,8 @@ struct Layer {
   // pixel's alpha is the sum over the intruders.
   std::vector<Coverage> coverage;
 
-  // The areas below have one entry per intruder, in pixels. They are areas of the silhouette before
-  // any point spread, so that a difference between two of them is due to occlusion alone.
-  //
-  // Without occlusion, within the frame.
-  std::vector<double> area_alone_in_frame_px;
-  // Without occlusion, with the part beyond the frame's border.
-  std::vector<double> area_alone_px;
-  // The part of area_alone_in_frame_px that no nearer intruder hides.
-  std::vector<double> area_seen_px;
-  // The part of area_seen_px that the own aircraft leaves free.
-  std::vector<double> area_free_px;
-  // The part of area_free_px that no other occluder hides.
-  std::vector<double> area_clear_px;
+  // By intruder.
+  std::vector<Areas> areas;
 
   // 1 for each pixel of the patch in which occluders hide every intruder wholly
   // (picture/composite/cover.h): nothing is drawn there, whatever the pixel holds. Empty: there
@@ -80,10 +83,7 @@ struct Layer {
 
   bool is_open(std::size_t i) const { return closed.empty() || closed[i] == 0; }
   bool empty() const { return patch.width == 0; }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y - patch.y) * static_cast<std::size_t>(patch.width) +
-           static_cast<std::size_t>(x - patch.x);
-  }
+  std::size_t index(int x, int y) const { return index_in(patch, x, y); }
 };
 
 // The own-aircraft mask, one byte per pixel: 0 where the own aircraft hides the scene, 255 where
@@ -92,10 +92,7 @@ struct Mask {
   int width = 0;
   int height = 0;
   std::vector<unsigned char> free;  // width * height
-  bool is_free(int x, int y) const {
-    return free[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                static_cast<std::size_t>(x)] >= 128;
-  }
+  bool is_free(int x, int y) const { return free[index_in({0, 0, width, height}, x, y)] >= 128; }
 };
 
 }  // namespace airtruth::image

@@ -67,10 +67,6 @@ std::vector<CodedWindow> coded_windows(const image::Picture& background,
 
 std::vector<std::uint8_t> in_marked_blocks(const PixelBox& patch,
                                            const std::vector<std::uint8_t>& marked) {
-  const auto index = [&](int x, int y) {
-    return static_cast<std::size_t>(y - patch.y) * static_cast<std::size_t>(patch.width) +
-           static_cast<std::size_t>(x - patch.x);
-  };
   std::vector<std::uint8_t> result(marked.size(), 0);
   const auto first = [](int v) { return v / kCodecBlockPx * kCodecBlockPx; };
   for (int by = first(patch.y); by < patch.bottom(); by += kCodecBlockPx)
@@ -78,10 +74,11 @@ std::vector<std::uint8_t> in_marked_blocks(const PixelBox& patch,
       const PixelBox block = *intersection({bx, by, kCodecBlockPx, kCodecBlockPx}, patch);
       bool any = false;
       for (int y = block.y; y < block.bottom(); ++y)
-        for (int x = block.x; x < block.right(); ++x) any = any || marked[index(x, y)] != 0;
+        for (int x = block.x; x < block.right(); ++x)
+          any = any || marked[index_in(patch, x, y)] != 0;
       if (!any) continue;
       for (int y = block.y; y < block.bottom(); ++y)
-        std::fill_n(&result[index(block.x, y)], block.width, std::uint8_t{1});
+        std::fill_n(&result[index_in(patch, block.x, y)], block.width, std::uint8_t{1});
     }
   return result;
 }

@@ -16,7 +16,7 @@ bool any_alpha(const AlphaMask& mask) {
 std::vector<float> shares_past(const std::vector<const Occluder*>& before, const PixelBox& patch) {
   std::vector<float> shares;
   if (before.empty()) return shares;
-  shares.reserve(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height));
+  shares.reserve(pixels_in(patch));
   for (int y = patch.y; y < patch.bottom(); ++y)
     for (int x = patch.x; x < patch.right(); ++x) {
       float share = 1;
@@ -109,8 +109,8 @@ void find_areas(image::Layer& layer, const Occlusion& occlusion) {
     each_pixel(layer.coverage[a], [&](int x, int y, double share) {
       if (!(share > 0)) return;
       const std::size_t i = layer.index(x, y);
-      layer.area_free_px[a] -= (1 - share_of(free, i)) * share;
-      layer.area_clear_px[a] -= (1 - share_of(clear, i)) * share;
+      layer.areas[a].free_px -= (1 - share_of(free, i)) * share;
+      layer.areas[a].clear_px -= (1 - share_of(clear, i)) * share;
     });
   }
 }

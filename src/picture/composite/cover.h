@@ -89,8 +89,8 @@ inline double share_of(const std::vector<float>& shares, std::size_t i) {
   return shares.empty() ? 1 : double{shares[i]};
 }
 
-// Takes what is behind the own aircraft from layer.area_free_px, and what is behind any occluder
-// from layer.area_clear_px. Call it before the layer's point spread.
+// Takes what is behind the own aircraft from free_px of the layer's areas, and what is behind any
+// occluder from clear_px. Call it before the layer's point spread.
 void find_areas(image::Layer& layer, const Occlusion& occlusion);
 
 // Takes what the occluders hide out of a layer: each intruder's coverage is multiplied by the share

@@ -32,8 +32,7 @@ image::Layer rectangle(const Box& box) {
       layer.pixels[layer.index(x, y)] = {0.2F * share, 0.2F * share, 0.2F * share, share};
       layer.coverage[0].alpha[layer.index(x, y)] = share;
     }
-  layer.area_alone_in_frame_px = layer.area_alone_px = {box.area()};
-  layer.area_seen_px = layer.area_free_px = layer.area_clear_px = {box.area()};
+  layer.areas = {{box.area(), box.area(), box.area(), box.area(), box.area()}};
   return layer;
 }
 
@@ -119,10 +118,10 @@ TEST(Cover, WhatTheOwnAircraftHidesIsNotCovered) {
   const Occlusion occlusion{{own_aircraft(own)}, {500}};
   image::Layer sharp = rectangle({25, 30, 20, 10});
   find_areas(sharp, occlusion);
-  EXPECT_NEAR(sharp.area_free_px[0], 15 * 10, 1e-3);
-  EXPECT_NEAR(sharp.area_seen_px[0], 20 * 10, 1e-9);
+  EXPECT_NEAR(sharp.areas[0].free_px, 15 * 10, 1e-3);
+  EXPECT_NEAR(sharp.areas[0].seen_px, 20 * 10, 1e-9);
   image::Layer layer = spread(sharp, 1, 0, kCoverWidth, kCoverHeight);
-  EXPECT_NEAR(layer.area_free_px[0], 15 * 10, 1e-3);
+  EXPECT_NEAR(layer.areas[0].free_px, 15 * 10, 1e-3);
   EXPECT_TRUE(covered(layer, 0)->box.x < 25);
   hide(layer, occlusion);
   const auto found = covered(layer, 0);
@@ -145,12 +144,7 @@ TEST(Cover, AnOccluderHidesWhatIsFartherInItsShare) {
   };
   for (int x = 20; x < 50; ++x)
     for (int y = 30; y < 40; ++y) set(x, y, y < 35 ? 0.8F : 0.5F, y < 35 ? 0.0F : 0.25F);
-  for (auto* areas : {&both.area_alone_in_frame_px,
-                      &both.area_alone_px,
-                      &both.area_seen_px,
-                      &both.area_free_px,
-                      &both.area_clear_px})
-    *areas = {195, 37.5};
+  both.areas = {{195, 195, 195, 195, 195}, {37.5, 37.5, 37.5, 37.5, 37.5}};
   const image::Layer before = both;
   find_areas(both, occlusion);
   hide(both, occlusion);
@@ -169,9 +163,9 @@ TEST(Cover, AnOccluderHidesWhatIsFartherInItsShare) {
         EXPECT_EQ(both.pixels[i].alpha, before.pixels[i].alpha);
       }
     }
-  EXPECT_NEAR(both.area_clear_px[0], clear_px, 1e-3);
-  EXPECT_EQ(both.area_clear_px[1], 37.5);
-  EXPECT_EQ(both.area_free_px, before.area_free_px);
+  EXPECT_NEAR(both.areas[0].clear_px, clear_px, 1e-3);
+  EXPECT_EQ(both.areas[1].clear_px, 37.5);
+  for (const std::size_t i : {0U, 1U}) EXPECT_EQ(both.areas[i].free_px, before.areas[i].free_px);
 }
 
 // The documented alpha: 20 of 255.

@@ -391,16 +391,12 @@ void Matte::blend() {
 std::vector<std::uint8_t> Matte::reached_by(const image::Coverage& coverage,
                                             const PixelBox& box) const {
   const int halo = options_.sensor.reach_px();
-  const auto columns = static_cast<std::size_t>(box.width);
-  std::vector<std::uint8_t> reached(columns * static_cast<std::size_t>(box.height), 0);
+  std::vector<std::uint8_t> reached(pixels_in(box), 0);
   each_pixel(coverage, [&](int x, int y, float alpha) {
     if (!(alpha > 0)) return;
     const PixelBox around = *intersection(wider({x, y, 1, 1}, halo), box);
     for (int v = around.y; v < around.bottom(); ++v)
-      std::fill_n(&reached[static_cast<std::size_t>(v - box.y) * columns +
-                           static_cast<std::size_t>(around.x - box.x)],
-                  around.width,
-                  std::uint8_t{1});
+      std::fill_n(&reached[index_in(box, around.x, v)], around.width, std::uint8_t{1});
   });
   return options_.coder == nullptr ? reached : in_marked_blocks(box, reached);
 }
@@ -437,8 +433,7 @@ void check_fits(const image::Picture& picture, const image::Layer& layer) {
   check(patch.x >= 0 && patch.y >= 0 && patch.right() <= picture.width &&
             patch.bottom() <= picture.height,
         "a layer's patch lies inside the frame");
-  const std::size_t size =
-      static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height);
+  const std::size_t size = pixels_in(patch);
   check(layer.pixels.size() == size, "a layer has a pixel for each of its patch");
   for (const image::Coverage& coverage : layer.coverage)
     check(coverage.empty() || intersection(coverage.box, patch) == coverage.box,

@@ -75,28 +75,24 @@ std::vector<float> noise_field(const PixelBox& patch,
                                double correlation_px) {
   const std::vector<float> kernel = gaussian(correlation_px);
   const int reach = static_cast<int>(kernel.size()) / 2;
-  const int width = patch.width + 2 * reach;
-  const int height = patch.height + 2 * reach;
+  const PixelBox around = wider(patch, reach);
   const std::uint64_t key = mixed(seed ^ mixed(static_cast<std::uint64_t>(frame) + 1));
-  std::vector<float> white(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      white[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-            static_cast<std::size_t>(x)] = normal_at(key, patch.x - reach + x, patch.y - reach + y);
+  std::vector<float> white;
+  white.reserve(pixels_in(around));
+  for (int y = around.y; y < around.bottom(); ++y)
+    for (int x = around.x; x < around.right(); ++x) white.push_back(normal_at(key, x, y));
   if (reach == 0) return white;
-  blur(white, width, height, kernel);
+  blur(white, around.width, around.height, kernel);
   double power = 0;
   for (const float weight : kernel)
     power += static_cast<double>(weight) * static_cast<double>(weight);
   // The power applies along both axes: sqrt(power)^2.
   const auto scale = static_cast<float>(1 / power);
   std::vector<float> field;
-  field.reserve(static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height));
-  for (int y = 0; y < patch.height; ++y)
-    for (int x = 0; x < patch.width; ++x)
-      field.push_back(scale *
-                      white[static_cast<std::size_t>(y + reach) * static_cast<std::size_t>(width) +
-                            static_cast<std::size_t>(x + reach)]);
+  field.reserve(pixels_in(patch));
+  for (int y = patch.y; y < patch.bottom(); ++y)
+    for (int x = patch.x; x < patch.right(); ++x)
+      field.push_back(scale * white[index_in(around, x, y)]);
   return field;
 }
 

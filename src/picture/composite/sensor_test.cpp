@@ -18,7 +18,7 @@ image::Layer square(int side, float alpha, float light, int at = 20) {
   layer.pixels.assign(size, {light * alpha, light * alpha, light * alpha, alpha});
   layer.depth_m.assign(size, 2000.0F);
   layer.coverage = {image::Coverage(layer.patch, alpha)};
-  layer.area_alone_px = layer.area_alone_in_frame_px = {double(size)};
+  layer.areas = {{double(size), double(size)}};
   return layer;
 }
 

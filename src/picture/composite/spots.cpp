@@ -84,26 +84,22 @@ std::optional<PixelBox> pixels_in_frame(const image::Spot& spot, const Spots& al
                       {0, 0, all.frame_width, all.frame_height});
 }
 
-// Areas of the spot's alpha, alone: in all, and within the frame.
-struct Areas {
-  double all_px = 0;
-  double in_frame_px = 0;
-};
-
-Areas areas_of(const image::Spot& spot, const Spots& in) {
+// Areas of the spot's alpha, which nothing hides.
+image::Areas areas_of(const image::Spot& spot, const Spots& in) {
   const Box box = bounds_of(spot, 0);
-  Areas areas;
+  double alone = 0, in_frame = 0;
   for (int j = 0; j < kAreaSide; ++j)
     for (int i = 0; i < kAreaSide; ++i) {
       const Pixel at(box.x + (i + 0.5) * box.width / kAreaSide,
                      box.y + (j + 0.5) * box.height / kAreaSide);
       const double alpha = spot_alpha(spot, at, 0);
-      areas.all_px += alpha;
+      alone += alpha;
       if (at.x() >= 0 && at.y() >= 0 && at.x() < in.frame_width && at.y() < in.frame_height)
-        areas.in_frame_px += alpha;
+        in_frame += alpha;
     }
   const double cell = box.width * box.height / (kAreaSide * kAreaSide);
-  return {areas.all_px * cell, areas.in_frame_px * cell};
+  in_frame *= cell;
+  return {alone * cell, in_frame, in_frame, in_frame, in_frame};
 }
 
 void take_out_closed(image::Layer& layer) {
@@ -120,22 +116,11 @@ void take_out_closed(image::Layer& layer) {
 
 // The layer on a larger patch.
 image::Layer on_patch(const image::Layer& layer, const PixelBox& patch, std::size_t intruders) {
-  image::Layer result;
-  result.patch = patch;
-  const std::size_t size =
-      static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height);
-  result.pixels.resize(size);
-  result.depth_m.assign(size, std::numeric_limits<float>::infinity());
+  image::Layer result(patch);
   result.coverage = layer.coverage;
   result.coverage.resize(intruders);
-  for (auto [to, from] : {std::pair(&result.area_alone_in_frame_px, &layer.area_alone_in_frame_px),
-                          std::pair(&result.area_alone_px, &layer.area_alone_px),
-                          std::pair(&result.area_seen_px, &layer.area_seen_px),
-                          std::pair(&result.area_free_px, &layer.area_free_px),
-                          std::pair(&result.area_clear_px, &layer.area_clear_px)}) {
-    *to = *from;
-    to->resize(intruders, 0);
-  }
+  result.areas = layer.areas;
+  result.areas.resize(intruders);
   if (layer.empty()) return result;
   for (int y = layer.patch.y; y < layer.patch.bottom(); ++y)
     for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
@@ -251,9 +236,9 @@ void hide_behind(image::Layer& layer,
     each_pixel(layer.coverage[a], [&](int x, int y, double share) {
       const std::size_t i = layer.index(x, y);
       const double hidden = share * (1 - double(clear[i]));
-      layer.area_seen_px[a] -= hidden;
-      layer.area_free_px[a] -= share_of(free, i) * hidden;
-      layer.area_clear_px[a] -= share_of(past_all, i) * hidden;
+      layer.areas[a].seen_px -= hidden;
+      layer.areas[a].free_px -= share_of(free, i) * hidden;
+      layer.areas[a].clear_px -= share_of(past_all, i) * hidden;
     });
   }
 }
@@ -267,12 +252,7 @@ image::Layer with_spots(image::Layer layer,
   image::Layer result = on_patch(layer, patch_with(layer, all, covers, margin_px), intruders);
   for (std::size_t k = 0; k < all.spots.size(); ++k) {
     const auto& spot = all.spots[k];
-    const Areas areas = spot ? areas_of(*spot, all) : Areas{};
-    result.area_alone_px.push_back(areas.all_px);
-    result.area_alone_in_frame_px.push_back(areas.in_frame_px);
-    result.area_seen_px.push_back(areas.in_frame_px);
-    result.area_free_px.push_back(areas.in_frame_px);
-    result.area_clear_px.push_back(areas.in_frame_px);
+    result.areas.push_back(spot ? areas_of(*spot, all) : image::Areas{});
     if (spot)
       put_over(result, *spot, covers[k]);
     else

@@ -53,13 +53,13 @@ TEST(Spots, ASharpDiscCoversItsArea) {
   double sum = 0;
   for (const image::LayerPixel& pixel : layer.pixels) sum += double(pixel.alpha);
   EXPECT_NEAR(sum, kPi * 100, 1.5);
-  EXPECT_NEAR(layer.area_alone_px[0], kPi * 100, 2);
-  EXPECT_NEAR(layer.area_alone_in_frame_px[0], layer.area_alone_px[0], 1e-9);
+  EXPECT_NEAR(layer.areas[0].alone_px, kPi * 100, 2);
+  EXPECT_NEAR(layer.areas[0].alone_in_frame_px, layer.areas[0].alone_px, 1e-9);
 }
 
 TEST(Spots, TheFrameCutsHalfOfASpotOnItsEdge) {
   const image::Layer layer = over({}, 0, in_frame(circle(0, 20, 10)), 3);
-  EXPECT_NEAR(layer.area_alone_in_frame_px[0] / layer.area_alone_px[0], 0.5, 0.01);
+  EXPECT_NEAR(layer.areas[0].alone_in_frame_px / layer.areas[0].alone_px, 0.5, 0.01);
   EXPECT_GE(layer.patch.x, 0);
 }
 
@@ -90,12 +90,7 @@ image::Layer grey_square() {
   layer.pixels.assign(400, {0.5F, 0.5F, 0.5F, 1});
   layer.depth_m.assign(400, 100);
   layer.coverage = {image::Coverage(layer.patch, 1)};
-  for (auto* areas : {&layer.area_alone_in_frame_px,
-                      &layer.area_alone_px,
-                      &layer.area_seen_px,
-                      &layer.area_free_px,
-                      &layer.area_clear_px})
-    *areas = {400};
+  layer.areas = {{400, 400, 400, 400, 400}};
   return layer;
 }
 
@@ -105,8 +100,8 @@ TEST(Spots, ASpotHidesItsShareOfAnIntruder) {
   spot.colour = {0.1F, 0.1F, 0.1F};
   image::Layer layer = grey_square();
   hide_behind(layer, covers_of(in_frame(spot)), {});
-  EXPECT_NEAR(layer.area_seen_px[0], 300, 1e-3);
-  EXPECT_NEAR(layer.area_free_px[0], 300, 1e-3);
+  EXPECT_NEAR(layer.areas[0].seen_px, 300, 1e-3);
+  EXPECT_NEAR(layer.areas[0].free_px, 300, 1e-3);
   const image::Layer both = over(std::move(layer), 1, in_frame(spot));
   ASSERT_EQ(both.coverage.size(), 2U);
   const std::size_t i = both.index(25, 15);
@@ -126,11 +121,11 @@ TEST(Spots, TheOwnAircraftIsBehindTheLensAndBeforeTheIntruder) {
   const Occlusion occlusion{{own_aircraft(own)}, {500}};
   image::Layer layer = grey_square();
   find_areas(layer, occlusion);
-  EXPECT_NEAR(layer.area_free_px[0], 200, 1e-3);
+  EXPECT_NEAR(layer.areas[0].free_px, 200, 1e-3);
   hide_behind(layer, covers_of(in_frame(spot)), occlusion);
-  EXPECT_NEAR(layer.area_seen_px[0], 200, 1e-3);
-  EXPECT_NEAR(layer.area_free_px[0], 100, 1e-3);
-  EXPECT_NEAR(layer.area_clear_px[0], 100, 1e-3);
+  EXPECT_NEAR(layer.areas[0].seen_px, 200, 1e-3);
+  EXPECT_NEAR(layer.areas[0].free_px, 100, 1e-3);
+  EXPECT_NEAR(layer.areas[0].clear_px, 100, 1e-3);
   hide(layer, occlusion);
   const image::Layer both = over(std::move(layer), 1, in_frame(spot));
   EXPECT_TRUE(both.closed.empty());

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "foundation/base/error.h"
 #include "foundation/base/vectors.h"
@@ -21,13 +20,10 @@ int reach_of(double sigma_px) { return static_cast<int>(std::ceil(kReach * sigma
 // Values of the pixels of a box, copied into the middle of a larger box.
 template <typename Get>
 std::vector<float> placed(const PixelBox& from, const PixelBox& to, const Get& get) {
-  const auto columns = static_cast<std::size_t>(to.width);
-  std::vector<float> plane(columns * static_cast<std::size_t>(to.height), 0.0F);
+  std::vector<float> plane(pixels_in(to), 0.0F);
   std::size_t i = 0;
   for (int y = from.y; y < from.bottom(); ++y)
-    for (int x = from.x; x < from.right(); ++x)
-      plane[static_cast<std::size_t>(y - to.y) * columns + static_cast<std::size_t>(x - to.x)] =
-          get(i++);
+    for (int x = from.x; x < from.right(); ++x) plane[index_in(to, x, y)] = get(i++);
   return plane;
 }
 
@@ -110,31 +106,14 @@ void blur(std::vector<float>& values, int width, int height, const std::vector<f
   blur(values, width, height, kernel, kernel);
 }
 
-namespace {
-
-// A layer without pixels yet, whose patch is larger by `more` on each side, within the frame.
-image::Layer grown(const image::Layer& layer, int more, int frame_width, int frame_height) {
-  image::Layer result;
-  result.patch = *intersection(wider(layer.patch, more), {0, 0, frame_width, frame_height});
-  result.pixels.resize(static_cast<std::size_t>(result.patch.width) *
-                       static_cast<std::size_t>(result.patch.height));
-  result.area_alone_in_frame_px = layer.area_alone_in_frame_px;
-  result.area_alone_px = layer.area_alone_px;
-  result.area_seen_px = layer.area_seen_px;
-  result.area_free_px = layer.area_free_px;
-  result.area_clear_px = layer.area_clear_px;
-  return result;
-}
-
-}  // namespace
-
 image::Layer spread(
     const image::Layer& layer, double sigma_px, int margin_px, int frame_width, int frame_height) {
   if (layer.empty()) return layer;
   const int reach = sigma_px > 0 ? std::max(1, reach_of(sigma_px)) : 0;
   const int more = reach + margin_px;
   if (more == 0) return layer;
-  image::Layer result = grown(layer, more, frame_width, frame_height);
+  image::Layer result(*intersection(wider(layer.patch, more), {0, 0, frame_width, frame_height}));
+  result.areas = layer.areas;
   const std::vector<float> kernel = gaussian(sigma_px);
   const auto through = [&](const PixelBox& from, const PixelBox& to, const auto& get) {
     std::vector<float> plane = placed(from, to, get);
@@ -149,7 +128,6 @@ image::Layer spread(
   const auto depth = of_layer([&](std::size_t i) {
     return layer.pixels[i].alpha > 0 ? layer.pixels[i].alpha * layer.depth_m[i] : 0.0F;
   });
-  result.depth_m.assign(result.pixels.size(), std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < result.pixels.size(); ++i) {
     if (alpha[i] < kNothing) continue;
     result.pixels[i] = {red[i], green[i], blue[i], std::min(1.0F, alpha[i])};

@@ -105,7 +105,7 @@ TEST_P(Panes, BeforeAPlateHaveTheAlphaTheColourAndTheDistanceOfBoth) {
   }
   const auto opacity = static_cast<double>(kOpacity);
   EXPECT_NEAR(alpha, kPlate.area() + opacity * (kPane.area() - kBothArea), 0.2);
-  EXPECT_NEAR(layer.area_seen_px[0], alpha, 1e-3);
+  EXPECT_NEAR(layer.areas[0].seen_px, alpha, 1e-3);
   for (std::size_t c = 0; c < 3; ++c)
     EXPECT_NEAR(rgb[c],
                 static_cast<double>(kPlateColour[c]) * (kPlate.area() - opacity * kBothArea) +

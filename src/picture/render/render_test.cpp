@@ -214,8 +214,8 @@ TEST(Render, TranslucentOverOpaqueAndInstancesByDepth) {
   EXPECT_NEAR(layer.coverage[1].at(100, 100), 0.25, 1e-5);
   EXPECT_NEAR(layer.pixels[middle].red, 0.25 * 0.7 + 0.75 * 0.7, 1e-3);
   // The area that the plate alone would cover.
-  EXPECT_NEAR(layer.area_alone_px[0], 3600, 2);
-  EXPECT_NEAR(layer.area_alone_px[1], 0.25 * 3600, 2);
+  EXPECT_NEAR(layer.areas[0].alone_px, 3600, 2);
+  EXPECT_NEAR(layer.areas[1].alone_px, 0.25 * 3600, 2);
 }
 
 TEST(Render, AHomographyMovesTheLayer) {
@@ -243,8 +243,8 @@ TEST(Render, WhatTheFrameCutsOffIsCounted) {
                     Vector3(0, 100.0 / 3, 0)};
   const image::Layer layer =
       render(view_through(lens), white(), {{&model, aside, 0}}, {Box{169, 69, 62, 62}});
-  EXPECT_NEAR(layer.area_alone_in_frame_px[0], 1800, 5);
-  EXPECT_NEAR(layer.area_alone_px[0], 3600, 80);
+  EXPECT_NEAR(layer.areas[0].alone_in_frame_px, 1800, 5);
+  EXPECT_NEAR(layer.areas[0].alone_px, 3600, 80);
 }
 
 struct Stand {

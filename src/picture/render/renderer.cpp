@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -17,17 +16,11 @@ namespace airtruth::render {
 namespace {
 
 image::Layer empty_layer(const PixelBox& patch, const std::vector<PlacedInstance>& instances) {
-  image::Layer layer;
-  layer.patch = patch;
-  const std::size_t pixels =
-      static_cast<std::size_t>(patch.width) * static_cast<std::size_t>(patch.height);
-  layer.pixels.resize(pixels);
-  layer.depth_m.assign(pixels, std::numeric_limits<float>::infinity());
+  image::Layer layer(patch);
   layer.coverage.resize(instances.size());
   for (std::size_t i = 0; i < instances.size(); ++i)
     if (instances[i].pixels) layer.coverage[i] = image::Coverage(*instances[i].pixels);
-  layer.area_alone_in_frame_px.assign(instances.size(), 0.0);
-  layer.area_seen_px.assign(instances.size(), 0.0);
+  layer.areas.resize(instances.size());
   return layer;
 }
 
@@ -141,9 +134,12 @@ class Painter {
 
   void add_areas() {
     for (std::size_t a = 0; a < instances_.size(); ++a) {
+      image::Areas& areas = layer_.areas[a];
       for (const float share : layer_.coverage[a].alpha)
-        layer_.area_seen_px[a] += static_cast<double>(share);
-      for (const double share : alone_[a]) layer_.area_alone_in_frame_px[a] += share;
+        areas.seen_px += static_cast<double>(share);
+      for (const double share : alone_[a]) areas.alone_in_frame_px += share;
+      areas.free_px = areas.clear_px = areas.seen_px;
+      areas.alone_px = areas.alone_in_frame_px;
     }
   }
 
@@ -180,10 +176,8 @@ image::Layer render(const View& view,
     const PixelRays rays(view, *patch);
     Painter(view, light, placed, rays, options.stop, layer).paint(counts);
   }
-  layer.area_free_px = layer.area_clear_px = layer.area_seen_px;
-  layer.area_alone_px = layer.area_alone_in_frame_px;
   for (std::size_t a = 0; a < placed.size(); ++a)
-    if (search[a]) layer.area_alone_px[a] += area_outside(view, placed[a], *search[a]);
+    if (search[a]) layer.areas[a].alone_px += area_outside(view, placed[a], *search[a]);
   return layer;
 }
 

@@ -155,7 +155,7 @@ TEST(Visibility, ASpinningPartIsWhereTheReferenceHasIt) {
   for (std::size_t i = 0; i < fast.pixels.size(); ++i)
     worst = std::max(worst, std::abs(double(fast.pixels[i].alpha) - reference.pixels[i].alpha));
   EXPECT_LT(worst, 1.0 / 64);
-  EXPECT_GT(reference.area_seen_px[0], 10);
+  EXPECT_GT(reference.areas[0].seen_px, 10);
 }
 
 }  // namespace

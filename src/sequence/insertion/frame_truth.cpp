@@ -22,8 +22,8 @@ annotation::State state_of(const setup::Moment& moment,
                            const composite::Visible* visible) {
   using annotation::State;
   if (visible != nullptr && visible->box) return State::kVisible;
-  const bool drawn = moment.search[i] && i < layer.area_alone_in_frame_px.size() &&
-                     layer.area_alone_in_frame_px[i] > 0;
+  const bool drawn =
+      moment.search[i] && i < layer.areas.size() && layer.areas[i].alone_in_frame_px > 0;
   if (drawn) return State::kHidden;
   if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
   return State::kOutside;
@@ -96,13 +96,13 @@ void add_pixels(annotation::Intruder& truth,
   truth.visible_area_px = visible.pixels;
   truth.alpha_sum_px = visible.alpha_sum_px;
   truth.centroid_px = visible.centroid;
-  if (i >= layer.area_alone_px.size() || layer.area_alone_px[i] <= 0) return;
-  const double alone = layer.area_alone_px[i];
-  const auto fraction = [alone](double part) { return std::clamp(part / alone, 0.0, 1.0); };
-  truth.hidden_by_own_aircraft = fraction(layer.area_seen_px[i] - layer.area_free_px[i]);
-  double by_occluder = fraction(layer.area_free_px[i] - layer.area_clear_px[i]);
-  truth.hidden_by_intruder = fraction(layer.area_alone_in_frame_px[i] - layer.area_seen_px[i]);
-  truth.cut_by_frame = fraction(alone - layer.area_alone_in_frame_px[i]);
+  if (i >= layer.areas.size() || layer.areas[i].alone_px <= 0) return;
+  const image::Areas& areas = layer.areas[i];
+  const auto fraction = [&](double part) { return std::clamp(part / areas.alone_px, 0.0, 1.0); };
+  truth.hidden_by_own_aircraft = fraction(areas.seen_px - areas.free_px);
+  double by_occluder = fraction(areas.free_px - areas.clear_px);
+  truth.hidden_by_intruder = fraction(areas.alone_in_frame_px - areas.seen_px);
+  truth.cut_by_frame = fraction(areas.alone_px - areas.alone_in_frame_px);
   constexpr double kRounding = 1e-6;  // sums of float coverages
   for (double* share : {&truth.hidden_by_own_aircraft,
                         &by_occluder,
@@ -131,7 +131,7 @@ annotation::Intruder mark_truth(const setup::World& world,
   const lens::ImageSize size = world.lens.size();
   truth.exact_box_px = projection::spot_box(*spot, moment.sight.shutter, size.width, size.height);
   const std::size_t i = world.actors.size() + mark;
-  const bool drawn = i < layer.area_alone_in_frame_px.size() && layer.area_alone_in_frame_px[i] > 0;
+  const bool drawn = i < layer.areas.size() && layer.areas[i].alone_in_frame_px > 0;
   if (drawn) truth.state = State::kHidden;
   if (i >= visible.size()) return truth;
   if (visible[i].box) truth.state = State::kVisible;
