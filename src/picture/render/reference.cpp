@@ -89,8 +89,7 @@ class Then {
     const shade::Sunlit sunlit = shade::sunlit_at(placed, surface, material);
     const shade::BodyRay to_sun =
         shade::to_sun_from(placed, ray.origin + hit.t * ray.direction, surface);
-    const bool in_shadow =
-        !(sunlit.sun > 0) || shade::is_blocked(*placed.model, to_sun.origin, to_sun.direction);
+    const bool in_shadow = !(sunlit.sun > 0) || shade::is_blocked(*placed.model, to_sun);
     const shade::TriangleTexture texture(
         placed.model->mesh, facet, static_cast<float>(fragment.distance_m * footprint_rad));
     return shade::colour_of(material,

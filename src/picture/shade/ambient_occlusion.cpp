@@ -62,13 +62,6 @@ std::array<Eigen::Vector3f, 2> axes_across(const Eigen::Vector3f& n) {
           Eigen::Vector3f(b, sign + n.y() * n.y() * a, -n.y())};
 }
 
-Eigen::Vector3f face_of(const model::Mesh& mesh, const model::Triangle& triangle) {
-  const auto& [a, b, c] = triangle.vertex;
-  const Eigen::Vector3f face =
-      (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
-  return face / face.norm();
-}
-
 // A point slightly above a side of a triangle.
 struct Place {
   Eigen::Vector3f point;
@@ -79,8 +72,8 @@ struct Place {
       : point(on_surface + kStartM * unit_normal),
         normal(unit_normal),
         across(axes_across(unit_normal)) {}
-  Eigen::Vector3f direction(const Eigen::Vector3f& about_z) const {
-    return about_z.x() * across[0] + about_z.y() * across[1] + about_z.z() * normal;
+  BodyRay ray(const Eigen::Vector3f& about_z) const {
+    return {point, about_z.x() * across[0] + about_z.y() * across[1] + about_z.z() * normal};
   }
 };
 
@@ -90,10 +83,10 @@ AmbientOcclusion occlusion_at(const Model::Impl& model,
   std::size_t open = 0;
   Eigen::Vector3f towards(0, 0, 0);
   for (const Eigen::Vector3f& d : about_z) {
-    const Eigen::Vector3f direction = place.direction(d);
-    if (is_blocked(model, place.point, direction, kRayM)) continue;
+    const BodyRay ray = place.ray(d);
+    if (is_blocked(model, ray, kRayM)) continue;
     ++open;
-    towards += direction;
+    towards += ray.direction;
   }
   const auto count = static_cast<float>(about_z.size());
   return {static_cast<float>(open) / count, towards / count, Eigen::Vector3f::Zero()};
@@ -109,8 +102,7 @@ Eigen::Vector3f given_back_by(const Model::Impl& model,
                               const Eigen::Vector3f& direction) {
   const auto part = static_cast<std::size_t>(hit.part);
   const TriangleOcclusion& both = occlusion[part][hit.triangle];
-  const bool is_back =
-      face_of(model.mesh, model.mesh.parts[part].triangles[hit.triangle]).dot(direction) > 0;
+  const bool is_back = model.facets[part][hit.triangle].face.dot(direction) > 0;
   const AmbientOcclusion there = (is_back ? both.back : both.front).at(hit.u, hit.v);
   const float length = there.towards.norm();
   if (!(length > 1e-6f)) return Eigen::Vector3f::Zero();
@@ -126,15 +118,12 @@ void each_corner(const Model::Impl& model, ModelOcclusion& occlusion, const Visi
     const model::Part& part = model.mesh.parts[p];
     if (part.moves()) continue;
     tbb::parallel_for(std::size_t{0}, part.triangles.size(), [&](std::size_t i) {
-      const Eigen::Vector3f face = face_of(model.mesh, part.triangles[i]);
-      if (!face.allFinite()) return;
-      std::array<Eigen::Vector3f, 3> corners;
-      for (std::size_t k = 0; k < 3; ++k)
-        corners[k] = model.mesh.positions[part.triangles[i].vertex[k]];
-      const Eigen::Vector3f middle = (corners[0] + corners[1] + corners[2]) / 3;
+      const Facet& of = model.facets[p][i];
+      if (!(of.face.squaredNorm() > 0)) return;
+      const Eigen::Vector3f middle = (of.corner[0] + of.corner[1] + of.corner[2]) / 3;
       for (std::size_t k = 0; k < 3; ++k) {
-        const Eigen::Vector3f point = corners[k] + kInset * (middle - corners[k]);
-        visit(point, face, occlusion[p][i].front.corner[k], occlusion[p][i].back.corner[k]);
+        const Eigen::Vector3f point = of.corner[k] + kInset * (middle - of.corner[k]);
+        visit(point, of.face, occlusion[p][i].front.corner[k], occlusion[p][i].back.corner[k]);
       }
     });
   }
@@ -148,9 +137,9 @@ void find_given_back(const Model::Impl& model,
                      AmbientOcclusion& occlusion) {
   if (occlusion.is_open() || occlusion.open_share == 0) return;
   for (const Eigen::Vector3f& d : about_z) {
-    const Eigen::Vector3f direction = place.direction(d);
-    if (const auto hit = nearest_blocker(model, place.point, direction, kRayM))
-      occlusion.given_back += given_back_by(model, known, *hit, direction);
+    const BodyRay ray = place.ray(d);
+    if (const auto hit = nearest_blocker(model, ray, kRayM))
+      occlusion.given_back += given_back_by(model, known, *hit, ray.direction);
   }
   occlusion.given_back /= static_cast<float>(about_z.size());
 }

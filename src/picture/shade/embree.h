@@ -20,13 +20,6 @@ inline void intersect(RTCScene scene, RTCRayHit& query) { rtcIntersect1(scene, &
 inline void occlude(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
 
 // The same for eight rays of one bundle, of which `valid` (-1 or 0 each) says which are asked.
-inline void intersect(const int* valid, RTCScene scene, RTCRayHit8& query) {
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcIntersect8(valid, scene, &query, &arguments);
-}
-
 inline void occlude(const int* valid, RTCScene scene, RTCRay8& rays) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
@@ -51,11 +44,6 @@ inline void intersect(RTCScene scene, RTCRayHit& query) {
 inline void occlude(RTCScene scene, RTCRay& ray) {
   RTCIntersectContext context = query_context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   rtcOccluded1(scene, &context, &ray);
-}
-
-inline void intersect(const int* valid, RTCScene scene, RTCRayHit8& query) {
-  RTCIntersectContext context = query_context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  rtcIntersect8(valid, scene, &context, &query);
 }
 
 inline void occlude(const int* valid, RTCScene scene, RTCRay8& rays) {

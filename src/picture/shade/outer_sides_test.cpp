@@ -224,8 +224,8 @@ TEST(IsHidden, IsNoTriangleThatRaysFromOutsideMeet) {
       };
       const Vector3 eye = impl.centre_in_body + 3 * impl.radius_m * direction();
       const Vector3 aim = impl.centre_in_body + 0.5 * impl.radius_m * direction();
-      const auto hit = nearest_blocker(
-          impl, eye.cast<float>(), (aim - eye).normalized().cast<float>(), INFINITY);
+      const BodyRay ray{eye.cast<float>(), (aim - eye).normalized().cast<float>()};
+      const auto hit = nearest_blocker(impl, ray, INFINITY);
       if (!hit) continue;
       const auto part = static_cast<std::size_t>(hit->part);
       const OuterSides outer = impl.outer_sides[part][hit->triangle];

@@ -39,13 +39,10 @@ void find_blocked_of_eight(const Model::Impl& model,
   for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = packet.tfar[i] < 0 ? 1 : 0;
 }
 
-RTCRay ray_between(const Eigen::Vector3f& origin,
-                   const Eigen::Vector3f& direction,
-                   float from_m,
-                   float to_m) {
+RTCRay ray_between(const BodyRay& of, float from_m, float to_m) {
   RTCRay ray{};
-  ray.org_x = origin.x(), ray.org_y = origin.y(), ray.org_z = origin.z();
-  ray.dir_x = direction.x(), ray.dir_y = direction.y(), ray.dir_z = direction.z();
+  ray.org_x = of.origin.x(), ray.org_y = of.origin.y(), ray.org_z = of.origin.z();
+  ray.dir_x = of.direction.x(), ray.dir_y = of.direction.y(), ray.dir_z = of.direction.z();
   ray.tnear = from_m;
   ray.tfar = to_m;
   ray.mask = 0xffffffffU;
@@ -54,25 +51,19 @@ RTCRay ray_between(const Eigen::Vector3f& origin,
 
 }  // namespace
 
-bool is_blocked(const Model::Impl& model,
-                const Eigen::Vector3f& origin,
-                const Eigen::Vector3f& direction,
-                float within_m) {
+bool is_blocked(const Model::Impl& model, const BodyRay& body_ray, float within_m) {
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {
     if (model.mesh.parts[i].moves()) continue;
-    RTCRay ray = ray_between(origin, direction, 0, within_m);
+    RTCRay ray = ray_between(body_ray, 0, within_m);
     occlude(model.scenes[i].get(), ray);
     if (ray.tfar < 0) return true;
   }
   return false;
 }
 
-std::optional<Hit> nearest_blocker(const Model::Impl& model,
-                                   const Eigen::Vector3f& origin,
-                                   const Eigen::Vector3f& direction,
-                                   float within_m) {
+std::optional<Hit> nearest_blocker(const Model::Impl& model, const BodyRay& ray, float within_m) {
   // Embree shortens the ray to the distance of the nearest hit so far.
-  RTCRayHit query{ray_between(origin, direction, 0, within_m), {}};
+  RTCRayHit query{ray_between(ray, 0, within_m), {}};
   std::optional<Hit> best;
   for (std::size_t i = 0; i < model.scenes.size(); ++i) {
     if (model.mesh.parts[i].moves()) continue;
@@ -103,9 +94,8 @@ std::optional<Hit> nearest_hit(const Model::Impl& model,
     const bool turns = model.mesh.parts[part].moves();
     const Eigen::Affine3f part_from_body =
         turns ? body_from_part[part].inverse(Eigen::Isometry) : Eigen::Affine3f::Identity();
-    const Eigen::Vector3f origin = part_from_body * ray.origin;
-    const Eigen::Vector3f direction = part_from_body.linear() * ray.direction;
-    RTCRayHit query{ray_between(origin, direction, from_m, far_m), {}};
+    const BodyRay in_part{part_from_body * ray.origin, part_from_body.linear() * ray.direction};
+    RTCRayHit query{ray_between(in_part, from_m, far_m), {}};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     intersect(model.scenes[part].get(), query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;

@@ -13,19 +13,13 @@
 // ray tracing").
 namespace airtruth::shade {
 
-// True where a part of the aircraft blocks the ray within `within_m`. The ray is in body
-// coordinates. Spinning parts do not block: most of a propeller's disc is air.
-bool is_blocked(const Model::Impl& model,
-                const Eigen::Vector3f& origin,
-                const Eigen::Vector3f& direction,
-                float within_m = INFINITY);
+// True where a part of the aircraft blocks the ray within `within_m`. Spinning parts do not block:
+// most of a propeller's disc is air.
+bool is_blocked(const Model::Impl& model, const BodyRay& ray, float within_m = INFINITY);
 
 // The nearest hit that is_blocked() counts, by its distance from the origin; empty where nothing
 // blocks the ray.
-std::optional<Hit> nearest_blocker(const Model::Impl& model,
-                                   const Eigen::Vector3f& origin,
-                                   const Eigen::Vector3f& direction,
-                                   float within_m);
+std::optional<Hit> nearest_blocker(const Model::Impl& model, const BodyRay& ray, float within_m);
 
 // 1 for each ray that is_blocked(), else 0.
 void find_blocked(const Model::Impl& model,
