@@ -145,10 +145,7 @@ void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored,
 
 namespace {
 
-struct FreeBuffer {
-  void operator()(AVBufferRef* p) const { av_buffer_unref(&p); }
-};
-using BufferPtr = std::unique_ptr<AVBufferRef, FreeBuffer>;
+using BufferPtr = std::unique_ptr<AVBufferRef, Free<av_buffer_unref>>;
 
 // What each encoder of H.264 is called in libav, and the pixel format that it takes from memory.
 struct H264Encoder {

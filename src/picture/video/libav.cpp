@@ -7,6 +7,8 @@
 #include <new>
 #include <utility>
 
+#include <Eigen/Core>
+
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/packed.h"
@@ -55,32 +57,6 @@ void copy_component(const AVFrame& frame,
       }
     }
   }
-}
-
-Plane transposed(const Plane& plane, int clockwise_deg) {
-  image::Colour grey;
-  grey.chroma = Chroma::kNone;
-  const bool quarter = clockwise_deg != 180;
-  Picture turned = image::make_picture(
-      quarter ? plane.height : plane.width, quarter ? plane.width : plane.height, grey);
-  Plane& target = turned.planes[0];
-  for (int y = 0; y < target.height; ++y) {
-    std::uint8_t* row = target.row(y);
-    for (int x = 0; x < target.width; ++x) {
-      switch (clockwise_deg) {
-        case 90:
-          row[x] = plane.row(plane.height - 1 - x)[y];
-          break;
-        case 180:
-          row[x] = plane.row(plane.height - 1 - y)[plane.width - 1 - x];
-          break;
-        default:
-          row[x] = plane.row(x)[plane.width - 1 - y];
-          break;
-      }
-    }
-  }
-  return std::move(target);
 }
 
 }  // namespace
@@ -244,35 +220,37 @@ Orientation orientation_of(const std::int32_t* m) {
 
 namespace {
 
-Picture mirrored(Picture picture) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i) {
-    image::Plane& plane = picture.planes[i];
-    for (int y = 0; y < plane.height; ++y) std::reverse(plane.row(y), plane.row(y) + plane.width);
-  }
-  return picture;
-}
+using Samples =
+    Eigen::Map<Eigen::Array<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>,
+               Eigen::Unaligned,
+               Eigen::OuterStride<>>;
 
-Picture rotated(Picture picture, int clockwise_deg) {
-  if (clockwise_deg == 0) return picture;
-  Picture turned;
-  turned.colour = picture.colour;
-  turned.plane_count = picture.plane_count;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i)
-    turned.planes[i] = transposed(picture.planes[i], clockwise_deg);
-  turned.width = turned.planes[0].width;
-  turned.height = turned.planes[0].height;
-  if (clockwise_deg != 180) {
-    if (picture.colour.chroma == Chroma::k422) turned.colour.chroma = Chroma::k440;
-    if (picture.colour.chroma == Chroma::k440) turned.colour.chroma = Chroma::k422;
-  }
-  return turned;
+Samples samples_of(Plane& plane) {
+  return {plane.row(0), plane.height, plane.width, Eigen::OuterStride<>(plane.stride)};
 }
 
 }  // namespace
 
 Picture oriented(Picture picture, const Orientation& orientation) {
-  if (orientation.mirrored) picture = mirrored(std::move(picture));
-  return rotated(std::move(picture), orientation.clockwise_deg);
+  const int turn_deg = orientation.clockwise_deg;
+  if (!orientation.mirrored && turn_deg == 0) return picture;
+  image::Colour colour = picture.colour;
+  if (turn_deg % 180 != 0) {
+    std::swap(picture.width, picture.height);
+    if (picture.colour.chroma == Chroma::k422) colour.chroma = Chroma::k440;
+    if (picture.colour.chroma == Chroma::k440) colour.chroma = Chroma::k422;
+  }
+  Picture turned = image::make_picture(picture.width, picture.height, colour);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i) {
+    Samples from = samples_of(picture.planes[i]);
+    Samples to = samples_of(turned.planes[i]);
+    if (orientation.mirrored) from.rowwise().reverseInPlace();
+    if (turn_deg == 0) to = from;
+    if (turn_deg == 90) to = from.colwise().reverse().transpose();
+    if (turn_deg == 180) to = from.reverse();
+    if (turn_deg == 270) to = from.rowwise().reverse().transpose();
+  }
+  return turned;
 }
 
 }  // namespace airtruth::video

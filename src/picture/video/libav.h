@@ -24,25 +24,21 @@ extern "C" {
 // module includes it.
 namespace airtruth::video {
 
-struct FreeInput {
-  void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
-};
-struct FreeCodec {
-  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
-};
-struct FreeFrame {
-  void operator()(AVFrame* p) const { av_frame_free(&p); }
-};
-struct FreePacket {
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
+// Frees an object by a function of libav that takes the address of its pointer.
+template <auto kFree>
+struct Free {
+  template <typename Object>
+  void operator()(Object* p) const {
+    kFree(&p);
+  }
 };
 struct FreeScaler {
   void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
-using InputPtr = std::unique_ptr<AVFormatContext, FreeInput>;
-using CodecPtr = std::unique_ptr<AVCodecContext, FreeCodec>;
-using FramePtr = std::unique_ptr<AVFrame, FreeFrame>;
-using PacketPtr = std::unique_ptr<AVPacket, FreePacket>;
+using InputPtr = std::unique_ptr<AVFormatContext, Free<avformat_close_input>>;
+using CodecPtr = std::unique_ptr<AVCodecContext, Free<avcodec_free_context>>;
+using FramePtr = std::unique_ptr<AVFrame, Free<av_frame_free>>;
+using PacketPtr = std::unique_ptr<AVPacket, Free<av_packet_free>>;
 using ScalerPtr = std::unique_ptr<SwsContext, FreeScaler>;
 
 // libav's own description of an error code.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 #include <vector>
 
@@ -11,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 
 namespace airtruth::video {
 namespace {
@@ -42,17 +42,13 @@ struct Settings {
   ~Settings() { av_dict_free(&entries); }
 };
 
-struct CloseIo {
-  void operator()(AVIOContext* p) const { avio_closep(&p); }
-};
-
 // The container of the file's bytes; never a guess from its name.
 const AVInputFormat* container_of(const std::string& url, const fs::path& path) {
   Settings settings;
   av_dict_set(&settings.entries, "protocol_whitelist", "file", 0);
   AVIOContext* raw = nullptr;
   int result = avio_open2(&raw, url.c_str(), AVIO_FLAG_READ, nullptr, &settings.entries);
-  const std::unique_ptr<AVIOContext, CloseIo> io(raw);
+  const std::unique_ptr<AVIOContext, Free<avio_closep>> io(raw);
   const AVInputFormat* found = nullptr;
   if (result >= 0) result = av_probe_input_buffer2(io.get(), &found, "", nullptr, 0, 0);
   if (result < 0) throw Error("cannot be read as a video: " + reason(result), {path.string()});
@@ -67,10 +63,7 @@ const AVInputFormat* container_of(const std::string& url, const fs::path& path) 
 void add_tags(const AVDictionary* tags, std::map<std::string, std::string>& result) {
   const AVDictionaryEntry* entry = nullptr;
   while ((entry = av_dict_get(tags, "", entry, AV_DICT_IGNORE_SUFFIX)) != nullptr) {
-    std::string key(entry->key);
-    std::transform(
-        key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });
-    result[key] = entry->value;
+    result[lower_case(entry->key)] = entry->value;
   }
 }
 

@@ -11,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "foundation/image/colour.h"
 #include "foundation/image/packed.h"
 #include "picture/video/libav.h"
@@ -19,14 +20,6 @@
 
 namespace airtruth::video {
 namespace {
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
-    return static_cast<char>(std::tolower(c));
-  });
-  return extension;
-}
 
 // A frame with one plane of packed samples, `row_bytes` to a row.
 FramePtr packed_frame(
@@ -118,7 +111,7 @@ std::string encoded(const FramePtr& frame, int quality, const fs::path& path) {
 constexpr int kQuality = 3;
 
 bool is_jpeg(const fs::path& path) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = lower_case(path.extension().string());
   const bool jpeg = extension == ".jpg" || extension == ".jpeg";
   if (!jpeg && extension != ".png")
     throw Error("has an unknown ending; expected .png or .jpg", {path.string()});
