@@ -2,7 +2,6 @@
 #include "camera/lens/calibration.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -119,13 +118,6 @@ Values values_of_xml(std::string_view text, const std::string& file) {
   if (values.empty())
     throw Error("holds no <opencv_storage> with values; expected an OpenCV calibration", {file});
   return values;
-}
-
-std::string trimmed(std::string text) {
-  const auto space = [](unsigned char c) { return std::isspace(c) != 0; };
-  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), space));
-  text.erase(std::find_if_not(text.rbegin(), text.rend(), space).base(), text.end());
-  return text;
 }
 
 // Appends the scalars of a value, a list, or a list of lists to `text`. An alias can stand for a
@@ -272,7 +264,7 @@ bool is_fisheye_model(const std::string& key, const Value& value, const std::str
 std::optional<bool> says_fisheye(const Values& values, const std::string& file) {
   std::string key;
   if (const Value* value = find(values, kFisheyeFlag, &key)) {
-    const std::string flag = trimmed(value->text);
+    const std::string flag(airtruth::trimmed(value->text));
     if (flag == "1" || flag == "true") return true;
     if (flag == "0" || flag == "false") return false;
     throw Error(key + " is '" + flag.substr(0, 40) + "'; expected 0 or 1", {file, value->line});

@@ -2,9 +2,7 @@
 #include "camera/lens/calibration_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -14,6 +12,7 @@
 #include "camera/lens/calibration.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "foundation/base/text.h"
 
 namespace airtruth::lens {
@@ -30,11 +29,7 @@ constexpr double kMinFocal_px = 1;
 constexpr double kFarthest_px = 1e6;
 constexpr double kLargestCoefficient = 1e12;
 
-std::string shown(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", number);
-  return text;
-}
+std::string shown(double number) { return fmt::format("{:g}", number); }
 
 void check_matrix(const Calibration& c, const std::string& file) {
   for (double value : c.camera_matrix)
@@ -95,8 +90,7 @@ std::vector<double> trimmed(std::vector<double> distortion, bool fisheye, const 
 }
 
 Calibration parsed(std::string_view text, const std::filesystem::path& name) {
-  std::string extension = name.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case(name.extension().string());
   const auto says = [&](const char* word) { return text.find(word) != std::string_view::npos; };
   // OpenCV's JSON is YAML too.
   const bool is_gyroflow =

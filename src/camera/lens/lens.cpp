@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "camera/lens/models.h"
 #include "foundation/base/error.h"
@@ -12,11 +13,7 @@
 namespace airtruth::lens {
 namespace {
 
-std::string number(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
+std::string number(double x) { return fmt::format("{:g}", x); }
 
 bool finite(const Pixel& p) { return std::isfinite(p.x()) && std::isfinite(p.y()); }
 
