@@ -40,6 +40,9 @@ struct Rigid {
     const Quaternion back = rotation.conjugate();
     return {back, back * (-translation)};
   }
+  Eigen::Affine3d affine() const {
+    return Eigen::Translation3d(translation) * Eigen::Affine3d(rotation);
+  }
 };
 
 // An attitude as files state it, in degrees: yaw from north towards east, then pitch nose up, then

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
 #include <optional>
 
 namespace airtruth::backdrop {
@@ -17,18 +16,24 @@ class EglContext {
   // Makes the context current on this thread during its own lifetime.
   class Current {
    public:
-    explicit Current(const EglContext& context);
+    explicit Current(const EglContext& egl);
     ~Current();
     Current(const Current&) = delete;
     Current& operator=(const Current&) = delete;
 
    private:
-    const EglContext& context_;
+    const EglContext& egl_;
   };
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  bool open(void* candidate);
+  // The process shares displays, so none is ever terminated.
+  void close();
+
+  // EGL's handles; its headers declare them as pointers to void, and bring those of X11 along.
+  void* display_ = nullptr;
+  void* surface_ = nullptr;
+  void* context_ = nullptr;
 };
 
 }  // namespace airtruth::backdrop

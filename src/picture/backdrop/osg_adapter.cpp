@@ -4,25 +4,17 @@
 namespace airtruth::backdrop {
 namespace {
 
-Eigen::Affine3d affine(const Rigid& b_from_a) {
-  return Eigen::Translation3d(b_from_a.translation) * Eigen::Affine3d(b_from_a.rotation);
-}
-
 // OpenGL's eye has y up and looks along -z; the camera has y down and looks along +z.
 const Vector3 kEyeFromCam{1, -1, -1};
 
 }  // namespace
 
 osg::Matrixd osg_from_affine(const Eigen::Affine3d& b_from_a) {
-  osg::Matrixd result;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) result(column, row) = b_from_a(row, column);
-  }
-  return result;
+  return osg::Matrixd(b_from_a.data());  // both hold a column of this after another
 }
 
 osg::Matrixd eye_from_world(const Rigid& cam_from_world) {
-  return osg_from_affine(Eigen::Affine3d(Eigen::Scaling(kEyeFromCam)) * affine(cam_from_world));
+  return osg_from_affine(Eigen::Affine3d(Eigen::Scaling(kEyeFromCam)) * cam_from_world.affine());
 }
 
 osg::Vec3f eye_direction_from_world(const Rigid& cam_from_world,

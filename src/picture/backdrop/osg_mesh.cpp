@@ -150,8 +150,7 @@ void OsgMesh::add_part(std::size_t part,
 
 void OsgMesh::place(const Instance& instance, const Rigid& cam_from_world) {
   const Rigid& world_from_body = instance.world_from_body;
-  body_->setMatrix(osg_from_affine(Eigen::Translation3d(world_from_body.translation) *
-                                   Eigen::Affine3d(world_from_body.rotation)));
+  body_->setMatrix(osg_from_affine(world_from_body.affine()));
   std::vector<Eigen::Affine3f> body_from_parts;
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     body_from_parts.push_back(model::body_from_part(mesh_.parts[part], instance.time_s));

@@ -196,8 +196,7 @@ class RayTriangles::Projected {
       const View then = view.at(dt_s);
       const Rigid cam_from_body =
           then.world_from_cam.inverse() * carried(instance.world_from_body, instance.twist, dt_s);
-      Eigen::Affine3d cam_from_part =
-          Eigen::Translation3d(cam_from_body.translation) * Eigen::Affine3d(cam_from_body.rotation);
+      Eigen::Affine3d cam_from_part = cam_from_body.affine();
       if (source.moves())
         cam_from_part =
             cam_from_part * model::body_from_part(source, instance.time_s + dt_s).cast<double>();
