@@ -176,14 +176,14 @@ std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& pi
   if (std::sqrt(best.value) < kMinSeparationSigmas) return std::nullopt;
   Vector3 up = up_of(best.pitch, best.roll);
   if (!is_sky(samples, up)) up = -up;
-  const HorizonEdge edge = horizon_edge(picture, lens_, mask(), up);
+  const HorizonEdge edge = horizon_edge({picture, lens_, mask()}, up);
   return Found{
       edge.sharpness >= kSharp ? edge.up_in_cam : up, std::sqrt(best.value), edge.sharpness};
 }
 
 HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,
                                            const Vector3& expected_up_in_cam) const {
-  const HorizonEdge edge = horizon_edge_beside(picture, lens_, mask(), expected_up_in_cam);
+  const HorizonEdge edge = horizon_edge_beside({picture, lens_, mask()}, expected_up_in_cam);
   return {edge.up_in_cam, 0, edge.sharpness};
 }
 

@@ -10,7 +10,6 @@
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
-#include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
 namespace airtruth::horizon {
@@ -48,13 +47,14 @@ constexpr double kSkyFromDeg = 0.3, kSkyToDeg = 1.1;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 // Bilinear interpolation; NaN outside the picture and on the own aircraft.
-float luma_at(const image::Picture& picture, const image::Mask* own_aircraft, const Pixel& p) {
+float luma_at(const Sight& sight, const Pixel& p) {
+  const image::Picture& picture = sight.picture;
   const double x = p.x() - 0.5;
   const double y = p.y() - 0.5;
   const int ix = static_cast<int>(std::floor(x));
   const int iy = static_cast<int>(std::floor(y));
   if (ix < 0 || iy < 0 || ix + 1 >= picture.width || iy + 1 >= picture.height) return kNothing;
-  if (own_aircraft != nullptr && !own_aircraft->is_free(ix, iy)) return kNothing;
+  if (sight.own_aircraft != nullptr && !sight.own_aircraft->is_free(ix, iy)) return kNothing;
   const auto fx = static_cast<float>(x - ix);
   const auto fy = static_cast<float>(y - iy);
   const std::uint8_t* upper = picture.planes[0].row(iy) + ix;
@@ -129,12 +129,9 @@ void append_steps(const std::vector<float>& luma,
 
 // Resamples a picture. The axes of level are x ahead along the optical axis, y right and z down.
 // Azimuths at which nothing is seen are left out.
-Unrolled unroll(const image::Picture& picture,
-                const lens::Lens& lens,
-                const image::Mask* own_aircraft,
-                const Quaternion& cam_from_level,
-                const Sweep& sweep) {
+Unrolled unroll(const Sight& sight, const Quaternion& cam_from_level, const Sweep& sweep) {
   Unrolled result;
+  const lens::Lens& lens = sight.lens;
   const Rows rows = rows_of(sweep);
   result.rows =
       static_cast<int>(std::lround((sweep.high_deg - sweep.low_deg) / sweep.step_deg)) + 1;
@@ -150,7 +147,7 @@ Unrolled unroll(const image::Picture& picture,
     for (std::size_t r = 0; r < luma.size(); ++r) {
       const auto pixel =
           lens.pixel_from_cam(elevations[r].level * level_in_cam + elevations[r].up * up_in_cam);
-      luma[r] = pixel ? luma_at(picture, own_aircraft, *pixel) : kNothing;
+      luma[r] = pixel ? luma_at(sight, *pixel) : kNothing;
       any = any || !std::isnan(luma[r]);
     }
     if (!any) continue;
@@ -285,45 +282,26 @@ std::optional<Quaternion> cam_from_level_axes(const Vector3& up_in_cam) {
   return Quaternion(axes);
 }
 
-Vector3 swept(const image::Picture& picture,
-              const lens::Lens& lens,
-              const image::Mask* own_aircraft,
-              const Vector3& up_in_cam,
-              const Sweep& sweep) {
+Vector3 swept(const Sight& sight, const Vector3& up_in_cam, const Sweep& sweep) {
   const auto cam_from_level = cam_from_level_axes(up_in_cam);
   if (!cam_from_level) return up_in_cam;
-  const Line line = best_line(unroll(picture, lens, own_aircraft, *cam_from_level, sweep), sweep);
+  const Line line = best_line(unroll(sight, *cam_from_level, sweep), sweep);
   // The elevation of this plane is pitch cos(azimuth) + roll sin(azimuth).
   const Vector3 up =
       Vector3(-std::tan(radians(line.pitch_deg)), -std::tan(radians(line.roll_deg)), -1);
   return *cam_from_level * up.normalized();
 }
 
-HorizonEdge weighed(const image::Picture& picture,
-                    const lens::Lens& lens,
-                    const image::Mask* own_aircraft,
-                    const Vector3& up_in_cam) {
-  const auto cam_from_level = cam_from_level_axes(up_in_cam);
-  if (!cam_from_level) return {up_in_cam, 0};
-  return {up_in_cam, sharpness_of(unroll(picture, lens, own_aircraft, *cam_from_level, kLine))};
-}
-
 }  // namespace
 
-HorizonEdge horizon_edge(const image::Picture& picture,
-                         const lens::Lens& lens,
-                         const image::Mask* own_aircraft,
-                         const Vector3& guess_up_in_cam) {
-  const Vector3 up = swept(picture, lens, own_aircraft, guess_up_in_cam, kWide);
-  return horizon_edge_beside(picture, lens, own_aircraft, up);
+HorizonEdge horizon_edge(const Sight& sight, const Vector3& guess_up_in_cam) {
+  return horizon_edge_beside(sight, swept(sight, guess_up_in_cam, kWide));
 }
 
-HorizonEdge horizon_edge_beside(const image::Picture& picture,
-                                const lens::Lens& lens,
-                                const image::Mask* own_aircraft,
-                                const Vector3& guess_up_in_cam) {
-  return weighed(
-      picture, lens, own_aircraft, swept(picture, lens, own_aircraft, guess_up_in_cam, kNarrow));
+HorizonEdge horizon_edge_beside(const Sight& sight, const Vector3& guess_up_in_cam) {
+  const Vector3 up = swept(sight, guess_up_in_cam, kNarrow);
+  const auto cam_from_level = cam_from_level_axes(up);
+  return {up, cam_from_level ? sharpness_of(unroll(sight, *cam_from_level, kLine)) : 0};
 }
 
 }  // namespace airtruth::horizon

@@ -8,6 +8,13 @@
 
 namespace airtruth::horizon {
 
+// What a camera sees, and the pixels without the own aircraft where a mask says so.
+struct Sight {
+  const image::Picture& picture;
+  const lens::Lens& lens;
+  const image::Mask* own_aircraft;
+};
+
 struct HorizonEdge {
   Vector3 up_in_cam{0, -1, 0};
   // The share of the line, 0..1, across which luma steps in the same direction by a code value more
@@ -21,14 +28,8 @@ struct HorizonEdge {
 // each cut off at 6 code values, so that weak steps all along count more than strong steps in a few
 // places. The search is coarse first (6 degrees below the guess to 16 above) and then fine (1.5
 // degrees).
-HorizonEdge horizon_edge(const image::Picture& picture,
-                         const lens::Lens& lens,
-                         const image::Mask* own_aircraft,
-                         const Vector3& guess_up_in_cam);
+HorizonEdge horizon_edge(const Sight& sight, const Vector3& guess_up_in_cam);
 // The fine search alone, for a guess that is within a degree of the horizon.
-HorizonEdge horizon_edge_beside(const image::Picture& picture,
-                                const lens::Lens& lens,
-                                const image::Mask* own_aircraft,
-                                const Vector3& guess_up_in_cam);
+HorizonEdge horizon_edge_beside(const Sight& sight, const Vector3& guess_up_in_cam);
 
 }  // namespace airtruth::horizon
