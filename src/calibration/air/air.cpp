@@ -63,8 +63,7 @@ Air AirMeter::air(const std::stop_token& stop) const {
   if (ground_.altitude_m)
     if (const auto again = seen_again(stop))
       return {again->airlight, again->extinction_per_km, std::nullopt};
-  const std::vector<SeenLight> ground =
-      ground_patches(views_, lens_, own_aircraft_, height_m, tone_);
+  const std::vector<SeenLight> ground = ground_patches(scenery(), height_m, tone_);
   const auto visibility_km = [&] { return visibility_by_horizon_km(ground, sky, height_m); };
   if (!ground_.altitude_m) return {*airlight, NotMeasured{ground_.why_unknown}, visibility_km()};
   const auto fading = fading_of_ground(ground, sky, height_m);
@@ -73,9 +72,9 @@ Air AirMeter::air(const std::stop_token& stop) const {
 }
 
 std::optional<SeenAgain> AirMeter::seen_again(const std::stop_token& stop) const {
-  const auto track = track_ground(views_, lens_, own_aircraft_, stop);
+  const auto track = track_ground(scenery(), stop);
   if (!track) return std::nullopt;
-  return fading_of_same_ground(ground_seen(views_, *track, lens_, own_aircraft_, tone_),
+  return fading_of_same_ground(ground_seen(scenery(), *track, tone_),
                                sky_curves(sky_light(track->level_from_world), kOverTrueHorizon),
                                *ground_.altitude_m);
 }

@@ -67,6 +67,7 @@ class AirMeter {
   Measured<Sun> sun() const;
 
  private:
+  Scenery scenery() const { return {views_, lens_, own_aircraft_}; }
   std::optional<SeenAgain> seen_again(const std::stop_token& stop) const;
   // The samples above the horizon, rotated by `level_from_world`.
   std::vector<SeenLight> sky_light(const Quaternion& level_from_world) const;

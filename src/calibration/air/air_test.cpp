@@ -96,7 +96,7 @@ TEST(AirMeter, TheHorizonsLookBoundsTheVisibilityFromBelow) {
                          image::linear_at(picture, code, x, y, {})));
     }
     const auto here = visibility_by_horizon_km(
-        ground_patches(views, lens, nullptr, kAltitudeM, {}), sky_curves(sky), kAltitudeM);
+        ground_patches({views, lens}, kAltitudeM, {}), sky_curves(sky), kAltitudeM);
     ASSERT_TRUE(here);
     std::printf(
         "%.2f per km, seen %.1f km: class of %.0f km\n", per_km, kKoschmieder / per_km, *here);

@@ -66,12 +66,12 @@ std::optional<float> light_at(const cv::Mat& grey,
                             fy * ((1 - fx) * lower[0] + fx * lower[1]));
 }
 
-Rectified rectified(const GroundView& view,
-                    const lens::Lens& lens,
+Rectified rectified(const Scenery& scenery,
+                    std::size_t k,
                     double lens_least_cosine,
-                    const image::Mask* own_aircraft,
                     const Quaternion& level_from_world,
                     double cell) {
+  const GroundView& view = scenery.views[k];
   const cv::Mat grey = motion::luma_of(*view.picture);
   const Matrix3 cam_from_level =
       (view.cam_from_world * level_from_world.conjugate()).toRotationMatrix();
@@ -86,8 +86,8 @@ Rectified rectified(const GroundView& view,
       if (squared_range < kMinRange * kMinRange || squared_range > kMaxRange * kMaxRange) continue;
       const Vector3 in_cam = cam_from_level * place;
       if (in_cam.z() < lens_least_cosine * std::sqrt(squared_range + 1)) continue;
-      const auto pixel = lens.pixel_from_cam(in_cam);
-      const auto light = pixel ? light_at(grey, own_aircraft, *pixel) : std::nullopt;
+      const auto pixel = scenery.lens.pixel_from_cam(in_cam);
+      const auto light = pixel ? light_at(grey, scenery.own_aircraft, *pixel) : std::nullopt;
       if (!light) continue;
       result.light.at<float>(row, column) = *light;
       result.seen.at<float>(row, column) = 1;
@@ -145,16 +145,14 @@ void for_each_view(std::size_t count, const std::function<void(std::size_t)>& ma
 
 }  // namespace
 
-GroundMaps::GroundMaps(const std::vector<GroundView>& views,
-                       const lens::Lens& lens,
-                       const image::Mask* own_aircraft,
+GroundMaps::GroundMaps(const Scenery& scenery,
                        const Quaternion& level_from_world,
                        const GroundMapOptions& options)
-    : cell_(options.cell), spectra_(views.size()) {
-  const double cosine = least_cosine(lens);
-  std::vector<Rectified> flat(views.size());
-  for_each_view(views.size(), [&](std::size_t k) {
-    flat[k] = rectified(views[k], lens, cosine, own_aircraft, level_from_world, cell_);
+    : cell_(options.cell), spectra_(scenery.views.size()) {
+  const double cosine = least_cosine(scenery.lens);
+  std::vector<Rectified> flat(spectra_.size());
+  for_each_view(flat.size(), [&](std::size_t k) {
+    flat[k] = rectified(scenery, k, cosine, level_from_world, cell_);
   });
   // Nothing is seen outside the extent of all views together.
   cv::Rect extent(0, 0, 0, 0);
@@ -164,7 +162,7 @@ GroundMaps::GroundMaps(const std::vector<GroundView>& views,
   const int padding = static_cast<int>(std::ceil(options.max_displacement / cell_)) + 1;
   const cv::Size size(cv::getOptimalDFTSize(extent.width + padding),
                       cv::getOptimalDFTSize(extent.height + padding));
-  for_each_view(views.size(), [&](std::size_t k) {
+  for_each_view(flat.size(), [&](std::size_t k) {
     const cv::Mat seen = flat[k].seen(extent);
     spectra_[k] = {spectrum_of(evened(flat[k].light(extent), seen, cell_), size),
                    spectrum_of(seen, size)};

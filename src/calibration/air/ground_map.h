@@ -35,9 +35,7 @@ struct Laid {
 class GroundMaps {
  public:
   // The level frame, in which the ground is z = 1, is that of `level_from_world`.
-  GroundMaps(const std::vector<GroundView>& views,
-             const lens::Lens& lens,
-             const image::Mask* own_aircraft,
+  GroundMaps(const Scenery& scenery,
              const Quaternion& level_from_world,
              const GroundMapOptions& options);
 

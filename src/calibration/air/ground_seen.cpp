@@ -72,13 +72,14 @@ int sector_of_way(const Eigen::Vector2d& way) {
 // Collects the squares and bands, one view after the other.
 class Gatherer {
  public:
-  Gatherer(const lens::Lens& lens, const image::Mask* own_aircraft, const image::ToneCurve& tone)
+  Gatherer(const Scenery& scenery, const image::ToneCurve& tone)
       : tone_(tone), bands_(kSectors * kBands) {
+    const lens::Lens& lens = scenery.lens;
     const double pixels = double(lens.size().width) * lens.size().height;
     const int step =
         std::max(1, static_cast<int>(std::lround(std::sqrt(pixels / kMaxSampledPixels))));
     step_rad_ = step / lens.focal_px();
-    rays_ = pixel_rays(lens, own_aircraft, step / 2, step);
+    rays_ = pixel_rays(lens, scenery.own_aircraft, step / 2, step);
     for (std::size_t i = 0; i <= kBands; ++i) {
       const double border_rad = radians(kBordersDeg[i]);
       borders_[i] = border_rad * lens.focal_px() < 1 ? 0 : 1 / std::sin(border_rad);
@@ -160,14 +161,12 @@ class Gatherer {
 
 }  // namespace
 
-GroundSeen ground_seen(const std::vector<GroundView>& views,
+GroundSeen ground_seen(const Scenery& scenery,
                        const GroundTrack& track,
-                       const lens::Lens& lens,
-                       const image::Mask* own_aircraft,
                        const image::ToneCurve& tone) {
-  Gatherer gatherer(lens, own_aircraft, tone);
+  Gatherer gatherer(scenery, tone);
   for (std::size_t k = 0; k < track.places.size(); ++k)
-    gatherer.add(views[track.first + k], track.level_from_world, track.places[k]);
+    gatherer.add(scenery.views[track.first + k], track.level_from_world, track.places[k]);
   return gatherer.seen();
 }
 
@@ -235,15 +234,14 @@ void append_patches(std::vector<SeenLight>& all,
 
 }  // namespace
 
-std::vector<SeenLight> ground_patches(const std::vector<GroundView>& views,
-                                      const lens::Lens& lens,
-                                      const image::Mask* own_aircraft,
+std::vector<SeenLight> ground_patches(const Scenery& scenery,
                                       double altitude_m,
                                       const image::ToneCurve& tone) {
-  const std::vector<PixelRay> rays = pixel_rays(lens, own_aircraft, kGroundStep / 2, kGroundStep);
+  const std::vector<PixelRay> rays =
+      pixel_rays(scenery.lens, scenery.own_aircraft, kGroundStep / 2, kGroundStep);
   std::vector<SeenLight> all;
-  for (const GroundView& view : views)
-    append_patches(all, ground_of(view, rays, tone), altitude_m, 1 / lens.focal_px());
+  for (const GroundView& view : scenery.views)
+    append_patches(all, ground_of(view, rays, tone), altitude_m, 1 / scenery.lens.focal_px());
   return all;
 }
 

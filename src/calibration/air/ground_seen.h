@@ -41,10 +41,8 @@ struct GroundSeen {
   std::vector<FarGround> far;
 };
 // `track` gives the position and the level frame of each view.
-GroundSeen ground_seen(const std::vector<GroundView>& views,
+GroundSeen ground_seen(const Scenery& scenery,
                        const GroundTrack& track,
-                       const lens::Lens& lens,
-                       const image::Mask* own_aircraft,
                        const image::ToneCurve& tone);
 
 // The light of level ground, averaged over patches of equal size on the ground at any distance.
@@ -52,9 +50,7 @@ GroundSeen ground_seen(const std::vector<GroundView>& views,
 // more of it. A patch is as large as the ground that one pixel covers at 2 degrees below the
 // horizon; farther away a patch is one pixel. The patches of all views follow one another in the
 // order of the views.
-std::vector<SeenLight> ground_patches(const std::vector<GroundView>& views,
-                                      const lens::Lens& lens,
-                                      const image::Mask* own_aircraft,
+std::vector<SeenLight> ground_patches(const Scenery& scenery,
                                       double altitude_m,
                                       const image::ToneCurve& tone);
 

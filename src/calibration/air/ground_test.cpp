@@ -45,7 +45,7 @@ Flown flown(double horizon_deg) {
 TEST(GroundTrack, FindsTheWayAndTheHorizon) {
   constexpr double horizon_deg = 1.6;
   const Flown f = flown(horizon_deg);
-  const auto track = track_ground(f.views, f.flight.lens(), nullptr);
+  const auto track = track_ground({f.views, f.flight.lens()});
   ASSERT_TRUE(track) << horizon_deg;
   ASSERT_EQ(track->places.size(), f.views.size());
   const Vector3 truth =
@@ -67,10 +67,10 @@ TEST(GroundTrack, WithoutGroundThereIsNone) {
   const image::Picture blank = image::make_picture(320, 240, image::Colour{});
   const lens::Lens lens = lens::pinhole_from_vertical_fov(60, {320, 240});
   const std::vector<GroundView> views(6, GroundView{&blank, cam_from_body()});
-  EXPECT_FALSE(track_ground(views, lens, nullptr));
+  EXPECT_FALSE(track_ground({views, lens}));
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(track_ground(views, lens, nullptr, stop.get_token()), Interrupted);
+  EXPECT_THROW(track_ground({views, lens}, stop.get_token()), Interrupted);
 }
 
 // Squares with random light that the camera approaches, and the ground beyond them. The sky is seen

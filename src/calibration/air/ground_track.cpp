@@ -96,22 +96,11 @@ double far_agreement(const GroundTrack& track, const GroundMaps& maps) {
   return count > 0 ? sum / count : 0;
 }
 
-// What the views are, and how they are rectified.
-struct Scenery {
-  const std::vector<GroundView>& views;
-  const lens::Lens& lens;
-  const image::Mask* own_aircraft;
-};
-
 // The track under an assumed horizon, by rectified views with cells of the given size.
 GroundTrack track_at(const Scenery& scenery, double horizon_rad, double cell) {
   // The assumed horizon is higher, so the direction that was level lies below it.
   const Quaternion level_from_world(Eigen::AngleAxisd(-horizon_rad, right_of(scenery.views)));
-  const GroundMaps maps(scenery.views,
-                        scenery.lens,
-                        scenery.own_aircraft,
-                        level_from_world,
-                        {cell, kMaxDisplacement});
+  const GroundMaps maps(scenery, level_from_world, {cell, kMaxDisplacement});
   GroundTrack best = longest_run(registrations(maps),
                                  {0, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0});
   best.agreement = far_agreement(best, maps);
@@ -142,12 +131,8 @@ std::optional<Eigen::Vector2d> place_on_ground(const Vector3& direction) {
   return Eigen::Vector2d(direction.x(), direction.y()) / direction.z();
 }
 
-std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
-                                        const lens::Lens& lens,
-                                        const image::Mask* own_aircraft,
-                                        const std::stop_token& stop) {
-  if (views.size() < kMinViews) return std::nullopt;
-  const Scenery scenery{views, lens, own_aircraft};
+std::optional<GroundTrack> track_ground(const Scenery& scenery, const std::stop_token& stop) {
+  if (scenery.views.size() < kMinViews) return std::nullopt;
   const auto at = [&](double steps, double cell) {
     if (stop.stop_requested()) throw Interrupted();
     return track_at(scenery, radians(kTrackTiltStepDeg) * steps, cell);

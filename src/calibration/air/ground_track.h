@@ -23,6 +23,13 @@ struct GroundView {
   Quaternion cam_from_world;
 };
 
+// Views through one lens; own_aircraft masks them all, where it is not nullptr.
+struct Scenery {
+  const std::vector<GroundView>& views;
+  const lens::Lens& lens;
+  const image::Mask* own_aircraft = nullptr;
+};
+
 // The path of the camera. Places are north and east of the first view, in heights: multiples of the
 // camera's height above the ground.
 struct GroundTrack {
@@ -43,10 +50,7 @@ struct GroundTrack {
 // one by masked correlation (Padfield 2012, "Masked object registration in the Fourier domain").
 // The horizon is the one under which views that are farther apart agree best. Empty where the views
 // do not agree. Throws Interrupted when `stop` is requested.
-std::optional<GroundTrack> track_ground(const std::vector<GroundView>& views,
-                                        const lens::Lens& lens,
-                                        const image::Mask* own_aircraft,
-                                        const std::stop_token& stop = {});
+std::optional<GroundTrack> track_ground(const Scenery& scenery, const std::stop_token& stop = {});
 
 // The point at which a direction (z down) meets the ground, north and east of the point under the
 // camera, in heights. Empty at the horizon and above.
