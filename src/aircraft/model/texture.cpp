@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "foundation/base/huge_pages.h"
+#include "foundation/image/colour.h"
 
 namespace airtruth::model {
 namespace {
@@ -53,22 +54,13 @@ void add_mip_chain(Texture& texture) {
     texture.coarser.push_back(halved(texture.coarser.back()));
 }
 
-int wrapped(int i, int size, bool repeat) {
-  return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
-}
-
 }  // namespace
-
-float linear_channel(float srgb) {
-  const float c = std::clamp(srgb, 0.0f, 1.0f);
-  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
 
 const Decoding kDecoding = [] {
   Decoding result;
   for (std::size_t i = 0; i < 256; ++i) {
     const float stated = static_cast<float>(i) / 255.0f;
-    result.linear[i] = linear_channel(stated);
+    result.linear[i] = image::linear_from_srgb(stated);
     result.alpha[i] = stated < kOpaque ? stated : 1.0f;
   }
   return result;
@@ -88,22 +80,8 @@ Texture texture_from_picture(texture_file::Picture picture, bool repeat_u, bool 
 }
 
 float alpha_at(const Texture& texture, float u, float v) {
-  const texture_file::Picture& finest = texture.finest;
   if (!std::isfinite(u) || !std::isfinite(v) || std::abs(u) > 1e6f || std::abs(v) > 1e6f) return 1;
-  const float x = u * static_cast<float>(finest.width) - 0.5f;
-  const float y = v * static_cast<float>(finest.height) - 0.5f;
-  const int x0 = static_cast<int>(std::floor(x));
-  const int y0 = static_cast<int>(std::floor(y));
-  const float fx = x - static_cast<float>(x0);
-  const float fy = y - static_cast<float>(y0);
-  const auto at = [&](int i, int j) {
-    const std::uint8_t* rgba = finest_bytes(texture,
-                                            wrapped(i, finest.width, texture.repeat_u),
-                                            wrapped(j, finest.height, texture.repeat_v));
-    return kDecoding.alpha[rgba[3]];
-  };
-  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) +
-         fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
+  return finest_alpha(texture, {u, v});
 }
 
 }  // namespace airtruth::model

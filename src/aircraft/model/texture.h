@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,9 +10,6 @@
 #include "aircraft/texture_file/picture.h"
 
 namespace airtruth::model {
-
-// The linear value of an sRGB value, both 0..1, by the exact curve of IEC 61966-2-1.
-float linear_channel(float srgb);
 
 // What the code values of a picture mean.
 struct Decoding {
@@ -30,6 +28,47 @@ inline const std::uint8_t* finest_bytes(const Texture& texture, int x, int y) {
   const auto width = static_cast<std::size_t>(texture.finest.width);
   return texture.finest.rgba.data() +
          4 * (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x));
+}
+
+// A texel beyond the sides of a level, taken to the one that stands for it.
+inline int wrapped(int i, int size, bool repeat) {
+  if (i >= 0 && i < size) return i;
+  return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
+}
+
+// A place between two texels: the first of them, and the share of the second.
+struct TexelPlace {
+  int first;
+  float share;
+};
+
+// Textures have fewer than 2^14 texels a side, so that an int holds the number; std::floor is a
+// call of the library on machines that are only known to have SSE2.
+inline TexelPlace texel_place(float place) {
+  const auto towards_zero = static_cast<std::int64_t>(place);
+  const std::int64_t below = towards_zero - (place < static_cast<float>(towards_zero) ? 1 : 0);
+  return {static_cast<int>(below), place - static_cast<float>(below)};
+}
+
+// Of a level of that size; at(x, y) has the value of a texel.
+template <typename Value, typename At>
+Value bilinear(
+    const Texture& texture, int width, int height, const Eigen::Vector2f& uv, const At& at) {
+  const auto [x, fx] = texel_place(uv.x() * static_cast<float>(width) - 0.5f);
+  const auto [y, fy] = texel_place(uv.y() * static_cast<float>(height) - 0.5f);
+  const int x0 = wrapped(x, width, texture.repeat_u);
+  const int x1 = wrapped(x + 1, width, texture.repeat_u);
+  const int y0 = wrapped(y, height, texture.repeat_v);
+  const int y1 = wrapped(y + 1, height, texture.repeat_v);
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x1, y0)) +
+         fy * ((1 - fx) * at(x0, y1) + fx * at(x1, y1));
+}
+
+inline float finest_alpha(const Texture& texture, const Eigen::Vector2f& uv) {
+  const texture_file::Picture& finest = texture.finest;
+  return bilinear<float>(texture, finest.width, finest.height, uv, [&](int i, int j) {
+    return kDecoding.alpha[finest_bytes(texture, i, j)[3]];
+  });
 }
 
 Texture texture_from_picture(texture_file::Picture picture, bool repeat_u, bool repeat_v);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
@@ -22,6 +21,7 @@
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/image/colour.h"
 
 namespace airtruth::model_reader {
 namespace {
@@ -91,17 +91,12 @@ class AssimpFiles : public Assimp::IOSystem {
   std::set<std::string> missing_;
 };
 
-float srgb_channel(float linear) {
-  const float c = std::clamp(linear, 0.0f, 1.0f);
-  return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
-}
-
 // The colour with components in 0..1; a component that is not finite becomes 0.
 std::array<float, 3> colour_of(const aiColor3D& c, bool is_linear) {
   std::array<float, 3> result{c.r, c.g, c.b};
   for (float& channel : result) {
     channel = channel >= 0 ? std::min(channel, 1.0f) : 0.0f;
-    if (is_linear) channel = srgb_channel(channel);
+    if (is_linear) channel = image::srgb_from_linear(channel);
   }
   return result;
 }
@@ -126,16 +121,12 @@ class SceneReader {
     const aiMatrix4x4 root = ending_ == ".3ds" ? aiMatrix4x4() : scene_.mRootNode->mTransformation;
     read_node(*scene_.mRootNode, root, 0);
     if (has_vertex_colours_)
-      warn("the colours of its vertices are not read; materials and textures show");
-    if (is_inverted_) warn("a material that states that nothing of it is seen is shown opaque");
+      assembly_.warn("the colours of its vertices are not read; materials and textures show");
+    if (is_inverted_)
+      assembly_.warn("a material that states that nothing of it is seen is shown opaque");
   }
 
  private:
-  void warn(const char* text) {
-    if (assembly_.model().warnings.size() < model::kMaxWarnings)
-      assembly_.model().warnings.emplace_back(text);
-  }
-
   void read_node(const aiNode& node, const aiMatrix4x4& file_from_node, int depth) {
     if (depth > kMaxNodeDepth) throw Error("nests objects too deep");
     const bool named = node.mName.length > 0;
@@ -281,9 +272,8 @@ void warn_of_missing(wrapper::Assembly& assembly, const AssimpFiles& files) {
   std::size_t shown = 0;
   for (const std::string& name : files.missing())
     if (++shown <= kNamedFiles) names += (shown == 1 ? "" : ", ") + name;
-  if (assembly.model().warnings.size() < model::kMaxWarnings)
-    assembly.model().warnings.push_back("files that are not in its folder and are left out: " +
-                                        names + (shown > kNamedFiles ? ", ..." : ""));
+  assembly.warn("files that are not in its folder and are left out: " + names +
+                (shown > kNamedFiles ? ", ..." : ""));
 }
 
 // Extensions of glTF by which a file states pictures or vertices otherwise, and which assimp passes
@@ -297,10 +287,9 @@ constexpr std::array<const char*, 5> kUnreadExtensions = {"EXT_texture_webp",
 void warn_of_extensions(wrapper::Assembly& assembly, const fs::path& file) {
   const std::string text = assembly.files().read(file, model::kMaxModelBytes);
   for (const char* extension : kUnreadExtensions)
-    if (text.find('"' + std::string(extension) + '"') != std::string::npos &&
-        assembly.model().warnings.size() < model::kMaxWarnings)
-      assembly.model().warnings.push_back(std::string("the extension ") + extension +
-                                          " of glTF is not read; what it states is missing");
+    if (text.find('"' + std::string(extension) + '"') != std::string::npos)
+      assembly.warn(std::string("the extension ") + extension +
+                    " of glTF is not read; what it states is missing");
 }
 
 std::string one_sentence(const char* message) {
@@ -337,10 +326,8 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
                 {shown});
   // assimp moves the coordinates of textures rightly; it turns and scales them otherwise than glTF.
   for (unsigned i = 0; i < scene->mNumMaterials; ++i)
-    if (assembly.model().warnings.size() < model::kMaxWarnings &&
-        turns_or_scales(*scene->mMaterials[i])) {
-      assembly.model().warnings.emplace_back(
-          "a texture is turned or scaled on its surface, which may not show rightly");
+    if (turns_or_scales(*scene->mMaterials[i])) {
+      assembly.warn("a texture is turned or scaled on its surface, which may not show rightly");
       break;
     }
   scene = importer.ApplyPostProcessing(aiProcess_TransformUVCoords);

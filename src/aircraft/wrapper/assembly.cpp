@@ -9,9 +9,9 @@
 
 #include "aircraft/ac3d/ac_file.h"
 #include "aircraft/ac3d/ac_mesh.h"
-#include "aircraft/model/texture.h"
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
+#include "foundation/image/colour.h"
 
 namespace airtruth::wrapper {
 namespace {
@@ -100,15 +100,17 @@ int Assembly::read_texture(const fs::path& path, bool repeat_u, bool repeat_v) {
   return index;
 }
 
+void Assembly::warn(const std::string& text) {
+  if (model_.warnings.size() < model::kMaxWarnings) model_.warnings.push_back(text);
+}
+
 // The models of FlightGear's catalogue (AC3D) are complete. Those of other formats often lack a
 // texture, and then show the material's plain colour.
 void Assembly::warn_of_texture(const std::string& name) {
   const std::string text = "the texture " + name.substr(0, 200) +
                            " is not there; the material's plain colour stands for it";
-  std::vector<std::string>& warnings = model_.warnings;
-  if (warnings.size() < model::kMaxWarnings &&
-      std::find(warnings.begin(), warnings.end(), text) == warnings.end())
-    warnings.push_back(text);
+  if (std::find(model_.warnings.begin(), model_.warnings.end(), text) == model_.warnings.end())
+    warn(text);
 }
 
 int Assembly::texture_of(const ac3d::Batch& batch,
@@ -146,7 +148,7 @@ std::uint32_t Assembly::material_of(const ac3d::Batch& batch,
                                     int texture) {
   model::Material material = batch.srgb;
   for (std::array<float, 3>* colour : {&material.diffuse, &material.emission, &material.specular})
-    for (float& channel : *colour) channel = model::linear_channel(channel);
+    for (float& channel : *colour) channel = image::linear_from_srgb(channel);
   material.shininess = std::clamp(material.shininess, 0.0f, 128.0f);
   material.opacity = choice.opacity * std::clamp(material.opacity, 0.0f, 1.0f);
   material.texture = texture;

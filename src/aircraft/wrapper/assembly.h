@@ -37,6 +37,8 @@ class Assembly {
   ModelFiles& files() { return files_; }
   model::RawModel& model() { return model_; }
 
+  void warn(const std::string& text);  // unless the model has many warnings already
+
   // Appends triangles of a file. A texture that is missing is a warning, but for AC3D. Throws
   // Error, with the file and the line that names the texture, where one is unreadable, and where
   // triangles, vertices or pixels exceed a limit.

@@ -3,71 +3,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "aircraft/model/texture.h"
 
 namespace airtruth::shade {
 namespace {
 
-int wrapped(int i, int size, bool repeat) {
-  if (i >= 0 && i < size) return i;
-  return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
-}
-
 // Texture coordinates beyond this number of repeats count as damaged; an int holds their texels.
 constexpr float kFarthestRepeat = 1e5f;
-
-// A place between two texels: the first of them, and the share of the second.
-struct TexelPlace {
-  int first;
-  float share;
-};
-
-// Textures have fewer than 2^14 texels a side, so that an int holds the number; std::floor is a
-// call of the library on machines that are only known to have SSE2.
-TexelPlace texel_place(float place) {
-  const auto towards_zero = static_cast<std::int64_t>(place);
-  const std::int64_t below = towards_zero - (place < static_cast<float>(towards_zero) ? 1 : 0);
-  return {static_cast<int>(below), place - static_cast<float>(below)};
-}
 
 // Four channels at once.
 using Channels = Eigen::Array4f;
 
-// at(x, y) has the value of a texel.
-template <typename Value, typename At>
-Value bilinear(
-    const model::Texture& texture, int width, int height, const Eigen::Vector2f& uv, const At& at) {
-  const auto [x, fx] = texel_place(uv.x() * static_cast<float>(width) - 0.5f);
-  const auto [y, fy] = texel_place(uv.y() * static_cast<float>(height) - 0.5f);
-  const int x0 = wrapped(x, width, texture.repeat_u);
-  const int x1 = wrapped(x + 1, width, texture.repeat_u);
-  const int y0 = wrapped(y, height, texture.repeat_v);
-  const int y1 = wrapped(y + 1, height, texture.repeat_v);
-  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x1, y0)) +
-         fy * ((1 - fx) * at(x0, y1) + fx * at(x1, y1));
-}
-
 Channels finest_at(const model::Texture& texture, const Eigen::Vector2f& uv) {
   const texture_file::Picture& finest = texture.finest;
-  return bilinear<Channels>(
+  return model::bilinear<Channels>(
       texture, finest.width, finest.height, uv, [&](int i, int j) -> Channels {
         const Texel texel = model::kDecoding.texel(model::finest_bytes(texture, i, j));
         return Eigen::Map<const Channels>(texel.data());
       });
 }
 
-float finest_alpha_at(const model::Texture& texture, const Eigen::Vector2f& uv) {
-  const texture_file::Picture& finest = texture.finest;
-  return bilinear<float>(texture, finest.width, finest.height, uv, [&](int i, int j) {
-    return model::kDecoding.alpha[model::finest_bytes(texture, i, j)[3]];
-  });
-}
-
 Channels coarser_at(const model::Texture& texture, std::size_t index, const Eigen::Vector2f& uv) {
   const model::Texture::Level& level = texture.coarser[index];
-  return bilinear<Channels>(texture, level.width, level.height, uv, [&](int i, int j) {
+  return model::bilinear<Channels>(texture, level.width, level.height, uv, [&](int i, int j) {
     return Eigen::Map<const Channels>(
         level
             .texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(level.width) +
@@ -111,7 +70,8 @@ float TriangleTexture::alpha(float u, float v) const {
   if (texture_ == nullptr) return 1;
   const Eigen::Vector2f at = uv(u, v);
   if (!is_sound(at)) return 1;
-  return level_ == 0 ? finest_alpha_at(*texture_, at) : coarser_at(*texture_, level_ - 1, at)[3];
+  return level_ == 0 ? model::finest_alpha(*texture_, at)
+                     : coarser_at(*texture_, level_ - 1, at)[3];
 }
 
 Texel TriangleTexture::albedo(float u, float v) const {
