@@ -5,20 +5,6 @@
 #include <numbers>
 
 namespace airtruth {
-namespace {
-
-std::uint64_t mixed(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
-
-}  // namespace
-
-std::uint64_t Random::operator()() {
-  state_ += 0x9e3779b97f4a7c15ULL;
-  return mixed(state_);
-}
 
 double Random::uniform() { return static_cast<double>((*this)() >> 11) * 0x1.0p-53; }
 

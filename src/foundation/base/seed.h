@@ -6,6 +6,13 @@
 
 namespace airtruth {
 
+// The finaliser of SplitMix64.
+constexpr std::uint64_t mixed(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
 // SplitMix64 (Steele, Lea and Flood 2014): a small, fast generator of 64-bit numbers whose values
 // are the same on every machine. It satisfies UniformRandomBitGenerator, but uniform() and normal()
 // should be preferred, since the distributions of the standard library differ between
@@ -17,7 +24,7 @@ class Random {
 
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return ~result_type{0}; }
-  result_type operator()();
+  result_type operator()() { return mixed(state_ += 0x9e3779b97f4a7c15ULL); }
 
   double uniform();                         // in [0, 1)
   double uniform(double low, double high);  // in [low, high)

@@ -4,25 +4,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/base/seed.h"
 #include "foundation/image/colour.h"
 #include "picture/composite/spread.h"
 
 namespace airtruth::composite {
 namespace {
 
-std::uint64_t mixed(std::uint64_t x) {
-  x ^= x >> 30, x *= 0xbf58476d1ce4e5b9ULL;
-  x ^= x >> 27, x *= 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-
 // A normal number for a pixel of a frame: the sum of two times 8 uniform bytes (Irwin 1927 and Hall
 // 1927), which never exceeds 6.9 standard deviations.
 float normal_at(std::uint64_t key, int x, int y) {
   const std::uint64_t place = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) |
                               static_cast<std::uint32_t>(y);
-  const std::uint64_t a = mixed(key ^ mixed(place + 0x9e3779b97f4a7c15ULL));
-  const std::uint64_t b = mixed(a + 0x9e3779b97f4a7c15ULL);
+  const std::uint64_t a = mixed(key ^ Random(place)());
+  const std::uint64_t b = Random(a)();
   int sum = 0;
   for (int i = 0; i < 8; ++i)
     sum += static_cast<int>(a >> (8 * i) & 255) + static_cast<int>(b >> (8 * i) & 255);

@@ -26,12 +26,6 @@ using image::Matrix;
 using image::Picture;
 using image::Range;
 
-// Converts through packed sRGB where a format cannot store the picture's own colour.
-Picture converted(const Picture& picture, const Colour& to) {
-  if (picture.colour == to) return picture.clone();
-  return image::picture_from_rgb8(image::rgb8_from_picture(picture), to);
-}
-
 // Converts from limited to full range (JPEG) and changes nothing else: each plane has its own
 // linear map.
 Picture with_full_range(const Picture& picture, const Colour& to) {
@@ -127,20 +121,14 @@ AVPixelFormat pixel_format(const Colour& colour, Format format) {
 }
 
 void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored, Format format) {
-  if (picture.colour == stored) {
-    fill_frame(frame, picture);
-  } else if (picture.colour.matrix != Matrix::kRgb && format == Format::kAvi &&
-             picture.colour.range == Range::kLimited) {
+  const Colour& colour = picture.colour;
+  const bool is_rgb = colour.matrix == Matrix::kRgb;
+  if (colour != stored && !is_rgb && format == Format::kAvi && colour.range == Range::kLimited)
     fill_frame(frame, with_full_range(picture, stored));
-  } else if (picture.colour.matrix == Matrix::kRgb) {
-    fill_frame(frame, converted(picture, stored));
-  } else {
-    Picture same = picture.clone();
-    same.colour = stored;
-    fill_frame(
-        frame,
-        stored.chroma == picture.colour.chroma ? std::move(same) : converted(picture, stored));
-  }
+  else if (colour == stored || (!is_rgb && stored.chroma == colour.chroma))
+    fill_frame(frame, picture);
+  else  // through packed sRGB, as the format cannot store the picture's own colour
+    fill_frame(frame, image::picture_from_rgb8(image::rgb8_from_picture(picture), stored));
 }
 
 namespace {

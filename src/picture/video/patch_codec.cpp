@@ -45,7 +45,6 @@ class Loop {
  private:
   void encode(const Picture& picture, AVPictureType type);
   void send(const AVPacket* packet);
-  void take();
 
   CodecPtr encoder_;
   CodecPtr decoder_;
@@ -97,10 +96,6 @@ void Loop::encode(const Picture& picture, AVPictureType type) {
 
 void Loop::send(const AVPacket* packet) {
   check_av(avcodec_send_packet(decoder_.get(), packet), "cannot decode H.264");
-  take();
-}
-
-void Loop::take() {
   const FramePtr frame(av_frame_alloc());
   while (avcodec_receive_frame(decoder_.get(), frame.get()) >= 0) {
     av_frame_unref(last_.get());

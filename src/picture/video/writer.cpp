@@ -2,9 +2,9 @@
 #include "picture/video/writer.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <optional>
+
+#include <fmt/format.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -104,9 +104,7 @@ void Writer::State::encode(const AVFrame* frame) {
 }
 
 void Writer::State::write_image(const Picture& picture) const {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06lld.png", static_cast<long long>(count));
-  write_still(part / name, image::rgb8_from_picture(picture));
+  write_still(part / fmt::format("{:06}.png", count), image::rgb8_from_picture(picture));
 }
 
 Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions& options)
@@ -205,17 +203,10 @@ Format format_of_file(const fs::path& path) {
 }
 
 const char* extension(Format format) {
-  switch (format) {
-    case Format::kMp4:
-      return ".mp4";
-    case Format::kMkv:
-      return ".mkv";
-    case Format::kAvi:
-      return ".avi";
-    case Format::kPng:
-      return "";
-  }
-  return "";
+  return format == Format::kMp4   ? ".mp4"
+         : format == Format::kMkv ? ".mkv"
+         : format == Format::kAvi ? ".avi"
+                                  : "";
 }
 
 }  // namespace airtruth::video
