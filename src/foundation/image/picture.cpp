@@ -45,15 +45,7 @@ Picture make_picture(int width, int height, const Colour& colour) {
   return picture;
 }
 
-Picture Picture::clone() const {
-  Picture copy = make_picture(width, height, colour);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(plane_count); ++i) {
-    for (int y = 0; y < planes[i].height; ++y)
-      std::memcpy(
-          copy.planes[i].row(y), planes[i].row(y), static_cast<std::size_t>(planes[i].width));
-  }
-  return copy;
-}
+Picture Picture::clone() const { return crop(*this, {0, 0, width, height}); }
 
 namespace {
 
@@ -73,14 +65,7 @@ Picture crop(const Picture& picture, const PixelBox& box) {
   check(box.x % (1 << log2_width(picture, 1)) == 0 && box.y % (1 << log2_height(picture, 1)) == 0,
         "a crop begins on a chroma sample");
   Picture part = make_picture(box.width, box.height, picture.colour);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(part.plane_count); ++i) {
-    Plane& to = part.planes[i];
-    const int x = box.x >> log2_width(picture, i);
-    const int y = box.y >> log2_height(picture, i);
-    for (int row = 0; row < to.height; ++row)
-      std::memcpy(
-          to.row(row), picture.planes[i].row(y + row) + x, static_cast<std::size_t>(to.width));
-  }
+  paste(part, picture, -box.x, -box.y);
   return part;
 }
 
