@@ -85,8 +85,7 @@ void check_pictures(const std::vector<RawPicture>& pictures) {
                      raw.picture.width <= texture_file::PictureLimits{}.side_px &&
                      raw.picture.height <= texture_file::PictureLimits{}.side_px,
                  "a texture of a wrong size");
-    const std::size_t count =
-        static_cast<std::size_t>(raw.picture.width) * static_cast<std::size_t>(raw.picture.height);
+    const std::size_t count = pixels_in(raw.picture.width, raw.picture.height);
     expect_sound(raw.picture.rgba.size() == 4 * count, "a texture of a wrong length");
     pixels += count;
   }

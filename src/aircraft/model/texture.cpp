@@ -17,8 +17,7 @@ Texture::Level halved(int width, int height, const TexelAt& texel_at) {
   Texture::Level half;
   half.width = std::max(1, width / 2);
   half.height = std::max(1, height / 2);
-  const std::size_t count =
-      static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height);
+  const std::size_t count = pixels_in(half.width, half.height);
   // Textures are large: 4 MiB for the first coarser level of 1024x1024 texels.
   half.texels.reserve(count);
   ask_for_huge_pages(half.texels.data(), count * sizeof(Texel));
@@ -39,8 +38,7 @@ Texture::Level halved(int width, int height, const TexelAt& texel_at) {
 
 Texture::Level halved(const Texture::Level& level) {
   return halved(level.width, level.height, [&](int x, int y) {
-    return level.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) +
-                        static_cast<std::size_t>(x)];
+    return level.texels[index_in(level.width, x, y)];
   });
 }
 

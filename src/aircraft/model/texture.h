@@ -8,6 +8,7 @@
 
 #include "aircraft/model/mesh.h"
 #include "aircraft/texture_file/picture.h"
+#include "foundation/geometry/box.h"
 
 namespace airtruth::model {
 
@@ -25,9 +26,7 @@ extern const Decoding kDecoding;
 
 // The 4 bytes of a texel of the finest level.
 inline const std::uint8_t* finest_bytes(const Texture& texture, int x, int y) {
-  const auto width = static_cast<std::size_t>(texture.finest.width);
-  return texture.finest.rgba.data() +
-         4 * (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x));
+  return texture.finest.rgba.data() + 4 * index_in(texture.finest.width, x, y);
 }
 
 // A texel beyond the sides of a level, taken to the one that stands for it.

@@ -11,6 +11,7 @@
 #include "aircraft/ac3d/ac_mesh.h"
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 
 namespace airtruth::wrapper {
@@ -30,9 +31,9 @@ int texel_alpha(const texture_file::Picture& picture, const Eigen::Vector2f& uv)
     return std::clamp(
         static_cast<int>((share - std::floor(share)) * static_cast<float>(size)), 0, size - 1);
   };
-  const auto x = static_cast<std::size_t>(place(uv.x(), picture.width));
-  const auto y = static_cast<std::size_t>(place(uv.y(), picture.height));
-  return picture.rgba[4 * (y * static_cast<std::size_t>(picture.width) + x) + 3];
+  const int x = place(uv.x(), picture.width);
+  const int y = place(uv.y(), picture.height);
+  return picture.rgba[4 * index_in(picture.width, x, y) + 3];
 }
 
 // The mean opacity of a batch's own texels, without the transparent ones. A disc may share its

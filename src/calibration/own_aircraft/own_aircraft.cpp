@@ -162,8 +162,7 @@ image::Mask mask_of(const cv::Mat& aircraft) {
   mask.free.resize(aircraft.total());
   for (int y = 0; y < aircraft.rows; ++y)
     for (int x = 0; x < aircraft.cols; ++x)
-      mask.free[static_cast<std::size_t>(y) * static_cast<std::size_t>(aircraft.cols) +
-                static_cast<std::size_t>(x)] = aircraft.at<unsigned char>(y, x) != 0 ? 0 : 255;
+      mask.free[index_in(aircraft.cols, x, y)] = aircraft.at<unsigned char>(y, x) != 0 ? 0 : 255;
   return mask;
 }
 

@@ -40,6 +40,8 @@ inline std::size_t index_in(const PixelBox& box, int x, int y) {
   return static_cast<std::size_t>(y - box.y) * static_cast<std::size_t>(box.width) +
          static_cast<std::size_t>(x - box.x);
 }
+inline std::size_t pixels_in(int width, int height) { return pixels_in({0, 0, width, height}); }
+inline std::size_t index_in(int width, int x, int y) { return index_in({0, 0, width, 0}, x, y); }
 
 inline Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
 

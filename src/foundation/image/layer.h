@@ -92,7 +92,7 @@ struct Mask {
   int width = 0;
   int height = 0;
   std::vector<unsigned char> free;  // width * height
-  bool is_free(int x, int y) const { return free[index_in({0, 0, width, height}, x, y)] >= 128; }
+  bool is_free(int x, int y) const { return free[index_in(width, x, y)] >= 128; }
 };
 
 }  // namespace airtruth::image

@@ -14,8 +14,7 @@ Plane make_plane(int width, int height) {
   plane.width = width;
   plane.height = height;
   plane.stride = (width + 31) / 32 * 32;  // rows begin at multiples of 32 bytes for AVX2
-  plane.samples =
-      take_samples(static_cast<std::size_t>(plane.stride) * static_cast<std::size_t>(height));
+  plane.samples = take_samples(pixels_in(plane.stride, height));
   return plane;
 }
 
@@ -106,8 +105,7 @@ Rgb8 make_rgb8(int width, int height) {
   Rgb8 rgb;
   rgb.width = width;
   rgb.height = height;
-  rgb.samples = std::make_unique<std::uint8_t[]>(static_cast<std::size_t>(width) *
-                                                 static_cast<std::size_t>(height) * 3);
+  rgb.samples = std::make_unique<std::uint8_t[]>(pixels_in(width, height) * 3);
   return rgb;
 }
 

@@ -58,9 +58,7 @@ std::array<float, 4> block_mean(
   const int rows = static_cast<int>(samples.size()) / stride;
   for (int j = y * size; j < (y + 1) * size; ++j) {
     for (int i = x * size; i < (x + 1) * size; ++i) {
-      const auto& sample =
-          samples[static_cast<std::size_t>(rows - 1 - j) * static_cast<std::size_t>(stride) +
-                  static_cast<std::size_t>(i)];
+      const auto& sample = samples[index_in(stride, i, rows - 1 - j)];
       for (std::size_t c = 0; c < 4; ++c) sum[c] += static_cast<double>(sample[c]);
     }
   }
@@ -240,10 +238,8 @@ std::vector<std::array<float, 4>> OsgBackdrop::render_alpha(const lens::Pinhole&
   const int size = tile_px * supersampling;
   if (!tile_ || tile_->width() != size)
     tile_ = std::make_unique<FrameBuffer>(*gl_, size, size, GL_RGBA32F_ARB, 1);
-  std::vector<std::array<float, 4>> result(static_cast<std::size_t>(width_) *
-                                           static_cast<std::size_t>(height_));
-  std::vector<std::array<float, 4>> samples(static_cast<std::size_t>(size) *
-                                            static_cast<std::size_t>(size));
+  std::vector<std::array<float, 4>> result(pixels_in(width_, height_));
+  std::vector<std::array<float, 4>> samples(pixels_in(size, size));
   for (int y0 = 0; y0 < height_; y0 += tile_px) {
     for (int x0 = 0; x0 < width_; x0 += tile_px) {
       const Box in_frame{static_cast<double>(x0),
@@ -257,9 +253,7 @@ std::vector<std::array<float, 4>> OsgBackdrop::render_alpha(const lens::Pinhole&
       tile_->read(GL_RGBA, GL_FLOAT, samples.data());
       for (int y = y0; y < std::min(y0 + tile_px, height_); ++y) {
         for (int x = x0; x < std::min(x0 + tile_px, width_); ++x)
-          result[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                 static_cast<std::size_t>(x)] =
-              block_mean(samples, size, x - x0, y - y0, supersampling);
+          result[index_in(width_, x, y)] = block_mean(samples, size, x - x0, y - y0, supersampling);
       }
     }
   }

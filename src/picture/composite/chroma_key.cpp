@@ -55,8 +55,7 @@ void paste(const cv::Mat3b& virtual_image, cv::Mat3b& background) {
 
 // 255 where the picture takes its pixel from C.
 std::vector<unsigned char> replaced_pixels(const cv::Mat3b& d, const ChromaKeyOptions& options) {
-  std::vector<unsigned char> replaced(static_cast<std::size_t>(d.rows) *
-                                      static_cast<std::size_t>(d.cols));
+  std::vector<unsigned char> replaced(pixels_in(d.rows, d.cols));
   std::size_t i = 0;
   for (int y = 0; y < d.rows; ++y) {
     for (int x = 0; x < d.cols; ++x, ++i) {
@@ -90,10 +89,7 @@ class PlaneWriter {
   }
 
  private:
-  bool is_replaced(int x, int y) const {
-    return replaced_[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) +
-                     static_cast<std::size_t>(x)] != 0;
-  }
+  bool is_replaced(int x, int y) const { return replaced_[index_in(frame_.width, x, y)] != 0; }
 
   image::Ycc ycc(int x, int y) const {
     const cv::Vec3b& rgb = c_(y, x);

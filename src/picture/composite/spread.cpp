@@ -6,6 +6,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/vectors.h"
+#include "foundation/geometry/box.h"
 
 namespace airtruth::composite {
 namespace {
@@ -75,10 +76,9 @@ void blur(std::vector<float>& values,
           int height,
           const std::vector<float>& across,
           const std::vector<float>& down) {
-  check(values.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-        "a plane of the size that it says");
+  check(values.size() == pixels_in(width, height), "a plane of the size that it says");
   const auto row_of = [&](std::vector<float>& plane, int y) {
-    return plane.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    return plane.data() + index_in(width, 0, y);
   };
   const int reach_x = static_cast<int>(across.size()) / 2;
   if (reach_x > 0) {

@@ -43,11 +43,10 @@ PixelRays::PixelRays(const View& view, const PixelBox& patch)
   for (int k = moves ? 0 : 1; k < (moves ? 3 : 2); ++k) {
     const View then = view.at(span_.at(k));
     std::vector<Vector3>& directions = directions_[static_cast<std::size_t>(k)];
-    const auto width = static_cast<std::size_t>(patch.width + 1);
-    directions.resize(width * static_cast<std::size_t>(patch.height + 1));
+    directions.resize(pixels_in(patch.width + 1, patch.height + 1));
     tbb::parallel_for(0, patch.height + 1, [&](int row) {
       for (int column = 0; column <= patch.width; ++column)
-        directions[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)] =
+        directions[index_in(patch.width + 1, column, row)] =
             ray_in_cam(then, {patch.x + column, patch.y + row});
     });
   }
@@ -55,9 +54,8 @@ PixelRays::PixelRays(const View& view, const PixelBox& patch)
 
 PixelRays::Corners PixelRays::corners(std::size_t moment, int x, int y) const {
   const auto width = static_cast<std::size_t>(patch_.width + 1);
-  const Vector3* first = directions_[moment].data() +
-                         static_cast<std::size_t>(y - patch_.y) * width +
-                         static_cast<std::size_t>(x - patch_.x);
+  const Vector3* first =
+      &directions_[moment][index_in(patch_.width + 1, x - patch_.x, y - patch_.y)];
   return {first[0], first[1], first[width], first[width + 1]};
 }
 

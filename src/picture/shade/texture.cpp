@@ -27,11 +27,7 @@ Channels finest_at(const model::Texture& texture, const Eigen::Vector2f& uv) {
 Channels coarser_at(const model::Texture& texture, std::size_t index, const Eigen::Vector2f& uv) {
   const model::Texture::Level& level = texture.coarser[index];
   return model::bilinear<Channels>(texture, level.width, level.height, uv, [&](int i, int j) {
-    return Eigen::Map<const Channels>(
-        level
-            .texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(level.width) +
-                    static_cast<std::size_t>(i)]
-            .data());
+    return Eigen::Map<const Channels>(level.texels[index_in(level.width, i, j)].data());
   });
 }
 

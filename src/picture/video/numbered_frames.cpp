@@ -22,8 +22,7 @@ const image::Picture* NumberedFrames::at(std::int64_t frame) {
     open(frame);
   } else if (frame < next_) {
     const StreamInfo& info = reader_->info();
-    const std::size_t bytes =
-        3 * static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height);
+    const std::size_t bytes = 3 * pixels_in(info.width, info.height);
     keep = std::max<std::int64_t>(1, static_cast<std::int64_t>(kMaxBytes / bytes));
     held_.clear();
     open(std::max<std::int64_t>(0, frame - keep + 1));

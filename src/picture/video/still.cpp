@@ -163,8 +163,7 @@ std::string jpeg_of(const image::Rgb8& rgb, int quality) {
 }
 
 std::string png_of(const Grey& grey) {
-  check(grey.samples.size() ==
-            static_cast<std::size_t>(grey.width) * static_cast<std::size_t>(grey.height),
+  check(grey.samples.size() == pixels_in(grey.width, grey.height),
         "a grey picture has a sample for each pixel");
   return encoded(
       packed_frame(AV_PIX_FMT_GRAY8, grey.width, grey.height, grey.samples.data(), grey.width),
@@ -228,7 +227,7 @@ image::Mask read_mask(const fs::path& path, int width, int height) {
   image::Mask mask;
   mask.width = width;
   mask.height = height;
-  mask.free.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  mask.free.resize(pixels_in(width, height));
   fill_mask(picture, mask);
   const bool any = std::any_of(mask.free.begin(), mask.free.end(), [](auto v) { return v != 0; });
   if (!any)
