@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aircraft/fleet/flight_limits.h"
 
-#include <sstream>
+#include "foundation/base/text.h"
 
 namespace airtruth::fleet {
 namespace {
@@ -56,11 +56,9 @@ const std::vector<FlightLimits>& flight_classes() { return kClasses; }
 const FlightLimits* flight_limits(const std::string& aircraft) {
   if (aircraft.find('.') != std::string::npos) return nullptr;
   const std::string wanted = aircraft.substr(0, aircraft.find('/'));
-  for (const FlightLimits& limits : kClasses) {
-    std::istringstream types{std::string(limits.types)};
-    for (std::string type; types >> type;)
+  for (const FlightLimits& limits : kClasses)
+    for (const std::string& type : words_in(limits.types))
       if (type == wanted) return &limits;
-  }
   return nullptr;
 }
 

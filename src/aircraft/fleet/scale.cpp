@@ -22,13 +22,6 @@ constexpr double kSpanTolerance = 0.03;
 // A smaller error of the length confirms no error of scale.
 constexpr double kLengthTolerance = 0.01;
 
-std::vector<std::string> parted(const std::string& text, char by) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, by);) parts.push_back(part);
-  return parts;
-}
-
 double metres(const std::string& text) {
   const auto value = number_from_text<double>(text);
   check(value && *value > 0, "the table of published sizes holds metres");
@@ -36,10 +29,10 @@ double metres(const std::string& text) {
 }
 
 PublishedSize size_from(const std::string& line) {
-  const std::vector<std::string> cells = parted(line, ',');
+  const std::vector<std::string> cells = cells_of(line);
   check(cells.size() == 6 || cells.size() == 2, "a row of published sizes has six cells");
   PublishedSize size;
-  size.names = parted(cells[0], '|');
+  size.names = cells_of(cells[0], '|');
   size.type = cells[1];
   if (cells.size() == 2) return size;
   size.span_m = metres(cells[2]);

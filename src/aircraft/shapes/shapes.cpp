@@ -234,8 +234,6 @@ model::Mesh bird(const BirdShape& shape) {
 
 namespace {
 
-using V = Eigen::Vector3f;
-
 std::array<float, 3> floats(const std::array<double, 3>& rgb) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
@@ -371,23 +369,20 @@ model::Mesh multirotor(const MultirotorShape& shape) {
   }
   for (std::size_t k = 0; k < rotors.size(); ++k) {
     const V hub = 0.5f * size * rotors[k] - V(0, 0, kRotorAbove * size);
-    model::Part part;
-    part.name = "rotor " + std::to_string(k + 1);
-    part.spins = true;
-    part.axis_in_body = V(0, 0, 1);
-    part.centre_in_body = hub;
     // Neighbours turn in opposite directions.
-    part.revolutions_per_s =
+    const double turns_hz =
         (k % 2 == 0 ? 1 : -1) * kRotorTipMps / (2 * kPi * static_cast<double>(radius));
-    builder.begin_part(part);
+    builder.begin_part({.name = "rotor " + std::to_string(k + 1),
+                        .spins = true,
+                        .axis_in_body = V(0, 0, 1),
+                        .centre_in_body = hub,
+                        .revolutions_per_s = turns_hz});
     add_rotor(builder, hub, radius, blade);
   }
   return builder.take();
 }
 
 namespace {
-
-using V = Eigen::Vector3f;
 
 // The outline of a latex envelope in shares of its diameter: a sphere above, drawn out to the neck
 // below. Height of the middle above the neck.
@@ -418,10 +413,7 @@ model::Mesh balloon(const BalloonShape& shape) {
   check(shape.size_m > 0, "a balloon has a size");
   const auto size = static_cast<float>(shape.size_m);
   MeshBuilder builder;
-  const std::uint32_t latex = builder.add_material({static_cast<float>(shape.colour[0]),
-                                                    static_cast<float>(shape.colour[1]),
-                                                    static_cast<float>(shape.colour[2])},
-                                                   model::Finish::kPaint);
+  const std::uint32_t latex = builder.add_material(floats(shape.colour), model::Finish::kPaint);
   builder.begin_part({"envelope", {}});
   std::vector<Ring> rings;
   for (const auto& [above, radius] : outline())

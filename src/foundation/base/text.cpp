@@ -11,15 +11,12 @@
 
 namespace airtruth {
 
-std::vector<std::string> cells_of(std::string_view line) {
+std::vector<std::string> cells_of(std::string_view line, char between) {
   std::vector<std::string> cells;
   while (!line.empty()) {
-    const std::size_t comma = line.find(',');
-    const std::string_view cell = line.substr(0, comma);
-    const std::size_t first = cell.find_first_not_of(" \t\r");
-    const std::size_t last = cell.find_last_not_of(" \t\r");
-    cells.emplace_back(first == cell.npos ? "" : cell.substr(first, last - first + 1));
-    line = comma == line.npos ? std::string_view() : line.substr(comma + 1);
+    const std::size_t end = std::min(line.find(between), line.size());
+    cells.emplace_back(trimmed(line.substr(0, end)));
+    line.remove_prefix(std::min(end + 1, line.size()));
   }
   return cells;
 }

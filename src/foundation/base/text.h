@@ -51,9 +51,9 @@ inline int line_of(std::string_view text, std::ptrdiff_t offset) {
   return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
 }
 
-// The cells of a line, split at its commas. Blanks and carriage returns around a cell are removed.
-// Quotes have no meaning.
-std::vector<std::string> cells_of(std::string_view line);
+// The cells of a line, split at its commas or another character. Blanks and carriage returns around
+// a cell are removed. Quotes have no meaning.
+std::vector<std::string> cells_of(std::string_view line, char between = ',');
 
 // The text as a cell of a CSV file: in quotes where it holds a comma, a quote or a line end (RFC
 // 4180).
