@@ -16,22 +16,6 @@
 
 namespace airtruth::motion {
 
-const char* name(State state) {
-  switch (state) {
-    case State::kReference:
-      return "reference";
-    case State::kMeasured:
-      return "measured";
-    case State::kBridged:
-      return "bridged";
-    case State::kTurnedAway:
-      return "turned_away";
-    case State::kCut:
-      return "cut";
-  }
-  return "";
-}
-
 namespace {
 
 constexpr const char* kHeader =
@@ -53,7 +37,7 @@ void write_csv(const AddBytes& add, const std::vector<FrameMotion>& motion) {
     else
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) text += fmt::format(",{}", m.frame_from_reference(r, c));
-    text += fmt::format(",{},{},{}\n", m.inliers, m.rms_px, name(m.state));
+    text += fmt::format(",{},{},{}\n", m.inliers, m.rms_px, enum_name(m.state));
     if (text.size() < kCsvBlockBytes) continue;
     add(text);
     text.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "foundation/disk_cache/disk_cache.h"
 #include "foundation/geometry/transform.h"
 
@@ -44,8 +46,14 @@ enum class State {
   // both pictures (ReachGuard). The motion is that of the last frame within reach.
   kTurnedAway,
 };
-// The name of a state in motion.csv: "reference", "measured", "bridged", "cut" or "turned_away".
-const char* name(State state);
+// In motion.csv.
+constexpr auto enum_names(State) {
+  return std::to_array<EnumName<State>>({{State::kReference, "reference"},
+                                         {State::kMeasured, "measured"},
+                                         {State::kBridged, "bridged"},
+                                         {State::kCut, "cut"},
+                                         {State::kTurnedAway, "turned_away"}});
+}
 
 // Whether the motion of a frame in this state is known. Otherwise it is taken from other frames.
 inline bool is_known(State state) {
@@ -60,17 +68,14 @@ struct FrameMotion {
   int inliers = 0;
   State state = State::kReference;
   // p_in_frame ~ H p_in_reference, in airtruth's pixels (corner origin), h33 = 1. The reference is
-  // the first frame for Reference::kFirstFrame, and the smoothed camera path for kSmoothed. The map
-  // is the identity for the model rotation.
+  // the first frame, or the smoothed camera path. The map is the identity for the model rotation.
   Homography frame_from_reference = Homography::Identity();
   // cam_from_reference_cam of the model rotation; empty for the model homography.
   std::optional<Quaternion> rotation;
 };
 
-enum class Reference { kFirstFrame, kSmoothed };
-
 struct Options {
-  // For kSmoothed: the standard deviation of the Gaussian window over time.
+  // For a smoothed camera path: the standard deviation of the Gaussian window over time.
   double smoothing_s = 1.0;
   // The seed of the random samples of RANSAC, for the model rotation.
   std::uint64_t seed = 1;

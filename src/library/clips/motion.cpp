@@ -32,7 +32,7 @@ FrameMotion public_motion(const motion::FrameMotion& measured) {
     frame.cam_from_reference_cam = {q->w(), q->x(), q->y(), q->z()};
   frame.inliers = measured.inliers;
   frame.rms_px = measured.rms_px;
-  frame.state = motion::name(measured.state);
+  frame.state = enum_name(measured.state);
   return frame;
 }
 

@@ -14,10 +14,10 @@
 namespace airtruth::insertion {
 
 // frame: the background's frame, for its number, time and damage. motion_state: "measured",
-// "bridged", ... (motion::name), or "none" without a motion model. moment: where everything is,
-// from geometry alone. painted: what compositing changed in the frame's pixels, which
-// `frame` holds as they are then. The intruders stand
-// in the scene's order. An intruder is kVisible exactly when at least one pixel shows it.
+// "bridged", ... (enum_names of motion::State), or "none" without a motion model. moment: where
+// everything is, from geometry alone. painted: what compositing changed in the frame's pixels,
+// which `frame` holds as they are then. The intruders stand in the scene's order. An intruder is
+// kVisible exactly when at least one pixel shows it.
 annotation::Frame frame_truth(const setup::World& world,
                               const video::Frame& frame,
                               const std::string& motion_state,

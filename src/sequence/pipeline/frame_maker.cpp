@@ -8,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "sequence/insertion/frame_truth.h"
 #include "sequence/setup/from_scene.h"
 
@@ -59,7 +60,7 @@ void FrameMaker::compose(Work& work) {
 
 void FrameMaker::describe(Work& work) const {
   const bool has_motion = resolved_.scene.motion.model != scene::MotionModel::kNone;
-  const char* state = has_motion ? motion::name(work.moved.motion.state) : "none";
+  const char* state = has_motion ? enum_name(work.moved.motion.state) : "none";
   work.truth = insertion::frame_truth(
       resolved_.world, work.frame, state, work.moved.shake, work.moment, work.painted);
   if (resolved_.scene.output.masks)
