@@ -30,9 +30,7 @@ void keep_models(const Catalogue& catalogue, const Folder& folder) {
 
 Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_t max_in_a_folder) {
   Folder folder{root};
-  std::error_code failed;
-  fs::create_directories(folder.sequences(), failed);
-  if (failed) throw Error("cannot create: " + failed.message(), {root.string()});
+  make_folders(folder.sequences(), root);
   if (!fs::exists(folder.catalogue())) {
     // The catalogue is written last: with it, the layout is fixed.
     folder.layout = sequences::layout_for(Expansion(catalogue).size(), max_in_a_folder);

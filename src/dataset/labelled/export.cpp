@@ -100,14 +100,11 @@ class Place {
 
   // Another run may have come first since the folder was examined.
   void begin(const Warn& to) {
-    std::error_code failed;
-    fs::create_directories(root_, failed);
-    if (failed) throw Error("cannot create: " + failed.message(), {root_.string()});
+    make_folders(root_);
     lock_.emplace(root_, root_, to);
     examine();
     if (complete_) throw Error("was written by another run meanwhile", {root_.string()});
-    fs::create_directories(done_folder(), failed);
-    if (failed) throw Error("cannot create: " + failed.message(), {root_.string()});
+    make_folders(done_folder(), root_);
     write_file(begun_file(), options_.dump());
   }
 

@@ -211,9 +211,7 @@ std::string list_of_pictures(const exchange::Clip& clip) {
 
 // Returns the record of the clip.
 Json write_clip(exchange::Clip clip, const ImportOptions& options, const fs::path& folder) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
+  make_folders(folder);
   Json record = record_of(clip, options);
   if (has_pictures(clip)) {
     write_file(folder / kPictureList, list_of_pictures(clip), Flush::kLater);

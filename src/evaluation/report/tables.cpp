@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
 
@@ -80,9 +79,7 @@ std::string name_of_results(const fs::path& results) {
 }
 
 void write_files(const fs::path& out, const Files& files) {
-  std::error_code failed;
-  fs::create_directories(out, failed);
-  if (failed) throw Error("cannot create: " + failed.message(), {out.string()});
+  make_folders(out);
   for (const auto& [name, text] : files) write_file(out / name, text);
 }
 

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openssl/evp.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -52,12 +54,7 @@ class Sha256 {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned int size = 0;
     EVP_DigestFinal_ex(context_.get(), digest.data(), &size);
-    std::string text;
-    for (unsigned int i = 0; i < size; ++i) {
-      text += "0123456789abcdef"[digest[i] >> 4];
-      text += "0123456789abcdef"[digest[i] & 15];
-    }
-    return text;
+    return fmt::format("{:02x}", fmt::join(digest.begin(), digest.begin() + size, ""));
   }
 
  private:
@@ -90,6 +87,13 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
 void refuse_existing(const fs::path& path, bool overwrite) {
   if (!overwrite && fs::exists(path))
     throw Error("exists already; give --overwrite to replace it", {path.string()});
+}
+
+void make_folders(const fs::path& folder, const fs::path& named) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed)
+    throw Error("cannot create: " + failed.message(), {(named.empty() ? folder : named).string()});
 }
 
 fs::path first_missing(fs::path folder) {

@@ -39,6 +39,10 @@ void flush_files(const fs::path& folder);
 // (the extension stays, since encoders choose by it).
 fs::path part_path(const fs::path& path);
 
+// Makes a folder and those above it that are not there yet. Throws Error where that fails; it is
+// about `named`, or the folder where that is empty.
+void make_folders(const fs::path& folder, const fs::path& named = {});
+
 // The uppermost folder of a path that is not there yet; empty where all are.
 fs::path first_missing(fs::path folder);
 // Removes the folders from `folder` up to `first`, as long as they are empty. Nothing where `first`

@@ -97,9 +97,7 @@ class CommitLock {
 class RunFiles::Hidden {
  public:
   explicit Hidden(const fs::path& parent) : parent_(parent), first_made_(first_missing(parent)) {
-    std::error_code failed;
-    fs::create_directories(parent_, failed);
-    if (failed) throw Error("cannot create: " + failed.message(), {parent.string()});
+    make_folders(parent_);
     remove_dead_places(parent_, kHiddenBegins);
     unfinished_.emplace([this] { remove(); });
     try {

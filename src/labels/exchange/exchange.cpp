@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
@@ -305,9 +306,7 @@ std::vector<Clip> read_clips(Format format,
 void write_clips(Format format, const fs::path& folder, std::span<const Part> parts) {
   if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder)))
     throw Error("exists and is not empty; expected a new folder", {folder.string()});
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw Error("cannot create: " + failed.message(), {folder.string()});
+  make_folders(folder);
   const auto writer = make_writer(format, folder, options_of(parts));
   for (const Part& part : parts)
     for (const Clip& clip : part.clips)

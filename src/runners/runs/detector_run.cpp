@@ -79,9 +79,7 @@ class DetectorResults {
 
   // Creates the folder and its record.
   void open() {
-    std::error_code failed;
-    fs::create_directories(summary_.folder, failed);
-    if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+    make_folders(summary_.folder);
     lock_.emplace(summary_.folder, summary_.folder, options_.warn);
     if (is_open()) return;
     Json record = settings_;

@@ -221,9 +221,7 @@ class TrackerRun {
     check_folder();
     const Json mine = own_record();
     const fs::path file = summary_.folder / "tracker.json";
-    std::error_code failed;
-    fs::create_directories(summary_.folder, failed);
-    if (failed) throw Error("cannot create: " + failed.message(), {summary_.folder.string()});
+    make_folders(summary_.folder);
     lock_.emplace(summary_.folder, summary_.folder, options_.warn);
     if (check_folder()) return;
     Json record = mine;

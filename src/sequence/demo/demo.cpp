@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
@@ -94,9 +93,7 @@ pipeline::Summary make_demo(const std::filesystem::path& out, const DemoOptions&
   for (const char* name :
        {"demo", "flight.mp4", "flight.csv", "own_aircraft.png", "demo.toml", "overlay.mp4"})
     refuse_existing(out / name, run.overwrite);
-  std::error_code failed;
-  fs::create_directories(out, failed);
-  if (failed) throw Error("cannot create: " + failed.message(), {out.string()});
+  make_folders(out);
   const RunLock lock(out, out, run.warn);
   const synthetic::Flight flight(flight_options(options));
   VirtualFlightOptions how;
