@@ -275,15 +275,9 @@ std::string opencv_calibration(const Lens& lens, const std::string& note) {
   std::string line = note;
   std::replace_if(line.begin(), line.end(), is_control, ' ');
   // OpenCV's (0, 0) is the centre of the first pixel; airtruth's is its corner.
-  const std::vector<double> matrix = {n.focal_px.x(),
-                                      0,
-                                      n.principal_point_px.x() - 0.5,
-                                      0,
-                                      n.focal_px.y(),
-                                      n.principal_point_px.y() - 0.5,
-                                      0,
-                                      0,
-                                      1};
+  const Pixel centre = n.principal_point_px - Pixel::Constant(0.5);
+  const std::vector<double> matrix = {
+      n.focal_px.x(), 0, centre.x(), 0, n.focal_px.y(), centre.y(), 0, 0, 1};
   return fmt::format(
       "%YAML:1.0\n---\n# {}\nimage_width: {}\nimage_height: {}\nfisheye_model: "
       "{}\ncamera_matrix: {}distortion_coefficients: {}",

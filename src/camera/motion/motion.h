@@ -46,7 +46,7 @@ enum class State {
   // both pictures (ReachGuard). The motion is that of the last frame within reach.
   kTurnedAway,
 };
-// In motion.csv.
+// The names of the states in motion.csv.
 constexpr auto enum_names(State) {
   return std::to_array<EnumName<State>>({{State::kReference, "reference"},
                                          {State::kMeasured, "measured"},

@@ -31,11 +31,7 @@ cv::Matx33d cv_from_homography(const Homography& h) {
   Homography to_centre = Homography::Identity();
   to_centre.topRightCorner<2, 1>().setConstant(-0.5);
   const Homography centred = to_centre * h * to_corner;
-  cv::Matx33d result;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) result(row, column) = centred(row, column);
-  }
-  return result;
+  return cv::Matx33d(centred.data()).t();  // Eigen holds columns, OpenCV rows
 }
 
 const cv::Vec3b kGreen(0, 255, 0);
