@@ -122,7 +122,7 @@ void blend(std::vector<Fragment>& fragments,
            const Pixel& at,
            double footprint_rad,
            const shade::Light* light,
-           TracedPixel& pixel) {
+           RenderedPixel& pixel) {
   // Share of one sample in a pixel.
   constexpr double kShare = 1.0 / PixelSamples::kMost;
   std::stable_sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
@@ -133,10 +133,11 @@ void blend(std::vector<Fragment>& fragments,
     const double share = kShare * through * static_cast<double>(fragment.alpha);
     pixel.coverage[fragment.instance] += share;
     pixel.alpha += share;
-    pixel.distance_m += share * fragment.distance_m;
+    pixel.light.distance_m += share * fragment.distance_m;
     if (light != nullptr) {
       const image::Rgb rgb = now[fragment.instance].colour(at, fragment, footprint_rad, *light);
-      for (std::size_t c = 0; c < 3; ++c) pixel.rgb[c] += through * static_cast<double>(rgb[c]);
+      for (std::size_t c = 0; c < 3; ++c)
+        pixel.light.rgb[c] += through * static_cast<double>(rgb[c]);
     }
     through *= 1 - static_cast<double>(fragment.alpha);
     if (through <= 0) break;
@@ -145,15 +146,15 @@ void blend(std::vector<Fragment>& fragments,
 
 }  // namespace
 
-TracedPixel trace_pixel(const View& view,
-                        const shade::Light& light,
-                        const std::vector<PlacedInstance>& instances,
-                        int x,
-                        int y) {
+RenderedPixel trace_pixel(const View& view,
+                          const shade::Light& light,
+                          const std::vector<PlacedInstance>& instances,
+                          int x,
+                          int y) {
   // Footprints of a sample of opacity and of one that is shaded, as shares of the pixel's side.
   constexpr double kOpacityShare = 0.25;
   const double shaded_share = 1 / std::sqrt(static_cast<double>(kShaded));
-  TracedPixel pixel;
+  RenderedPixel pixel;
   pixel.coverage.assign(instances.size(), 0.0);
   pixel.alone.assign(instances.size(), 0.0);
   const PixelSamples samples(x, y);
@@ -191,7 +192,8 @@ TracedPixel trace_pixel(const View& view,
   }
   // The shaded samples stand for all.
   if (shaded_alpha > 0)
-    for (double& channel : pixel.rgb) channel *= pixel.alpha / (shaded_alpha * PixelSamples::kMost);
+    for (double& channel : pixel.light.rgb)
+      channel *= pixel.alpha / (shaded_alpha * PixelSamples::kMost);
   return pixel;
 }
 

@@ -57,9 +57,7 @@ class Painter {
   struct Scratch {
     Visibility visibility;
     PixelShading shading;
-    // Of a pixel, by instance.
-    std::vector<double> coverage;
-    std::vector<double> alone;
+    RenderedPixel pixel;
   };
 
   template <typename Row>
@@ -72,8 +70,8 @@ class Painter {
   void trace() {
     each_row([&](int y) {
       for (int x = layer_.patch.x; x < layer_.patch.right() && !stop_.stop_requested(); ++x) {
-        const TracedPixel pixel = trace_pixel(view_, light_, instances_, x, y);
-        write(x, y, pixel.rgb, pixel.alpha, pixel.distance_m, pixel.coverage, pixel.alone);
+        const RenderedPixel pixel = trace_pixel(view_, light_, instances_, x, y);
+        if (pixel.alpha > 0) write(x, y, pixel);
       }
     });
   }
@@ -82,10 +80,8 @@ class Painter {
     const PixelBox& patch = layer_.patch;
     const RayTriangles triangles(view_, patch, rays_.span(), instances_);
     tbb::enumerable_thread_specific<Scratch> scratch([&] {
-      return Scratch{{triangles, instances_, rays_, counts},
-                     {triangles, instances_, rays_, light_},
-                     std::vector<double>(instances_.size()),
-                     std::vector<double>(instances_.size())};
+      return Scratch{
+          {triangles, instances_, rays_, counts}, {triangles, instances_, rays_, light_}, {}};
     });
     each_row([&](int y) {
       Scratch& here = scratch.local();
@@ -98,37 +94,31 @@ class Painter {
   }
 
   void finish(int x, int y, Scratch& scratch) {
-    auto& [visibility, shading, coverage, alone] = scratch;
-    const PixelLight light = shading.light_of(visibility, x, y);
-    std::fill(coverage.begin(), coverage.end(), 0.0);
+    auto& [visibility, shading, pixel] = scratch;
+    pixel.light = shading.light_of(visibility, x, y);
+    pixel.alpha = visibility.alpha();
+    pixel.coverage.assign(instances_.size(), 0.0);
     for (const VisibleSurface& surface : visibility.surfaces())
-      coverage[visibility.instance_of(surface)] += static_cast<double>(surface.weight);
-    const double alpha = visibility.alpha();
-    alone = coverage;
+      pixel.coverage[visibility.instance_of(surface)] += static_cast<double>(surface.weight);
+    pixel.alone = pixel.coverage;
     if (visibility.has_several())
-      for (std::uint32_t i = 0; i < instances_.size(); ++i) alone[i] = visibility.alpha_of(i);
-    write(x, y, light.rgb, alpha, light.distance_m, coverage, alone);
+      for (std::uint32_t i = 0; i < instances_.size(); ++i) pixel.alone[i] = visibility.alpha_of(i);
+    write(x, y, pixel);
   }
 
-  void write(int x,
-             int y,
-             const std::array<double, 3>& rgb,
-             double alpha,
-             double distance_m,
-             const std::vector<double>& coverage,
-             const std::vector<double>& alone) {
-    if (!(alpha > 0)) return;
+  void write(int x, int y, const RenderedPixel& pixel) {
+    const auto& [rgb, distance_m] = pixel.light;
     const std::size_t i = layer_.index(x, y);
     layer_.pixels[i] = {static_cast<float>(rgb[0]),
                         static_cast<float>(rgb[1]),
                         static_cast<float>(rgb[2]),
-                        static_cast<float>(std::min(1.0, alpha))};
-    layer_.depth_m[i] = static_cast<float>(distance_m / alpha);
+                        static_cast<float>(std::min(1.0, pixel.alpha))};
+    layer_.depth_m[i] = static_cast<float>(distance_m / pixel.alpha);
     for (std::size_t a = 0; a < instances_.size(); ++a) {
       image::Coverage& of = layer_.coverage[a];
       if (!of.box.contains(x, y)) continue;
-      of.alpha[of.index(x, y)] = static_cast<float>(coverage[a]);
-      alone_[a][of.index(x, y)] = alone[a];
+      of.alpha[of.index(x, y)] = static_cast<float>(pixel.coverage[a]);
+      alone_[a][of.index(x, y)] = pixel.alone[a];
     }
   }
 

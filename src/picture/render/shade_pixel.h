@@ -17,6 +17,15 @@ struct PixelLight {
   double distance_m = 0;
 };
 
+// A pixel of a layer: shares of 1.
+struct RenderedPixel {
+  PixelLight light;
+  double alpha = 0;
+  // By instance: after occlusion by others, and alone.
+  std::vector<double> coverage;
+  std::vector<double> alone;
+};
+
 // Computes the light of pixels. The light of the surroundings is computed once for each surface
 // that is visible in a pixel, at the middle of the samples that see it. What changes more within a
 // pixel - the sun's light, its shadow and its glint, the texture and the mirrored share - is
