@@ -38,7 +38,7 @@ Environment Environment::of(const std::function<Rgb(const Vector3&)>& radiance) 
   // Number of sectors of azimuth, and the solid angle of a cell.
   constexpr int kAround = 2 * kBands;
   constexpr double kCellSr = 4 * kPi / (kBands * kAround);
-  std::array<std::array<double, 3>, 9> sums{};
+  Eigen::Array<double, 4, 9> sums = Eigen::Array<double, 4, 9>::Zero();
   for (int band = 0; band < kBands; ++band) {
     const double z = 1 - 2 * (band + 0.5) / kBands;
     const double r = std::sqrt(1 - z * z);
@@ -47,27 +47,24 @@ Environment Environment::of(const std::function<Rgb(const Vector3&)>& radiance) 
       const Vector3 direction(r * std::cos(azimuth), r * std::sin(azimuth), z);
       const Rgb light = radiance(direction);
       const std::array<float, 9> y = harmonics(direction.cast<float>());
+      const Eigen::Array4d rgb(light[0], light[1], light[2], 0);
       for (std::size_t k = 0; k < 9; ++k)
-        for (std::size_t c = 0; c < 3; ++c)
-          sums[k][c] += kCellSr * static_cast<double>(y[k]) * static_cast<double>(light[c]);
+        sums.col(static_cast<Eigen::Index>(k)) += kCellSr * static_cast<double>(y[k]) * rgb;
     }
   }
   Environment result;
-  for (std::size_t k = 0; k < 9; ++k)
-    for (std::size_t c = 0; c < 3; ++c) result.coefficients_[k][c] = static_cast<float>(sums[k][c]);
+  result.coefficients_ = sums.cast<float>();
   return result;
 }
 
 Environment& Environment::operator+=(const Environment& other) {
-  for (std::size_t k = 0; k < 9; ++k)
-    for (std::size_t c = 0; c < 3; ++c) coefficients_[k][c] += other.coefficients_[k][c];
+  coefficients_ += other.coefficients_;
   return *this;
 }
 
 Environment Environment::scaled(const Rgb& by) const {
   Environment result = *this;
-  for (auto& coefficient : result.coefficients_)
-    for (std::size_t c = 0; c < 3; ++c) coefficient[c] *= by[c];
+  result.coefficients_.colwise() *= Eigen::Array4f(by[0], by[1], by[2], 0);
   return result;
 }
 
@@ -75,8 +72,8 @@ Environment Environment::scaled(const Rgb& by) const {
 // Both turn as such.
 Environment Environment::turned(const Eigen::Matrix3f& world_from_other) const {
   Environment result = *this;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto of = [&](std::size_t k) { return coefficients_[k][c]; };
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    const auto of = [&](Eigen::Index k) { return coefficients_(c, k); };
     const Eigen::Vector3f v = world_from_other.transpose() * Eigen::Vector3f(of(3), of(1), of(2));
     Eigen::Matrix3f m;
     const float zz = 2 * kZenith * of(6);
@@ -85,15 +82,9 @@ Environment Environment::turned(const Eigen::Matrix3f& world_from_other) const {
         kProduct * of(4) / 2, -difference - zz / 2, kProduct * of(5) / 2,  //
         kProduct * of(7) / 2, kProduct * of(5) / 2, zz;
     m = (world_from_other.transpose() * m * world_from_other).eval();
-    const std::array<float, 8> turned = {v.y(),
-                                         v.z(),
-                                         v.x(),
-                                         2 * m(0, 1) / kProduct,
-                                         2 * m(1, 2) / kProduct,
-                                         m(2, 2) / (2 * kZenith),
-                                         2 * m(0, 2) / kProduct,
-                                         (m(0, 0) - m(1, 1)) / (2 * kDifference)};
-    for (std::size_t k = 0; k < turned.size(); ++k) result.coefficients_[k + 1][c] = turned[k];
+    result.coefficients_.row(c).tail<8>() << v.y(), v.z(), v.x(), 2 * m(0, 1) / kProduct,
+        2 * m(1, 2) / kProduct, m(2, 2) / (2 * kZenith), 2 * m(0, 2) / kProduct,
+        (m(0, 0) - m(1, 1)) / (2 * kDifference);
   }
   return result;
 }
@@ -102,7 +93,7 @@ Rgb Environment::sum(const Eigen::Vector3f& direction, const std::array<float, 3
   const std::array<float, 9> y = harmonics(direction);
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (std::size_t k = 0; k < 9; ++k)
-    sum += by_order[kOrder[k]] * y[k] * Eigen::Map<const Eigen::Array4f>(coefficients_[k].data());
+    sum += by_order[kOrder[k]] * y[k] * coefficients_.col(static_cast<Eigen::Index>(k));
   return {std::max(0.0f, sum[0]), std::max(0.0f, sum[1]), std::max(0.0f, sum[2])};
 }
 

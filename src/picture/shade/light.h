@@ -42,7 +42,7 @@ class Environment {
   Rgb sum(const Eigen::Vector3f& direction, const std::array<float, 3>& by_order) const;
 
   // Of the radiance; the fourth channel is 0.
-  std::array<std::array<float, 4>, 9> coefficients_{};
+  Eigen::Array<float, 4, 9> coefficients_ = Eigen::Array<float, 4, 9>::Zero();
 };
 
 // The light of a scene. All colours are linear RGB.
