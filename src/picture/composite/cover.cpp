@@ -58,21 +58,16 @@ AlphaMask alpha_mask(const image::Layer& layer, std::size_t intruder) {
 }
 
 std::optional<Covered> covered(const AlphaMask& mask) {
-  int left = mask.patch.width, right = -1, top = mask.patch.height, bottom = -1;
+  std::optional<Covered> covered;
   std::size_t i = 0;
-  std::int64_t area_px = 0;
-  for (int y = 0; y < mask.patch.height; ++y)
-    for (int x = 0; x < mask.patch.width; ++x, ++i) {
-      if (mask.alpha[i] < kCoveredAlpha) continue;
-      ++area_px;
-      left = std::min(left, x);
-      right = std::max(right, x);
-      top = std::min(top, y);
-      bottom = y;
+  for (int y = mask.patch.y; y < mask.patch.bottom(); ++y)
+    for (int x = mask.patch.x; x < mask.patch.right(); ++x) {
+      if (mask.alpha[i++] < kCoveredAlpha) continue;
+      if (!covered) covered = Covered{{x, y, 1, 1}};
+      covered->box = bounds(covered->box, {x, y, 1, 1});
+      ++covered->area_px;
     }
-  if (right < 0) return std::nullopt;
-  return Covered{{mask.patch.x + left, mask.patch.y + top, right - left + 1, bottom - top + 1},
-                 area_px};
+  return covered;
 }
 
 std::optional<Covered> covered(const image::Layer& layer, std::size_t intruder) {

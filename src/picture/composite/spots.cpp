@@ -176,17 +176,14 @@ double spot_alpha(const image::Spot& spot, const Pixel& at, double dt_s) {
   return spot.wing_px > 0 ? 1 - (1 - body) * (1 - wings_alpha(spot, off)) : body;
 }
 
-double pixel_alpha(const image::Spot& spot,
-                   int x,
-                   int y,
-                   const Shutter& shutter,
-                   int frame_width,
-                   int frame_height) {
+double pixel_alpha(const image::Spot& spot, int x, int y, const Spots& in) {
+  const Shutter& shutter = in.shutter;
   const double moved_px = shutter.exposure_s * spot.velocity_px_s.norm();
   const int times = moved_px > kStillPx ? kTimes : 1;
   const double middle_s =
-      shutter.is_instant() ? 0
-                           : shutter.middle_s(Pixel(x + 0.5, y + 0.5), frame_width, frame_height);
+      shutter.is_instant()
+          ? 0
+          : shutter.middle_s(Pixel(x + 0.5, y + 0.5), in.frame_width, in.frame_height);
   const int side = samples_a_side(spot);
   double sum = 0;
   for (int j = 0; j < side; ++j)
@@ -206,8 +203,7 @@ std::vector<image::Coverage> covers_of(const Spots& all) {
     if (!box) continue;
     cover = image::Coverage(*box);
     each_pixel(cover, [&](int x, int y, float& alpha) {
-      alpha = static_cast<float>(
-          pixel_alpha(*spot, x, y, all.shutter, all.frame_width, all.frame_height));
+      alpha = static_cast<float>(pixel_alpha(*spot, x, y, all));
     });
   }
   return covers;

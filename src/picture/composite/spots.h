@@ -15,14 +15,6 @@ namespace airtruth::composite {
 // The alpha of a spot at a place of the picture, a time after the frame's.
 double spot_alpha(const image::Spot& spot, const Pixel& at, double dt_s);
 
-// The mean alpha of a spot over a pixel's area and its exposure.
-double pixel_alpha(const image::Spot& spot,
-                   int x,
-                   int y,
-                   const Shutter& shutter,
-                   int frame_width,
-                   int frame_height);
-
 // The spots of one frame. An empty one is not there. Later spots are in front of earlier ones.
 struct Spots {
   std::vector<std::optional<image::Spot>> spots;
@@ -30,6 +22,9 @@ struct Spots {
   int frame_width = 0;
   int frame_height = 0;
 };
+
+// The mean alpha of a spot over a pixel's area and its exposure.
+double pixel_alpha(const image::Spot& spot, int x, int y, const Spots& in);
 
 // What each spot covers of the frame, by itself.
 std::vector<image::Coverage> covers_of(const Spots& spots);

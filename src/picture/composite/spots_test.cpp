@@ -150,7 +150,7 @@ TEST(Spots, ASoftSpotNeedsOneSampleOfAPixel) {
       for (int j = 0; j < 16; ++j)
         for (int i = 0; i < 16; ++i)
           mean += spot_alpha(spot, {x + (i + 0.5) / 16, y + (j + 0.5) / 16}, 0) / 256;
-      EXPECT_NEAR(pixel_alpha(spot, x, y, {}, 64, 48), mean, 1.5e-3);
+      EXPECT_NEAR(pixel_alpha(spot, x, y, in_frame(spot)), mean, 1.5e-3);
     }
 }
 
