@@ -14,27 +14,25 @@
 namespace airtruth::sandbox {
 namespace {
 
+// The bytes that the call moves; 0 where it fails. A signal lets it be made again.
+template <typename Call>
+std::size_t moved_by(const Call& call) {
+  for (;;) {
+    const ssize_t moved = call();
+    if (moved >= 0) return static_cast<std::size_t>(moved);
+    if (errno != EINTR) return 0;
+  }
+}
+
 class ToParent : public Channel {
  protected:
-  std::size_t read_some(char* data, std::size_t size) override;
-  std::size_t write_some(const char* data, std::size_t size) override;
+  std::size_t read_some(char* data, std::size_t size) override {
+    return moved_by([&] { return ::read(0, data, size); });
+  }
+  std::size_t write_some(const char* data, std::size_t size) override {
+    return moved_by([&] { return ::write(0, data, size); });
+  }
 };
-
-std::size_t ToParent::read_some(char* data, std::size_t size) {
-  for (;;) {
-    const ssize_t got = ::read(0, data, size);
-    if (got >= 0) return static_cast<std::size_t>(got);
-    if (errno != EINTR) return 0;
-  }
-}
-
-std::size_t ToParent::write_some(const char* data, std::size_t size) {
-  for (;;) {
-    const ssize_t put = ::write(0, data, size);
-    if (put >= 0) return static_cast<std::size_t>(put);
-    if (errno != EINTR) return 0;
-  }
-}
 
 void end_with_parent(int parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
