@@ -131,7 +131,7 @@ class Cutout {
   Cutout(const Mesh& mesh, const Triangle& triangle)
       : mesh_(mesh),
         material_(mesh.materials[triangle.material]),
-        texture_(*mesh.textures[static_cast<std::size_t>(material_.texture)]),
+        texture_(*mesh.texture_of(material_)),
         vertex_(triangle.vertex) {
     float texels = 1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -220,12 +220,6 @@ class Cutout {
   int steps_ = 1;
 };
 
-bool has_cutouts(const Mesh& mesh, const Triangle& triangle) {
-  const Material& material = mesh.materials[triangle.material];
-  return material.texture >= 0 &&
-         mesh.textures[static_cast<std::size_t>(material.texture)]->has_translucency;
-}
-
 bool less(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
@@ -234,8 +228,9 @@ std::vector<Eigen::Vector3f> silhouette_of(const Mesh& mesh, const Part& part) {
   std::vector<bool> used(mesh.positions.size(), false);
   std::vector<Eigen::Vector3f> points;
   for (const Triangle& triangle : part.triangles) {
-    if (mesh.materials[triangle.material].opacity < kVisibleAlpha) continue;
-    if (has_cutouts(mesh, triangle)) {
+    const Material& material = mesh.materials[triangle.material];
+    if (material.opacity < kVisibleAlpha) continue;
+    if (mesh.has_translucent_texels(material)) {
       const std::vector<Eigen::Vector3f> corners = Cutout(mesh, triangle).corners();
       points.insert(points.end(), corners.begin(), corners.end());
       continue;

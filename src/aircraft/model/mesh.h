@@ -136,6 +136,15 @@ struct Mesh {
   std::vector<Part> parts;
 
   std::size_t triangle_count() const;
+  // nullptr for a material without one.
+  const Texture* texture_of(const Material& material) const {
+    return material.texture < 0 ? nullptr
+                                : textures[static_cast<std::size_t>(material.texture)].get();
+  }
+  bool has_translucent_texels(const Material& material) const {
+    const Texture* texture = texture_of(material);
+    return texture != nullptr && texture->has_translucency;
+  }
   bool operator==(const Mesh&) const = default;
 };
 

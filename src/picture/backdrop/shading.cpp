@@ -112,11 +112,8 @@ void Shading::set_encoding(Encoding encoding) {
 }
 
 bool is_drawn_in(Pass pass, const model::Material& material, const model::Mesh& mesh) {
-  const bool translucent_texels =
-      material.texture >= 0 &&
-      mesh.textures[static_cast<std::size_t>(material.texture)]->has_translucency;
   if (pass == Pass::kOpaque) return material.opacity >= kOpaque;
-  return material.opacity < kOpaque || translucent_texels;
+  return material.opacity < kOpaque || mesh.has_translucent_texels(material);
 }
 
 osg::ref_ptr<osg::StateSet> material_state(Pass pass,

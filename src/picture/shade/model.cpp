@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/shade/model.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -48,23 +49,15 @@ RTCScene scene_of(RTCDevice device, const model::Mesh& mesh, const model::Part& 
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   if (!part.triangles.empty()) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry,
-                                                                 RTC_BUFFER_TYPE_VERTEX,
-                                                                 0,
-                                                                 RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float),
-                                                                 mesh.positions.size()));
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-      for (int c = 0; c < 3; ++c)
-        vertices[3 * i + static_cast<std::size_t>(c)] = mesh.positions[i][c];
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry,
-                                                                   RTC_BUFFER_TYPE_INDEX,
-                                                                   0,
-                                                                   RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(unsigned),
-                                                                   part.triangles.size()));
-    for (std::size_t i = 0; i < part.triangles.size(); ++i)
-      for (std::size_t c = 0; c < 3; ++c) indices[3 * i + c] = part.triangles[i].vertex[c];
+    const auto new_buffer = [&](RTCBufferType type, RTCFormat format, std::size_t count) {
+      return rtcSetNewGeometryBuffer(geometry, type, 0, format, 3 * sizeof(float), count);
+    };
+    auto* vertices = static_cast<Eigen::Vector3f*>(
+        new_buffer(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions.size()));
+    std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
+    auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
+        new_buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, part.triangles.size()));
+    for (const model::Triangle& triangle : part.triangles) *indices++ = triangle.vertex;
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -76,9 +69,9 @@ RTCScene scene_of(RTCDevice device, const model::Mesh& mesh, const model::Part& 
 // Texels per metre over a triangle: the square root of the ratio of its area in the texture to that
 // in space.
 float density(const model::Mesh& mesh, const model::Triangle& triangle) {
-  const int texture = mesh.materials[triangle.material].texture;
-  if (texture < 0) return 0;
-  const auto& finest = mesh.textures[static_cast<std::size_t>(texture)]->finest;
+  const model::Texture* texture = mesh.texture_of(mesh.materials[triangle.material]);
+  if (texture == nullptr) return 0;
+  const auto& finest = texture->finest;
   const auto& [a, b, c] = triangle.vertex;
   const Eigen::Vector2f p = mesh.uvs[b] - mesh.uvs[a];
   const Eigen::Vector2f q = mesh.uvs[c] - mesh.uvs[a];

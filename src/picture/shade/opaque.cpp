@@ -107,12 +107,10 @@ Opacity opacity_of(const model::Mesh& mesh, const model::Triangle& triangle) {
   constexpr float kEven = 0.01F;
   const model::Material& material = mesh.materials[triangle.material];
   const auto& [a, b, c] = triangle.vertex;
-  const model::Texture* texture =
-      material.texture < 0 ? nullptr
-                           : mesh.textures[static_cast<std::size_t>(material.texture)].get();
-  if (texture == nullptr || !texture->has_translucency)
+  if (!mesh.has_translucent_texels(material))
     return material.opacity >= model::kOpaque ? Opacity::kOpaque : Opacity::kEven;
-  const auto [least, most] = alphas_within(*texture, {mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]});
+  const auto [least, most] =
+      alphas_within(*mesh.texture_of(material), {mesh.uvs[a], mesh.uvs[b], mesh.uvs[c]});
   if (material.opacity >= model::kOpaque && least >= model::kOpaque) return Opacity::kOpaque;
   return material.opacity * (most - least) < kEven ? Opacity::kEven : Opacity::kVaries;
 }

@@ -70,8 +70,7 @@ float opacity_at(const model::Mesh& mesh,
                  float v,
                  float footprint_m) {
   if (facet.is_opaque) return 1;
-  const bool textured = material.texture >= 0 &&
-                        mesh.textures[static_cast<std::size_t>(material.texture)]->has_translucency;
+  const bool textured = mesh.has_translucent_texels(material);
   const float alpha =
       material.opacity * (textured ? TriangleTexture(mesh, facet, footprint_m).alpha(u, v) : 1.0f);
   return alpha >= model::kOpaque ? 1.0f : alpha;

@@ -38,10 +38,8 @@ bool is_sound(const Eigen::Vector2f& uv) {
 }  // namespace
 
 TriangleTexture::TriangleTexture(const model::Mesh& mesh, const Facet& facet, float footprint_m)
-    : facet_(&facet) {
-  const int index = mesh.materials[facet.material].texture;
-  if (index < 0) return;
-  texture_ = mesh.textures[static_cast<std::size_t>(index)].get();
+    : facet_(&facet), texture_(mesh.texture_of(mesh.materials[facet.material])) {
+  if (texture_ == nullptr) return;
   const float texels = footprint_m * facet.texels_per_m;
   const float deepest = static_cast<float>(texture_->coarser.size());
   const float level = std::clamp(texels > 1 ? std::log2(texels) : 0.0f, 0.0f, deepest);
