@@ -20,6 +20,7 @@
 #include "camera/motion/estimator.h"
 #include "camera/motion/motion.h"
 #include "foundation/base/error.h"
+#include "foundation/base/median.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "scene/scene/limits.h"
@@ -240,10 +241,7 @@ class Session {
     }
     std::vector<double> steps;
     for (const double q : quantisers_) steps.push_back(0.625 * std::pow(2.0, q / 6));
-    std::sort(steps.begin(), steps.end());
-    const std::size_t n = steps.size();
-    quantities().codec_step.values = {
-        {steps[n / 2], (steps[n * 84 / 100] - steps[n * 16 / 100]) / 2}};
+    quantities().codec_step.values = {{median(steps), half_spread(steps)}};
   }
 
   // 0 if it is not known.

@@ -9,6 +9,7 @@
 
 #include "camera/motion/corners.h"
 #include "camera/motion/shake.h"
+#include "foundation/base/median.h"
 
 namespace airtruth::sensor {
 namespace {
@@ -207,10 +208,8 @@ Measured<Estimate> BlurMeter::share() const {
             ? "too few frames in fast motion have a neighbour at rest"
             : "moving frames have lost more detail than a whole frame's exposure would take"};
   }
-  std::sort(shares.begin(), shares.end());
-  const std::size_t n = shares.size();
-  const double spread = (shares[n * 84 / 100] - shares[n * 16 / 100]) / 2;
-  const Estimate result{shares[n / 2], 1.25 * spread / std::sqrt(double(n))};
+  const Estimate result{median(shares),
+                        1.25 * half_spread(shares) / std::sqrt(double(shares.size()))};
   if (result.value < kMinShare || result.value < kMinShareInErrors * result.sigma) {
     return NotMeasured{
         "frames in motion are as sharp as others: the exposure is too short to be measured"};

@@ -252,12 +252,9 @@ Estimate NoiseMeter::correlation_px() const {
     if (block.variance > 2 * kRounding)
       correlations.push_back(block.covariance / (block.variance - kRounding));
   if (correlations.size() < kMinBlocks) return {0, 1};
-  std::sort(correlations.begin(), correlations.end());
-  const std::size_t n = correlations.size();
-  const double middle = correlations[n / 2];
-  const double spread = (correlations[n * 84 / 100] - correlations[n * 16 / 100]) / 2;
+  const double middle = median(correlations);
   // The error of the median of Gaussian values is 1.25 times that of their mean.
-  const double error = 1.25 * spread / std::sqrt(double(n));
+  const double error = 1.25 * half_spread(correlations) / std::sqrt(double(correlations.size()));
   const double width = width_from_correlation(middle);
   const double off = std::max(std::abs(width_from_correlation(middle + error) - width),
                               std::abs(width_from_correlation(middle - error) - width));

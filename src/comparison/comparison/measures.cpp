@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "comparison/comparison/measures.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -16,9 +16,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 double spread(std::vector<double> values) {
-  if (values.size() < 3) return 0;
-  std::sort(values.begin(), values.end());
-  return (values[values.size() * 84 / 100] - values[values.size() * 16 / 100]) / 2;
+  return values.size() < 3 ? 0 : half_spread(std::move(values));
 }
 
 Pair pair_from(const std::string& name,

@@ -31,6 +31,13 @@ inline double median_between(std::vector<double> values) {
 // 1993).
 constexpr double kSigmaOfMad = 1.4826;
 
+// Half of the distance between the 16th and the 84th percentile: the standard deviation of normal
+// values, whatever a few others are. There must be at least one value.
+inline double half_spread(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return (values[values.size() * 84 / 100] - values[values.size() * 16 / 100]) / 2;
+}
+
 template <class T>
 T median_or_0(std::vector<T> values) {
   return values.empty() ? T{0} : median(std::move(values));
