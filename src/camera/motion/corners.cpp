@@ -8,6 +8,7 @@
 #include <opencv2/video/tracking.hpp>  // constants alone
 
 #include "camera/opencv_plugin/opencv_plugin.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::motion {
 namespace {
@@ -39,14 +40,7 @@ constexpr int kFarInCell = 3;
 
 }  // namespace
 
-cv::Mat luma_of(const image::Picture& picture) {
-  const image::Plane& plane = picture.luma();
-  return {plane.height,
-          plane.width,
-          CV_8UC1,
-          const_cast<std::uint8_t*>(plane.row(0)),
-          static_cast<std::size_t>(plane.stride)};
-}
+cv::Mat luma_of(const image::Picture& picture) { return image::mat_of(picture.luma()); }
 
 Pyramid pyramid_of(const cv::Mat& grey) {
   Pyramid pyramid;
@@ -64,12 +58,8 @@ Pyramid pyramid_of(const cv::Mat& grey) {
 cv::Mat allowed_area(int width, int height, const image::Mask* own_aircraft) {
   cv::Mat allowed(height, width, CV_8UC1, cv::Scalar(255));
   if (own_aircraft == nullptr) return allowed;
-  const cv::Mat free(own_aircraft->height,
-                     own_aircraft->width,
-                     CV_8UC1,
-                     const_cast<unsigned char*>(own_aircraft->free.data()));
   cv::erode(
-      free,
+      image::mat_of(*own_aircraft),
       allowed,
       cv::getStructuringElement(cv::MORPH_RECT, {2 * kMaskMarginPx + 1, 2 * kMaskMarginPx + 1}));
   return allowed;

@@ -3,16 +3,10 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "foundation/image/mats.h"
+
 namespace airtruth::motion {
 namespace {
-
-cv::Mat mat_of(const image::Plane& plane) {
-  return {plane.height,
-          plane.width,
-          CV_8UC1,
-          const_cast<std::uint8_t*>(plane.row(0)),
-          static_cast<std::size_t>(plane.stride)};
-}
 
 // The map H for a plane whose samples have 2^sx by 2^sy pixels, in OpenCV's integer-centred
 // samples.
@@ -40,8 +34,8 @@ image::Picture each_plane(const image::Picture& picture, const Warp& warp) {
     const bool chroma = i > 0 && !rgb;
     const int sx = chroma ? image::log2_chroma_width(picture.colour.chroma) : 0;
     const int sy = chroma ? image::log2_chroma_height(picture.colour.chroma) : 0;
-    cv::Mat target = mat_of(result.planes[i]);
-    warp(mat_of(picture.planes[i]), target, sx, sy, cv::Scalar(chroma ? 128 : black));
+    cv::Mat target = image::mat_of(result.planes[i]);
+    warp(image::mat_of(picture.planes[i]), target, sx, sy, cv::Scalar(chroma ? 128 : black));
   }
   return result;
 }

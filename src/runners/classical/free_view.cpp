@@ -5,6 +5,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "foundation/image/mats.h"
 #include "runners/classical/scale_space.h"
 
 namespace airtruth::classical {
@@ -44,11 +45,7 @@ void fill(cv::Mat& values, const cv::Mat& weights) {
 
 FreeView::FreeView(const image::Mask* own_aircraft) {
   if (!own_aircraft || own_aircraft->free.empty()) return;
-  const cv::Mat free(own_aircraft->height,
-                     own_aircraft->width,
-                     CV_8U,
-                     const_cast<unsigned char*>(own_aircraft->free.data()));
-  cv::Mat hidden = free < 128;
+  cv::Mat hidden = image::mat_of(*own_aircraft) < 128;
   if (cv::countNonZero(hidden) == 0) return;
   // Side of the element, px, which reaches kMarginPx to each side.
   constexpr int kSide = 2 * kMarginPx + 1;

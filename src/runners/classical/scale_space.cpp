@@ -7,6 +7,8 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "foundation/image/mats.h"
+
 namespace airtruth::classical {
 namespace {
 
@@ -242,15 +244,7 @@ double Level::relative_response_near(const cv::Point& sample, int radius) const 
   return largest_there;
 }
 
-cv::Mat luma_of(const image::Picture& picture) {
-  const image::Plane& luma = picture.luma();
-  // OpenCV has no matrix of constant samples; nothing writes to it.
-  return cv::Mat(luma.height,
-                 luma.width,
-                 CV_8U,
-                 const_cast<std::uint8_t*>(luma.row(0)),
-                 static_cast<std::size_t>(luma.stride));
-}
+cv::Mat luma_of(const image::Picture& picture) { return image::mat_of(picture.luma()); }
 
 std::vector<Level> scale_space(const image::Picture& picture, const FreeView& view) {
   std::vector<Level> levels;

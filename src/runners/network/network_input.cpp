@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::network {
 namespace {
@@ -24,16 +25,10 @@ cv::Mat mat_of(const Samples& samples) {
 }
 
 Samples grey_of_luma(const image::Picture& picture) {
-  const image::Plane& luma = picture.luma();
-  const cv::Mat coded(picture.height,
-                      picture.width,
-                      CV_8UC1,
-                      luma.samples.get(),
-                      static_cast<std::size_t>(luma.stride));
   const bool is_full = picture.colour.range == image::Range::kFull;
   const double scale = is_full ? 1 : 255.0 / 219;  // from 16..235
   Samples grey = make_samples(picture.width, picture.height, 1);
-  coded.convertTo(mat_of(grey), CV_8U, scale, is_full ? 0 : -16 * scale);
+  image::mat_of(picture.luma()).convertTo(mat_of(grey), CV_8U, scale, is_full ? 0 : -16 * scale);
   return grey;
 }
 

@@ -13,6 +13,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
 #include "foundation/base/seed.h"
+#include "foundation/image/mats.h"
 #include "runners/tracking/classifier.h"
 #include "runners/tracking/luma_window.h"
 
@@ -85,14 +86,6 @@ image::Plane patch(const image::Plane& luma, const Box& box) {
                    unit,
                    static_cast<int>(std::lround(2 * box.width / unit)),
                    static_cast<int>(std::lround(2 * box.height / unit)));
-}
-
-cv::Mat view(const image::Plane& plane) {
-  return {plane.height,
-          plane.width,
-          CV_8UC1,
-          plane.samples.get(),
-          static_cast<std::size_t>(plane.stride)};
 }
 
 // A grid of points over the object, at places with texture.
@@ -173,9 +166,9 @@ class ScaleFollower {
   std::optional<double> ratio(const image::Plane& luma, const Box& box) const {
     const image::Plane now = patch(luma, box);
     if (now.width != kept_.width || now.height != kept_.height) return std::nullopt;
-    const Points points = points_in(view(kept_));
+    const Points points = points_in(image::mat_of(kept_));
     if (points.size() < kMinPoints) return std::nullopt;
-    const Flow flow = followed(view(kept_), view(now), points);
+    const Flow flow = followed(image::mat_of(kept_), image::mat_of(now), points);
     if (flow.from.size() < kMinPoints) return std::nullopt;
     const auto ratio = median_ratio(flow);
     if (!ratio) return std::nullopt;

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/base/error.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::tracking {
 namespace {
@@ -38,11 +39,7 @@ Reduced reduced_part(
   };
   const int columns = extent(left + width * scale - part.x, part.x, luma.width);
   const int rows = extent(top + height * scale - part.y, part.y, luma.height);
-  cv::Mat source(rows,
-                 columns,
-                 CV_8UC1,
-                 const_cast<std::uint8_t*>(luma.row(part.y) + part.x),
-                 static_cast<std::size_t>(luma.stride));
+  cv::Mat source = image::mat_of(luma)(cv::Rect(part.x, part.y, columns, rows));
   if (block > 1) {
     cv::Mat reduced;
     const cv::Size size(std::max(1, columns / block), std::max(1, rows / block));

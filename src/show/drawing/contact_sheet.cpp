@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 #include "show/drawing/draw.h"
 #include "show/drawing/pictures.h"
 
@@ -149,16 +150,13 @@ image::Rgb8 small_copy(const image::Picture& picture, int width, int height) {
     return resized(image::rgb8_from_picture(picture), width, height, cv::INTER_CUBIC);
   image::Picture small = image::make_picture(width, height, picture.colour);
   for (int p = 0; p < picture.plane_count; ++p) {
-    const image::Plane& from = picture.planes[static_cast<std::size_t>(p)];
-    image::Plane& to = small.planes[static_cast<std::size_t>(p)];
-    const cv::Mat source(from.height,
-                         from.width,
-                         CV_8UC1,
-                         from.samples.get(),
-                         static_cast<std::size_t>(from.stride));
-    cv::Mat target(
-        to.height, to.width, CV_8UC1, to.samples.get(), static_cast<std::size_t>(to.stride));
-    cv::resize(source, target, target.size(), 0, 0, cv::INTER_AREA);
+    cv::Mat target = image::mat_of(small.planes[static_cast<std::size_t>(p)]);
+    cv::resize(image::mat_of(picture.planes[static_cast<std::size_t>(p)]),
+               target,
+               target.size(),
+               0,
+               0,
+               cv::INTER_AREA);
   }
   return image::rgb8_from_picture(small);
 }
