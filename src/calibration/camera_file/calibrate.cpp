@@ -57,10 +57,6 @@ video::ReaderOptions reader_options(const Options& options) {
           .with_cuts = true};
 }
 
-bool is_measured(const motion::FrameMotion& motion) {
-  return motion.state == motion::State::kMeasured || motion.state == motion::State::kReference;
-}
-
 // The visibility beyond which the international visibility code calls the air exceptionally clear
 // (extinction.h).
 constexpr double kClearKm = air::kVisibilityClassesKm.back();
@@ -159,7 +155,7 @@ class Session {
       const motion::FrameMotion moved =
           planar_.next(frame->picture, frame->time_s, frame->damaged, frame->begins_shot);
       // A frame into which most corners can be tracked does not begin a shot.
-      if (frame->begins_shot && !is_measured(moved)) cut(frame->index, before);
+      if (frame->begins_shot && !is_known(moved.state)) cut(frame->index, before);
       const std::optional<Homography> step = step_of(moved);
       steps_.back().push_back(step);
       blur_.add(frame->picture, step ? std::optional(centre_motion(*step)) : std::nullopt);
@@ -182,7 +178,8 @@ class Session {
     std::optional<Homography> step;
     if (moved.state == motion::State::kMeasured && frame_before_)
       step = moved.frame_from_reference * frame_before_->inverse();
-    frame_before_ = is_measured(moved) ? std::optional(moved.frame_from_reference) : std::nullopt;
+    frame_before_ =
+        is_known(moved.state) ? std::optional(moved.frame_from_reference) : std::nullopt;
     return step;
   }
 
@@ -198,7 +195,7 @@ class Session {
     const motion::FrameMotion turned =
         turning_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
     cam_from_first_.push_back(*turned.rotation);
-    const bool known = is_measured(turned) && result_.cuts.empty();
+    const bool known = is_known(turned.state) && result_.cuts.empty();
     return known ? turned.rotation : std::nullopt;
   }
 

@@ -63,10 +63,8 @@ struct Step {
 std::vector<Step> steps_of(const std::vector<motion::FrameMotion>& motion) {
   std::vector<Step> steps;
   for (std::size_t k = 1; k < motion.size(); ++k) {
-    const auto good = [](motion::State s) {
-      return s == motion::State::kMeasured || s == motion::State::kReference;
-    };
-    if (!motion[k].rotation || !good(motion[k].state) || !good(motion[k - 1].state)) continue;
+    if (!motion[k].rotation || !is_known(motion[k].state) || !is_known(motion[k - 1].state))
+      continue;
     const double dt = motion[k].time_s - motion[k - 1].time_s;
     if (!(dt > 0)) continue;
     // A rotation of the scene in the camera is the inverse of the camera's own rotation.
@@ -201,15 +199,13 @@ std::vector<motion::FrameMotion> bridged_by_gyro(const std::vector<motion::Frame
   std::vector<motion::FrameMotion> result = motion;
   for (std::size_t k = 1; k < motion.size(); ++k) {
     // The rotation against the previous frame is measured where both are linked; otherwise the
-    // motion continues from the end of the bridge.
+    // motion continues from the end of the bridge. The estimator itself links frames across a gap.
     if (motion[k].state == motion::State::kMeasured && motion[k - 1].state != motion::State::kCut) {
-      if (motion[k - 1].state != motion::State::kBridged) {
+      if (motion[k - 1].state != motion::State::kBridged)
         result[k].rotation =
             (*motion[k].rotation * motion[k - 1].rotation->conjugate() * *result[k - 1].rotation)
                 .normalized();
-        continue;
-      }
-      continue;  // the estimator itself linked the frames across the gap
+      continue;
     }
     const auto rate =
         mean_rate(gyro, motion[k - 1].time_s + fit.offset_s, motion[k].time_s + fit.offset_s);

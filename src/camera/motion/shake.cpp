@@ -92,12 +92,6 @@ Homography step(Frames motion, std::size_t from, std::size_t to) {
                           motion[from].frame_from_reference.inverse());
 }
 
-// The rotation of frame `to` against frame `from`, as a rotation vector.
-Vector3 turn(Frames motion, std::size_t from, std::size_t to) {
-  const Eigen::AngleAxisd turned(*motion[to].rotation * motion[from].rotation->conjugate());
-  return turned.angle() * turned.axis();
-}
-
 // Where the Gaussian ends, in standard deviations: its weight there is 0.04.
 constexpr double kMaxSigmas = 2.5;
 
@@ -114,7 +108,8 @@ Quaternion shaking_rotation(Frames against_first, std::size_t k, double sigma_s)
     const double dt = sigmas_between(against_first[k], against_first[i], sigma_s);
     if (std::abs(dt) > kMaxSigmas) return false;
     const double weight = std::exp(-0.5 * dt * dt);
-    sum += weight * turn(against_first, k, i);
+    sum += weight * vector_from_rotation(*against_first[i].rotation *
+                                         against_first[k].rotation->conjugate());
     total += weight;
     return true;
   };
