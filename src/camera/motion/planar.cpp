@@ -12,6 +12,11 @@
 namespace airtruth::motion {
 namespace {
 
+// Corners of a key frame, and their positions in a later frame: OpenCV's integer-centred pixels.
+struct Tracks {
+  std::vector<cv::Point2f> key, now;
+};
+
 // The map from a key frame to a later frame, with its inliers among the corners.
 struct ModelFit {
   Homography frame_from_key = Homography::Identity();  // OpenCV's integer-centred pixels
@@ -70,16 +75,14 @@ std::vector<cv::Point2f> chosen(const std::vector<cv::Point2f>& points, const cv
   return result;
 }
 
-void measure(ModelFit& fit,
-             const std::vector<cv::Point2f>& key,
-             const std::vector<cv::Point2f>& moved,
-             double limit_px) {
+void measure(ModelFit& fit, const Tracks& tracks, double limit_px) {
+  const auto& [key, now] = tracks;
   double squares = 0;
   fit.inliers = 0;
   fit.is_inlier.assign(key.size(), false);
   for (std::size_t i = 0; i < key.size(); ++i) {
     const Pixel p = apply(fit.frame_from_key, {key[i].x, key[i].y});
-    const double miss = (p - Pixel(moved[i].x, moved[i].y)).squaredNorm();
+    const double miss = (p - Pixel(now[i].x, now[i].y)).squaredNorm();
     if (!(miss <= limit_px * limit_px)) continue;
     fit.is_inlier[i] = true;
     ++fit.inliers;
@@ -88,43 +91,38 @@ void measure(ModelFit& fit,
   fit.rms_px = fit.inliers > 0 ? std::sqrt(squares / fit.inliers) : 0;
 }
 
-std::optional<ModelFit> fit_within(const std::vector<cv::Point2f>& key,
-                                   const std::vector<cv::Point2f>& moved,
-                                   cv::Size image,
-                                   double limit_px) {
+std::optional<ModelFit> fit_within(const Tracks& tracks, cv::Size image, double limit_px) {
+  const auto& [key, now] = tracks;
   cv::Mat mask;
-  cv::Mat h = opencv_plugin::functions().find_homography(
-      key, moved, cv::RANSAC, limit_px, mask, 1000, 0.999);
+  cv::Mat h =
+      opencv_plugin::functions().find_homography(key, now, cv::RANSAC, limit_px, mask, 1000, 0.999);
   const bool use_homography = !h.empty() && span_of(chosen(key, mask), image) >= kMinSpan &&
                               plausible(eigen_from(h), image);
   if (!use_homography) {
     h = opencv_plugin::functions().estimate_affine_partial_2d(
-        key, moved, mask, cv::RANSAC, 1.5 * limit_px, 1000, 0.999, 10);
+        key, now, mask, cv::RANSAC, 1.5 * limit_px, 1000, 0.999, 10);
     if (h.empty() || !plausible(eigen_from(h), image)) return std::nullopt;
   }
   ModelFit fit;
   fit.frame_from_key = eigen_from(h);
-  measure(fit, key, moved, (use_homography ? 1.0 : 1.5) * limit_px);
+  measure(fit, tracks, (use_homography ? 1.0 : 1.5) * limit_px);
   if (fit.inliers < kMinInliers || fit.inliers < kMinInlierShare * static_cast<double>(key.size()))
     return std::nullopt;
   return fit;
 }
 
-// Fits the plane map from the corners `key` to their positions `moved`: RANSAC (Fischler and Bolles
-// 1981), then least squares on the inliers (Levenberg-Marquardt). Both vectors have the same size,
-// and all positions are OpenCV's integer-centred pixels. The fit is a homography where the hull of
-// the inliers covers enough of the image (the square root of its share of the area is at least
-// 0.35). Otherwise, for example with clouds along a horizon, it is a similarity, since a homography
-// from a thin band of points extrapolates badly. The result is empty where there are fewer than
-// kMinInliers inliers, or where the map is no motion that a camera makes between two key frames.
-std::optional<ModelFit> fit_model(const std::vector<cv::Point2f>& key,
-                                  const std::vector<cv::Point2f>& moved,
-                                  cv::Size image) {
-  if (static_cast<int>(key.size()) < kMinInliers) return std::nullopt;
+// Fits the plane map from the key frame: RANSAC (Fischler and Bolles 1981), then least squares on
+// the inliers (Levenberg-Marquardt). The fit is a homography where the hull of the inliers covers
+// enough of the image (the square root of its share of the area is at least 0.35). Otherwise, for
+// example with clouds along a horizon, it is a similarity, since a homography from a thin band of
+// points extrapolates badly. The result is empty where there are fewer than kMinInliers inliers, or
+// where the map is no motion that a camera makes between two key frames.
+std::optional<ModelFit> fit_model(const Tracks& tracks, cv::Size image) {
+  if (static_cast<int>(tracks.key.size()) < kMinInliers) return std::nullopt;
   // A plane map is not exact for a wide lens or near ground, so a second fit with a larger limit
   // follows before the function gives up. A larger rms_px shows that it was needed.
   for (double limit_px : {kInlierPx, kLooser * kInlierPx})
-    if (const auto fit = fit_within(key, moved, image, limit_px)) return fit;
+    if (const auto fit = fit_within(tracks, image, limit_px)) return fit;
   return std::nullopt;
 }
 
@@ -136,9 +134,7 @@ constexpr double kMinKeptShare = 0.4;
 Homography ours_from_cv(const Homography& h) {
   Homography to = Homography::Identity();
   to(0, 2) = to(1, 2) = 0.5;
-  Homography from = Homography::Identity();
-  from(0, 2) = from(1, 2) = -0.5;
-  const Homography result = to * h * from;
+  const Homography result = to * h * to.inverse();
   return result / result(2, 2);
 }
 
@@ -148,47 +144,36 @@ class Planar : public Follower {
   FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override;
 
  private:
-  void make_key(const cv::Mat& grey);
-  void track(const Pyramid& now,
-             std::vector<cv::Point2f>& key,
-             std::vector<cv::Point2f>& moved) const;
+  void make_key(const std::vector<cv::Point2f>& corners);
+  Tracks tracked(const Pyramid& now) const;
   FrameMotion bridged(State state) const;
-  FrameMotion measured(const ModelFit& fit,
-                       const std::vector<cv::Point2f>& key,
-                       const std::vector<cv::Point2f>& moved,
-                       const cv::Mat& grey);
+  FrameMotion measured(const ModelFit& fit, const Tracks& tracks, const cv::Mat& grey);
 
   cv::Mat allowed_;
-  // The key frame: its corners, their positions in the latest frame, and its map from the first
-  // frame (OpenCV's pixels).
-  std::vector<cv::Point2f> key_corners_;
-  std::vector<cv::Point2f> now_corners_;
+  // The corners of the key frame in the latest frame, and its map from the first frame (OpenCV's
+  // pixels).
+  Tracks tracks_;
   Homography key_from_first_ = Homography::Identity();
   Homography now_from_first_ = Homography::Identity();
   std::size_t key_count_ = 0;
   Pyramid previous_;
-  bool started_ = false;
   int bridged_in_row_ = 0;
 };
 
-void Planar::make_key(const cv::Mat& grey) {
-  key_corners_ = now_corners_ = spread_corners(grey, allowed_);
-  key_count_ = key_corners_.size();
+void Planar::make_key(const std::vector<cv::Point2f>& corners) {
+  tracks_ = {corners, corners};
+  key_count_ = corners.size();
   key_from_first_ = now_from_first_;
 }
 
-// Tracks the corners into the frame. `key` keeps those that were found, and `moved` their
-// positions.
-void Planar::track(const Pyramid& now,
-                   std::vector<cv::Point2f>& key,
-                   std::vector<cv::Point2f>& moved) const {
+// Tracks the corners into the frame. Returns those that were found.
+Tracks Planar::tracked(const Pyramid& now) const {
+  Tracks found;
   std::vector<cv::Point2f> forward;
-  const auto good = follow(previous_, now, allowed_, now_corners_, forward, false);
-  for (std::size_t i = 0; i < good.size(); ++i) {
-    if (!good[i]) continue;
-    key.push_back(key_corners_[i]);
-    moved.push_back(forward[i]);
-  }
+  const auto good = follow(previous_, now, allowed_, tracks_.now, forward, false);
+  for (std::size_t i = 0; i < good.size(); ++i)
+    if (good[i]) found.key.push_back(tracks_.key[i]), found.now.push_back(forward[i]);
+  return found;
 }
 
 FrameMotion Planar::bridged(State state) const {
@@ -198,10 +183,7 @@ FrameMotion Planar::bridged(State state) const {
   return motion;
 }
 
-FrameMotion Planar::measured(const ModelFit& fit,
-                             const std::vector<cv::Point2f>& key,
-                             const std::vector<cv::Point2f>& moved,
-                             const cv::Mat& grey) {
+FrameMotion Planar::measured(const ModelFit& fit, const Tracks& tracks, const cv::Mat& grey) {
   // h33 passes through 0 where the camera turns away from the first frame. The determinant does
   // not.
   const Homography composed = fit.frame_from_key * key_from_first_;
@@ -213,48 +195,40 @@ FrameMotion Planar::measured(const ModelFit& fit,
   motion.state = State::kMeasured;
   bridged_in_row_ = 0;
   // Outliers are dropped: a corner that does not follow the far plane now will not follow it later.
-  key_corners_.clear();
-  now_corners_.clear();
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    if (!fit.is_inlier[i]) continue;
-    key_corners_.push_back(key[i]);
-    now_corners_.push_back(moved[i]);
-  }
-  if (static_cast<double>(key_corners_.size()) < kMinKeptShare * static_cast<double>(key_count_))
-    make_key(grey);
+  tracks_ = {};
+  for (std::size_t i = 0; i < tracks.key.size(); ++i)
+    if (fit.is_inlier[i])
+      tracks_.key.push_back(tracks.key[i]), tracks_.now.push_back(tracks.now[i]);
+  if (static_cast<double>(tracks_.key.size()) < kMinKeptShare * static_cast<double>(key_count_))
+    make_key(spread_corners(grey, allowed_));
   return motion;
 }
 
 FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
   Pyramid now = pyramid_of(grey);
-  if (!started_) {
-    started_ = true;
+  if (previous_.empty()) {
     previous_ = std::move(now);
-    make_key(grey);
+    make_key(spread_corners(grey, allowed_));
     return {};
   }
   // The samples of a damaged frame are unreliable. The next intact frame is linked to the last one.
   if (damaged) return bridged(State::kBridged);
-  std::vector<cv::Point2f> key;
-  std::vector<cv::Point2f> moved;
-  const std::size_t before = now_corners_.size();
-  track(now, key, moved);
-  const auto fit = fit_model(key, moved, grey.size());
+  const std::size_t before = tracks_.now.size();
+  const Tracks tracks = tracked(now);
+  const auto fit = fit_model(tracks, grey.size());
   if (fit && is_followed(begins_shot, fit->inliers, before)) {
-    const FrameMotion motion = measured(*fit, key, moved, grey);
+    const FrameMotion motion = measured(*fit, tracks, grey);
     previous_ = std::move(now);
     return motion;
   }
   ++bridged_in_row_;
   const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_);
   const CornerLoss loss =
-      corner_loss(fresh.size(), before, moved.size(), bridged_in_row_, begins_shot);
+      corner_loss(fresh.size(), before, tracks.now.size(), bridged_in_row_, begins_shot);
   if (loss.starts_anew) {
     // Tracking starts anew from this frame; the position of the last linked frame is kept.
     previous_ = std::move(now);
-    key_corners_ = now_corners_ = fresh;
-    key_count_ = fresh.size();
-    key_from_first_ = now_from_first_;
+    make_key(fresh);
     bridged_in_row_ = 0;
   }
   return bridged(loss.is_cut ? State::kCut : State::kBridged);
