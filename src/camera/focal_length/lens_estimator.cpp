@@ -166,7 +166,7 @@ struct LensEstimator::Impl {
   lens::ImageSize size;
   cv::Mat allowed;
   motion::Pyramid previous;
-  std::vector<cv::Point2f> begun, now;
+  motion::Tracks tracks;
   int frames = 0;
   std::vector<Pair> pairs;
   std::size_t turns = 0;
@@ -183,7 +183,7 @@ struct LensEstimator::Impl {
   }
 
   void begin(const cv::Mat& grey) {
-    begun = now = motion::spread_corners(grey, allowed);
+    tracks.begun = tracks.now = motion::spread_corners(grey, allowed);
     frames = 0;
   }
 
@@ -194,27 +194,21 @@ struct LensEstimator::Impl {
       previous = std::move(pyramid);
       return;
     }
-    std::vector<cv::Point2f> moved;
-    const auto good = motion::follow(previous, pyramid, allowed, now, moved, false);
-    std::vector<cv::Point2f> kept_begun, kept_now;
-    std::vector<double> far;
-    for (std::size_t i = 0; i < good.size(); ++i) {
-      if (!good[i]) continue;
-      kept_begun.push_back(begun[i]);
-      kept_now.push_back(moved[i]);
-      far.push_back(cv::norm(moved[i] - begun[i]));
-    }
-    begun = kept_begun, now = kept_now;
+    tracks = motion::followed(previous, pyramid, allowed, tracks);
+    const auto& [begun, now] = tracks;
     previous = std::move(pyramid);
     ++frames;
     if (static_cast<int>(now.size()) < kMinPairCorners || frames > kMaxPairSpanFrames) {
       begin(grey);
       return;
     }
-    if (median(std::move(far)) < kMinCornerShiftShare * size.width) return;
+    std::vector<double> far;
     Pair pair;
-    for (std::size_t i = 0; i < now.size(); ++i)
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      far.push_back(cv::norm(now[i] - begun[i]));
       pair.push_back({{begun[i].x + 0.5, begun[i].y + 0.5}, {now[i].x + 0.5, now[i].y + 0.5}});
+    }
+    if (median(std::move(far)) < kMinCornerShiftShare * size.width) return;
     keep(std::move(pair));
     begin(grey);
   }

@@ -13,12 +13,10 @@
 namespace airtruth::motion {
 namespace {
 
-// The pyramid levels above the picture itself, for a corner without a guess. On the coarsest, half
+// The pyramid levels above the picture itself. On the coarsest, half
 // a window is 6 samples of 16 px, which bounds the motion between two frames to some 100 px. Twice
 // as many would make levels that are smaller than a window.
 constexpr int kPyramidLevels = 4;
-// The pyramid levels for a corner with a guessed position, which is good to a pixel or two.
-constexpr int kGuessedLevels = 1;
 // The pyramid levels for tracking back, which starts at the corner's original position.
 constexpr int kBackLevels = 1;
 // The side of the window around a corner, px. Chosen by judgement. Twice as wide, it takes four
@@ -126,14 +124,14 @@ std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
 
 namespace {
 
-// Pyramidal Lucas-Kanade from `corners` to `moved`, with the guess that `moved` holds or from the
-// corners' own places. Returns for each corner whether it was found.
+// Pyramidal Lucas-Kanade from `corners` to `moved`, with the guess that `moved` holds by a flag of
+// OpenCV or from the corners' own places. Returns for each corner whether it was found.
 std::vector<unsigned char> tracked(const Pyramid& from,
                                    const Pyramid& to,
                                    const std::vector<cv::Point2f>& corners,
                                    std::vector<cv::Point2f>& moved,
                                    int levels,
-                                   bool guessed) {
+                                   int flags) {
   // The search for one corner ends after 10 rounds, or once it moves by less than 0.03 px.
   const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.03);
   // Least eigenvalue of the normal matrix, OpenCV's default.
@@ -149,34 +147,42 @@ std::vector<unsigned char> tracked(const Pyramid& from,
                                                       {kWindowPx, kWindowPx},
                                                       levels,
                                                       enough,
-                                                      guessed ? cv::OPTFLOW_USE_INITIAL_FLOW : 0,
+                                                      flags,
                                                       kMinEigenvalue);
   return found;
 }
 
 }  // namespace
 
-std::vector<bool> follow(const Pyramid& from,
-                         const Pyramid& to,
-                         const cv::Mat& allowed,
-                         const std::vector<cv::Point2f>& corners,
-                         std::vector<cv::Point2f>& moved,
-                         bool guessed) {
-  std::vector<bool> good(corners.size(), false);
-  if (corners.empty()) return good;
-  const auto found =
-      tracked(from, to, corners, moved, guessed ? kGuessedLevels : kPyramidLevels, guessed);
-  std::vector<cv::Point2f> back = corners;
-  const auto found_back = tracked(to, from, moved, back, kBackLevels, true);
+std::vector<std::optional<cv::Point2f>> follow(const Pyramid& from,
+                                               const Pyramid& to,
+                                               const cv::Mat& allowed,
+                                               const std::vector<cv::Point2f>& corners) {
+  std::vector<std::optional<cv::Point2f>> places(corners.size());
+  if (corners.empty()) return places;
+  std::vector<cv::Point2f> moved, back = corners;
+  const auto found = tracked(from, to, corners, moved, kPyramidLevels, 0);
+  const auto found_back = tracked(to, from, moved, back, kBackLevels, cv::OPTFLOW_USE_INITIAL_FLOW);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const cv::Point2f& p = moved[i];
     const bool inside = p.x >= 0 && p.y >= 0 && p.x <= static_cast<float>(allowed.cols - 1) &&
                         p.y <= static_cast<float>(allowed.rows - 1);
     if (found[i] == 0 || found_back[i] == 0 || !inside) continue;
     if (cv::norm(back[i] - corners[i]) > kForthAndBackPx) continue;
-    good[i] = allowed.at<unsigned char>(static_cast<int>(p.y), static_cast<int>(p.x)) != 0;
+    if (allowed.at<unsigned char>(static_cast<int>(p.y), static_cast<int>(p.x)) != 0) places[i] = p;
   }
-  return good;
+  return places;
+}
+
+Tracks followed(const Pyramid& from,
+                const Pyramid& to,
+                const cv::Mat& allowed,
+                const Tracks& tracks) {
+  Tracks going_on;
+  const auto places = follow(from, to, allowed, tracks.now);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i]) going_on.begun.push_back(tracks.begun[i]), going_on.now.push_back(*places[i]);
+  return going_on;
 }
 
 namespace {
@@ -258,12 +264,11 @@ std::vector<Step> Steps::alone(const Levels& now, const cv::Mat& allowed) const 
   for (const LevelPatch& corner : corners_)
     from.emplace_back(static_cast<float>(corner.middle().x()) - kHalf,
                       static_cast<float>(corner.middle().y()) - kHalf);
-  std::vector<cv::Point2f> to;
-  const auto good = airtruth::motion::follow(
-      pyramid_of(levels_.front()), pyramid_of(now.front()), allowed, from, to, false);
+  const auto to =
+      airtruth::motion::follow(pyramid_of(levels_.front()), pyramid_of(now.front()), allowed, from);
   std::vector<Step> steps;
-  for (std::size_t i = 0; i < good.size(); ++i)
-    if (good[i]) steps.push_back({corners_[i].middle(), Pixel(to[i].x + kHalf, to[i].y + kHalf)});
+  for (std::size_t i = 0; i < to.size(); ++i)
+    if (to[i]) steps.push_back({corners_[i].middle(), Pixel(to[i]->x + kHalf, to[i]->y + kHalf)});
   return steps;
 }
 

@@ -30,15 +30,22 @@ std::vector<cv::Point2f> spread_corners(const cv::Mat& grey,
                                         const cv::Mat& allowed,
                                         const std::function<bool(const cv::Point2f&)>& is_far = {});
 
-// Tracks corners by pyramidal Lucas-Kanade, and tracks them back as a check. On entry `moved` holds
-// a guess of each position (used when `guessed`); on return it holds the positions found. The
-// result states which corners were found inside the allowed area and returned to their places.
-std::vector<bool> follow(const Pyramid& from,
-                         const Pyramid& to,
-                         const cv::Mat& allowed,
-                         const std::vector<cv::Point2f>& corners,
-                         std::vector<cv::Point2f>& moved,
-                         bool guessed);
+// Tracks corners by pyramidal Lucas-Kanade, and tracks them back as a check. Returns the place of
+// each; empty where it was not found inside the allowed area, or did not return to its place.
+std::vector<std::optional<cv::Point2f>> follow(const Pyramid& from,
+                                               const Pyramid& to,
+                                               const cv::Mat& allowed,
+                                               const std::vector<cv::Point2f>& corners);
+
+// Corners where their tracks begin, and their places in a later picture.
+struct Tracks {
+  std::vector<cv::Point2f> begun, now;
+};
+// The tracks from the picture `from` on to the picture `to`, without those that end there.
+Tracks followed(const Pyramid& from,
+                const Pyramid& to,
+                const cv::Mat& allowed,
+                const Tracks& tracks);
 
 // The positions of a corner in two frames, in pixels of the picture (corner origin).
 struct Step {

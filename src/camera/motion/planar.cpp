@@ -12,11 +12,6 @@
 namespace airtruth::motion {
 namespace {
 
-// Corners of a key frame, and their positions in a later frame: OpenCV's integer-centred pixels.
-struct Tracks {
-  std::vector<cv::Point2f> key, now;
-};
-
 // The map from a key frame to a later frame, with its inliers among the corners.
 struct ModelFit {
   Homography frame_from_key = Homography::Identity();  // OpenCV's integer-centred pixels
@@ -118,7 +113,7 @@ std::optional<ModelFit> fit_within(const Tracks& tracks, cv::Size image, double 
 // points extrapolates badly. The result is empty where there are fewer than kMinInliers inliers, or
 // where the map is no motion that a camera makes between two key frames.
 std::optional<ModelFit> fit_model(const Tracks& tracks, cv::Size image) {
-  if (static_cast<int>(tracks.key.size()) < kMinInliers) return std::nullopt;
+  if (static_cast<int>(tracks.begun.size()) < kMinInliers) return std::nullopt;
   // A plane map is not exact for a wide lens or near ground, so a second fit with a larger limit
   // follows before the function gives up. A larger rms_px shows that it was needed.
   for (double limit_px : {kInlierPx, kLooser * kInlierPx})
@@ -145,7 +140,6 @@ class Planar : public Follower {
 
  private:
   void make_key(const std::vector<cv::Point2f>& corners);
-  Tracks tracked(const Pyramid& now) const;
   FrameMotion bridged(State state) const;
   FrameMotion measured(const ModelFit& fit, const Tracks& tracks, const cv::Mat& grey);
 
@@ -164,16 +158,6 @@ void Planar::make_key(const std::vector<cv::Point2f>& corners) {
   tracks_ = {corners, corners};
   key_count_ = corners.size();
   key_from_first_ = now_from_first_;
-}
-
-// Tracks the corners into the frame. Returns those that were found.
-Tracks Planar::tracked(const Pyramid& now) const {
-  Tracks found;
-  std::vector<cv::Point2f> forward;
-  const auto good = follow(previous_, now, allowed_, tracks_.now, forward, false);
-  for (std::size_t i = 0; i < good.size(); ++i)
-    if (good[i]) found.key.push_back(tracks_.key[i]), found.now.push_back(forward[i]);
-  return found;
 }
 
 FrameMotion Planar::bridged(State state) const {
@@ -196,10 +180,10 @@ FrameMotion Planar::measured(const ModelFit& fit, const Tracks& tracks, const cv
   bridged_in_row_ = 0;
   // Outliers are dropped: a corner that does not follow the far plane now will not follow it later.
   tracks_ = {};
-  for (std::size_t i = 0; i < tracks.key.size(); ++i)
+  for (std::size_t i = 0; i < tracks.begun.size(); ++i)
     if (fit.is_inlier[i])
-      tracks_.key.push_back(tracks.key[i]), tracks_.now.push_back(tracks.now[i]);
-  if (static_cast<double>(tracks_.key.size()) < kMinKeptShare * static_cast<double>(key_count_))
+      tracks_.begun.push_back(tracks.begun[i]), tracks_.now.push_back(tracks.now[i]);
+  if (static_cast<double>(tracks_.begun.size()) < kMinKeptShare * static_cast<double>(key_count_))
     make_key(spread_corners(grey, allowed_));
   return motion;
 }
@@ -214,7 +198,7 @@ FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
   // The samples of a damaged frame are unreliable. The next intact frame is linked to the last one.
   if (damaged) return bridged(State::kBridged);
   const std::size_t before = tracks_.now.size();
-  const Tracks tracks = tracked(now);
+  const Tracks tracks = followed(previous_, now, allowed_, tracks_);
   const auto fit = fit_model(tracks, grey.size());
   if (fit && is_followed(begins_shot, fit->inliers, before)) {
     const FrameMotion motion = measured(*fit, tracks, grey);
