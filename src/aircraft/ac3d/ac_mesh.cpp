@@ -165,14 +165,8 @@ class BatchBuilder {
     const Eigen::Vector3f& normal = normals_[corner_index];
     const Eigen::Vector2f uv =
         object_.texture.empty() ? Eigen::Vector2f(0, 0) : Eigen::Vector2f(corner.u, corner.v);
-    const std::array<float, 8> values{position.x(),
-                                      position.y(),
-                                      position.z(),
-                                      normal.x(),
-                                      normal.y(),
-                                      normal.z(),
-                                      uv.x(),
-                                      uv.y()};
+    std::array<float, 8> values{};
+    Eigen::Map<Eigen::Matrix<float, 8, 1>>(values.data()) << position, normal, uv;
     const auto key = std::bit_cast<VertexBits>(values);
     const auto [known, is_new] =
         index_.try_emplace(key, static_cast<std::uint32_t>(batch_.positions.size()));

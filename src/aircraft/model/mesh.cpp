@@ -254,17 +254,11 @@ std::vector<std::vector<Eigen::Vector3f>> silhouette_points(const Mesh& mesh) {
 }
 
 Extents extents(const Mesh& mesh) {
-  Extents result;
-  bool any = false;
-  for (const auto& part : silhouette_points(mesh)) {
-    for (const Eigen::Vector3f& point : part) {
-      const Vector3 p = point.cast<double>();
-      result.low_in_body = any ? Vector3(result.low_in_body.cwiseMin(p)) : p;
-      result.high_in_body = any ? Vector3(result.high_in_body.cwiseMax(p)) : p;
-      any = true;
-    }
-  }
-  return result;
+  Eigen::AlignedBox3f bounds;
+  for (const auto& part : silhouette_points(mesh))
+    for (const Eigen::Vector3f& point : part) bounds.extend(point);
+  if (bounds.isEmpty()) return {};
+  return {bounds.min().cast<double>(), bounds.max().cast<double>()};
 }
 
 }  // namespace airtruth::model

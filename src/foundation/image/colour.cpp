@@ -5,20 +5,6 @@
 #include <cmath>
 
 namespace airtruth::image {
-namespace {
-
-// The weights of red, green and blue in luma (ITU-T H.273, table 4). For RGB, those of BT.601.
-struct Weights {
-  float kr = 0, kg = 0, kb = 0;
-};
-Weights weights_of(Matrix matrix) {
-  float kr = 0.299f, kb = 0.114f;
-  if (matrix == Matrix::kBt709) kr = 0.2126f, kb = 0.0722f;
-  if (matrix == Matrix::kBt2020) kr = 0.2627f, kb = 0.0593f;
-  return {kr, 1 - kr - kb, kb};
-}
-
-}  // namespace
 
 float linear_from_srgb(float coded) {
   const float c = std::clamp(coded, 0.0f, 1.0f);
@@ -32,8 +18,11 @@ float srgb_from_linear(float linear) {
 
 ColourCode::ColourCode(const Colour& colour) {
   rgb_planes_ = colour.matrix == Matrix::kRgb;
-  const Weights weights = weights_of(colour.matrix);
-  kr_ = weights.kr, kg_ = weights.kg, kb_ = weights.kb;
+  // The weights of red, green and blue in luma (ITU-T H.273, table 4). For RGB, those of BT.601.
+  kr_ = 0.299f, kb_ = 0.114f;
+  if (colour.matrix == Matrix::kBt709) kr_ = 0.2126f, kb_ = 0.0722f;
+  if (colour.matrix == Matrix::kBt2020) kr_ = 0.2627f, kb_ = 0.0593f;
+  kg_ = 1 - kr_ - kb_;
   const bool limited = colour.range == Range::kLimited;
   y_scale_ = limited ? 219.0f : 255.0f;
   y_offset_ = limited ? 16.0f : 0.0f;

@@ -141,17 +141,10 @@ image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed) {
 }
 
 AVColorSpace space_of(image::Matrix matrix) {
-  switch (matrix) {
-    case image::Matrix::kRgb:
-      return AVCOL_SPC_RGB;
-    case image::Matrix::kBt601:
-      return AVCOL_SPC_SMPTE170M;
-    case image::Matrix::kBt709:
-      return AVCOL_SPC_BT709;
-    case image::Matrix::kBt2020:
-      return AVCOL_SPC_BT2020_NCL;
-  }
-  return AVCOL_SPC_UNSPECIFIED;
+  return matrix == image::Matrix::kRgb     ? AVCOL_SPC_RGB
+         : matrix == image::Matrix::kBt601 ? AVCOL_SPC_SMPTE170M
+         : matrix == image::Matrix::kBt709 ? AVCOL_SPC_BT709
+                                           : AVCOL_SPC_BT2020_NCL;
 }
 
 Picture picture_of(const AVFrame& frame, const Layout& layout, const image::Colour& colour) {

@@ -31,14 +31,9 @@ Orientation orientation_of_stream(const AVStream& stream) {
 }
 
 image::Siting siting_of(AVChromaLocation location) {
-  switch (location) {
-    case AVCHROMA_LOC_CENTER:
-      return image::Siting::kCenter;
-    case AVCHROMA_LOC_TOPLEFT:
-      return image::Siting::kTopLeft;
-    default:
-      return image::Siting::kLeft;
-  }
+  return location == AVCHROMA_LOC_CENTER    ? image::Siting::kCenter
+         : location == AVCHROMA_LOC_TOPLEFT ? image::Siting::kTopLeft
+                                            : image::Siting::kLeft;
 }
 
 // Largest numerator and denominator of a stated frame rate: 30000/1001 is exact.
