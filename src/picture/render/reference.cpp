@@ -92,12 +92,12 @@ class Then {
     const bool in_shadow = !(sunlit.sun > 0) || shade::is_blocked(*placed.model, to_sun);
     const shade::TriangleTexture texture(
         placed.model->mesh, facet, static_cast<float>(fragment.distance_m * footprint_rad));
-    return shade::colour_of(material,
-                            texture.albedo(hit.u, hit.v),
-                            shade::around_at(placed, surface, hit, light),
-                            sunlit,
-                            surface.cosine,
-                            in_shadow,
+    return shade::colour_of({material,
+                             texture.albedo(hit.u, hit.v),
+                             shade::around_at(placed, surface, hit, light),
+                             sunlit,
+                             surface.cosine,
+                             in_shadow},
                             light);
   }
 

@@ -122,12 +122,12 @@ void PixelShading::shade_points() {
   find_sunlight();
   for (const Point& point : points_) {
     Shaded& surface = shaded_[point.of];
-    const image::Rgb rgb = shade::colour_of(point.placed->material(point.placed->facet(point.hit)),
-                                            surface.texture.albedo(point.hit.u, point.hit.v),
-                                            surface.around,
-                                            point.sunlit,
-                                            point.surface.cosine,
-                                            point.in_shadow,
+    const image::Rgb rgb = shade::colour_of({point.placed->material(point.placed->facet(point.hit)),
+                                             surface.texture.albedo(point.hit.u, point.hit.v),
+                                             surface.around,
+                                             point.sunlit,
+                                             point.surface.cosine,
+                                             point.in_shadow},
                                             light_);
     const Eigen::Map<const Eigen::Array3f> colour(rgb.data());
     surface.count += 1;

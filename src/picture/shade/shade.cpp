@@ -167,12 +167,8 @@ float sun_on(const Placed& placed, const Surface& surface) {
   return cosine > 0 && surface.face.dot(to_sun) > 0 ? cosine : 0;
 }
 
-Rgb as_opengl(const model::Material& material,
-              const Texel& texel,
-              const Around& around,
-              const Sunlit& sunlit,
-              float sun,
-              const Light& light) {
+Rgb as_opengl(const LitPoint& point, float sun, const Light& light) {
+  const auto& [material, texel, around, sunlit, cosine, in_shadow] = point;
   // Share of painted metal. It replaces the specular colours of the model files, which are chosen
   // for the look of the game.
   constexpr float kGlossShare = 0.08f;
@@ -186,13 +182,8 @@ Rgb as_opengl(const model::Material& material,
 }
 
 // A surface that mirrors a share of the light and scatters part of the rest. Premultiplied.
-Rgb coated(const model::Material& material,
-           const Texel& texel,
-           const Around& around,
-           const Sunlit& sunlit,
-           float cosine,
-           float sun,
-           const Light& light) {
+Rgb coated(const LitPoint& point, float sun, const Light& light) {
+  const auto& [material, texel, around, sunlit, cosine, in_shadow] = point;
   const Coat coat = coat_of(material, texel);
   const float glint = sunlit.sun > 0 ? sun / sunlit.sun * sunlit.glint.strength : 0;
   Rgb rgb;
@@ -235,16 +226,9 @@ BodyRay to_sun_from(const Placed& placed,
   return {point_in_body + kStartM * surface.face, placed.to_sun_in_body};
 }
 
-Rgb colour_of(const model::Material& material,
-              const Texel& texel,
-              const Around& around,
-              const Sunlit& sunlit,
-              float cosine,
-              bool in_shadow,
-              const Light& light) {
-  const float sun = in_shadow ? 0 : sunlit.sun;
-  return light.surroundings ? coated(material, texel, around, sunlit, cosine, sun, light)
-                            : as_opengl(material, texel, around, sunlit, sun, light);
+Rgb colour_of(const LitPoint& point, const Light& light) {
+  const float sun = point.in_shadow ? 0 : point.sunlit.sun;
+  return light.surroundings ? coated(point, sun, light) : as_opengl(point, sun, light);
 }
 
 }  // namespace airtruth::shade

@@ -136,13 +136,16 @@ BodyRay to_sun_from(const Placed& placed,
                     const Eigen::Vector3f& point_in_body,
                     const Surface& surface);
 
-// The light of a surface: linear, premultiplied by opacity. `cosine`: of Surface.
-Rgb colour_of(const model::Material& material,
-              const Texel& texel,
-              const Around& around,
-              const Sunlit& sunlit,
-              float cosine,
-              bool in_shadow,
-              const Light& light);
+// What a point of a surface sends light by.
+struct LitPoint {
+  const model::Material& material;
+  const Texel& texel;
+  const Around& around;
+  const Sunlit& sunlit;
+  float cosine;  // of Surface
+  bool in_shadow;
+};
+// Its light: linear, premultiplied by opacity.
+Rgb colour_of(const LitPoint& point, const Light& light);
 
 }  // namespace airtruth::shade
