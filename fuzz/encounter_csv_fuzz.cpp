@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "encounter/tracks_file/encounter_csv.h"
+#include "encounter/tracks_file/formats.h"
 #include "foundation/base/error.h"
 
 namespace {

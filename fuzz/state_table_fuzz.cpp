@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "encounter/tracks_file/state_table.h"
+#include "encounter/tracks_file/formats.h"
 #include "foundation/base/error.h"
 
 namespace {

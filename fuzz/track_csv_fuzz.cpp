@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "encounter/tracks_file/track_csv.h"
+#include "encounter/tracks_file/formats.h"
 #include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

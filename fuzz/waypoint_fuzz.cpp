@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "encounter/tracks_file/waypoint_file.h"
+#include "encounter/tracks_file/formats.h"
 #include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

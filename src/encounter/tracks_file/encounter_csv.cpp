@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/encounter_csv.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/names.h"
@@ -126,19 +125,17 @@ class EncounterRows {
 std::vector<track::Encounter> parse_encounter_csv(std::string_view text,
                                                   const std::filesystem::path& file) {
   Lines lines(text, file.string());
-  std::vector<std::string_view> cells;
   if (!lines.next()) throw Error("is empty; expected a header and rows", {file.string()});
-  split_row(lines.line(), cells);
-  const Places places = columns_of(cells, lines.where());
-  const std::size_t columns = cells.size();
+  const Places places = columns_of(lines.cells(), lines.where());
+  const std::size_t columns = lines.cells().size();
   EncounterRows rows(places);
   while (lines.next()) {
-    split_row(lines.line(), cells);
-    if (cells.size() != columns)
+    if (lines.cells().size() != columns)
       throw Error(
-          fmt::format("has {} cells for {} columns; expected one each", cells.size(), columns),
+          fmt::format(
+              "has {} cells for {} columns; expected one each", lines.cells().size(), columns),
           lines.where());
-    rows.add(cells, lines.where());
+    rows.add(lines.cells(), lines.where());
   }
   std::vector<track::Encounter> encounters = rows.take();
   if (encounters.empty())

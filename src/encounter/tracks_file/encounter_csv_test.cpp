@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/encounter_csv.h"
-
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "encounter/tracks_file/formats.h"
 #include "foundation/base/error.h"
 #include "support/error_of.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/state_table.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "encounter/track/track.h"
+#include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/error.h"
@@ -244,20 +243,14 @@ bool next_row(Lines& lines) {
 
 track::Encounter parse_state_table(std::string_view text, const std::filesystem::path& file) {
   Lines lines(text, file.string());
-  std::vector<std::string_view> cells;
   if (!next_row(lines)) throw Error("is empty; expected headings, units and rows", {file.string()});
-  split_row(lines.line(), cells);
-  Layout layout = layout_of(cells, lines.where());
+  Layout layout = layout_of(lines.cells(), lines.where());
   if (!next_row(lines))
     throw Error("ends after the headings; expected units and rows", lines.where());
-  split_row(lines.line(), cells);
-  take_units(layout, cells, lines.where());
+  take_units(layout, lines.cells(), lines.where());
   RowReader reader(layout);
   TrackBuilder builder;
-  while (next_row(lines)) {
-    split_row(lines.line(), cells);
-    reader.read(cells, lines.where(), builder);
-  }
+  while (next_row(lines)) reader.read(lines.cells(), lines.where(), builder);
   if (builder.is_empty())
     throw Error("has no rows; expected one for each aircraft and time", lines.where());
   track::Encounter encounter = builder.take();

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/state_table.h"
-
 #include <cstdlib>
 #include <string>
 
@@ -8,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "encounter/track/track.h"
+#include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"

@@ -22,24 +22,6 @@ constexpr std::string_view kBlanks = " \t\r";
 // Largest length of an aircraft's name: a choice.
 constexpr std::size_t kMaxNameBytes = 60;
 
-}  // namespace
-
-Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
-  if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
-}
-
-bool Lines::next() {
-  while (!rest_.empty()) {
-    const std::size_t end = rest_.find('\n');
-    std::string_view line = rest_.substr(0, end);
-    rest_ = end == rest_.npos ? std::string_view() : rest_.substr(end + 1);
-    ++number_;
-    line_ = trimmed(line.substr(0, line.find('#')));
-    if (!line_.empty()) return true;
-  }
-  return false;
-}
-
 void split_row(std::string_view line, std::vector<std::string_view>& cells) {
   cells.clear();
   if (line.find(',') == line.npos) {
@@ -57,6 +39,26 @@ void split_row(std::string_view line, std::vector<std::string_view>& cells) {
     if (more) line.remove_prefix(comma + 1);
   }
   if (cells.back().empty()) cells.pop_back();
+}
+
+}  // namespace
+
+Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
+  if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+}
+
+bool Lines::next() {
+  while (!rest_.empty()) {
+    const std::size_t end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_ = end == rest_.npos ? std::string_view() : rest_.substr(end + 1);
+    ++number_;
+    line_ = trimmed(line.substr(0, line.find('#')));
+    if (line_.empty()) continue;
+    split_row(line_, cells_);
+    return true;
+  }
+  return false;
 }
 
 double number_in(std::string_view cell, std::string_view name, const Where& where) {
@@ -122,7 +124,7 @@ std::string_view without_brackets(std::string_view word) {
 
 bool begins_with_column(std::string_view text, std::string_view column) {
   Lines lines(text, "");
-  return lines.next() && is_among(column, lines.line());
+  return lines.next() && std::ranges::find(lines.cells(), column) != lines.cells().end();
 }
 
 bool is_among(std::string_view word, std::string_view words) {

@@ -20,19 +20,19 @@ class Lines {
   // Goes to the next line with content; false at the end of the text.
   bool next();
   std::string_view line() const { return line_; }
+  // The parts of the line between its commas; without a comma those between its blanks. Blanks
+  // around a cell are left out, and one empty cell at the end, after a last comma, too.
+  const std::vector<std::string_view>& cells() const { return cells_; }
   // The place of the present line.
   Where where() const { return {file_, number_}; }
 
  private:
   std::string_view rest_;
   std::string_view line_;
+  std::vector<std::string_view> cells_;
   std::string file_;
   int number_ = 0;
 };
-
-// Splits a line at its commas; a line without a comma at its blanks. Blanks around a cell are left
-// out. One empty cell at the end, after a last comma, is left out too.
-void split_row(std::string_view line, std::vector<std::string_view>& cells);
 
 // Whether the first line with content has this cell.
 bool begins_with_column(std::string_view text, std::string_view column);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/track_csv.h"
-
 #include <algorithm>
 #include <array>
 #include <string>
@@ -9,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "encounter/track/track.h"
+#include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/geometry/units.h"
@@ -38,13 +37,11 @@ std::array<std::size_t, kColumnNames.size()> places_of(
 
 track::Encounter parse_track_csv(std::string_view text, const std::filesystem::path& file) {
   Lines lines(text, file.string());
-  std::vector<std::string_view> cells;
   if (!lines.next()) throw Error("is empty; expected a header and rows", {file.string()});
-  split_row(lines.line(), cells);
-  const auto places = places_of(cells, lines.where());
+  const auto places = places_of(lines.cells(), lines.where());
   TrackBuilder builder;
   while (lines.next()) {
-    split_row(lines.line(), cells);
+    const std::vector<std::string_view>& cells = lines.cells();
     if (cells.size() != kColumnNames.size())
       throw Error(fmt::format("has {} cells; expected {}", cells.size(), kColumnNames.size()),
                   lines.where());

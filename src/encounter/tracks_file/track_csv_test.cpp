@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/track_csv.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "support/error_of.h"

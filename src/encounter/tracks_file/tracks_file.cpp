@@ -6,12 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "encounter/tracks_file/encounter_csv.h"
-#include "encounter/tracks_file/state_table.h"
+#include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
-#include "encounter/tracks_file/track_csv.h"
-#include "encounter/tracks_file/waypoint_file.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 

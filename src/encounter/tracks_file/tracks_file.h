@@ -35,7 +35,7 @@ TracksFormat tracks_format_of(const fs::path& file);
 // Reads the encounters of a file. A .dat file is binary; any other one is airtruth's CSV where its
 // header has a column "encounter", MIT-LL's CSV of a track where it has a column "x_ft", otherwise
 // a table of states. Throws Error where the file is larger than 256 MiB, or where it is not of its
-// format (state_table.h, waypoint_file.h, encounter_csv.h, track_csv.h).
+// format (formats.h).
 std::vector<track::Encounter> read_encounters(const fs::path& file);
 std::vector<track::Encounter> parse_encounters(std::string_view bytes, const fs::path& file);
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/waypoint_file.h"
-
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -8,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "encounter/track/track.h"
+#include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/table_text.h"
 #include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/error.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/tracks_file/waypoint_file.h"
-
 #include <cstring>
 #include <limits>
 #include <string>
@@ -8,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "encounter/tracks_file/formats.h"
 #include "foundation/base/error.h"
 #include "support/error_of.h"
 
