@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,7 +16,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
-#include "scene/trajectory/spline.h"
 
 namespace airtruth::trajectory {
 
@@ -31,6 +31,63 @@ constexpr double kFarthestM = 1e9;
 bool has_heading(const Vector3& v) {
   return std::hypot(v.x(), v.y()) > std::max(kHorizontalMps, 1e-9 * v.norm());
 }
+
+// Second derivatives at the knots: the tridiagonal system of a continuous slope, solved by Thomas's
+// algorithm.
+std::vector<Vector3> second_derivatives(const std::vector<double>& t,
+                                        const std::vector<Vector3>& p) {
+  const std::size_t n = p.size();
+  std::vector<Vector3> m(n, Vector3::Zero());
+  if (n < 3) return m;
+  std::vector<double> upper(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double before = t[i] - t[i - 1];
+    const double after = t[i + 1] - t[i];
+    const Vector3 right = 6.0 * ((p[i + 1] - p[i]) / after - (p[i] - p[i - 1]) / before);
+    const double pivot = 2.0 * (before + after) - before * upper[i - 1];
+    upper[i] = after / pivot;
+    m[i] = (right - before * m[i - 1]) / pivot;
+  }
+  for (std::size_t i = n - 2; i > 0; --i) m[i] -= upper[i] * m[i + 1];
+  return m;
+}
+
+// A natural cubic spline (C2, second derivative 0 at both ends) through points at strictly
+// increasing knots. Two points make a straight line. Source: de Boor (1978), chapter IV.
+class CubicSpline {
+ public:
+  CubicSpline(std::vector<double> knots, std::vector<Vector3> points)
+      : knots_(std::move(knots)),
+        points_(std::move(points)),
+        curvature_(second_derivatives(knots_, points_)) {}
+
+  // The value (derivative 0) or the derivative 1 or 2 at u. A u outside the knots' range is clamped
+  // to it.
+  Vector3 at(double u, int derivative) const {
+    u = std::clamp(u, begin(), end());
+    const auto after = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, u);
+    const auto i = static_cast<std::size_t>(after - knots_.begin()) - 1;
+    const double h = knots_[i + 1] - knots_[i];
+    const double a = (knots_[i + 1] - u) / h;
+    const double b = (u - knots_[i]) / h;
+    if (derivative == 2) return a * curvature_[i] + b * curvature_[i + 1];
+    if (derivative == 1) {
+      return (points_[i + 1] - points_[i]) / h +
+             h / 6.0 * ((3 * b * b - 1) * curvature_[i + 1] - (3 * a * a - 1) * curvature_[i]);
+    }
+    return a * points_[i] + b * points_[i + 1] +
+           h * h / 6.0 * ((a * a * a - a) * curvature_[i] + (b * b * b - b) * curvature_[i + 1]);
+  }
+  double begin() const { return knots_.front(); }
+  double end() const { return knots_.back(); }
+  const std::vector<double>& knots() const { return knots_; }
+
+ private:
+  std::vector<double> knots_;
+  std::vector<Vector3> points_;
+  // Second derivatives at the knots.
+  std::vector<Vector3> curvature_;
+};
 
 // The headings to keep where the path goes straight up or down or the object stands still: the last
 // defined heading before there, else the first one after. They are looked for once, when one is
