@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -90,10 +91,9 @@ void leave_out(FlightLog& log, const std::string& fault, const Where& where) {
   if (log.first_fault.empty()) log.first_fault = to_string(where) + ": " + fault;
 }
 
-namespace {
-
 template <typename Record>
-void add(FlightLog& log, std::vector<Record>& records, const Record& record, const Where& where) {
+void add_record(FlightLog& log, const Record& record, const Where& where) {
+  auto& records = std::get<std::vector<Record>&>(std::tie(log.fixes, log.attitudes, log.rates));
   if (const std::string fault = fault_of(record); !fault.empty())
     return leave_out(log, fault, where);
   if (records.empty() || record.time_s > records.back().time_s)
@@ -101,20 +101,9 @@ void add(FlightLog& log, std::vector<Record>& records, const Record& record, con
   else
     ++log.left_out;
 }
-
-}  // namespace
-
-void add_fix(FlightLog& log, const Fix& fix, const Where& where) {
-  add(log, log.fixes, fix, where);
-}
-
-void add_attitude(FlightLog& log, const Attitude& attitude, const Where& where) {
-  add(log, log.attitudes, attitude, where);
-}
-
-void add_rates(FlightLog& log, const Rates& rates, const Where& where) {
-  add(log, log.rates, rates, where);
-}
+template void add_record(FlightLog& log, const Fix& fix, const Where& where);
+template void add_record(FlightLog& log, const Attitude& attitude, const Where& where);
+template void add_record(FlightLog& log, const Rates& rates, const Where& where);
 
 namespace {
 

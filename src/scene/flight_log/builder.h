@@ -18,10 +18,9 @@ std::string fault_of(const Fix& fix);
 std::string fault_of(const Attitude& attitude);
 std::string fault_of(const Rates& rates);
 
-// Add a record; one that has a fault is left out.
-void add_fix(FlightLog& log, const Fix& fix, const Where& where);
-void add_attitude(FlightLog& log, const Attitude& attitude, const Where& where);
-void add_rates(FlightLog& log, const Rates& rates, const Where& where);
+// Adds a Fix, an Attitude or Rates; one that has a fault is left out.
+template <typename Record>
+void add_record(FlightLog& log, const Record& record, const Where& where);
 
 // Counts a record that is left out, and keeps the first fault.
 void leave_out(FlightLog& log, const std::string& fault, const Where& where);

@@ -54,8 +54,9 @@ Places columns_of(std::string_view header, const std::string& file) {
 
 // What a file of our own format states is right, or an error.
 template <typename Record>
-void expect_good(const Record& record, const Where& where) {
+void add_good(FlightLog& log, const Record& record, const Where& where) {
   if (const std::string fault = fault_of(record); !fault.empty()) throw Error(fault, where);
+  add_record(log, record, where);
 }
 
 void add_row(FlightLog& log, const Places& places, std::string_view line, const Where& where) {
@@ -71,18 +72,11 @@ void add_row(FlightLog& log, const Places& places, std::string_view line, const 
     throw Error(fmt::format("time_s is {}, not after the row before; expected times that increase",
                             fix.time_s),
                 where);
-  expect_good(fix, where);
-  add_fix(log, fix, where);
-  if (places[kYaw] != kNoColumn) {
-    const Attitude attitude{fix.time_s, {number(kYaw), number(kPitch), number(kRoll)}};
-    expect_good(attitude, where);
-    add_attitude(log, attitude, where);
-  }
-  if (places[kRateX] != kNoColumn) {
-    const Rates rates{fix.time_s, {number(kRateX), number(kRateY), number(kRateZ)}};
-    expect_good(rates, where);
-    add_rates(log, rates, where);
-  }
+  add_good(log, fix, where);
+  if (places[kYaw] != kNoColumn)
+    add_good(log, Attitude{fix.time_s, {number(kYaw), number(kPitch), number(kRoll)}}, where);
+  if (places[kRateX] != kNoColumn)
+    add_good(log, Rates{fix.time_s, {number(kRateX), number(kRateY), number(kRateZ)}}, where);
 }
 
 std::string_view without_mark(std::string_view text) {

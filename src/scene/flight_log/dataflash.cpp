@@ -171,19 +171,19 @@ class DataFlashReader {
                            const Where& where) {
     const auto latitude = number("Lat"), longitude = number("Lng"), altitude = number("Alt");
     if (!latitude || !longitude || !altitude) return;
-    add_fix(log, {time_s, *latitude, *longitude, *altitude, number("RelHomeAlt")}, where);
+    add_record(log, Fix{time_s, *latitude, *longitude, *altitude, number("RelHomeAlt")}, where);
   }
 
   template <typename Number>
   void add_angles(const Number& number, double time_s, const Where& where) {
     const auto yaw = number("Yaw"), pitch = number("Pitch"), roll = number("Roll");
-    if (yaw && pitch && roll) add_attitude(log_, {time_s, {*yaw, *pitch, *roll}}, where);
+    if (yaw && pitch && roll) add_record(log_, Attitude{time_s, {*yaw, *pitch, *roll}}, where);
   }
 
   template <typename Number>
   void add_rate(const Number& number, double time_s, const Where& where) {
     const auto x = number("GyrX"), y = number("GyrY"), z = number("GyrZ");
-    if (x && y && z) add_rates(log_, {time_s, {*x, *y, *z}}, where);
+    if (x && y && z) add_record(log_, Rates{time_s, {*x, *y, *z}}, where);
   }
 
   // The estimator's positions, else those of the first receiver that has a fix.

@@ -144,8 +144,8 @@ void add_block(FlightLog& log, std::string_view block, double time_s, const Wher
   // 0, 0 is what these aircraft write while no satellites are seen.
   if (!fix || (fix->latitude_deg == 0 && fix->longitude_deg == 0)) return void(++log.left_out);
   fix->time_s = time_s;
-  add_fix(log, *fix, where);
-  if (const auto gimbal = gimbal_of(block)) add_attitude(log, {time_s, *gimbal}, where);
+  add_record(log, *fix, where);
+  if (const auto gimbal = gimbal_of(block)) add_record(log, Attitude{time_s, *gimbal}, where);
 }
 
 class SubtitleReader {

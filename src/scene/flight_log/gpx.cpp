@@ -109,7 +109,7 @@ class GpxReader {
     // Times are kept from the first point on: seconds since 1970 would lose the microseconds.
     if (!first_s_) first_s_ = *seconds;
     fix.time_s = *seconds - *first_s_;
-    add_fix(log_, fix, where(point));
+    add_record(log_, fix, where(point));
   }
 
   std::string_view text_;

@@ -235,7 +235,7 @@ class UlogReader {
       fix.longitude_deg = is_whole ? *lon * 1e-7 : *lon;
       fix.altitude_m = is_whole ? *alt * 1e-3 : *alt;
     }
-    add_fix(log, fix, {fmt::format("{} (byte {})", file_, at)});
+    add_record(log, fix, {fmt::format("{} (byte {})", file_, at)});
   }
 
   // z of the local position counts down from the place of the first fix, which is that of take-off.
@@ -254,7 +254,7 @@ class UlogReader {
     if (!(std::abs(world_from_body.norm() - 1) < kUnitTolerance))
       return leave_out(
           log_, "an attitude is no unit quaternion", {fmt::format("{} (byte {})", file_, at)});
-    add_attitude(log_, {time_s, yaw_pitch_roll(world_from_body.normalized())}, {file_});
+    add_record(log_, Attitude{time_s, yaw_pitch_roll(world_from_body.normalized())}, {file_});
   }
 
   void add_rate(FlightLog& log,
@@ -269,7 +269,7 @@ class UlogReader {
       if (!value) return;
       rate[i] = *value;
     }
-    add_rates(log, {time_s, rate}, {fmt::format("{} (byte {})", file_, at)});
+    add_record(log, Rates{time_s, rate}, {fmt::format("{} (byte {})", file_, at)});
   }
 
   // The estimator's positions and rates, else those of the sensors.
