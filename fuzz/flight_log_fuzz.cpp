@@ -7,7 +7,6 @@
 
 #include "foundation/base/error.h"
 #include "scene/flight_log/flight_log.h"
-#include "scene/flight_log/gpmf.h"
 #include "scene/flight_log/local_path.h"
 
 namespace {

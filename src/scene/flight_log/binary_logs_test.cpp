@@ -10,7 +10,6 @@
 
 #include "foundation/base/error.h"
 #include "scene/flight_log/flight_log.h"
-#include "scene/flight_log/gpmf.h"
 #include "support/error_of.h"
 
 namespace airtruth::flight_log {

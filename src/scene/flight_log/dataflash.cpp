@@ -154,36 +154,23 @@ class DataFlashReader {
     if (instance != 0 && kind.name != "GPS") return;
     const Where where{fmt::format("{} (byte {})", file_, at)};
     const double time_s = *microseconds * 1e-6;
-    if (kind.name == "POS") add_position(position_, number, time_s, where);
-    if (kind.name == "GPS") {
-      FlightLog& receiver = receivers_[instance];
-      if (number("Status").value_or(0) < kStatusFix3d) return void(++receiver.left_out);
-      add_position(receiver, number, time_s, where);
+    const auto three = [&](const char* a, const char* b, const char* c) -> std::optional<Vector3> {
+      const auto x = number(a), y = number(b), z = number(c);
+      return x && y && z ? std::optional(Vector3(*x, *y, *z)) : std::nullopt;
+    };
+    if (kind.name == "POS" || kind.name == "GPS") {
+      FlightLog& log = kind.name == "POS" ? position_ : receivers_[instance];
+      if (kind.name == "GPS" && number("Status").value_or(0) < kStatusFix3d)
+        ++log.left_out;
+      else if (const auto p = three("Lat", "Lng", "Alt"))
+        add_record(log, Fix{time_s, p->x(), p->y(), p->z(), number("RelHomeAlt")}, where);
     }
-    if (kind.name == "ATT") add_angles(number, time_s, where);
-    if (kind.name == "IMU") add_rate(number, time_s, where);
-  }
-
-  template <typename Number>
-  static void add_position(FlightLog& log,
-                           const Number& number,
-                           double time_s,
-                           const Where& where) {
-    const auto latitude = number("Lat"), longitude = number("Lng"), altitude = number("Alt");
-    if (!latitude || !longitude || !altitude) return;
-    add_record(log, Fix{time_s, *latitude, *longitude, *altitude, number("RelHomeAlt")}, where);
-  }
-
-  template <typename Number>
-  void add_angles(const Number& number, double time_s, const Where& where) {
-    const auto yaw = number("Yaw"), pitch = number("Pitch"), roll = number("Roll");
-    if (yaw && pitch && roll) add_record(log_, Attitude{time_s, {*yaw, *pitch, *roll}}, where);
-  }
-
-  template <typename Number>
-  void add_rate(const Number& number, double time_s, const Where& where) {
-    const auto x = number("GyrX"), y = number("GyrY"), z = number("GyrZ");
-    if (x && y && z) add_record(log_, Rates{time_s, {*x, *y, *z}}, where);
+    if (kind.name == "ATT")
+      if (const auto a = three("Yaw", "Pitch", "Roll"))
+        add_record(log_, Attitude{time_s, {a->x(), a->y(), a->z()}}, where);
+    if (kind.name == "IMU")
+      if (const auto rates = three("GyrX", "GyrY", "GyrZ"))
+        add_record(log_, Rates{time_s, *rates}, where);
   }
 
   // The estimator's positions, else those of the first receiver that has a fix.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,5 +83,13 @@ void add_dji_subtitle(FlightLog& log,
                       std::string_view text,
                       double time_s,
                       const std::string& file);
+
+// Adds the positions of one packet of a GoPro's telemetry (camera/gyro/gpmf.h; streams GPS5 and
+// GPS9), spread evenly over [begin_s, end_s) on the video's clock. Positions without a fix in three
+// dimensions are left out and counted. A damaged packet adds nothing.
+void add_gpmf_packet(FlightLog& log,
+                     std::span<const std::uint8_t> packet,
+                     double begin_s,
+                     double end_s);
 
 }  // namespace airtruth::flight_log

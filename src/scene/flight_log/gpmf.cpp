@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/flight_log/gpmf.h"
+#include "camera/gyro/gpmf.h"
 
 #include <cmath>
 #include <vector>
 
-#include "camera/gyro/gpmf.h"
+#include "scene/flight_log/flight_log.h"
 
 namespace airtruth::flight_log {
 namespace {

@@ -18,7 +18,7 @@
 #include "picture/video/metadata.h"
 #include "picture/video/reader.h"
 #include "scene/flight_log/builder.h"
-#include "scene/flight_log/gpmf.h"
+#include "scene/flight_log/flight_log.h"
 #include "scene/flight_log/local_path.h"
 
 namespace airtruth::setup {
