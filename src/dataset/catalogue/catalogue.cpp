@@ -7,7 +7,6 @@
 
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/files.h"
-#include "scene/scene/parse_intruder.h"
 #include "scene/scene/tables.h"
 
 namespace airtruth::catalogue {

@@ -11,7 +11,7 @@
 #include "dataset/catalogue/catalogue.h"
 #include "dataset/catalogue/drawing.h"
 #include "foundation/base/error.h"
-#include "scene/scene/parse_intruder.h"
+#include "scene/scene/tables.h"
 
 namespace airtruth::catalogue {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "foundation/base/files.h"
 #include "scene/scene/flock.h"
-#include "scene/scene/parse_intruder.h"
 #include "scene/scene/scene.h"
 #include "scene/scene/table_reader.h"
 #include "scene/scene/tables.h"

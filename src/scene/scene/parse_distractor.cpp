@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "scene/scene/flock.h"
-#include "scene/scene/parse_intruder.h"
 #include "scene/scene/scene.h"
+#include "scene/scene/tables.h"
 
 namespace airtruth::scene {
 namespace {

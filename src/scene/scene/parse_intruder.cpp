@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/scene/parse_intruder.h"
+#include "scene/scene/tables.h"
 
 #include <cmath>
 #include <map>
@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "aircraft/wrapper/reader.h"
-#include "scene/scene/tables.h"
 
 namespace airtruth::scene {
 namespace {
