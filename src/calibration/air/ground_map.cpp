@@ -147,8 +147,9 @@ void for_each_view(std::size_t count, const std::function<void(std::size_t)>& ma
 
 GroundMaps::GroundMaps(const Scenery& scenery,
                        const Quaternion& level_from_world,
-                       const GroundMapOptions& options)
-    : cell_(options.cell), spectra_(scenery.views.size()) {
+                       double cell,
+                       double max_displacement)
+    : cell_(cell), spectra_(scenery.views.size()) {
   const double cosine = least_cosine(scenery.lens);
   std::vector<Rectified> flat(spectra_.size());
   for_each_view(flat.size(), [&](std::size_t k) {
@@ -159,7 +160,7 @@ GroundMaps::GroundMaps(const Scenery& scenery,
   for (const Rectified& view : flat) extent |= view.extent;
   if (extent.empty()) extent = {0, 0, 1, 1};
   // Padding: the cyclic correlation must not wrap around.
-  const int padding = static_cast<int>(std::ceil(options.max_displacement / cell_)) + 1;
+  const int padding = static_cast<int>(std::ceil(max_displacement / cell_)) + 1;
   const cv::Size size(cv::getOptimalDFTSize(extent.width + padding),
                       cv::getOptimalDFTSize(extent.height + padding));
   for_each_view(flat.size(), [&](std::size_t k) {

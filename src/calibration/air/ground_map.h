@@ -16,13 +16,6 @@
 // in heights: multiples of the camera's height above the ground.
 namespace airtruth::air {
 
-struct GroundMapOptions {
-  // Size of a cell of the maps.
-  double cell = 0.1;
-  // Largest displacement, by row or by column, at which two maps are compared.
-  double max_displacement = 3;
-};
-
 // The registration of one view with another.
 struct Laid {
   // Motion of the camera.
@@ -34,10 +27,13 @@ struct Laid {
 // The maps of several views: rows north, columns east.
 class GroundMaps {
  public:
-  // The level frame, in which the ground is z = 1, is that of `level_from_world`.
+  // The level frame, in which the ground is z = 1, is that of `level_from_world`. `cell`: the size
+  // of a cell. `max_displacement`: the largest displacement, by row or by column, at which two maps
+  // are compared.
   GroundMaps(const Scenery& scenery,
              const Quaternion& level_from_world,
-             const GroundMapOptions& options);
+             double cell,
+             double max_displacement);
 
   std::size_t size() const { return spectra_.size(); }
   // Registers the ground of view `from` in view `to` by masked correlation (Padfield 2012, "Masked

@@ -100,7 +100,7 @@ double far_agreement(const GroundTrack& track, const GroundMaps& maps) {
 GroundTrack track_at(const Scenery& scenery, double horizon_rad, double cell) {
   // The assumed horizon is higher, so the direction that was level lies below it.
   const Quaternion level_from_world(Eigen::AngleAxisd(-horizon_rad, right_of(scenery.views)));
-  const GroundMaps maps(scenery, level_from_world, {cell, kMaxDisplacement});
+  const GroundMaps maps(scenery, level_from_world, cell, kMaxDisplacement);
   GroundTrack best = longest_run(registrations(maps),
                                  {0, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0});
   best.agreement = far_agreement(best, maps);
