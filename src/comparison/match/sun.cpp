@@ -141,8 +141,8 @@ class Lit {
       if (stop.stop_requested()) throw Interrupted();
       insertion::AmbientEstimator light(scene_.light, setup::tone_of(scene_.camera_model), nullptr);
       image::Picture painted = view.picture->clone();
-      insertion::make_painter(scene_, world_, insertion::Occluders(), {})
-          ->paint(painted, view.moment, light.next(painted, view.moment.sight, {}));
+      insertion::Painter(scene_, world_, insertion::Occluders())
+          .paint(painted, view.moment, light.next(painted, view.moment.sight, {}));
       const auto made = appearance::seen_in(painted, *view.moment.boxes[0].box);
       if (!made) continue;
       const cv::Mat contrast = contrast_in(painted, made->box, view.real.size());

@@ -60,7 +60,7 @@ TEST(Sun, IsFoundFromAnInsertedAircraft) {
   ASSERT_TRUE(moment.boxes[0].box);
   insertion::AmbientEstimator ambient(lit.light, {}, nullptr);
   const insertion::Ambient light = ambient.next(picture, moment.sight, {});
-  insertion::make_painter(lit, world, insertion::Occluders(), {})->paint(picture, moment, light);
+  insertion::Painter(lit, world, insertion::Occluders()).paint(picture, moment, light);
   scene::Scene unlit = scene_under(0, 90);
   // Beside it, where the sky is free.
   for (Vector3& point : unlit.intruders[0].waypoints_ned_m) point.y() += 60;

@@ -80,9 +80,8 @@ class BehindAHill : public testing::Test {
     video::Frame shown;
     shown.picture = land(down_px);
     shown.index = frame;
-    const auto painter =
-        make_painter(scene, world, Occluders(scene, world.lens, nullptr, frame + 1), {});
-    Painted painted = painter->paint(shown.picture, moment, Ambient{});
+    Painter painter(scene, world, Occluders(scene, world.lens, nullptr, frame + 1));
+    Painted painted = painter.paint(shown.picture, moment, Ambient{});
     Made result;
     result.truth = frame_truth(world, shown, "none", {}, moment, painted);
     result.picture = std::move(shown.picture);

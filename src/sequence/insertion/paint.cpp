@@ -2,6 +2,7 @@
 #include "sequence/insertion/paint.h"
 
 #include <cmath>
+#include <utility>
 
 #include "foundation/base/error.h"
 #include "picture/composite/chroma_key.h"
@@ -11,11 +12,14 @@
 #include "picture/composite/spread.h"
 #include "picture/video/still.h"
 #include "scene/scene/camera_keys.h"
-#include "sequence/insertion/frame_coder.h"
 #include "sequence/setup/from_scene.h"
 
 namespace airtruth::insertion {
 namespace {
+
+bool is_by_key(const scene::Scene& scene) {
+  return scene.composite.method == scene::CompositeMethod::kChromaKey;
+}
 
 // Distance beyond the light of the intruder within which the layer's samples change.
 int margin_px(const scene::CameraModel& model) {
@@ -45,9 +49,7 @@ shade::Light light_on_intruders(const scene::Scene& scene, const Ambient& ambien
                      ambient.sun,
                      ambient.sky(),
                      ambient.ground,
-                     scene.composite.method == scene::CompositeMethod::kChromaKey
-                         ? std::nullopt
-                         : std::optional(ambient.surroundings)};
+                     is_by_key(scene) ? std::nullopt : std::optional(ambient.surroundings)};
   if (!scene::states_any_key(scene.weather)) return light;
   const std::array<float, 3> by = setup::light_in_weather(scene.weather);
   const auto sun_share = static_cast<float>(scene.weather.sun_share.value_or(1));
@@ -59,33 +61,6 @@ shade::Light light_on_intruders(const scene::Scene& scene, const Ambient& ambien
   if (light.surroundings) light.surroundings = light.surroundings->scaled({by[0], by[1], by[2]});
   return light;
 }
-
-class Matte : public Painter {
- public:
-  using Painter::Painter;
-
-  bool is_in_order() const override { return setup::has_codec(scene_.camera_model); }
-
-  void compose(image::Picture& picture,
-               const setup::Moment& moment,
-               const Ambient&,
-               Painted& painted) override {
-    if (setup::has_codec(scene_.camera_model) && !coder_)
-      coder_.emplace(*scene_.camera_model.codec_step);
-    if (!painted.layer.empty()) {
-      composite::MatteOptions options;
-      options.sensor = setup::sensor_of(setup::camera_in_weather(scene_));
-      options.seed = scene_.seed;
-      options.frame = moment.frame;
-      options.coder = coder_ ? &*coder_ : nullptr;
-      painted.visible = composite::composite_matte(picture, painted.layer, options);
-    }
-    if (coder_) coder_->finish_frame(picture);
-  }
-
- private:
-  std::optional<FrameCoder> coder_;
-};
 
 bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
   if (a.planes[0].row(y)[x] != b.planes[0].row(y)[x]) return true;
@@ -124,47 +99,66 @@ std::vector<composite::Visible> changed(const image::Picture& before,
   return visible;
 }
 
-class ChromaKey : public Painter {
- public:
-  ChromaKey(const scene::Scene& scene,
-            const setup::World& world,
-            Occluders occluders,
-            std::unique_ptr<backdrop::Backdrop> opened,
-            std::stop_token stop)
-      : Painter(scene, world, std::move(occluders), std::move(stop)), backdrop_(std::move(opened)) {
-    check(backdrop_ != nullptr, "the chroma-key method has its OpenGL");
-  }
-
-  void compose(image::Picture& picture,
-               const setup::Moment& moment,
-               const Ambient& ambient,
-               Painted& painted) override {
-    const auto& pinhole = std::get<lens::Pinhole>(world_.lens.model());
-    std::vector<backdrop::Instance> instances;
-    for (std::size_t i = 0; i < world_.actors.size(); ++i) {
-      if (!moment.search[i]) continue;
-      instances.push_back({&world_.actors[i].type->aircraft->mesh,
-                           moment.states[i]->world_from_body_rigid(),
-                           moment.time_s});
-    }
-    if (instances.empty()) return;
-    const shade::Light light{
-        setup::to_sun_in_world(scene_.light), ambient.sun, ambient.sky(), ambient.ground};
-    const image::Rgb8 virtual_image =
-        backdrop_->render(pinhole, moment.sight.cam_from_world, light, instances);
-    const image::Picture before = picture.clone();
-    composite::composite_chroma_key(picture,
-                                    virtual_image,
-                                    moment.sight.frame_from_nominal,
-                                    {.own_aircraft = occluders_.own_aircraft()});
-    painted.visible = changed(before, picture, painted.layer, moment);
-  }
-
- private:
-  std::unique_ptr<backdrop::Backdrop> backdrop_;
-};
-
 }  // namespace
+
+Painter::Painter(const scene::Scene& scene,
+                 const setup::World& world,
+                 Occluders occluders,
+                 std::unique_ptr<backdrop::Backdrop> opened,
+                 std::stop_token stop)
+    : scene_(scene),
+      world_(world),
+      occluders_(std::move(occluders)),
+      stop_(std::move(stop)),
+      backdrop_(std::move(opened)) {
+  check(!is_by_key(scene) || backdrop_ != nullptr, "the chroma-key method has its OpenGL");
+}
+
+bool Painter::is_in_order() const {
+  return !is_by_key(scene_) && setup::has_codec(scene_.camera_model);
+}
+
+void Painter::compose(image::Picture& picture,
+                      const setup::Moment& moment,
+                      const Ambient& ambient,
+                      Painted& painted) {
+  if (is_by_key(scene_)) return compose_by_key(picture, moment, ambient, painted);
+  if (is_in_order() && !coder_) coder_.emplace(*scene_.camera_model.codec_step);
+  if (!painted.layer.empty()) {
+    composite::MatteOptions options;
+    options.sensor = setup::sensor_of(setup::camera_in_weather(scene_));
+    options.seed = scene_.seed;
+    options.frame = moment.frame;
+    options.coder = coder_ ? &*coder_ : nullptr;
+    painted.visible = composite::composite_matte(picture, painted.layer, options);
+  }
+  if (coder_) coder_->finish_frame(picture);
+}
+
+void Painter::compose_by_key(image::Picture& picture,
+                             const setup::Moment& moment,
+                             const Ambient& ambient,
+                             Painted& painted) {
+  const auto& pinhole = std::get<lens::Pinhole>(world_.lens.model());
+  std::vector<backdrop::Instance> instances;
+  for (std::size_t i = 0; i < world_.actors.size(); ++i) {
+    if (!moment.search[i]) continue;
+    instances.push_back({&world_.actors[i].type->aircraft->mesh,
+                         moment.states[i]->world_from_body_rigid(),
+                         moment.time_s});
+  }
+  if (instances.empty()) return;
+  const shade::Light light{
+      setup::to_sun_in_world(scene_.light), ambient.sun, ambient.sky(), ambient.ground};
+  const image::Rgb8 virtual_image =
+      backdrop_->render(pinhole, moment.sight.cam_from_world, light, instances);
+  const image::Picture before = picture.clone();
+  composite::composite_chroma_key(picture,
+                                  virtual_image,
+                                  moment.sight.frame_from_nominal,
+                                  {.own_aircraft = occluders_.own_aircraft()});
+  painted.visible = changed(before, picture, painted.layer, moment);
+}
 
 Painted Painter::draw(const image::Picture& background,
                       const setup::Moment& moment,
@@ -231,7 +225,7 @@ image::Layer render_layer(const scene::Scene& scene,
 }
 
 void check_method(const scene::Scene& scene, const lens::Lens& lens) {
-  if (scene.composite.method != scene::CompositeMethod::kChromaKey) return;
+  if (!is_by_key(scene)) return;
   if (!scene.lens_marks.empty())
     throw Error(std::string("composite.method chroma-key has no picture of what is on the lens; "
                             "expected method = \"matte\", or no ") +
@@ -260,19 +254,9 @@ void check_codec(const scene::Scene& scene, const image::Colour& colour) {
 std::unique_ptr<backdrop::Backdrop> open_backdrop(const scene::Scene& scene,
                                                   const lens::Lens& lens,
                                                   const backdrop::Options& options) {
-  if (scene.composite.method != scene::CompositeMethod::kChromaKey) return nullptr;
+  if (!is_by_key(scene)) return nullptr;
   check_method(scene, lens);
   return backdrop::open_backdrop(lens.size().width, lens.size().height, options);
-}
-
-std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
-                                      const setup::World& world,
-                                      Occluders occluders,
-                                      std::unique_ptr<backdrop::Backdrop> opened,
-                                      const std::stop_token& stop) {
-  if (scene.composite.method == scene::CompositeMethod::kChromaKey)
-    return std::make_unique<ChromaKey>(scene, world, std::move(occluders), std::move(opened), stop);
-  return std::make_unique<Matte>(scene, world, std::move(occluders), stop);
 }
 
 std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size) {

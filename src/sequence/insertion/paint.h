@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
-#include <utility>
 #include <vector>
 
 #include "foundation/image/layer.h"
@@ -13,6 +12,7 @@
 #include "picture/composite/matte.h"
 #include "scene/scene/scene.h"
 #include "sequence/insertion/ambient.h"
+#include "sequence/insertion/frame_coder.h"
 #include "sequence/insertion/occluders.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
@@ -32,35 +32,42 @@ struct Painted {
 
 class Painter {
  public:
+  // `opened`: as open_backdrop() returns it for this scene.
   Painter(const scene::Scene& scene,
           const setup::World& world,
           Occluders occluders,
-          std::stop_token stop)
-      : scene_(scene), world_(world), occluders_(std::move(occluders)), stop_(std::move(stop)) {}
-  virtual ~Painter() = default;
+          std::unique_ptr<backdrop::Backdrop> opened = nullptr,
+          std::stop_token stop = {});
   // Renders the layer of a moment. `background`: its picture without intruders. matte: in any
   // thread and order; chroma-key: in one thread.
   Painted draw(const image::Picture& background,
                const setup::Moment& moment,
                const Ambient& ambient) const;
   // Composites the layer into the picture and adds the resulting changes to `painted`.
-  virtual void compose(image::Picture& picture,
-                       const setup::Moment& moment,
-                       const Ambient& ambient,
-                       Painted& painted) = 0;
+  void compose(image::Picture& picture,
+               const setup::Moment& moment,
+               const Ambient& ambient,
+               Painted& painted);
   // True where a frame's picture depends on the previous one (a codec's mark). compose() must then
   // receive every frame, one at a time and in order. The value is known once the scene's values
   // are.
-  virtual bool is_in_order() const { return false; }
+  bool is_in_order() const;
 
   // Draws and composites a single picture.
   Painted paint(image::Picture& picture, const setup::Moment& moment, const Ambient& ambient);
 
- protected:
+ private:
+  void compose_by_key(image::Picture& picture,
+                      const setup::Moment& moment,
+                      const Ambient& ambient,
+                      Painted& painted);
+
   const scene::Scene& scene_;
   const setup::World& world_;
   Occluders occluders_;
   std::stop_token stop_;
+  std::unique_ptr<backdrop::Backdrop> backdrop_;  // of chroma-key alone
+  std::optional<FrameCoder> coder_;               // of matte alone
 };
 
 // Error where the scene's method cannot draw through the lens, or what the scene has.
@@ -73,13 +80,6 @@ void check_codec(const scene::Scene& scene, const image::Colour& colour);
 std::unique_ptr<backdrop::Backdrop> open_backdrop(const scene::Scene& scene,
                                                   const lens::Lens& lens,
                                                   const backdrop::Options& options);
-
-// The painter of the scene's method. `opened`: as open_backdrop() returns it for this scene.
-std::unique_ptr<Painter> make_painter(const scene::Scene& scene,
-                                      const setup::World& world,
-                                      Occluders occluders,
-                                      std::unique_ptr<backdrop::Backdrop> opened = nullptr,
-                                      const std::stop_token& stop = {});
 
 // The scene's mask of the own aircraft, if it has one.
 std::optional<image::Mask> read_mask(const scene::Scene& scene, const lens::ImageSize& size);

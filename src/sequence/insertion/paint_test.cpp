@@ -57,8 +57,8 @@ Drawn drawn(const scene::Scene& scene, double time_s, const image::Mask* own = n
   video::Frame frame;
   frame.picture = result.before.clone();
   frame.time_s = time_s;
-  const auto painter = make_painter(scene, world, Occluders(own), {});
-  const Painted painted = painter->paint(frame.picture, moment, Ambient{});
+  Painter painter(scene, world, Occluders(own));
+  const Painted painted = painter.paint(frame.picture, moment, Ambient{});
   result.truth = frame_truth(world, frame, "none", {}, moment, painted);
   result.after = std::move(frame.picture);
   // What the writer refuses fails here.

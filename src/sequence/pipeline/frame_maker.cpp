@@ -17,11 +17,11 @@ namespace airtruth::pipeline {
 FrameMaker::FrameMaker(ResolvedScene resolved, const std::stop_token& stop)
     : resolved_(std::move(resolved)),
       stop_(stop),
-      painter_(insertion::make_painter(resolved_.scene,
-                                       resolved_.world,
-                                       resolved_.occluders,
-                                       std::move(resolved_.backdrop),
-                                       stop)),
+      painter_(resolved_.scene,
+               resolved_.world,
+               resolved_.occluders,
+               std::move(resolved_.backdrop),
+               stop),
       ambient_(resolved_.scene.light,
                setup::tone_of(resolved_.scene.camera_model),
                resolved_.mask.get()) {}
@@ -50,12 +50,12 @@ void FrameMaker::locate(Work& work, const Shake& shake) {
 }
 
 void FrameMaker::draw(Work& work) const {
-  work.painted = painter_->draw(work.frame.picture, work.moment, work.ambient);
+  work.painted = painter_.draw(work.frame.picture, work.moment, work.ambient);
   work.horizon_is_assumed = work.painted.horizon_is_assumed;
 }
 
 void FrameMaker::compose(Work& work) {
-  painter_->compose(work.frame.picture, work.moment, work.ambient, work.painted);
+  painter_.compose(work.frame.picture, work.moment, work.ambient, work.painted);
 }
 
 void FrameMaker::describe(Work& work) const {

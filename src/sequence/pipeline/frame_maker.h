@@ -67,14 +67,14 @@ class FrameMaker {
   bool is_of_one_thread() const {
     return resolved_.scene.composite.method == scene::CompositeMethod::kChromaKey;
   }
-  bool composes_in_order() const { return painter_->is_in_order(); }
+  bool composes_in_order() const { return painter_.is_in_order(); }
 
   const ResolvedScene& resolved() const { return resolved_; }
 
  private:
   ResolvedScene resolved_;
   std::stop_token stop_;
-  std::unique_ptr<insertion::Painter> painter_;
+  insertion::Painter painter_;
   insertion::AmbientEstimator ambient_;
 };
 

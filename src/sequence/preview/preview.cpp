@@ -48,8 +48,7 @@ class Previewer {
         opened_(pipeline::open_scene(scene, options)),
         parties_(parties_of(opened_.stated.scene)),
         motion_(known_motion()),
-        painter_(insertion::make_painter(
-            opened_.stated.scene, world(), opened_.occluders, nullptr, options.stop)),
+        painter_(opened_.stated.scene, world(), opened_.occluders, nullptr, options.stop),
         rate_hz_(opened_.info.frame_rate.value()),
         duration_s_(
             static_cast<double>(std::max<std::int64_t>(0, opened_.info.frame_count_estimate - 1)) /
@@ -195,7 +194,7 @@ class Previewer {
       setup::Moment here = moment(time_s);
       // What is on the lens covers the picture once.
       if (time_s != order.back()) here.spots.clear();
-      painter_->paint(frame.picture, here, ambient);
+      painter_.paint(frame.picture, here, ambient);
     }
     image::Rgb8 rgb = image::rgb8_from_picture(frame.picture);
     const double scale = std::min(static_cast<double>(kMainWidthPx) / rgb.width,
@@ -315,7 +314,7 @@ class Previewer {
       video::Frame frame = frame_at(times[i]);
       const setup::Moment here = moment(times[i]);
       const insertion::Painted painted =
-          painter_->paint(frame.picture, here, ambient_in(frame.picture, here));
+          painter_.paint(frame.picture, here, ambient_in(frame.picture, here));
       frame.index = here.frame;
       annotation::Frame truth = insertion::frame_truth(world(), frame, "none", {}, here, painted);
       sheet.add(frame.picture, truth);
@@ -379,7 +378,7 @@ class Previewer {
   pipeline::OpenedScene opened_;
   std::vector<Party> parties_;
   std::optional<setup::MotionSource> motion_;
-  std::unique_ptr<insertion::Painter> painter_;
+  insertion::Painter painter_;
   double rate_hz_;
   double duration_s_;
 };
