@@ -76,26 +76,27 @@ Background background_from(const TableReader& table) {
 
 Trajectory trajectory_from(const TableReader& table) {
   Trajectory trajectory;
-  trajectory.where = table.where();
+  scene::Intruder& flown = trajectory.flown;
+  flown.where = table.where();
   trajectory.name = required_name(table);
   table.exclude("encounter", {"seen", "waypoints_ned_m", "speed_mps", "times_s"});
   table.exclude("seen", {"waypoints_ned_m", "speed_mps", "times_s"});
   trajectory.frame_count = table.whole("frame_count", 1, kMost);
-  if (table.has("encounter")) trajectory.encounter = scene::encounter_in(table);
-  trajectory.seen = scene::seen_in(table);
-  if (trajectory.encounter || !trajectory.seen.empty()) return trajectory;
+  if (table.has("encounter")) flown.encounter = scene::encounter_in(table);
+  flown.seen = scene::seen_in(table);
+  if (flown.encounter || !flown.seen.empty()) return trajectory;
   const auto points = table.points("waypoints_ned_m", scene::kPosition);
   if (!points || points->size() < 2)
     throw Error("trajectory '" + trajectory.name + "' has fewer than two waypoints_ned_m",
                 table.where());
-  trajectory.waypoints_ned_m = *points;
+  flown.waypoints_ned_m = *points;
   table.exclude("speed_mps", {"times_s"});
-  trajectory.speed_mps = table.number("speed_mps", scene::kSpeed);
-  trajectory.times_s = table.numbers("times_s", scene::kTime).value_or(std::vector<double>{});
-  if (!trajectory.speed_mps && trajectory.times_s.size() != trajectory.waypoints_ned_m.size())
+  flown.speed_mps = table.number("speed_mps", scene::kSpeed);
+  flown.times_s = table.numbers("times_s", scene::kTime).value_or(std::vector<double>{});
+  if (!flown.speed_mps && flown.times_s.size() != flown.waypoints_ned_m.size())
     throw Error("trajectory '" + trajectory.name + "' has " +
-                    std::to_string(trajectory.waypoints_ned_m.size()) + " waypoints and " +
-                    std::to_string(trajectory.times_s.size()) +
+                    std::to_string(flown.waypoints_ned_m.size()) + " waypoints and " +
+                    std::to_string(flown.times_s.size()) +
                     " times_s; expected one for each, or speed_mps",
                 table.where());
   return trajectory;

@@ -62,14 +62,8 @@ struct Aircraft {
 
 struct Trajectory {
   std::string name;
-  std::vector<Vector3> waypoints_ned_m;
-  std::vector<double> times_s;  // set unless speed_mps is
-  std::optional<double> speed_mps;
-  // In place of the three above.
-  std::optional<scene::Encounter> encounter;
-  std::vector<scene::Seen> seen;
+  scene::Intruder flown;  // without its id and its aircraft
   std::optional<std::int64_t> frame_count;
-  Where where;
 };
 
 // Every combination of the given backgrounds, trajectories and aircraft, by index in the catalogue;

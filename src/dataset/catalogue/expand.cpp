@@ -47,15 +47,9 @@ std::int64_t frames_of(const Background& background) {
 }
 
 scene::Intruder intruder_of(const Aircraft& aircraft, const Trajectory& path) {
-  scene::Intruder intruder;
+  scene::Intruder intruder = path.flown;
   intruder.id = aircraft.name;
   intruder.aircraft = aircraft.aircraft;
-  intruder.waypoints_ned_m = path.waypoints_ned_m;
-  intruder.times_s = path.times_s;
-  intruder.speed_mps = path.speed_mps;
-  intruder.encounter = path.encounter;
-  intruder.seen = path.seen;
-  intruder.where = path.where;
   return intruder;
 }
 
