@@ -45,18 +45,27 @@ using Urgency = Worker::Urgency;
 // Around what is drawn: the reach of lens and sharpening, and the blocks of a JPEG.
 constexpr int kMarginPx = 24;
 
-// Runs `act`, and hands the line of its fault to `fail`.
-template <typename Do, typename Fail>
-void try_to(const Do& act, const Fail& fail) {
+// Runs `act`. Returns the line of its fault; "": it has none.
+template <typename Do>
+std::string fault_of(const Do& act) {
   try {
     act();
+    return "";
   } catch (const Interrupted&) {
-    fail("cancelled");
+    return "cancelled";
   } catch (const Error& fault) {
-    fail(fault.what());
+    return fault.what();
   } catch (const std::exception& fault) {
-    fail(std::string(fault.what()) + " (this is a fault of airtruth; please report it)");
+    return std::string(fault.what()) + " (this is a fault of airtruth; please report it)";
   }
+}
+
+// The answer with what `act` gives, or with its fault.
+template <typename Do>
+std::string answer_with(std::int64_t id, const Do& act) {
+  std::string text;
+  const std::string line = fault_of([&] { text = ok(id, act()); });
+  return line.empty() ? text : error(id, line);
 }
 
 // A scene as it was at one time, for the other threads.
@@ -126,12 +135,12 @@ class Session::Impl {
 
   void take(Client client, const std::string& message) {
     const std::int64_t id = messages::id_of(message).value_or(0);
-    try_to([&] { answer(client, messages::request_from(message)); },
-           [&](const std::string& line) { ways_.send(client, error(id, line)); });
+    const std::string line = fault_of([&] { answer(client, messages::request_from(message)); });
+    if (!line.empty()) ways_.send(client, error(id, line));
   }
 
   void leave(Client client) {
-    worker_.add({Urgency::kFrame, "", [this, client] { shown_.erase(client); }, {}});
+    worker_.add(Urgency::kFrame, [this, client] { shown_.erase(client); });
   }
 
   void tick() {
@@ -234,20 +243,15 @@ class Session::Impl {
 
   // The clip is opened by the worker; the state is that of the answer's moment.
   void open(Client client, std::int64_t id) {
-    worker_.add({Urgency::kPlan,
-                 "",
-                 [this, client, id] {
-                   Json facts;
-                   std::string line;
-                   try_to([&] { facts = clip_facts(); },
-                          [&](const std::string& fault) { line = fault; });
-                   ways_.post([this, client, id, facts, line]() mutable {
-                     if (!line.empty()) return ways_.send(client, error(id, line));
-                     facts["state"] = state();
-                     ways_.send(client, ok(id, facts));
-                   });
-                 },
-                 {}});
+    worker_.add(Urgency::kPlan, [this, client, id] {
+      Json facts;
+      const std::string line = fault_of([&] { facts = clip_facts(); });
+      ways_.post([this, client, id, facts, line]() mutable {
+        if (!line.empty()) return ways_.send(client, error(id, line));
+        facts["state"] = state();
+        ways_.send(client, ok(id, facts));
+      });
+    });
   }
 
   template <typename Do>
@@ -262,15 +266,10 @@ class Session::Impl {
   // Answers with what `act` gives on the worker's thread.
   template <typename Do>
   void on_worker(Worker& worker, Client client, std::int64_t id, Do act) {
-    worker.add({Urgency::kPlan,
-                "",
-                [this, client, id, act] {
-                  std::string text;
-                  try_to([&] { text = ok(id, act()); },
-                         [&](const std::string& line) { text = error(id, line); });
-                  reply(client, std::move(text));
-                },
-                [this, client, id] { reply(client, error(id, "too many requests wait")); }});
+    worker.add(
+        Urgency::kPlan,
+        [this, client, id, act] { reply(client, answer_with(id, act)); },
+        [this, client, id] { reply(client, error(id, "too many requests wait")); });
   }
   void reply(Client client, std::string text) {
     ways_.post([this, client, text = std::move(text)] { ways_.send(client, text); });
@@ -278,14 +277,14 @@ class Session::Impl {
 
   template <typename Do>
   void small(Done done, Do act) {
-    beside_.add({Urgency::kLater,
-                 "",
-                 [this, done, act] {
-                   std::optional<std::string> jpeg;
-                   try_to([&] { jpeg = act(); }, [](const std::string&) {});
-                   ways_.post([done, jpeg = std::move(jpeg)]() mutable { done(std::move(jpeg)); });
-                 },
-                 [this, done] { ways_.post([done] { done(std::nullopt); }); }});
+    beside_.add(
+        Urgency::kLater,
+        [this, done, act] {
+          std::optional<std::string> jpeg;
+          fault_of([&] { jpeg = act(); });
+          ways_.post([done, jpeg = std::move(jpeg)]() mutable { done(std::move(jpeg)); });
+        },
+        [this, done] { ways_.post([done] { done(std::nullopt); }); });
   }
 
   // On the worker's thread.
@@ -313,9 +312,8 @@ class Session::Impl {
   // Sets the present scene up. Returns why it cannot be; "": it is.
   std::string set_up(const Snapshot& shot) {
     if (!shot.scene) return shot.problem;
-    std::string problem;
-    try_to([&] { stage_.set(shot.revision, *shot.scene, measured_); },
-           [&](const std::string& line) { problem = line; });
+    const std::string problem =
+        fault_of([&] { stage_.set(shot.revision, *shot.scene, measured_); });
     if (problem.empty()) measure(*shot.scene);
     return problem;
   }
@@ -343,10 +341,8 @@ class Session::Impl {
   }
 
   void draw(Client client, const Request& request, bool exact) {
-    try_to([&] { draw_now(client, request, exact); },
-           [&](const std::string& line) {
-             if (!exact) reply(client, error(request.id, line));
-           });
+    const std::string line = fault_of([&] { draw_now(client, request, exact); });
+    if (!line.empty() && !exact) reply(client, error(request.id, line));
   }
 
   void draw_now(Client client, const Request& request, bool exact) {
@@ -429,37 +425,29 @@ class Session::Impl {
     set_state(motion_state_, "measuring");
     begin_job(motion_job_, [this, scene, key](const std::stop_token& stop) {
       std::shared_ptr<const setup::MotionSource> motion;
-      std::string problem;
       pipeline::Options options = for_job(stop, "motion");
       options.threads = 1;
-      try_to(
-          [&] {
-            motion =
-                std::make_shared<const setup::MotionSource>(pipeline::motion_ahead(scene, options));
-          },
-          [&](const std::string& line) { problem = line; });
+      const std::string problem = fault_of([&] {
+        motion =
+            std::make_shared<const setup::MotionSource>(pipeline::motion_ahead(scene, options));
+      });
       if (stop.stop_requested()) return;
-      worker_.add({Urgency::kFrame,
-                   "",
-                   [this, key, motion, problem] {
-                     if (motion) {
-                       measured_.motion = motion;
-                       measured_.motion_key = key;
-                     }
-                     set_state(motion_state_, motion ? "measured" : problem);
-                     finish("motion");
-                   },
-                   {}});
+      worker_.add(Urgency::kFrame, [this, key, motion, problem] {
+        if (motion) {
+          measured_.motion = motion;
+          measured_.motion_key = key;
+        }
+        set_state(motion_state_, motion ? "measured" : problem);
+        finish("motion");
+      });
     });
   }
 
   void measure_camera(const scene::Scene& scene) {
     std::string key;
-    try_to(
-        [&] {
-          if (pipeline::needs_calibration(scene)) key = calibration_key(scene);
-        },
-        [](const std::string&) {});
+    fault_of([&] {
+      if (pipeline::needs_calibration(scene)) key = calibration_key(scene);
+    });
     if (key == camera_wanted_) return;
     camera_wanted_ = key;
     camera_job_.request_stop();
@@ -467,18 +455,14 @@ class Session::Impl {
     if (measured_.calibrated.count(key) > 0) return set_state(camera_state_, "measured");
     set_state(camera_state_, "measuring");
     begin_job(camera_job_, [this, scene, key](const std::stop_token& stop) {
-      std::string problem;
-      try_to([&] { pipeline::calibration_of(scene, for_job(stop, "calibrate")); },
-             [&](const std::string& line) { problem = line; });
+      const std::string problem =
+          fault_of([&] { pipeline::calibration_of(scene, for_job(stop, "calibrate")); });
       if (stop.stop_requested()) return;
-      worker_.add({Urgency::kFrame,
-                   "",
-                   [this, key, problem] {
-                     if (problem.empty()) measured_.calibrated.insert(key);
-                     set_state(camera_state_, problem.empty() ? "measured" : problem);
-                     finish("calibrate");
-                   },
-                   {}});
+      worker_.add(Urgency::kFrame, [this, key, problem] {
+        if (problem.empty()) measured_.calibrated.insert(key);
+        set_state(camera_state_, problem.empty() ? "measured" : problem);
+        finish("calibrate");
+      });
     });
   }
 
@@ -517,10 +501,7 @@ class Session::Impl {
     if (is_asked_) throw Error("one is running; expected to cancel it, or to wait");
     is_asked_ = true;
     begin_job(asked_job_, [this, client, id, act](const std::stop_token& stop) {
-      std::string text;
-      try_to([&] { text = ok(id, act(stop)); },
-             [&](const std::string& line) { text = error(id, line); });
-      ways_.post([this, client, text = std::move(text)] {
+      ways_.post([this, client, text = answer_with(id, [&] { return act(stop); })] {
         is_asked_ = false;
         ways_.send(client, text);
       });

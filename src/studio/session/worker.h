@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace airtruth::session {
 
@@ -33,6 +34,9 @@ class Worker {
     std::chrono::steady_clock::time_point due{};
   };
   void add(Task task);
+  void add(Urgency urgency, std::function<void()> run, std::function<void()> dropped = {}) {
+    add({urgency, "", std::move(run), std::move(dropped)});
+  }
   // Drops what has not begun, waits for what has, and takes no more.
   void end();
 
