@@ -30,13 +30,13 @@ fs::file_time_type time_of(const fs::path& file) {
   return error ? fs::file_time_type{} : time;
 }
 
-std::vector<TablePlace> tables_in(const Node& root, const std::string& text) {
-  std::vector<TablePlace> tables;
+Tables tables_in(const Node& root, const std::string& text) {
+  Tables tables;
   for (const char* array : {"intruder", "distractor"}) {
     const Node* node = root.member(array);
     for (std::size_t i = 0; node != nullptr && i < node->elements.size(); ++i)
-      tables.push_back(
-          {array, i, line_of(text, static_cast<std::ptrdiff_t>(node->elements[i].begin))});
+      tables.emplace(line_of(text, static_cast<std::ptrdiff_t>(node->elements[i].begin)),
+                     nlohmann::ordered_json{array, i});
   }
   return tables;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,12 +18,9 @@
 // A scene file that is being edited: its text, the steps back to its beginning, and the file.
 namespace airtruth::document {
 
-// Where a table of an array begins in the text, by which all that reads the scene names it.
-struct TablePlace {
-  std::string array;
-  std::size_t index = 0;
-  int line = 0;
-};
+// The tables of arrays, ["intruder", 0] and so on, by the line where each begins, by which all that
+// reads the scene names it.
+using Tables = std::map<int, nlohmann::ordered_json>;
 
 class Document {
  public:
@@ -40,7 +38,7 @@ class Document {
   const std::string& problem() const { return problem_; }
 
   // The tables of [[intruder]] and [[distractor]].
-  const std::vector<TablePlace>& tables() const { return tables_; }
+  const Tables& tables() const { return tables_; }
 
   // All changes or none. With the `merge` of the edit before, both are one step of undo. Throws
   // Error where a change cannot be made.
@@ -86,7 +84,7 @@ class Document {
   std::string problem_;
   nlohmann::ordered_json values_;
   nlohmann::ordered_json notes_ = nlohmann::ordered_json::object();
-  std::vector<TablePlace> tables_;
+  Tables tables_;
 };
 
 }  // namespace airtruth::document

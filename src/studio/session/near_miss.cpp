@@ -23,9 +23,7 @@ namespace {
 // some hundredth of what was off.
 constexpr int kRounds = 6;
 
-std::size_t actor_of(const Stage& stage,
-                     const std::vector<document::TablePlace>& tables,
-                     std::size_t intruder) {
+std::size_t actor_of(const Stage& stage, const document::Tables& tables, std::size_t intruder) {
   const nlohmann::ordered_json wanted = {"intruder", intruder};
   const auto& all = stage.scene().intruders;
   const auto found = std::find_if(all.begin(), all.end(), [&](const scene::Intruder& one) {
@@ -97,7 +95,7 @@ nlohmann::ordered_json stated(const scene::Encounter& encounter) {
 }  // namespace
 
 nlohmann::ordered_json encounter_through(const Stage& stage,
-                                         const std::vector<document::TablePlace>& tables,
+                                         const document::Tables& tables,
                                          const messages::NearMiss& wanted) {
   if (!stage.has_motion())
     throw Error(

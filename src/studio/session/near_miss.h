@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <vector>
-
 #include <nlohmann/json.hpp>
 
 #include "studio/document/document.h"
@@ -17,7 +15,7 @@ namespace airtruth::session {
 // of a pixel. Throws Error where there is no such intruder or path, or the clip's motion is not
 // known yet.
 nlohmann::ordered_json encounter_through(const Stage& stage,
-                                         const std::vector<document::TablePlace>& tables,
+                                         const document::Tables& tables,
                                          const messages::NearMiss& wanted);
 
 }  // namespace airtruth::session

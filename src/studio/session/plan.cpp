@@ -187,7 +187,7 @@ int step_deg(double view_deg) {
 
 class Planner {
  public:
-  Planner(Stage& stage, const std::vector<document::TablePlace>& tables)
+  Planner(Stage& stage, const document::Tables& tables)
       : stage_(stage),
         tables_(tables),
         parties_(preview::parties_of(stage.scene())),
@@ -377,7 +377,7 @@ class Planner {
   }
 
   Stage& stage_;
-  const std::vector<document::TablePlace>& tables_;
+  const document::Tables& tables_;
   std::vector<preview::Party> parties_;
   setup::World middles_;
   setup::World still_;
@@ -387,21 +387,14 @@ class Planner {
 
 }  // namespace
 
-Json table_at(const std::vector<document::TablePlace>& tables, int line) {
-  const auto found =
-      std::find_if(tables.begin(), tables.end(), [&](const document::TablePlace& table) {
-        return table.line == line;
-      });
-  return found == tables.end() ? Json() : Json{found->array, found->index};
+Json table_at(const document::Tables& tables, int line) {
+  const auto found = tables.find(line);
+  return found == tables.end() ? Json() : found->second;
 }
 
-Json plan_of(Stage& stage, const std::vector<document::TablePlace>& tables) {
-  return Planner(stage, tables).plan();
-}
+Json plan_of(Stage& stage, const document::Tables& tables) { return Planner(stage, tables).plan(); }
 
-Json boxes_of(const Stage& stage,
-              const setup::Moment& moment,
-              const std::vector<document::TablePlace>& tables) {
+Json boxes_of(const Stage& stage, const setup::Moment& moment, const document::Tables& tables) {
   Json result = Json::array();
   for (std::size_t i = 0; i < moment.search.size(); ++i) {
     if (!moment.boxes[i].box || !shows(moment, i)) continue;
@@ -416,9 +409,7 @@ Json boxes_of(const Stage& stage,
   return result;
 }
 
-Json lines_over(const Stage& stage,
-                std::int64_t frame,
-                const std::vector<document::TablePlace>& tables) {
+Json lines_over(const Stage& stage, std::int64_t frame, const document::Tables& tables) {
   const setup::World& world = stage.world();
   const double time_s = stage.time_s(frame);
   const auto camera = world.camera.at(time_s);

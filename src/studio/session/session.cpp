@@ -74,7 +74,7 @@ struct Snapshot {
   std::optional<scene::Scene> scene;  // empty: the text is no scene
   std::string problem;
   scene::Background background;  // of the last text that was one
-  std::vector<document::TablePlace> tables;
+  document::Tables tables;
 };
 
 PixelBox even(PixelBox box, int width, int height) {

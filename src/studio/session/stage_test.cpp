@@ -55,6 +55,14 @@ class OverAFlight : public testing::Test {
     return measured;
   }
 
+  // The tables of a scene whose intruders are one to a table.
+  static document::Tables tables_of(const scene::Scene& scene) {
+    document::Tables tables;
+    for (std::size_t i = 0; i < scene.intruders.size(); ++i)
+      tables[scene.intruders[i].where.line] = {"intruder", i};
+    return tables;
+  }
+
   // Frames in an order in which no reader gives them are those of a run over the clip.
   static void expect_as_rendered(const scene::Scene& scene) {
     std::vector<pipeline::FrameByFrame::Made> made;
@@ -213,7 +221,7 @@ TEST_F(OverAFlight, ThePlanPassesTheHandles) {
   const scene::Scene scene = scene_of(kSeen);
   Stage stage(options());
   stage.set(1, scene, measured_of(scene, options()));
-  const auto plan = plan_of(stage, {{"intruder", 0, scene.intruders[0].where.line}});
+  const auto plan = plan_of(stage, tables_of(scene));
   EXPECT_TRUE(plan["complete"].get<bool>());
   EXPECT_EQ(plan["frames"].size(), static_cast<std::size_t>(kFrames));
   EXPECT_EQ(plan["own"]["ned"].size(), plan["frames"].size());
@@ -241,9 +249,7 @@ TEST_F(OverAFlight, HandlesHaveTheRangeOfTheirOwnAircraft) {
                "[[intruder.seen]]\ntime_s = 1.2\npixel = [120, 90]\nrange_m = 380\n");
   Stage stage(options());
   stage.set(1, scene, measured_of(scene, options()));
-  const auto plan = plan_of(stage,
-                            {{"intruder", 0, scene.intruders[0].where.line},
-                             {"intruder", 1, scene.intruders[1].where.line}});
+  const auto plan = plan_of(stage, tables_of(scene));
   EXPECT_NEAR(plan["tracks"][0]["handles"][0]["range_m"].get<double>(), 150, 0.1);
   EXPECT_NEAR(plan["tracks"][1]["handles"][0]["range_m"].get<double>(), 400, 0.1);
   EXPECT_NEAR(plan["tracks"][1]["handles"][1]["range_m"].get<double>(), 380, 0.1);
@@ -256,9 +262,7 @@ TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {
       "[-400, 0, -300]]\nspeed_mps = 50\n");
   Stage stage(options());
   stage.set(1, scene, {});
-  const auto plan = plan_of(stage,
-                            {{"intruder", 0, scene.intruders[0].where.line},
-                             {"intruder", 1, scene.intruders[1].where.line}});
+  const auto plan = plan_of(stage, tables_of(scene));
   const std::string first = plan["tracks"][0]["checks"].dump();
   EXPECT_NE(first.find("cannot fly its path"), std::string::npos) << first;
   EXPECT_NE(first.find("below the ground"), std::string::npos) << first;
@@ -296,16 +300,18 @@ TEST_F(OverAFlight, DirectionsOfTheWorldAreMarked) {
 // A near miss from frame 36 on: the scene that the answer makes has it where it was, and passes as
 // near as asked for.
 TEST_F(OverAFlight, ANearMissGoesThroughTheMoment) {
-  using Tables = std::vector<document::TablePlace>;
+  using document::Tables;
   Stage unmeasured(options());
   unmeasured.set(1, scene_of(kSeen), {});
-  EXPECT_THROW(encounter_through(unmeasured, {{"intruder", 0, 10}}, {0, 36, 25, true, 40, {}}),
+  EXPECT_THROW(encounter_through(unmeasured,
+                                 Tables{{10, nlohmann::ordered_json{"intruder", 0}}},
+                                 {0, 36, 25, true, 40, {}}),
                Error);
   const auto planned = [](const std::string& text, auto&& use) {
     const scene::Scene scene = scene_of(text);
     Stage stage(options());
     stage.set(1, scene, measured_of(scene, options()));
-    use(stage, Tables{{"intruder", 0, scene.intruders[0].where.line}});
+    use(stage, tables_of(scene));
   };
   for (const bool is_right : {true, false}) {
     const auto above_m = is_right ? std::optional<double>() : 5;
@@ -343,7 +349,7 @@ TEST_F(OverAFlight, WhatIsBesideTheCameraIsNotInView) {
                "course_deg = 0\nspeed_mps = 26\n");
   Stage stage(options());
   stage.set(1, scene, measured_of(scene, options()));
-  const auto plan = plan_of(stage, {{"intruder", 0, scene.intruders[0].where.line}});
+  const auto plan = plan_of(stage, tables_of(scene));
   const auto& track = plan["tracks"][0];
   for (const auto& point : track["points"]) EXPECT_FALSE(point[5].get<bool>()) << point;
   EXPECT_NE(track["checks"].dump().find("never in view"), std::string::npos) << track["checks"];
