@@ -286,8 +286,11 @@ class Previewer {
     const int height_px = std::max(main.rows, kSideHeightPx);
     const int plan_px = height_px * 2 / 3;
     const auto camera = world().camera.at(0);
-    image::Rgb8 plan = drawing::plan_view(
-        lines, yaw_pitch_roll(camera->world_from_body).yaw_deg, view_deg(), kSideWidthPx, plan_px);
+    image::Rgb8 plan = drawing::plan_view(lines,
+                                          yaw_pitch_roll(camera->world_from_body).yaw_deg,
+                                          view_deg(world()),
+                                          kSideWidthPx,
+                                          plan_px);
     image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, height_px - plan_px);
     cv::Mat canvas(height_px, kWidthPx, CV_8UC3, drawing::kDarkPaper);
     main.copyTo(canvas(cv::Rect(0, 0, main.cols, main.rows)));
@@ -295,16 +298,6 @@ class Previewer {
     drawing::view(height).copyTo(
         canvas(cv::Rect(kWidthPx - kSideWidthPx, plan_px, kSideWidthPx, height_px - plan_px)));
     return canvas;
-  }
-
-  // The horizontal view between the middles of the left and the right edge.
-  double view_deg() const {
-    const auto ray = [&](double x) {
-      return world().lens.ray_from_pixel({x, world().lens.size().height / 2.0});
-    };
-    const auto left = ray(0.5), right = ray(world().lens.size().width - 0.5);
-    if (!left || !right) return 180;
-    return degrees(std::acos(std::clamp(left->normalized().dot(right->normalized()), -1.0, 1.0)));
   }
 
   // Frames of single moments with the intruders enlarged.

@@ -57,6 +57,9 @@ std::vector<std::string> approach_lines(const setup::World& world,
                                         const std::vector<PreviewRow>& rows,
                                         double duration_s);
 
+// The horizontal view between the middles of the left and the right edge.
+double view_deg(const setup::World& world);
+
 std::vector<std::string> table_heading();
 std::vector<std::string> table_cells(const PreviewRow& row);
 

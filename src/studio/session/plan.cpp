@@ -219,7 +219,7 @@ class Planner {
              {{"ned", own},
               {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
               {"attitude", stage_.attitude_words()}}},
-            {"horizontal_fov_deg", hundredths(view_deg())},
+            {"horizontal_fov_deg", hundredths(preview::view_deg(stage_.world()))},
             {"sun",
              {{"azimuth_deg", stage_.scene().light.sun_azimuth_deg},
               {"elevation_deg", stage_.scene().light.sun_elevation_deg}}},
@@ -365,15 +365,6 @@ class Planner {
                         {"vertical_m", volume.vertical_m},
                         {"tau_s", volume.tau_s}});
     return result;
-  }
-
-  // Between the middles of the left and the right edge.
-  double view_deg() const {
-    const lens::Lens& lens = stage_.world().lens;
-    const auto ray = [&](double x) { return lens.ray_from_pixel({x, lens.size().height / 2.0}); };
-    const auto left = ray(0.5), right = ray(lens.size().width - 0.5);
-    if (!left || !right) return 180;
-    return degrees(std::acos(std::clamp(left->normalized().dot(right->normalized()), -1.0, 1.0)));
   }
 
   Stage& stage_;
