@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "labels/annotation/object_class.h"
 
@@ -28,9 +29,7 @@ std::optional<Box> box_of(const annotation::Intruder& intruder,
   if (boxes != dataset::Boxes::kExact) {
     const auto& box =
         boxes == dataset::Boxes::kVisible ? intruder.visible_box_px : intruder.covered_box_px;
-    return box ? std::optional(
-                     Box{double(box->x), double(box->y), double(box->width), double(box->height)})
-               : std::nullopt;
+    return box ? std::optional(as_box(*box)) : std::nullopt;
   }
   if (!intruder.exact_box_px) return std::nullopt;
   const Box& e = *intruder.exact_box_px;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
@@ -145,10 +146,7 @@ Film film_of(const replay::Finished& finished, std::size_t most, const std::stop
     if (!selected.is_in_loop[i]) continue;
     const PixelBox box = *first_box(frames[i]);
     film.contrasts.push_back(drawing::contrast(frame->picture, box));
-    squares.push_back(
-        drawing::enlarged(frame->picture,
-                          {double(box.x), double(box.y), double(box.width), double(box.height)},
-                          kLoopSide));
+    squares.push_back(drawing::enlarged(frame->picture, as_box(box), kLoopSide));
   }
   if (squares.empty()) return film;
   film.loop_frames = static_cast<int>(squares.size());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include <airtruth/box.h>
@@ -42,6 +43,16 @@ inline std::size_t index_in(const PixelBox& box, int x, int y) {
 }
 inline std::size_t pixels_in(int width, int height) { return pixels_in({0, 0, width, height}); }
 inline std::size_t index_in(int width, int x, int y) { return index_in({0, 0, width, 0}, x, y); }
+
+// The number of pixels that both boxes cover.
+inline std::int64_t common_px(const PixelBox& a, const PixelBox& b) {
+  const auto common = intersection(a, b);
+  return common ? std::int64_t{common->width} * common->height : 0;
+}
+
+inline Box as_box(const PixelBox& box) {
+  return {double(box.x), double(box.y), double(box.width), double(box.height)};
+}
 
 inline Pixel centre_of(const Box& box) { return {box.x + box.width / 2, box.y + box.height / 2}; }
 

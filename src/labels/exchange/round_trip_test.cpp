@@ -86,11 +86,7 @@ Clip held(Format format, Clip clip) {
       if (named_frames_only) label.track = place;
       if (named_frames_only) label.box_px = *clipped(label.box_px, clip.width, clip.height);
       // VOC stores whole pixels.
-      if (format == Format::kVoc) {
-        const PixelBox pixels = pixels_of(label.box_px);
-        label.box_px = {
-            double(pixels.x), double(pixels.y), double(pixels.width), double(pixels.height)};
-      }
+      if (format == Format::kVoc) label.box_px = as_box(pixels_of(label.box_px));
       if (format != Format::kCoco) label.area_px.reset();
       if (is_single_object(format)) label.track = 1;
       if (format == Format::kOtb) label.category = "aircraft";

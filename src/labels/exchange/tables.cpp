@@ -11,6 +11,7 @@
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
 #include "foundation/base/unfinished.h"
+#include "foundation/geometry/box.h"
 #include "labels/annotation/evision.h"
 #include "labels/exchange/parts.h"
 #include "labels/exchange/python_json.h"
@@ -61,10 +62,9 @@ Clips read_evision(const Reading& in) {
       if (number > 0) frame_at(clip, static_cast<std::size_t>(number) - 1);
       LabelledFrame labelled{std::ssize(clip.frames), std::nullopt, {}};
       if (frame && frame->rect_px.width > 0 && frame->rect_px.height > 0) {
-        const PixelBox& r = frame->rect_px;
         Label label;
         label.category = category_of(clip.name, in.options.category);
-        label.box_px = {double(r.x), double(r.y), double(r.width), double(r.height)};
+        label.box_px = as_box(frame->rect_px);
         if (frame->distance_m > 0) label.range_m = frame->distance_m;
         labelled.labels.push_back(label);
       }

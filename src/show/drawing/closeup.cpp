@@ -48,26 +48,14 @@ void paste(cv::Mat& canvas, const image::Rgb8& small, int zoom, int x, int y) {
 
 void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& area, int zoom) {
   for (const annotation::Intruder& intruder : truth.intruders) {
-    if (intruder.exact_box_px) {
-      const Box& e = *intruder.exact_box_px;
-      outline(panel, {e.x - area.x, e.y - area.y, e.width, e.height}, zoom, kAmber);
-    }
-    const auto draw = [&](const std::optional<PixelBox>& box, const cv::Scalar& colour) {
-      if (!box) return;
-      const Box moved{double(box->x - area.x),
-                      double(box->y - area.y),
-                      double(box->width),
-                      double(box->height)};
-      outline(panel, moved, zoom, colour);
+    const auto draw = [&](const Box& box, const cv::Scalar& colour) {
+      outline(panel, {box.x - area.x, box.y - area.y, box.width, box.height}, zoom, colour);
     };
-    draw(intruder.visible_box_px, kWhite);
-    draw(intruder.covered_box_px, kGreen);
+    if (intruder.exact_box_px) draw(*intruder.exact_box_px, kAmber);
+    if (intruder.visible_box_px) draw(as_box(*intruder.visible_box_px), kWhite);
+    if (intruder.covered_box_px) draw(as_box(*intruder.covered_box_px), kGreen);
   }
 }
-
-}  // namespace
-
-namespace {
 
 // The sizes of this file are display choices.
 

@@ -67,9 +67,7 @@ std::optional<PixelBox> inset_place(const cv::Mat& tile,
         };
         if (place.y < 0 || std::any_of(insets.begin(), insets.end(), meets)) continue;
         std::int64_t covered = 0;
-        for (const PixelBox& one : boxes)
-          if (const auto common = intersection(place, one))
-            covered += std::int64_t{common->width} * common->height;
+        for (const PixelBox& one : boxes) covered += common_px(place, one);
         const double away = std::hypot(place.x + side / 2.0 - box.x - box.width / 2.0,
                                        place.y + side / 2.0 - box.y - box.height / 2.0);
         const std::pair<std::int64_t, double> cost{covered, -away};
@@ -102,7 +100,7 @@ void draw_inset(cv::Mat& tile,
       intruder.range_m ? fmt::format(" {:.0f} m", *intruder.range_m) : std::string();
   const int room = place.width - 2 * kInsetMarginPx - text_width(range, kTileTextPx);
   const std::string shown = fitted(intruder.id, kTileTextPx, room) + range;
-  const TextSize size = text_size(shown, kTileTextPx);
+  const cv::Size size = text_size(shown, kTileTextPx);
   text_in(tile,
           shown,
           {place.x + kInsetMarginPx, place.y + kInsetMarginPx, size.width, size.height},
@@ -117,10 +115,9 @@ std::vector<PixelBox> outline_intruders(cv::Mat& canvas,
   std::vector<PixelBox> boxes;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     if (!truth.intruders[i].visible_box_px) continue;
-    const PixelBox v = *annotation::box_to_show(truth.intruders[i]);
-    outline(
-        canvas, {v.x - 2.0, v.y - 2.0, v.width + 4.0, v.height + 4.0}, scale, intruder_colour(i));
-    boxes.push_back(on_tile({v.x - 2, v.y - 2, v.width + 4, v.height + 4}, scale));
+    const PixelBox around = wider(*annotation::box_to_show(truth.intruders[i]), 2);
+    outline(canvas, as_box(around), scale, intruder_colour(i));
+    boxes.push_back(on_tile(around, scale));
   }
   return boxes;
 }

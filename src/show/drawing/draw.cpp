@@ -86,7 +86,7 @@ int text_width(const std::string& words, double size_px) {
       .width;
 }
 
-TextSize text_size(const std::string& words, double size_px) {
+cv::Size text_size(const std::string& words, double size_px) {
   int baseline = 0;
   const int thickness = size_px > 20 ? 2 : 1;
   const cv::Size size =

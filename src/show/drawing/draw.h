@@ -45,11 +45,7 @@ void text(cv::Mat& canvas,
 int text_width(const std::string& words, double size_px);
 
 // The size of everything that text() draws: letters, the parts below the baseline, and the rim.
-struct TextSize {
-  int width = 0;
-  int height = 0;
-};
-TextSize text_size(const std::string& words, double size_px);
+cv::Size text_size(const std::string& words, double size_px);
 
 // Draws text so that its text_size() starts at the upper left corner of `place`.
 void text_in(cv::Mat& canvas,

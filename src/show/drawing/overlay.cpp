@@ -24,10 +24,6 @@ struct Marked {
   bool is_hidden = false;
 };
 
-Box floating(const PixelBox& box) {
-  return {double(box.x), double(box.y), double(box.width), double(box.height)};
-}
-
 std::vector<Marked> marked(const annotation::Frame& truth, const std::vector<std::string>& ids) {
   std::vector<Marked> result;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
@@ -38,7 +34,7 @@ std::vector<Marked> marked(const annotation::Frame& truth, const std::vector<std
     const std::string words =
         intruder.range_m ? fmt::format("{} {:.0f} m", intruder.id, *intruder.range_m) : intruder.id;
     if (const auto shown = annotation::box_to_show(intruder))
-      result.push_back({words, floating(*shown), colour, false});
+      result.push_back({words, as_box(*shown), colour, false});
     else if (intruder.state == annotation::State::kHidden && intruder.exact_box_px)
       result.push_back({words + " (hidden)", *intruder.exact_box_px, colour, true});
   }
@@ -46,14 +42,10 @@ std::vector<Marked> marked(const annotation::Frame& truth, const std::vector<std
 }
 
 // Draws the outline of a box with a dark rim, which is visible on a bright sky.
-PixelBox outlined(const Box& box) {
-  const PixelBox pixels = pixels_of(box);
-  return {pixels.x - 2, pixels.y - 2, pixels.width + 4, pixels.height + 4};
-}
+PixelBox outlined(const Box& box) { return wider(pixels_of(box), 2); }
 
 void draw_box(cv::Mat& canvas, const Marked& one) {
-  const Box wider{one.box.x - 1, one.box.y - 1, one.box.width + 2, one.box.height + 2};
-  outline(canvas, wider, 1, kBlack);
+  outline(canvas, wider(one.box, 1), 1, kBlack);
   if (one.is_hidden)
     dashed_outline(canvas, one.box, 1, one.colour);
   else
@@ -83,9 +75,7 @@ PixelBox caption_place(const Placing& placing, int width, int height) {
                                            PixelBox{right, kMarginPx, width, height}};
   const auto covers = [&](const PixelBox& corner) {
     std::int64_t sum = 0;
-    for (const PixelBox& box : placing.boxes)
-      if (const auto common = intersection(corner, box))
-        sum += std::int64_t{common->width} * common->height;
+    for (const PixelBox& box : placing.boxes) sum += common_px(corner, box);
     return sum;
   };
   return *std::min_element(corners.begin(), corners.end(), [&](const auto& a, const auto& b) {
@@ -108,13 +98,13 @@ image::Rgb8 overlay(const image::Picture& picture,
     placing.boxes.push_back(outlined(one.box));
   }
   const std::string caption = fmt::format("frame {}  {:.2f} s", truth.frame, truth.time_s);
-  const TextSize caption_size = text_size(caption, size_px);
+  const cv::Size caption_size = text_size(caption, size_px);
   const PixelBox at = caption_place(placing, caption_size.width, caption_size.height);
   placing.taken.push_back(at);
   text_in(canvas, caption, at, size_px, kWhite);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string words = fitted(all[i].words, size_px, picture.width);
-    const TextSize size = text_size(words, size_px);
+    const cv::Size size = text_size(words, size_px);
     const auto place = place_label(placing.boxes[i], size.width, size.height, placing);
     // Labels already fill the picture.
     if (!place) continue;

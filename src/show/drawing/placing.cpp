@@ -16,11 +16,6 @@ constexpr int kGapPx = 3;
 // Number of rings of candidate places; a label of 10 px reaches 2,000 px with them.
 constexpr int kRings = 200;
 
-std::int64_t shared_px(const PixelBox& a, const PixelBox& b) {
-  const auto common = intersection(a, b);
-  return common ? std::int64_t{common->width} * common->height : 0;
-}
-
 bool is_allowed(const PixelBox& place, const Placing& placing) {
   const PixelBox& frame = placing.frame;
   if (place.x < frame.x || place.y < frame.y || place.right() > frame.right() ||
@@ -77,7 +72,7 @@ std::optional<PixelBox> place_label(const PixelBox& anchor,
       place.x = std::clamp(place.x, frame.x, frame.right() - width);
       if (!is_allowed(place, placing)) continue;
       std::int64_t cost = 0;
-      for (const PixelBox& box : placing.boxes) cost += shared_px(place, box);
+      for (const PixelBox& box : placing.boxes) cost += common_px(place, box);
       if (cost == 0) return place;
       if (cost < least) {
         least = cost;
