@@ -109,22 +109,14 @@ export class Studio {
     if (!isDragged) this.settle();
   }
 
-  async undo(): Promise<void> {
-    await this.whole('undo');
-  }
-  async redo(): Promise<void> {
-    await this.whole('redo');
-  }
+  readonly undo = () => this.whole('undo');
+  readonly redo = () => this.whole('redo');
   async save(): Promise<void> {
     if (await this.whole('save')) this.store.say('info', `Saved ${this.store.now.file}`);
   }
-  async reload(): Promise<void> {
-    await this.whole('reload');
-  }
+  readonly reload = () => this.whole('reload');
   // Leaves another program's change of the file aside.
-  async keep(): Promise<void> {
-    await this.whole('keep');
-  }
+  readonly keep = () => this.whole('keep');
 
   select(selected: Path|null, moment: number|null = null): void {
     this.store.put({selected, moment});

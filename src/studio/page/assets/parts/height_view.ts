@@ -5,13 +5,8 @@ import {clamp, nedAt, round} from '../model/geometry';
 import {attribute, renewed, s, ui} from './part';
 import {SideView, niceStep} from './side_view';
 
-// Around the plot, where text is 16 px.
-const MARGINS = {
-  left: 56,
-  right: 12,
-  top: 10,
-  bottom: 24
-};
+// Around the plot, where text is 16 px: left, right, top and bottom.
+const MARGINS = [56, 12, 10, 24];
 const LEAST_M = 40;
 const MOST_ABOVE_M = 1500;  // from the own height, of what the view has room for
 
@@ -24,6 +19,11 @@ type Drag = {
 export class HeightView extends SideView<Drag> {
   private low_m = 0;
   private high_m = 100;
+  // The margins on the screen.
+  private left = MARGINS[0];
+  private right = MARGINS[1];
+  private top = MARGINS[2];
+  private bottom = MARGINS[3];
 
   constructor() {
     super('Height over time', 'Height over time');
@@ -35,6 +35,7 @@ export class HeightView extends SideView<Drag> {
     if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
     attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
     this.px = ui();
+    [this.left, this.right, this.top, this.bottom] = MARGINS.map((margin) => margin * this.px);
     if (!this.drag) this.frameAll(plan);
     const own = nedAt(plan, plan.own.ned, frame);
     const x = this.x(frame / clip.rate_hz);
@@ -47,19 +48,6 @@ export class HeightView extends SideView<Drag> {
       s('line', {class: 'cursor', x1: x, x2: x, y1: this.top, y2: height - this.bottom}),
       ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip)),
     ]);
-  }
-
-  private get left(): number {
-    return MARGINS.left * this.px;
-  }
-  private get right(): number {
-    return MARGINS.right * this.px;
-  }
-  private get top(): number {
-    return MARGINS.top * this.px;
-  }
-  private get bottom(): number {
-    return MARGINS.bottom * this.px;
   }
 
   private get end_s(): number {
