@@ -94,6 +94,12 @@ std::string first_of(const std::string& a, const std::string& b, const std::stri
   return !a.empty() ? a : !b.empty() ? b : c;
 }
 
+// Frame i has the picture names[i].
+void join(Clip& clip, const fs::path& folder, const std::vector<std::string>& names) {
+  clip.media = folder;
+  for (std::size_t i = 0; i < names.size(); ++i) clip.frames[i].picture = names[i];
+}
+
 }  // namespace
 
 void expect_inside(const std::string& name, const Where& where) {
@@ -201,8 +207,8 @@ void join_by_number(Clip& clip,
     if (const auto number = name_and_number(fs::path(name).stem().string()).second)
       by_number[*number].push_back(name);
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < clip.frames.size(); ++i) {
-    const std::int64_t number = first_number + clip.frames[i].frame;
+  for (const LabelledFrame& labelled : clip.frames) {
+    const std::int64_t number = first_number + labelled.frame;
     const auto found = by_number.find(number);
     const std::size_t count = found == by_number.end() ? 0 : found->second.size();
     if (count != 1)
@@ -215,8 +221,7 @@ void join_by_number(Clip& clip,
                                         clip.name));
     names.push_back(found->second.front());
   }
-  clip.media = folder;
-  for (std::size_t i = 0; i < names.size(); ++i) clip.frames[i].picture = names[i];
+  join(clip, folder, names);
 }
 
 void join_in_order(Clip& clip, const fs::path& folder, const Warn& warn) {
@@ -233,8 +238,7 @@ void join_in_order(Clip& clip, const fs::path& folder, const Warn& warn) {
                                       series == 1 ? "" : fmt::format(" of {} series", series),
                                       clip.frames.size(),
                                       clip.name));
-  clip.media = folder;
-  for (std::size_t i = 0; i < names.size(); ++i) clip.frames[i].picture = names[i];
+  join(clip, folder, names);
 }
 
 }  // namespace airtruth::exchange

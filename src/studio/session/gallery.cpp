@@ -23,10 +23,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostPictures = 2000;  // of some 5 kB
 
-bool contains(const std::string& text, const std::string& lower_word) {
-  return lower_case(text).find(lower_word) != std::string::npos;
-}
-
 // In the air; what is on the lens has no shape of its own.
 constexpr std::array kKinds = {scene::DistractorKind::kBird,
                                scene::DistractorKind::kMultirotor,
@@ -61,7 +57,6 @@ scene::Intruder distractor_of(scene::DistractorKind kind) {
 }  // namespace
 
 Json Gallery::groups(const std::string& word) {
-  const std::string wanted = lower_case(word);
   std::vector<std::pair<std::string, std::vector<std::string>>> types;
   for (const fleet::Entry& entry : fleet::list_aircraft()) {
     const std::string type = entry.name.substr(0, entry.name.find('/'));
@@ -70,7 +65,7 @@ Json Gallery::groups(const std::string& word) {
   }
   Json groups = Json::array();
   for (const scene::DistractorKind kind : kKinds)
-    if (contains(enum_name(kind), wanted))
+    if (contains_ignoring_case(enum_name(kind), word))
       groups.push_back({{"name", enum_name(kind)},
                         {"kind", enum_name(kind)},
                         {"type", enum_name(kind)},
@@ -81,11 +76,12 @@ Json Gallery::groups(const std::string& word) {
                         {"liveries", Json::array()}});
   for (const auto& [type, all] : types) {
     const fleet::PublishedSize* size = fleet::published_size(all.front());
-    const bool is_whole = contains(type, wanted) || contains(class_of(all.front()), wanted) ||
-                          (size != nullptr && contains(size->type, wanted));
+    const bool is_whole = contains_ignoring_case(type, word) ||
+                          contains_ignoring_case(class_of(all.front()), word) ||
+                          (size != nullptr && contains_ignoring_case(size->type, word));
     std::vector<std::string> liveries;
     for (const std::string& name : all)
-      if (is_whole || contains(name, wanted)) liveries.push_back(name);
+      if (is_whole || contains_ignoring_case(name, word)) liveries.push_back(name);
     if (!liveries.empty()) groups.push_back(group_of(type, liveries));
   }
   return {{"groups", groups}};
