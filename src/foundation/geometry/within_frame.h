@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -47,6 +48,21 @@ struct Shutter {
   // The middle of the exposure of the row (column) of a pixel. All points of a pixel have the time
   // of its centre line: `pixel` is rounded to floor + 0.5.
   double middle_s(const Pixel& pixel, int width, int height) const;
+  // When a moving point's own row (column) is exposed, by fixed-point iteration: `pixel_at(dt_s)`
+  // is its pixel, or std::nullopt where none shows it, and then the time is 0. Each round
+  // multiplies the error by the share of the image that the point crosses during a readout.
+  template <typename PixelAt>
+  double seen_s(const PixelAt& pixel_at, int width, int height, int rounds) const {
+    double dt_s = 0;
+    for (int round = 0; readout_s > 0 && round < rounds; ++round) {
+      const std::optional<Pixel> pixel = pixel_at(dt_s);
+      if (!pixel) return 0;
+      const Pixel inside(std::clamp(pixel->x(), 0.0, double(width)),
+                         std::clamp(pixel->y(), 0.0, double(height)));
+      dt_s = middle_s(inside, width, height);
+    }
+    return dt_s;
+  }
 };
 
 // The measured shake of the camera in a frame and its change per second, in one of the two models

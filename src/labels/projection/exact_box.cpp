@@ -105,17 +105,9 @@ class Sweep {
 
   // Row times are treated as linear over the rows: a box is not more accurate than its row.
   Pixel seen(const std::array<Pixel, 3>& at, double into_exposure_s) const {
-    Pixel pixel = along(at, into_exposure_s);
-    if (shutter_.readout_s <= 0) return pixel;
-    // Number of rounds. Each multiplies the error by the share of the image that the point crosses
-    // during a readout.
     constexpr int kRounds = 6;
-    for (int round = 0; round < kRounds; ++round) {
-      const Pixel inside(std::clamp(pixel.x(), 0.0, double(size_.width)),
-                         std::clamp(pixel.y(), 0.0, double(size_.height)));
-      pixel = along(at, into_exposure_s + shutter_.middle_s(inside, size_.width, size_.height));
-    }
-    return pixel;
+    const auto pixel_at = [&](double dt_s) { return along(at, into_exposure_s + dt_s); };
+    return pixel_at(shutter_.seen_s(pixel_at, size_.width, size_.height, kRounds));
   }
 
   Shutter shutter_;

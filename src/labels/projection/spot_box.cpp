@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "labels/projection/spot_box.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace airtruth::projection {
@@ -32,31 +31,18 @@ Box outline_about_centre(const image::Spot& spot) {
   return *bounds.box();
 }
 
-// When the row of the spot's middle is exposed.
-double row_time_s(const image::Spot& spot, const Shutter& shutter, int width, int height) {
-  if (shutter.readout_s <= 0) return 0;
-  double dt_s = 0;
-  // Number of rounds. Each multiplies the error by the share of the image that the spot crosses
-  // during a readout.
-  constexpr int kRounds = 6;
-  for (int round = 0; round < kRounds; ++round) {
-    const Pixel at = spot.centre + dt_s * spot.velocity_px_s;
-    dt_s = shutter.middle_s(
-        {std::clamp(at.x(), 0.0, double(width)), std::clamp(at.y(), 0.0, double(height))},
-        width,
-        height);
-  }
-  return dt_s;
-}
-
 }  // namespace
 
 Box spot_box(const image::Spot& spot, const Shutter& shutter, int frame_width, int frame_height) {
   const Box outline = outline_about_centre(spot);
-  const double middle_s = row_time_s(spot, shutter, frame_width, frame_height);
+  const auto centre_at = [&](double dt_s) -> Pixel {
+    return spot.centre + dt_s * spot.velocity_px_s;
+  };
+  constexpr int kRounds = 6;
+  const double middle_s = shutter.seen_s(centre_at, frame_width, frame_height, kRounds);
   BoxBounds bounds;
   for (const double share : {-0.5, 0.5}) {
-    const Pixel at = spot.centre + (middle_s + share * shutter.exposure_s) * spot.velocity_px_s;
+    const Pixel at = centre_at(middle_s + share * shutter.exposure_s);
     bounds.add(at + Pixel(outline.x, outline.y));
     bounds.add(at + Pixel(outline.right(), outline.bottom()));
   }
