@@ -26,7 +26,7 @@ void keep_bins(Kept& kept,
   if (!variable)
     throw Error(fmt::format("has no {}; expected no cut by it", what), {model.file.string()});
   std::vector<double>& bins = kept[*variable];
-  std::fill(bins.begin(), bins.end(), 0.0);
+  std::ranges::fill(bins, 0.0);
   for (const std::size_t number : numbers) {
     if (number < 1 || number > bins.size())
       throw Error(fmt::format("has no {} {}; expected 1 to {}", what, number, bins.size()),
@@ -128,7 +128,7 @@ void CutTable::set_table(const BayesModel& model, const Kept& kept) {
 void CutTable::draw(Random& random, std::size_t* bins) const {
   if (variables_.empty()) return;
   const double wanted = (1 - random.uniform()) * sums_.back();
-  const auto found = std::lower_bound(sums_.begin(), sums_.end(), wanted);
+  const auto found = std::ranges::lower_bound(sums_, wanted);
   const std::size_t at = static_cast<std::size_t>(found - sums_.begin()) * variables_.size();
   for (std::size_t i = 0; i < variables_.size(); ++i) bins[variables_[i]] = combinations_[at + i];
 }

@@ -77,7 +77,7 @@ class ModelFields {
         continue;
       }
       const std::string name(trimmed(line.substr(1)));
-      if (std::find(kFields.begin(), kFields.end(), name) == kFields.end())
+      if (std::ranges::find(kFields, name) == kFields.end())
         throw Error(
             fmt::format("unknown field '{}'{}",
                         name.substr(0, 40),
@@ -113,7 +113,7 @@ class ModelFields {
         throw Error(
             fmt::format("{} holds an empty label; expected quoted names with commas between", name),
             {file_, line.line});
-      if (std::find(labels.begin(), labels.end(), label) != labels.end())
+      if (std::ranges::find(labels, label) != labels.end())
         throw Error(
             fmt::format("{} holds '{}' twice; expected different names", name, label.substr(0, 40)),
             {file_, line.line});
@@ -245,8 +245,7 @@ std::vector<std::size_t> order_of(const Graph& graph, std::size_t first, const W
     for (std::size_t i = first; i < graph.size(); ++i) {
       if (is_known[i]) continue;
       const auto parents = graph.parents_of(i);
-      if (!std::all_of(parents.begin(), parents.end(), [&](std::size_t p) { return is_known[p]; }))
-        continue;
+      if (!std::ranges::all_of(parents, [&](std::size_t p) { return is_known[p]; })) continue;
       is_known[i] = true;
       order.push_back(i - first);
     }
@@ -313,8 +312,7 @@ void compare(const Graph& initial, const Graph& transition, const ModelFields& f
                   fields.where("r_transition"));
     const std::string next = label + kNext;
     if (transition.labels[i] != label &&
-        std::find(transition.labels.begin(), transition.labels.end(), next) ==
-            transition.labels.end())
+        std::ranges::find(transition.labels, next) == transition.labels.end())
       throw Error(fmt::format("'{}(t)' has no partner; expected a label '{}'", label, next),
                   fields.where("labels_transition"));
   }
@@ -327,9 +325,8 @@ std::vector<DynamicVariable> dynamic_in(const ModelFields& fields,
   std::vector<DynamicVariable> dynamic;
   for (std::size_t i = initial.size(); i < transition.size(); ++i) {
     const std::string& label = transition.labels[i];
-    const auto now = std::find_if(initial.labels.begin(),
-                                  initial.labels.end(),
-                                  [&](const std::string& at) { return at + kNext == label; });
+    const auto now = std::ranges::find_if(
+        initial.labels, [&](const std::string& at) { return at + kNext == label; });
     const auto place = static_cast<std::size_t>(now - initial.labels.begin());
     if (now == initial.labels.end() || transition.labels[place] != *now + kNow)
       throw Error(
@@ -373,7 +370,7 @@ std::vector<std::vector<double>> edges_in(const ModelFields& fields, const Graph
 
 VariablePlaces places_in(const BayesModel& model, const ModelFields& fields) {
   const auto place = [&](const char* label, bool has_edges) -> std::optional<std::size_t> {
-    const auto found = std::find(model.labels.begin(), model.labels.end(), label);
+    const auto found = std::ranges::find(model.labels, label);
     if (found == model.labels.end()) return std::nullopt;
     const auto i = static_cast<std::size_t>(found - model.labels.begin());
     if (has_edges && model.edges[i].empty())

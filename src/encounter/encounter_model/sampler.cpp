@@ -68,8 +68,7 @@ Sampler::Sampler(BayesModel model, const SampleOptions& options)
     if (const auto variable = rate_variables_[rate])
       ranges_[rate] = ranges_of(model_.edges[*variable], units[rate]);
   for (const DynamicVariable& variable : model_.dynamic) {
-    const auto found =
-        std::find(rate_variables_.begin(), rate_variables_.end(), std::optional(variable.now));
+    const auto found = std::ranges::find(rate_variables_, std::optional(variable.now));
     if (found == rate_variables_.end())
       throw Error(fmt::format("changes '{}' in time; expected only '\\dot v', '\\dot h' and "
                               "'\\dot \\psi' to change",

@@ -18,8 +18,8 @@ Distribution::Distribution(std::vector<double> edges,
                            const std::string& name)
     : edges_(std::move(edges)) {
   const auto is_finite = [](double number) { return std::isfinite(number); };
-  if (edges_.empty() || !std::all_of(edges_.begin(), edges_.end(), is_finite) ||
-      std::adjacent_find(edges_.begin(), edges_.end(), std::greater_equal<>()) != edges_.end())
+  if (edges_.empty() || !std::ranges::all_of(edges_, is_finite) ||
+      std::ranges::adjacent_find(edges_, std::greater_equal<>()) != edges_.end())
     throw Error(fmt::format("{} is {}; expected one number, or the increasing edges of bins",
                             name,
                             fmt::join(edges_, " ")));
@@ -45,11 +45,9 @@ Distribution::Distribution(std::vector<double> edges,
 double Distribution::quantile(double u) const {
   if (sums_.empty()) return edges_.front();
   // The first bin whose sum exceeds u has a share above 0.
-  auto bin =
-      static_cast<std::size_t>(std::upper_bound(sums_.begin(), sums_.end(), u) - sums_.begin());
+  auto bin = static_cast<std::size_t>(std::ranges::upper_bound(sums_, u) - sums_.begin());
   if (bin == sums_.size())
-    bin =
-        static_cast<std::size_t>(std::lower_bound(sums_.begin(), sums_.end(), 1.0) - sums_.begin());
+    bin = static_cast<std::size_t>(std::ranges::lower_bound(sums_, 1.0) - sums_.begin());
   const double before = bin == 0 ? 0 : sums_[bin - 1];
   const double within = std::min(1.0, (u - before) / (sums_[bin] - before));
   return edges_[bin] + (edges_[bin + 1] - edges_[bin]) * within;

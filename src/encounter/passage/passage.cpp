@@ -115,8 +115,7 @@ std::vector<separation::Interval> violations(const separation::Volume& volume,
                                              double end_s) {
   std::vector<double> times_s = walked_times(own, intruder, begin_s, end_s);
   if (const auto nearest = closest_approach(own, intruder, begin_s, end_s))
-    times_s.insert(std::upper_bound(times_s.begin(), times_s.end(), nearest->time_s),
-                   nearest->time_s);
+    times_s.insert(std::ranges::upper_bound(times_s, nearest->time_s), nearest->time_s);
   const auto inside = [&](double time_s) {
     const auto both = both_at(own, intruder, time_s);
     return both && separation::is_inside(volume, mover_of(both->own), mover_of(both->intruder));

@@ -108,8 +108,7 @@ constexpr std::array kVolumes = {
 std::span<const NamedVolume> named_volumes() { return kVolumes; }
 
 const NamedVolume* named_volume(std::string_view name) {
-  const auto found = std::find_if(
-      kVolumes.begin(), kVolumes.end(), [&](const NamedVolume& v) { return v.name == name; });
+  const auto found = std::ranges::find(kVolumes, name, &NamedVolume::name);
   return found == kVolumes.end() ? nullptr : &*found;
 }
 

@@ -45,7 +45,7 @@ TrackState state_at(const Track& track, double time_s) {
   check(!track.times_s.empty() && track.velocities_ned_mps.size() == track.size(),
         "the track has samples with velocities");
   const auto& t = track.times_s;
-  const auto after = std::upper_bound(t.begin(), t.end(), time_s);
+  const auto after = std::ranges::upper_bound(t, time_s);
   if (after == t.begin()) return {track.positions_ned_m.front(), track.velocities_ned_mps.front()};
   if (after == t.end()) return {track.positions_ned_m.back(), track.velocities_ned_mps.back()};
   const auto i = static_cast<std::size_t>(std::distance(t.begin(), after)) - 1;

@@ -78,7 +78,7 @@ struct Layout {
 // The columns that `layout` must have; the Error names what is missing.
 void require_columns(const Layout& layout, const Where& where) {
   const auto all = [&](std::initializer_list<Column> columns) {
-    return std::all_of(columns.begin(), columns.end(), [&](Column c) { return layout.has(c); });
+    return std::ranges::all_of(columns, [&](Column c) { return layout.has(c); });
   };
   const auto require = [&](bool is_there, const char* what) {
     if (!is_there) throw Error(fmt::format("the headings lack {}", what), where);
@@ -99,10 +99,8 @@ Layout layout_of(const std::vector<std::string_view>& headings, const Where& whe
   layout.cells = headings.size();
   for (std::size_t i = 0; i < headings.size(); ++i) {
     const std::string word = lower_case(headings[i]);
-    const auto known =
-        std::find_if(kHeadings.begin(), kHeadings.end(), [&](const Heading& heading) {
-          return is_among(word, heading.words);
-        });
+    const auto known = std::ranges::find_if(
+        kHeadings, [&](const Heading& heading) { return is_among(word, heading.words); });
     if (known == kHeadings.end()) continue;  // a column of something else
     if (layout.has(known->column))
       throw Error(fmt::format("the headings hold '{}' and '{}' for the same; expected one",
@@ -118,7 +116,7 @@ Layout layout_of(const std::vector<std::string_view>& headings, const Where& whe
 
 void take_units(Layout& layout, const std::vector<std::string_view>& units, const Where& where) {
   // A row of states has no word of a unit, but an aircraft may be named 'm'.
-  const auto words = std::count_if(units.begin(), units.end(), is_unit_word);
+  const auto words = std::ranges::count_if(units, is_unit_word);
   if (2 * static_cast<std::size_t>(words) < units.size())
     throw Error(
         "has no units; expected a row of them below the headings, for example "

@@ -72,10 +72,9 @@ double number_in(std::string_view cell, std::string_view name, const Where& wher
 
 std::string aircraft_name_in(std::string_view cell, const Where& where) {
   std::string name(cell);
-  std::replace(name.begin(), name.end(), ' ', '_');
-  const bool is_plain = std::all_of(name.begin(), name.end(), [](char c) {
-    return c > ' ' && c < 0x7f && c != '"' && c != '\'' && c != '=';
-  });
+  std::ranges::replace(name, ' ', '_');
+  const bool is_plain = std::ranges::all_of(
+      name, [](char c) { return c > ' ' && c < 0x7f && c != '"' && c != '\'' && c != '='; });
   if (name.empty() || name.size() > kMaxNameBytes || !is_plain)
     throw Error(
         fmt::format("the aircraft is named '{}'; expected 1 to {} letters, digits and signs",
@@ -130,7 +129,7 @@ bool begins_with_column(std::string_view text, std::string_view column) {
 bool is_among(std::string_view word, std::string_view words) {
   std::vector<std::string_view> cells;
   split_row(words, cells);
-  return std::find(cells.begin(), cells.end(), word) != cells.end();
+  return std::ranges::find(cells, word) != cells.end();
 }
 
 std::optional<double> factor_of(std::string_view unit, Dimension dimension) {
@@ -142,9 +141,7 @@ std::optional<double> factor_of(std::string_view unit, Dimension dimension) {
 
 bool is_unit_word(std::string_view word) {
   return without_brackets(word) != word ||
-         std::any_of(kUnits.begin(), kUnits.end(), [&](const Unit& unit) {
-           return is_among(word, unit.names);
-         });
+         std::ranges::any_of(kUnits, [&](const Unit& unit) { return is_among(word, unit.names); });
 }
 
 std::string units_of(Dimension dimension) {

@@ -22,7 +22,7 @@ std::array<std::size_t, kColumnNames.size()> places_of(
     const std::vector<std::string_view>& headings, const Where& where) {
   std::array<std::size_t, kColumnNames.size()> places{};
   for (std::size_t i = 0; i < kColumnNames.size(); ++i) {
-    const auto found = std::find(headings.begin(), headings.end(), kColumnNames[i]);
+    const auto found = std::ranges::find(headings, kColumnNames[i]);
     if (found == headings.end() || headings.size() != kColumnNames.size())
       throw Error(fmt::format("the header is '{}'; expected {}",
                               fmt::format("{}", fmt::join(headings, ",")).substr(0, 80),

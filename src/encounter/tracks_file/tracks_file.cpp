@@ -49,10 +49,8 @@ std::vector<track::Encounter> fitted(std::vector<track::Encounter> encounters,
                                      const fs::path& of) {
   const bool holds_many = format == TracksFormat::kCsv || format == TracksFormat::kWaypoints;
   if (holds_many || encounters.size() <= 1) return encounters;
-  const bool is_of_one =
-      std::all_of(encounters.begin(), encounters.end(), [](const track::Encounter& each) {
-        return each.aircraft.size() == 1;
-      });
+  const bool is_of_one = std::ranges::all_of(
+      encounters, [](const track::Encounter& each) { return each.aircraft.size() == 1; });
   if (!is_of_one)
     throw Error(
         fmt::format("would hold {} encounters, and a .{} file holds one; choose one of them, "

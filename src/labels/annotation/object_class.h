@@ -19,12 +19,12 @@ inline constexpr std::array<std::string_view, 3> kOnTheLens = {"glint", "dirt", 
 constexpr bool is_aircraft(std::string_view object_class) { return object_class == kAircraft; }
 
 constexpr bool is_on_lens(std::string_view object_class) {
-  return std::find(kOnTheLens.begin(), kOnTheLens.end(), object_class) != kOnTheLens.end();
+  return std::ranges::find(kOnTheLens, object_class) != kOnTheLens.end();
 }
 
 constexpr bool is_object_class(std::string_view word) {
   return is_aircraft(word) || is_on_lens(word) ||
-         std::find(kInTheAir.begin(), kInTheAir.end(), word) != kInTheAir.end();
+         std::ranges::find(kInTheAir, word) != kInTheAir.end();
 }
 
 // The class of a category of somebody's labels: "Airplane", "helicopter" and the like are aircraft,

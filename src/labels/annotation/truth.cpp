@@ -28,7 +28,7 @@ template <std::size_t n>
 std::array<double, n> tuple(const JsonObject& object, const char* key) {
   const std::vector<double> numbers = object.numbers(key, n);
   std::array<double, n> result{};
-  std::copy(numbers.begin(), numbers.end(), result.begin());
+  std::ranges::copy(numbers, result.begin());
   return result;
 }
 

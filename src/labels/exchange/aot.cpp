@@ -242,8 +242,7 @@ class FlightReader {
   std::int64_t track_of(const std::string& id) {
     if (const auto found = tracks_.find(id); found != tracks_.end()) return found->second;
     std::int64_t track = name_and_number(id).second.value_or(1);
-    while (std::any_of(
-        tracks_.begin(), tracks_.end(), [&](const auto& known) { return known.second == track; }))
+    while (std::ranges::any_of(tracks_, [&](const auto& known) { return known.second == track; }))
       ++track;
     return tracks_[id] = track;
   }

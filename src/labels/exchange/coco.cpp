@@ -187,11 +187,11 @@ class CocoReader {
 std::vector<fs::path> annotation_files(const fs::path& folder, const Warn& warn) {
   std::vector<fs::path> files = files_with(folder / "annotations", ".json");
   std::vector<fs::path> instances;
-  std::copy_if(files.begin(), files.end(), std::back_inserter(instances), [](const fs::path& file) {
+  std::ranges::copy_if(files, std::back_inserter(instances), [](const fs::path& file) {
     return file.filename().string().starts_with("instances");
   });
   if (!instances.empty() && instances.size() < files.size()) {
-    const auto other = std::find_if(files.begin(), files.end(), [](const fs::path& file) {
+    const auto other = std::ranges::find_if(files, [](const fs::path& file) {
       return !file.filename().string().starts_with("instances");
     });
     airtruth::warn(warn,

@@ -98,8 +98,7 @@ class CvatWriter : public FolderWriter {
     const Label* last = nullptr;
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
       const auto& labels = clip.frames[i].labels;
-      const auto found = std::find_if(
-          labels.begin(), labels.end(), [&](const Label& label) { return label.track == id; });
+      const auto found = std::ranges::find(labels, id, &Label::track);
       const bool shown = found != labels.end();
       if (shown && !track) {
         track = top.append_child("track");
@@ -243,9 +242,7 @@ class TrackReader {
     frames(top, task);
     for (const pugi::xml_node& track : top.children("track")) add(track);
     for (LabelledFrame& frame : clip_.frames)
-      std::stable_sort(frame.labels.begin(),
-                       frame.labels.end(),
-                       [](const Label& a, const Label& b) { return a.track < b.track; });
+      std::ranges::stable_sort(frame.labels, {}, &Label::track);
     join(top);
     return clip_;
   }

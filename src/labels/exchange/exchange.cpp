@@ -131,10 +131,7 @@ constexpr std::array<About, 13> kAll = {{
      "pictures"},
 }};
 
-const About& about(Format format) {
-  return *std::find_if(
-      kAll.begin(), kAll.end(), [&](const About& a) { return a.format == format; });
-}
+const About& about(Format format) { return *std::ranges::find(kAll, format, &About::format); }
 
 // Gives each label the class that its category states.
 void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& warn) {
@@ -242,9 +239,8 @@ std::vector<Clip> arranged(Format format, const Clip& clip) {
     const auto shows_whole = [](const LabelledFrame& frame) {
       return !frame.labels.empty() && !frame.labels.front().truncated.value_or(false);
     };
-    auto first = std::find_if(one.frames.begin(), one.frames.end(), shows_whole);
-    if (first == one.frames.end())
-      first = std::find_if(one.frames.begin(), one.frames.end(), shows);
+    auto first = std::ranges::find_if(one.frames, shows_whole);
+    if (first == one.frames.end()) first = std::ranges::find_if(one.frames, shows);
     const auto last = std::find_if(one.frames.rbegin(), one.frames.rend(), shows).base();
     one.frames = {first, last};
     clips.push_back(std::move(one));

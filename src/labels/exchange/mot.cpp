@@ -169,8 +169,8 @@ class SequenceFolder {
              whole_in(n[9], 0, 2);
     };
     const auto has_category = [](const auto& row) { return row.first.at(7) > 0; };
-    if (!rows.empty() && std::all_of(rows.begin(), rows.end(), is_visdrone) &&
-        std::any_of(rows.begin(), rows.end(), has_category))
+    if (!rows.empty() && std::ranges::all_of(rows, is_visdrone) &&
+        std::ranges::any_of(rows, has_category))
       throw Error(
           "has VisDrone's columns (score, category, truncation, occlusion); expected those of "
           "MOTChallenge, in which the last ones are class, visibility and range in metres",

@@ -13,7 +13,7 @@ std::vector<fs::path> FolderWriter::images(const Clip& clip, const std::string& 
 
 std::size_t FolderWriter::class_of(const std::string& category) const {
   const auto& all = options_.categories;
-  return static_cast<std::size_t>(std::find(all.begin(), all.end(), category) - all.begin());
+  return static_cast<std::size_t>(std::ranges::find(all, category) - all.begin());
 }
 
 std::string numbered_stem(const Clip& clip, std::size_t i) {

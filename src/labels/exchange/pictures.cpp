@@ -21,15 +21,12 @@ std::vector<std::string> names_of(std::span<const LabelledPicture> pictures) {
 }
 
 void sort_pictures(std::vector<LabelledPicture>& pictures) {
-  const bool have_numbers =
-      std::all_of(pictures.begin(), pictures.end(), [](const LabelledPicture& picture) {
-        return picture.number.has_value();
-      });
-  std::stable_sort(
-      pictures.begin(), pictures.end(), [&](const LabelledPicture& a, const LabelledPicture& b) {
-        return have_numbers ? *a.number < *b.number
-                            : picture_series::is_numbered_before(a.name, b.name);
-      });
+  const bool have_numbers = std::ranges::all_of(
+      pictures, [](const LabelledPicture& picture) { return picture.number.has_value(); });
+  std::ranges::stable_sort(pictures, [&](const LabelledPicture& a, const LabelledPicture& b) {
+    return have_numbers ? *a.number < *b.number
+                        : picture_series::is_numbered_before(a.name, b.name);
+  });
 }
 
 void expect_distinct(std::span<const LabelledPicture> pictures, const fs::path& source) {
@@ -42,8 +39,7 @@ void expect_distinct(std::span<const LabelledPicture> pictures, const fs::path& 
 // The numbers of ordered pictures as frames: stated, in the names, or their places.
 std::vector<std::int64_t> frame_numbers(std::span<const LabelledPicture> pictures) {
   const auto ascend = [](const std::vector<std::int64_t>& numbers) {
-    return std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>()) ==
-           numbers.end();
+    return std::ranges::adjacent_find(numbers, std::greater_equal<>()) == numbers.end();
   };
   std::vector<std::int64_t> stated, named, places;
   for (const LabelledPicture& picture : pictures) {
@@ -58,7 +54,7 @@ std::vector<std::int64_t> frame_numbers(std::span<const LabelledPicture> picture
 }
 
 bool are_of_one_size(std::span<const LabelledPicture> pictures) {
-  return std::all_of(pictures.begin(), pictures.end(), [&](const LabelledPicture& picture) {
+  return std::ranges::all_of(pictures, [&](const LabelledPicture& picture) {
     return picture.width == pictures.front().width && picture.height == pictures.front().height;
   });
 }
@@ -69,7 +65,7 @@ fs::path media_of(std::span<const LabelledPicture> pictures,
                   const fs::path& source,
                   const Warn& warn) {
   const auto is_missing = [](const LabelledPicture& picture) { return picture.folder.empty(); };
-  const auto missing = std::count_if(pictures.begin(), pictures.end(), is_missing);
+  const auto missing = std::ranges::count_if(pictures, is_missing);
   if (missing == 0) return pictures.front().folder;
   if (missing < std::ssize(pictures))
     airtruth::warn(warn,
@@ -79,14 +75,14 @@ fs::path media_of(std::span<const LabelledPicture> pictures,
                                missing,
                                pictures.size(),
                                clip,
-                               std::find_if(pictures.begin(), pictures.end(), is_missing)->name));
+                               std::ranges::find_if(pictures, is_missing)->name));
   return {};
 }
 
 // "a-b" for the folder "a/b".
 std::string name_of_folder(const std::string& folder) {
   std::string name = folder;
-  std::replace(name.begin(), name.end(), '/', '-');
+  std::ranges::replace(name, '/', '-');
   return name;
 }
 
@@ -183,10 +179,9 @@ std::vector<std::string> pictures_in(const fs::path& folder) {
 }
 
 void join_by_name(Clip& clip, const fs::path& folder, const Warn& warn) {
-  const auto missing =
-      std::find_if(clip.frames.begin(), clip.frames.end(), [&](const LabelledFrame& frame) {
-        return frame.picture.empty() || !fs::is_regular_file(folder / frame.picture);
-      });
+  const auto missing = std::ranges::find_if(clip.frames, [&](const LabelledFrame& frame) {
+    return frame.picture.empty() || !fs::is_regular_file(folder / frame.picture);
+  });
   if (missing == clip.frames.end())
     clip.media = folder;
   else
@@ -227,7 +222,7 @@ void join_by_number(Clip& clip,
 void join_in_order(Clip& clip, const fs::path& folder, const Warn& warn) {
   std::vector<std::string> names = pictures_in(folder);
   if (names.empty()) return;
-  std::stable_sort(names.begin(), names.end(), picture_series::is_numbered_before);
+  std::ranges::stable_sort(names, picture_series::is_numbered_before);
   const std::size_t series = picture_series::series_of(names, picture_series::Stray::kApart).size();
   if (names.size() != clip.frames.size() || series != 1)
     return airtruth::warn(warn,

@@ -187,8 +187,8 @@ class SequenceReader {
     const std::vector<double> rates = known_numbers(rate, file);
     if (rates.size() == 1) clip_.frame_rate_hz = label_file::rate_of(rates[0]);
     std::string size = got10k_value(file, "resolution");
-    std::replace_if(
-        size.begin(), size.end(), [](char c) { return c == '(' || c == ')'; }, ' ');
+    std::ranges::replace_if(
+        size, [](char c) { return c == '(' || c == ')'; }, ' ');
     const std::vector<double> numbers = known_numbers(size, file);
     const std::string unknown = " " + got10k_value(file, "labels_unknown") + " ";
     knows_cut_ = unknown.find(" cut_by_image ") == std::string::npos;
@@ -287,7 +287,7 @@ Clips read_single_object(const Reading& in) {
   for (const auto& start : in.options.start_frames) {
     const std::string& name = start.first;
     const auto is_named = [&](const Clip& clip) { return clip.name == name; };
-    if (!name.empty() && std::none_of(clips.begin(), clips.end(), is_named))
+    if (!name.empty() && std::ranges::none_of(clips, is_named))
       throw Error("no sequence is named '" + name + "', for which a start frame is given",
                   {in.source.string()});
   }
@@ -355,14 +355,14 @@ class SingleObjectWriter : public FolderWriter {
   }
 
   static bool knows(const Clip& clip, const auto& member) {
-    return std::all_of(clip.frames.begin(), clip.frames.end(), [&](const LabelledFrame& frame) {
+    return std::ranges::all_of(clip.frames, [&](const LabelledFrame& frame) {
       return frame.labels.empty() || (frame.labels.front().*member).has_value();
     });
   }
 
   // True where a frame at least knows it.
   static bool is_known(const Clip& clip, std::optional<double> Label::*member) {
-    return std::any_of(clip.frames.begin(), clip.frames.end(), [&](const LabelledFrame& frame) {
+    return std::ranges::any_of(clip.frames, [&](const LabelledFrame& frame) {
       return !frame.labels.empty() && (frame.labels.front().*member).has_value();
     });
   }

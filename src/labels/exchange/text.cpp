@@ -115,7 +115,7 @@ std::vector<fs::path> entries(const fs::path& folder) {
   if (fs::is_directory(folder))
     for (const auto& entry : fs::directory_iterator(folder))
       if (!entry.path().filename().string().starts_with(".")) found.push_back(entry.path());
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found);
   return found;
 }
 
@@ -127,12 +127,7 @@ std::vector<fs::path> files_with(const fs::path& folder, std::string_view extens
   return found;
 }
 
-void sort_frames(Clip& clip) {
-  std::stable_sort(
-      clip.frames.begin(), clip.frames.end(), [](const LabelledFrame& a, const LabelledFrame& b) {
-        return a.frame < b.frame;
-      });
-}
+void sort_frames(Clip& clip) { std::ranges::stable_sort(clip.frames, {}, &LabelledFrame::frame); }
 
 std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
                                                     const ReadOptions& options) {

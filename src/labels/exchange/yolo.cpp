@@ -45,7 +45,7 @@ class YoloWriter : public FolderWriter {
 
   void finish() override {
     const auto has = [&](const char* part) {
-      return std::find(options_.parts.begin(), options_.parts.end(), part) != options_.parts.end();
+      return std::ranges::find(options_.parts, part) != options_.parts.end();
     };
     const std::string train = has("train") ? "train" : options_.parts.front();
     std::string text = "# Change `path` when the folder is moved.\npath: " +

@@ -169,7 +169,7 @@ FlightLog without_jumps(FlightLog log, const std::string& file) {
     else
       left_out(all[i]);
   }
-  std::reverse(before.begin(), before.end());
+  std::ranges::reverse(before);
   before.insert(before.end(), kept.begin(), kept.end());
   log.fixes = std::move(before);
   return log;

@@ -47,7 +47,7 @@ Places columns_of(std::string_view header, const std::string& file) {
   require_together({kTime, kLatitude, kLongitude, kAltitude});
   for (const std::vector<Column>& group :
        {std::vector{kYaw, kPitch, kRoll}, std::vector{kRateX, kRateY, kRateZ}})
-    if (std::any_of(group.begin(), group.end(), [&](Column c) { return places[c] != kNoColumn; }))
+    if (std::ranges::any_of(group, [&](Column c) { return places[c] != kNoColumn; }))
       require_together(group);
   return places;
 }

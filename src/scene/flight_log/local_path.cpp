@@ -18,10 +18,7 @@ constexpr double kMaxExtensionS = 1.5;
 
 template <typename Record>
 std::size_t after(const std::vector<Record>& records, double time_s) {
-  const auto later =
-      std::upper_bound(records.begin(), records.end(), time_s, [](double t, const Record& r) {
-        return t < r.time_s;
-      });
+  const auto later = std::ranges::upper_bound(records, time_s, {}, &Record::time_s);
   return static_cast<std::size_t>(later - records.begin());
 }
 

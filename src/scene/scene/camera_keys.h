@@ -161,7 +161,7 @@ constexpr const CameraKey* camera_key(std::string_view name) {
 // True where the model states any key, by a value or by "auto".
 inline bool states_any_key(const CameraModel& model) {
   return !model.automatic.empty() ||
-         std::any_of(kCameraModelKeys.begin(), kCameraModelKeys.end(), [&](const CameraKey& key) {
+         std::ranges::any_of(kCameraModelKeys, [&](const CameraKey& key) {
            return std::visit([&](auto member) { return (model.*member).has_value(); }, key.member);
          });
 }
@@ -173,7 +173,7 @@ inline bool is_above_zero(const CameraModel& model, const CameraKey& key) {
   const auto* colour = std::get_if<CameraKey::Colour>(&key.member);
   if (colour == nullptr || !(model.*(*colour))) return false;
   const std::array<double, 3>& values = *(model.*(*colour));
-  return std::any_of(values.begin(), values.end(), [](double value) { return value > 0; });
+  return std::ranges::any_of(values, [](double value) { return value > 0; });
 }
 
 // A key of [weather].
@@ -192,9 +192,8 @@ inline constexpr auto kWeatherKeys = std::to_array<WeatherKey>({
 });
 
 inline bool states_any_key(const Weather& weather) {
-  return std::any_of(kWeatherKeys.begin(), kWeatherKeys.end(), [&](const WeatherKey& key) {
-    return (weather.*key.member).has_value();
-  });
+  return std::ranges::any_of(
+      kWeatherKeys, [&](const WeatherKey& key) { return (weather.*key.member).has_value(); });
 }
 
 // Koschmieder's visibility, the distance at which a black object keeps 2 % of its contrast to the

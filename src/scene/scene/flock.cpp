@@ -34,7 +34,7 @@ Vector3 free_place(Random& random,
   Vector3 place = Vector3::Zero();
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     place = within_ellipsoid(random, radius_m);
-    if (std::none_of(taken.begin(), taken.end(), [&](const Intruder& other) {
+    if (std::ranges::none_of(taken, [&](const Intruder& other) {
           return (other.offset_ned_m - place).norm() < apart_m;
         }))
       break;

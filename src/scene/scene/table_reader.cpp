@@ -67,9 +67,7 @@ std::string in_quotes(std::string_view text) {
   return result + "'";
 }
 
-bool has_control_character(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), is_control);
-}
+bool has_control_character(std::string_view text) { return std::ranges::any_of(text, is_control); }
 
 std::string element_name(std::string_view key, std::size_t i) {
   return fmt::format("{}[{}]", key, i);
@@ -109,7 +107,7 @@ TableReader::TableReader(const toml::table& table,
 void TableReader::refuse_unknown() const {
   const toml::key* first = nullptr;
   for (const auto& [key, value] : *table_) {
-    if (std::find(keys_.begin(), keys_.end(), key.str()) != keys_.end()) continue;
+    if (std::ranges::find(keys_, key.str()) != keys_.end()) continue;
     if (!first || key.source().begin < first->source().begin) first = &key;
   }
   if (!first) return;
@@ -121,8 +119,7 @@ void TableReader::refuse_unknown() const {
 }
 
 const toml::node* TableReader::node(std::string_view key) const {
-  check(std::find(keys_.begin(), keys_.end(), key) != keys_.end(),
-        "a key that is read is a key that is known");
+  check(std::ranges::find(keys_, key) != keys_.end(), "a key that is read is a key that is known");
   note(key, ReadKey{});
   return table_->get(key);
 }
@@ -263,7 +260,7 @@ std::optional<std::string> TableReader::file_name(std::string_view key) const {
 std::optional<std::string> TableReader::choice(std::string_view key,
                                                const std::vector<std::string>& choices) const {
   const auto word = text(key);
-  if (!word || std::find(choices.begin(), choices.end(), *word) != choices.end()) return word;
+  if (!word || std::ranges::find(choices, *word) != choices.end()) return word;
   fail_at(where(key),
           key,
           in_quotes(*word),

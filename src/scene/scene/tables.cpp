@@ -58,7 +58,7 @@ toml::table parsed_toml(std::string_view text, const std::string& file) {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     std::string reason(error.description());
-    std::replace_if(reason.begin(), reason.end(), is_control, ' ');
+    std::ranges::replace_if(reason, is_control, ' ');
     const auto begin = error.source().begin;
     throw Error("is not TOML: " + reason,
                 {file, static_cast<int>(begin.line), static_cast<int>(begin.column)});

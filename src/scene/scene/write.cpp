@@ -105,7 +105,7 @@ void add_light(Text& text, const Light& light) {
 
 bool is_automatic(const CameraModel& model, const CameraKey& key) {
   const auto& automatic = model.automatic;
-  return std::find(automatic.begin(), automatic.end(), key.name) != automatic.end();
+  return std::ranges::find(automatic, key.name) != automatic.end();
 }
 
 // Writes every table, also one without a stated key.

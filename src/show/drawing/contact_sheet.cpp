@@ -65,7 +65,7 @@ std::optional<PixelBox> inset_place(const cv::Mat& tile,
         const auto meets = [&](const PixelBox& other) {
           return intersection(place, other).has_value();
         };
-        if (place.y < 0 || std::any_of(insets.begin(), insets.end(), meets)) continue;
+        if (place.y < 0 || std::ranges::any_of(insets, meets)) continue;
         std::int64_t covered = 0;
         for (const PixelBox& one : boxes) covered += common_px(place, one);
         const double away = std::hypot(place.x + side / 2.0 - box.x - box.width / 2.0,

@@ -130,9 +130,8 @@ void join_seconds(cv::Mat& canvas, const std::vector<FlightLine>& lines, const P
     for (std::size_t i = 0; i < lines[n].times_s.size(); ++i) {
       if (!is_whole(lines[n].times_s[i])) continue;
       const auto& own = lines[0].times_s;
-      const auto same = std::find_if(own.begin(), own.end(), [&](double t) {
-        return std::abs(t - lines[n].times_s[i]) < 1e-6;
-      });
+      const auto same = std::ranges::find_if(
+          own, [&](double t) { return std::abs(t - lines[n].times_s[i]) < 1e-6; });
       if (same == own.end()) continue;
       const cv::Point2d from = place(lines[0], static_cast<std::size_t>(same - own.begin()));
       line(canvas, from, place(lines[n], i), lines[n].colour * 0.4);

@@ -28,7 +28,7 @@ std::vector<Marked> marked(const annotation::Frame& truth, const std::vector<std
   std::vector<Marked> result;
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
-    const auto known = std::find(ids.begin(), ids.end(), intruder.id);
+    const auto known = std::ranges::find(ids, intruder.id);
     const cv::Scalar colour =
         intruder_colour(known == ids.end() ? i : static_cast<std::size_t>(known - ids.begin()));
     const std::string words =
@@ -78,9 +78,8 @@ PixelBox caption_place(const Placing& placing, int width, int height) {
     for (const PixelBox& box : placing.boxes) sum += common_px(corner, box);
     return sum;
   };
-  return *std::min_element(corners.begin(), corners.end(), [&](const auto& a, const auto& b) {
-    return covers(a) < covers(b);
-  });
+  return *std::ranges::min_element(
+      corners, [&](const auto& a, const auto& b) { return covers(a) < covers(b); });
 }
 
 }  // namespace

@@ -21,9 +21,8 @@ bool is_allowed(const PixelBox& place, const Placing& placing) {
   if (place.x < frame.x || place.y < frame.y || place.right() > frame.right() ||
       place.bottom() > frame.bottom())
     return false;
-  return std::none_of(placing.taken.begin(), placing.taken.end(), [&](const PixelBox& other) {
-    return intersection(place, other).has_value();
-  });
+  return std::ranges::none_of(
+      placing.taken, [&](const PixelBox& other) { return intersection(place, other).has_value(); });
 }
 
 // Places around `anchor` enlarged by `reach`. Above and below come first, since most aircraft are

@@ -55,7 +55,7 @@ Limits limits_of(const std::vector<Quantity>& quantities) {
     for (const double v : q.values)
       if (std::isfinite(v)) values.push_back(v);
   if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const auto tail = static_cast<std::size_t>(kTailShare * static_cast<double>(values.size()));
   const double low = std::min(0.0, values[tail]);
   const double high = std::max(0.0, values[values.size() - 1 - tail]);

@@ -68,8 +68,8 @@ std::string picture_file(const std::string& name, std::size_t plot) {
 }
 
 bool has_data(const Plot& plot) {
-  return std::any_of(plot.series.begin(), plot.series.end(), [](const Series& series) {
-    return std::any_of(series.y.begin(), series.y.end(), [](double y) { return std::isfinite(y); });
+  return std::ranges::any_of(plot.series, [](const Series& series) {
+    return std::ranges::any_of(series.y, [](double y) { return std::isfinite(y); });
   });
 }
 
@@ -156,7 +156,7 @@ std::string white_below_ring() {
 
 // Bars and dots of several series stand side by side, each of this width.
 double bar_width(const Plot& plot) {
-  const auto bars = std::count_if(plot.series.begin(), plot.series.end(), is_beside_others);
+  const auto bars = std::ranges::count_if(plot.series, is_beside_others);
   return 0.8 / static_cast<double>(std::max<std::ptrdiff_t>(1, bars));
 }
 

@@ -117,7 +117,7 @@ std::string toml_key(const std::string& key) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-';
   };
-  return !key.empty() && std::all_of(key.begin(), key.end(), is_bare) ? key : toml_string(key);
+  return !key.empty() && std::ranges::all_of(key, is_bare) ? key : toml_string(key);
 }
 
 std::string toml_of(const Json& value) {

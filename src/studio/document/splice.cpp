@@ -24,7 +24,7 @@ struct Cut {
 
 bool is_table_array(const Json& value) {
   return value.is_array() && !value.empty() &&
-         std::all_of(value.begin(), value.end(), [](const Json& one) { return one.is_object(); });
+         std::ranges::all_of(value, [](const Json& one) { return one.is_object(); });
 }
 
 class Splicer {
@@ -149,7 +149,7 @@ class Splicer {
         (at == tree_.root.begin ? "" : newline()) + block + (is_last || is_apart ? "" : newline()));
   }
   std::string with_cuts() {
-    std::sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
+    std::ranges::sort(cuts_, [](const Cut& a, const Cut& b) {
       return a.begin > b.begin || (a.begin == b.begin && a.end > b.end);
     });
     std::string result(text_);
@@ -338,8 +338,7 @@ class Splicer {
   void remove_blocks(const Node& node) {
     std::vector<Cut> blocks;
     collect_blocks(node, blocks);
-    std::sort(
-        blocks.begin(), blocks.end(), [](const Cut& a, const Cut& b) { return a.begin < b.begin; });
+    std::ranges::sort(blocks, {}, &Cut::begin);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       Cut whole = blocks[i];
       while (i + 1 < blocks.size() &&

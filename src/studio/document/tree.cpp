@@ -52,9 +52,7 @@ class Reader {
       node.members.back().key = key.str();
       node.members.back().key_begin = lines_.offset(key.source().begin);
     }
-    std::sort(node.members.begin(), node.members.end(), [](const Node& a, const Node& b) {
-      return a.key_begin < b.key_begin;
-    });
+    std::ranges::sort(node.members, {}, &Node::key_begin);
     return node;
   }
 
@@ -176,8 +174,7 @@ nlohmann::ordered_json notes_of(const Node& root, std::string_view text) {
 }
 
 const Node* Node::member(std::string_view name) const {
-  const auto found = std::find_if(
-      members.begin(), members.end(), [&](const Node& one) { return one.key == name; });
+  const auto found = std::ranges::find(members, name, &Node::key);
   return found == members.end() ? nullptr : &*found;
 }
 

@@ -64,7 +64,7 @@ void take_frame(Request& request, const JsonObject& message) {
     return;
   }
   const std::vector<double> box = message.numbers("crop", 4);
-  if (!std::all_of(box.begin(), box.end(), [](double v) { return v >= 0 && v <= kMostPx; }))
+  if (!std::ranges::all_of(box, [](double v) { return v >= 0 && v <= kMostPx; }))
     message.fail("crop", fmt::format("numbers from 0 to {}", kMostPx));
   request.crop = pixels_of({box[0], box[1], box[2], box[3]});
 }

@@ -90,17 +90,14 @@ Json Gallery::groups(const std::string& word) {
 std::optional<std::string> Gallery::picture(const std::string& name, const std::stop_token& stop) {
   if (const auto found = pictures_.find(name); found != pictures_.end()) return found->second;
   fleet::Aircraft aircraft;
-  const auto kind = std::find_if(kKinds.begin(), kKinds.end(), [&](scene::DistractorKind one) {
-    return enum_name(one) == name;
-  });
+  const auto kind = std::ranges::find_if(
+      kKinds, [&](scene::DistractorKind one) { return enum_name(one) == name; });
   if (kind != kKinds.end()) {
     aircraft =
         setup::aircraft_of(distractor_of(*kind), setup::camera_path(scene::Camera{}), {}, stop);
   } else {
     const std::vector<fleet::Entry> all = fleet::list_aircraft();
-    if (std::none_of(
-            all.begin(), all.end(), [&](const fleet::Entry& one) { return one.name == name; }))
-      return std::nullopt;
+    if (std::ranges::find(all, name, &fleet::Entry::name) == all.end()) return std::nullopt;
     model::LoadOptions options;
     options.stop = stop;
     aircraft = fleet::load_aircraft(name, options, {});

@@ -26,9 +26,8 @@ constexpr int kRounds = 6;
 std::size_t actor_of(const Stage& stage, const document::Tables& tables, std::size_t intruder) {
   const nlohmann::ordered_json wanted = {"intruder", intruder};
   const auto& all = stage.scene().intruders;
-  const auto found = std::find_if(all.begin(), all.end(), [&](const scene::Intruder& one) {
-    return table_at(tables, one.where.line) == wanted;
-  });
+  const auto found = std::ranges::find_if(
+      all, [&](const scene::Intruder& one) { return table_at(tables, one.where.line) == wanted; });
   if (found == all.end()) throw Error(fmt::format("there is no intruder {}", intruder));
   return static_cast<std::size_t>(found - all.begin());
 }

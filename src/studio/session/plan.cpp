@@ -236,14 +236,12 @@ class Planner {
     std::vector<preview::PreviewRow> rows;
     for (std::size_t i = 0; i < parties_.size(); ++i) {
       single.push_back({parties_[i].name, {i}, i});
-      const bool is_seen =
-          std::any_of(sampled_.moments.begin(), sampled_.moments.end(), [&](const auto& moment) {
-            if (shows(moment, i)) return true;
-            return std::any_of(
-                parties_[i].actors.begin(), parties_[i].actors.end(), [&](std::size_t actor) {
-                  return is_in_view(moment, stage_.world().actors[actor].path);
-                });
-          });
+      const bool is_seen = std::ranges::any_of(sampled_.moments, [&](const auto& moment) {
+        if (shows(moment, i)) return true;
+        return std::ranges::any_of(parties_[i].actors, [&](std::size_t actor) {
+          return is_in_view(moment, stage_.world().actors[actor].path);
+        });
+      });
       if (!is_seen) continue;
       rows.emplace_back();
       rows.back().party = i;

@@ -200,12 +200,9 @@ std::optional<Stage::Picture> Stage::picture(std::int64_t frame,
   Picture result;
   result.plain = clip_->frame(frame);
   result.moment = moment(frame);
-  const bool has_any = std::any_of(result.moment.search.begin(),
-                                   result.moment.search.end(),
-                                   [](const auto& one) { return one.has_value(); }) ||
-                       std::any_of(result.moment.spots.begin(),
-                                   result.moment.spots.end(),
-                                   [](const auto& one) { return one.has_value(); });
+  const auto is_there = [](const auto& one) { return one.has_value(); };
+  const bool has_any = std::ranges::any_of(result.moment.search, is_there) ||
+                       std::ranges::any_of(result.moment.spots, is_there);
   result.exact = is_complete_;
   if (!has_any) return result;
   const auto lit = light(frame, result.moment, exact, leave);

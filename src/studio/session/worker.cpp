@@ -23,9 +23,8 @@ void Worker::add(Task task) {
   {
     const std::lock_guard lock(mutex_);
     if (over_) return;
-    const auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const Task& one) {
-      return !one.name.empty() && one.name == task.name;
-    });
+    const auto same = std::ranges::find_if(
+        waiting_, [&](const Task& one) { return !one.name.empty() && one.name == task.name; });
     if (same != waiting_.end()) {
       dropped = std::move(same->dropped);
       waiting_.erase(same);
@@ -41,9 +40,8 @@ void Worker::add(Task task) {
 
 bool Worker::is_wanted_for(Urgency urgency) const {
   const std::lock_guard lock(mutex_);
-  return over_ || std::any_of(waiting_.begin(), waiting_.end(), [&](const Task& task) {
-           return task.urgency <= urgency;
-         });
+  return over_ ||
+         std::ranges::any_of(waiting_, [&](const Task& task) { return task.urgency <= urgency; });
 }
 
 std::list<Worker::Task>::iterator Worker::next() {
@@ -59,10 +57,7 @@ void Worker::run() {
   while (!over_) {
     const auto first = next();
     if (first == waiting_.end()) {
-      const auto soonest =
-          std::min_element(waiting_.begin(), waiting_.end(), [](const Task& a, const Task& b) {
-            return a.due < b.due;
-          });
+      const auto soonest = std::ranges::min_element(waiting_, {}, &Task::due);
       if (soonest == waiting_.end())
         changed_.wait(lock);
       else
