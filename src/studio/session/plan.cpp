@@ -43,21 +43,13 @@ Json box_json(const Box& box) {
   return {hundredths(box.x), hundredths(box.y), hundredths(box.width), hundredths(box.height)};
 }
 
-// The moments of the frames at which paths have their points.
-struct Sampled {
+// Frames from the first one on at even steps, about `most` of `count`, and the last one.
+std::vector<std::int64_t> spread(std::int64_t count, std::int64_t most) {
+  const std::int64_t step = std::max<std::int64_t>(1, (count + most - 1) / most);
   std::vector<std::int64_t> frames;
-  std::vector<setup::Moment> moments;
-};
-
-Sampled sampled(const Stage& stage, const setup::World& world) {
-  Sampled result;
-  const std::int64_t count = stage.frame_count();
-  const std::int64_t step = std::max<std::int64_t>(1, (count + kMostPoints - 1) / kMostPoints);
-  for (std::int64_t k = 0; k < count; k += step) result.frames.push_back(k);
-  if (result.frames.back() != count - 1) result.frames.push_back(count - 1);
-  for (const std::int64_t k : result.frames)
-    result.moments.push_back(setup::moment_at(world, k, stage.time_s(k), stage.shake_at(k)));
-  return result;
+  for (std::int64_t k = 0; k < count - 1; k += step) frames.push_back(k);
+  frames.push_back(count - 1);
+  return frames;
 }
 
 // The world with one for each party, which stands for all of it: the boxes of a flock's birds in
@@ -107,7 +99,10 @@ std::optional<std::array<double, 4>> horizon_in(const setup::Moment& moment) {
     right = {angle, *pixel};
   }
   if (!left || right->first <= left->first) return std::nullopt;
-  return std::array{left->second.x(), left->second.y(), right->second.x(), right->second.y()};
+  return std::array{hundredths(left->second.x()),
+                    hundredths(left->second.y()),
+                    hundredths(right->second.x()),
+                    hundredths(right->second.y())};
 }
 
 // The sentences of the command line that are about each table, by the table's line.
@@ -193,28 +188,25 @@ class Planner {
         parties_(preview::parties_of(stage.scene())),
         middles_(world_of_middles(stage.world(), parties_)),
         still_(instant(middles_)),
-        sampled_(sampled(stage, still_)),
-        checks_(checks_of(stage)) {}
+        checks_(checks_of(stage)) {
+    for (const std::int64_t k : spread(stage.frame_count(), kMostPoints))
+      moments_.push_back(setup::moment_at(still_, k, stage.time_s(k), stage.shake_at(k)));
+  }
 
   Json plan() const {
-    Json own = Json::array();
-    Json horizon = Json::array();
-    for (std::size_t i = 0; i < sampled_.frames.size(); ++i) {
-      own.push_back(ned(sampled_.moments[i].camera.position_in_world));
-      if (const auto line = horizon_in(sampled_.moments[i]))
-        horizon.push_back({sampled_.frames[i],
-                           {hundredths((*line)[0]),
-                            hundredths((*line)[1]),
-                            hundredths((*line)[2]),
-                            hundredths((*line)[3])}});
+    Json frames, own, horizon = Json::array();
+    for (const setup::Moment& moment : moments_) {
+      frames.push_back(moment.frame);
+      own.push_back(ned(moment.camera.position_in_world));
+      if (const auto line = horizon_in(moment)) horizon.push_back({moment.frame, *line});
     }
-    const setup::Moment& first = sampled_.moments.front();
+    const setup::Moment& first = moments_.front();
     Json tracks = Json::array();
     const std::vector<std::string> approaches = approach_words();
     for (std::size_t i = 0; i < parties_.size(); ++i) tracks.push_back(track(i, approaches[i]));
     return {{"revision", stage_.revision()},
             {"complete", stage_.is_complete()},
-            {"frames", sampled_.frames},
+            {"frames", frames},
             {"own",
              {{"ned", own},
               {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
@@ -236,7 +228,7 @@ class Planner {
     std::vector<preview::PreviewRow> rows;
     for (std::size_t i = 0; i < parties_.size(); ++i) {
       single.push_back({parties_[i].name, {i}, i});
-      const bool is_seen = std::ranges::any_of(sampled_.moments, [&](const auto& moment) {
+      const bool is_seen = std::ranges::any_of(moments_, [&](const auto& moment) {
         if (shows(moment, i)) return true;
         return std::ranges::any_of(parties_[i].actors, [&](std::size_t actor) {
           return is_in_view(moment, stage_.world().actors[actor].path);
@@ -257,7 +249,7 @@ class Planner {
     const Json table = table_at(tables_, stated.where.line);
     Json points = Json::array();
     Json positions = Json::array();
-    for (const setup::Moment& moment : sampled_.moments) {
+    for (const setup::Moment& moment : moments_) {
       const auto& state = moment.states[place];
       positions.push_back(state ? ned(state->position_in_world) : Json());
       if (state) points.push_back(point(moment, place));
@@ -370,7 +362,8 @@ class Planner {
   std::vector<preview::Party> parties_;
   setup::World middles_;
   setup::World still_;
-  Sampled sampled_;
+  // Of the frames at which paths have their points.
+  std::vector<setup::Moment> moments_;
   std::map<int, std::vector<std::string>> checks_;
 };
 
@@ -404,15 +397,13 @@ Json lines_over(const Stage& stage, std::int64_t frame, const document::Tables& 
   const auto camera = world.camera.at(time_s);
   const auto sight = stage.sight_at(frame);
   if (!camera || !sight) return Json::array();
-  const std::int64_t count = stage.frame_count();
-  const std::int64_t step =
-      std::max<std::int64_t>(1, (count + kMostLinePoints - 1) / kMostLinePoints);
+  const std::vector<std::int64_t> frames = spread(stage.frame_count(), kMostLinePoints);
   Json lines = Json::array();
   for (const preview::Party& party : preview::parties_of(stage.scene())) {
     const setup::Actor& actor = world.actors[party.middle];
     const Pixel to_middle = range_times_offset(actor, *sight, *camera, time_s);
     Json points = Json::array();
-    for (std::int64_t k = 0;; k = std::min(count - 1, k + step)) {
+    for (const std::int64_t k : frames) {
       const auto own = world.camera.at(stage.time_s(k));
       const auto other = actor.path.at(stage.time_s(k));
       if (own && other) {
@@ -423,7 +414,6 @@ Json lines_over(const Stage& stage, std::int64_t frame, const document::Tables& 
                           pixel ? Json(rounded(pixel->x(), 0.1)) : Json(),
                           pixel ? Json(rounded(pixel->y(), 0.1)) : Json()});
       }
-      if (k >= count - 1) break;
     }
     lines.push_back({{"table", table_at(tables, stage.scene().intruders[party.middle].where.line)},
                      {"points", points}});
