@@ -3,20 +3,16 @@ import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
 import {type Flyer, flyersOf, isSame, momentsOf, numberOf, roomOf, tableOf, trackOf} from '../model/flyers';
 import {clamp, nedAt, round} from '../model/geometry';
 import {attribute, renewed, s, ui} from './part';
-import {SideView, niceStep} from './side_view';
+import {type Drag, SideView, niceStep} from './side_view';
 
 // Around the plot, where text is 16 px: left, right, top and bottom.
 const MARGINS = [56, 12, 10, 24];
 const LEAST_M = 40;
 const MOST_ABOVE_M = 1500;  // from the own height, of what the view has room for
 
-type Drag = {
-  kind: 'approach'|'moment'|'time'; flyer: Flyer | null; index: number; merge: string
-};
-
 // Heights over time: own path, the others, the ground, volumes about the own height. Closest approaches are dragged in
 // time and height, moments in time.
-export class HeightView extends SideView<Drag> {
+export class HeightView extends SideView {
   private low_m = 0;
   private high_m = 100;
   // The margins on the screen.
@@ -175,41 +171,16 @@ export class HeightView extends SideView<Drag> {
 
   protected down(event: PointerEvent): void {
     if (event.button !== 0 || !this.now.state) return;
-    const target = event.target as SVGElement;
-    const group = target.closest<SVGElement>('.flyer');
-    const path = group ? JSON.parse(group.dataset.path!) : null;
-    const flyer = flyersOf(this.now.state.scene).find((one) => isSame(one.path, path)) ?? null;
-    if (flyer && !isSame(path, this.now.selected)) this.studio.select(path);
-    const kind = (target.dataset.drag as Drag['kind'] | undefined) ?? 'time';
-    const index = Number(target.dataset.index ?? 0);
+    const {group, flyer, kind = 'time', index} = this.pressed(event);
     if (kind === 'moment') this.studio.store.put({moment: index});
-    this.drag = {kind, flyer, index, merge: this.studio.merge(kind)};
-    this.svg.setPointerCapture(event.pointerId);
-    if (kind !== 'time')
-      this.studio.dragging(true);
-    else if (!group)
-      this.studio.show(this.timeAt(event) * this.now.clip!.rate_hz);
+    this.hold(event, kind, flyer, index);
+    if (kind === 'time' && !group) this.studio.show(this.timeAt(event) * this.now.clip!.rate_hz);
   }
 
-  protected move(event: PointerEvent): void {
-    const {drag} = this;
-    if (!drag || !this.now.clip) return;
-    if (drag.kind === 'time') {
-      this.studio.show(this.timeAt(event) * this.now.clip.rate_hz);
-      return;
-    }
-    const changes = this.changesOf(drag, event);
-    if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
-  }
-
-  protected up(): void {
-    if (this.drag && this.drag.kind !== 'time') this.studio.dragging(false);
-    this.drag = null;
-  }
-
-  private changesOf({kind, flyer, index}: Drag, event: PointerEvent): Change[] {
+  protected changesOf({kind, flyer, index}: Drag, event: PointerEvent): Change[] {
     const {plan, clip} = this.now;
-    if (!plan || !clip || !flyer) return [];
+    if (kind === 'time' && clip) this.studio.show(this.timeAt(event) * clip.rate_hz);
+    if (kind === 'time' || !plan || !clip || !flyer) return [];
     const time_s = clamp(this.timeAt(event), 0, this.end_s);
     if (kind === 'moment') {
       const moments = momentsOf(flyer, clip);

@@ -3,7 +3,7 @@ import type {BoxPx, Change, Clip, Ned, Plan, Track} from '../model/contract';
 import {type Flyer, acrossOf, flyerAt, flyersOf, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, withCourse, writtenRange, writtenWidth} from '../model/flyers';
 import {type Point, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
 import {attribute, renewed, s, ui, wordsWidth} from './part';
-import {SideView, niceStep} from './side_view';
+import {type Drag, SideView, niceStep} from './side_view';
 
 const MARGIN_PX = 26;
 const MOST_M = 20000;  // from the own path, of what the view has room for
@@ -17,13 +17,9 @@ interface Ground {
   ahead: number;
 }
 
-type Drag = {
-  kind: 'approach'|'course'|'moment'; flyer: Flyer; index: number; merge: string
-};
-
 // From above, the own course upwards: paths, the field of view, well-clear volumes, closest approaches. Closest
 // approaches, courses and the ranges of moments are dragged.
-export class PlanView extends SideView<Drag> {
+export class PlanView extends SideView {
   private course_deg = 0;
   private origin: Ned = [0, 0, 0];
   private middle: Ground = {right: 0, ahead: 0};
@@ -259,42 +255,19 @@ export class PlanView extends SideView<Drag> {
   }
 
   protected down(event: PointerEvent): void {
-    const target = event.target as SVGElement;
-    const group = target.closest<SVGElement>('.flyer');
-    if (!group || event.button !== 0) return;
-    const path = JSON.parse(group.dataset.path!);
-    const flyer = this.now.state && flyersOf(this.now.state.scene).find((one) => isSame(one.path, path));
-    if (!flyer) return;
-    const kind = target.dataset.drag as Drag['kind'] | undefined;
-    const index = Number(target.dataset.index ?? 0);
-    if (!isSame(path, this.now.selected)) this.studio.select(path);
-    if (!kind) return;
+    if (event.button !== 0) return;
+    const {flyer, kind, index} = this.pressed(event);
+    if (!flyer || !kind) return;
     // What is drawn may be older than the scene.
-    if (kind === 'moment' && !this.studio.choose(index)) return;
-    this.drag = {kind, flyer, index, merge: this.studio.merge(kind)};
-    this.svg.setPointerCapture(event.pointerId);
-    this.studio.dragging(true);
+    if (kind !== 'moment' || this.studio.choose(index)) this.hold(event, kind, flyer, index);
   }
 
-  protected move(event: PointerEvent): void {
-    const {drag} = this;
-    if (!drag) return;
-    const changes = this.changesOf(drag, this.groundAt(event));
-    if (changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
-  }
-
-  protected up(): void {
-    if (!this.drag) return;
-    this.drag = null;
-    this.studio.dragging(false);
-  }
-
-  // `begin`: the flyer as it was when the drag began.
-  private changesOf({kind, flyer: begin, index}: Drag, to: Ground): Change[] {
+  protected changesOf({kind, flyer: begin, index}: Drag, event: PointerEvent): Change[] {
     const {plan, clip, state} = this.now;
-    const flyer = flyerAt(state, begin.path) ?? begin;
-    const track = trackOf(plan, flyer.path);
-    if (!plan || !clip || !track) return [];
+    const flyer = begin && (flyerAt(state, begin.path) ?? begin);
+    const track = flyer && trackOf(plan, flyer.path);
+    if (!plan || !clip || !begin || !track) return [];
+    const to = this.groundAt(event);
     if (kind === 'moment') return this.rangeChange(flyer, index, track, plan, clip, to);
     const cpa = approachOf(plan, track, clip);
     if (!cpa) return [];

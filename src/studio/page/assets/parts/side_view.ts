@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-import {type Flyer, isSame} from '../model/flyers';
+import type {Change} from '../model/contract';
+import {type Flyer, flyerAt, isSame} from '../model/flyers';
 import {round} from '../model/geometry';
 import type {Member} from '../model/store';
 import {Part, h, s} from './part';
 
+export interface Drag {
+  kind: 'approach'|'course'|'moment'|'time';
+  flyer: Flyer|null;  // as it was when the drag began
+  index: number;
+  merge: string;
+}
+
 // A view of the plan beside the picture, whose handles are dragged.
-export abstract class SideView<Drag> extends Part {
+export abstract class SideView extends Part {
   protected readonly watches: Member[] = ['plan', 'frame', 'selected', 'moment', 'clip'];
   protected readonly svg = s('svg', {role: 'group'});
   protected drag: Drag|null = null;
@@ -17,8 +25,7 @@ export abstract class SideView<Drag> extends Part {
   }
 
   protected abstract down(event: PointerEvent): void;
-  protected abstract move(event: PointerEvent): void;
-  protected abstract up(): void;
+  protected abstract changesOf(drag: Drag, event: PointerEvent): Change[];
 
   protected build(): void {
     this.append(h('h2', {}, this.heading), this.svg);
@@ -29,6 +36,38 @@ export abstract class SideView<Drag> extends Part {
   }
 
   protected abstract update(): void;
+
+  // The flyer under the pointer, which becomes the selected one, and the handle of it.
+  protected pressed(event: PointerEvent):
+      {group: Element|null; flyer: Flyer | null; kind?: Drag['kind']; index: number} {
+    const target = event.target as SVGElement;
+    const group = target.closest<SVGElement>('.flyer');
+    const flyer = group && flyerAt(this.now.state, JSON.parse(group.dataset.path!));
+    if (flyer && !isSame(flyer.path, this.now.selected)) this.studio.select(flyer.path);
+    return {
+      group,
+      flyer,
+      kind: target.dataset.drag as Drag['kind'] | undefined,
+      index: Number(target.dataset.index ?? 0)
+    };
+  }
+
+  protected hold(event: PointerEvent, kind: Drag['kind'], flyer: Flyer|null, index: number): void {
+    this.drag = {kind, flyer, index, merge: this.studio.merge(kind)};
+    this.svg.setPointerCapture(event.pointerId);
+    if (kind !== 'time') this.studio.dragging(true);
+  }
+
+  private move(event: PointerEvent): void {
+    const {drag} = this;
+    const changes = drag ? this.changesOf(drag, event) : [];
+    if (drag && changes.length) this.studio.edit(changes, drag.merge, event.timeStamp);
+  }
+
+  private up(): void {
+    if (this.drag && this.drag.kind !== 'time') this.studio.dragging(false);
+    this.drag = null;
+  }
 
   protected group(flyer: Flyer): SVGGElement {
     return s('g', {
