@@ -16,6 +16,10 @@ const ANGLES = ['Yaw', 'Pitch', 'Roll'];
 const numbers = (value: Json|undefined, usual: number[]): number[] =>
     (Array.isArray(value) && value.length === usual.length ? value.map(Number) : usual);
 
+// Sets one number of a triple of the camera's.
+const setsPart = (key: string, k: number, usual = [0, 0, 0]) => (value: number, scene: Table): Change[] =>
+    [{set: ['camera', key], to: numbers(tableOf(scene.camera)[key], usual).map((old, i) => (i === k ? value : old))}];
+
 // The lens and the attitude of the camera; the horizon that follows from them is drawn over the frame while this is
 // shown.
 export class CameraPanel extends Part {
@@ -48,26 +52,15 @@ export class CameraPanel extends Part {
               const attitude = tableOf(scene.camera).attitude_yaw_pitch_roll_deg;
               return Array.isArray(attitude) ? Number(attitude[k]) : null;
             },
-            (value, scene) => [{
-              set: ['camera', 'attitude_yaw_pitch_roll_deg'],
-              to: numbers(tableOf(scene.camera).attitude_yaw_pitch_roll_deg, [0, 0, 0])
-                      .map((old, i) => (i === k ? value : old))
-            }]));
+            setsPart('attitude_yaw_pitch_roll_deg', k)));
     const height = this.row(
         {label: 'Height', unit: 'm', step: 1, min: -MOST_M, max: MOST_M},
         (scene) => -numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150])[2],
-        (value, scene) => [{
-          set: ['camera', 'position_ned_m'],
-          to: numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150]).map((old, i) => (i === 2 ? -value : old))
-        }]);
+        (value, scene) => setsPart('position_ned_m', 2, [0, 0, -150])(-value, scene));
     const velocity = ['North', 'East', 'Down'].map(
         (label, k) => this.row(
             {label, unit: 'm/s', step: 1, min: -MOST_MPS, max: MOST_MPS},
-            (scene) => numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0])[k],
-            (value, scene) => [{
-              set: ['camera', 'velocity_ned_mps'],
-              to: numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0]).map((old, i) => (i === k ? value : old))
-            }]));
+            (scene) => numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0])[k], setsPart('velocity_ned_mps', k)));
     this.append(
         h('h2', {}, 'Clip'), this.used, h('h2', {}, 'Lens'), h('div', {class: 'grid'}, lens), this.origin,
         h('h2', {}, 'Attitude in the first frame'), h('div', {class: 'grid three'}, ...angles),
