@@ -264,19 +264,14 @@ std::unique_ptr<Writer> aot_writer(Format, const fs::path& root, const WriteOpti
 }
 
 Clips read_aot(const Reading& in) {
-  std::vector<fs::path> files;
-  if (fs::is_directory(in.source)) {
-    std::vector<fs::path> folders = entries(in.source);
-    folders.insert(folders.begin(), in.source);
-    for (const fs::path& folder : folders)
-      if (const fs::path file = folder / "ImageSets" / "groundtruth.json"; fs::exists(file))
-        files.push_back(file);
-  } else {
-    files = {in.source};
-  }
-  if (files.empty()) throw Error("holds no ImageSets/groundtruth.json", {in.source.string()});
+  const char* const name = "ImageSets/groundtruth.json";
+  std::vector<fs::path> folders = entries(in.source);
+  folders.insert(folders.begin(), in.source);
+  std::vector<fs::path> found;
+  for (const fs::path& folder : folders)
+    if (fs::exists(folder / name)) found.push_back(folder / name);
   Clips clips;
-  for (const fs::path& file : files) {
+  for (const fs::path& file : files_of(in.source, found, name)) {
     const JsonDocument json = python_json(file);
     const JsonObject samples = json.object("samples");
     for (const std::string& id : samples.keys())

@@ -211,12 +211,10 @@ std::vector<fs::path> annotation_files(const fs::path& folder, const Warn& warn)
 }  // namespace
 
 Clips read_coco(const Reading& in) {
-  const std::vector<fs::path> files = fs::is_directory(in.source)
-                                          ? annotation_files(in.source, in.warn)
-                                          : std::vector<fs::path>{in.source};
-  if (files.empty()) throw Error("holds no annotation file (*.json)", {in.source.string()});
   Clips clips;
-  for (const fs::path& file : files) append(clips, CocoReader(file, in.warn).read());
+  for (const fs::path& file :
+       files_of(in.source, annotation_files(in.source, in.warn), "annotation file (*.json)"))
+    append(clips, CocoReader(file, in.warn).read());
   return clips;
 }
 

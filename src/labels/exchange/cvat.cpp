@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "labels/exchange/parts.h"
@@ -412,20 +411,15 @@ std::unique_ptr<Writer> cvat_writer(Format, const fs::path& root, const WriteOpt
 }
 
 Clips read_cvat(const Reading& in) {
-  std::vector<fs::path> files;
-  if (fs::is_directory(in.source)) {
-    files = files_with(in.source, ".xml");
-    for (const fs::path& folder : entries(in.source)) {
-      for (const fs::path& file : files_with(folder, ".xml")) files.push_back(file);
-      for (const fs::path& inner : entries(folder))
-        if (fs::exists(inner / "annotations.xml")) files.push_back(inner / "annotations.xml");
-    }
-  } else {
-    files = {in.source};
+  std::vector<fs::path> found = files_with(in.source, ".xml");
+  for (const fs::path& folder : entries(in.source)) {
+    for (const fs::path& file : files_with(folder, ".xml")) found.push_back(file);
+    for (const fs::path& inner : entries(folder))
+      if (fs::exists(inner / "annotations.xml")) found.push_back(inner / "annotations.xml");
   }
-  if (files.empty()) throw Error("holds no annotations.xml", {in.source.string()});
   Clips clips;
-  for (const fs::path& file : files) append(clips, clips_of_file(file, in));
+  for (const fs::path& file : files_of(in.source, found, "annotations.xml"))
+    append(clips, clips_of_file(file, in));
   return clips;
 }
 

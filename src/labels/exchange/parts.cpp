@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "foundation/base/error.h"
+
 namespace airtruth::exchange {
 
 std::vector<fs::path> FolderWriter::images(const Clip& clip, const std::string& part) const {
@@ -24,6 +26,14 @@ LabelledFrame& frame_at(Clip& clip, std::size_t number) {
   for (std::size_t i = clip.frames.size(); i <= number; ++i)
     clip.frames.push_back({static_cast<std::int64_t>(i), std::nullopt, {}});
   return clip.frames[number];
+}
+
+std::vector<fs::path> files_of(const fs::path& source,
+                               std::vector<fs::path> found,
+                               const std::string& what) {
+  if (!fs::is_directory(source)) return {source};
+  if (found.empty()) throw Error("holds no " + what, {source.string()});
+  return found;
 }
 
 void append(Clips& clips, Clips more) {

@@ -79,6 +79,12 @@ void add_label(std::vector<Label>& labels,
     left_out.add(kOutside, place);
 }
 
+// The source where it is a file; of a folder the files that were found in it. Throws Error where
+// these are none: "holds no ...".
+std::vector<fs::path> files_of(const fs::path& source,
+                               std::vector<fs::path> found,
+                               const std::string& what);
+
 // Moves clips to the end of a list.
 void append(Clips& clips, Clips more);
 

@@ -21,13 +21,6 @@
 namespace airtruth::exchange {
 namespace {
 
-std::vector<fs::path> files_of(const fs::path& source, std::string_view extension) {
-  if (!fs::is_directory(source)) return {source};
-  std::vector<fs::path> files = files_with(source, extension);
-  if (files.empty()) throw Error(fmt::format("holds no *{}", extension), {source.string()});
-  return files;
-}
-
 // The video of the same name beside an annotation.
 fs::path video_beside(fs::path file) {
   for (const char* extension : {".mp4", ".mkv", ".avi", ".mov", ".webm"})
@@ -46,7 +39,7 @@ std::string category_of(const std::string& name, const std::string& otherwise) {
 
 Clips read_evision(const Reading& in) {
   Clips clips;
-  for (const fs::path& file : files_of(in.source, ".xml")) {
+  for (const fs::path& file : files_of(in.source, files_with(in.source, ".xml"), "*.xml")) {
     const annotation::Evision evision = annotation::read_evision(file);
     Clip clip;
     clip.name = file.stem().string();
@@ -117,7 +110,7 @@ Columns columns_of(const Line& header, const fs::path& file) {
 
 Clips read_csv(const Reading& in) {
   Clips clips;
-  for (const fs::path& file : files_of(in.source, ".csv")) {
+  for (const fs::path& file : files_of(in.source, files_with(in.source, ".csv"), "*.csv")) {
     Clip clip;
     clip.name = file.stem().string();
     clip.media = video_beside(file);

@@ -109,15 +109,13 @@ std::unique_ptr<Writer> webdataset_writer(Format,
 
 // Of the shards that the writer above makes, the labels alone: the pictures stay packed.
 Clips read_webdataset(const Reading& in) {
-  const std::vector<fs::path> shards = fs::is_directory(in.source)
-                                           ? files_with(in.source, ".tar")
-                                           : std::vector<fs::path>{in.source};
+  const std::string what = "sample (*.tar with *.json)";
   std::map<std::string, Clip> by_name;
-  for (const fs::path& shard : shards)
+  for (const fs::path& shard : files_of(in.source, files_with(in.source, ".tar"), what))
     tar::each_file(shard, ".json", [&](const std::string& name, const std::string& text) {
       add({text, Where{(shard / name).string()}}, by_name, in.left_out);
     });
-  if (by_name.empty()) throw Error("holds no sample (*.tar with *.json)", {in.source.string()});
+  if (by_name.empty()) throw Error("holds no " + what, {in.source.string()});
   Clips clips;
   for (auto& [name, clip] : by_name) {
     sort_frames(clip);
