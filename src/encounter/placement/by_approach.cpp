@@ -19,22 +19,12 @@ constexpr double kPartShare = 1e-9;
 // Half the interval over which a closest approach is told from a farthest one.
 constexpr double kNear_s = 0.05;
 
-// Axes of the own course, each in world: ahead, right, up.
-struct CourseFrame {
-  double course_rad = 0;
-
-  Vector3 world_from(const Vector3& ahead_right_above) const {
-    const double c = std::cos(course_rad);
-    const double s = std::sin(course_rad);
-    const Vector3& v = ahead_right_above;
-    return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), -v.z()};
-  }
-  Vector3 from_world(const Vector3& ned) const {
-    const double c = std::cos(course_rad);
-    const double s = std::sin(course_rad);
-    return {c * ned.x() + s * ned.y(), -s * ned.x() + c * ned.y(), -ned.z()};
-  }
-};
+// In world, from ahead, right, above of the own course.
+Vector3 in_world(const Vector3& v, double course_rad) {
+  const double c = std::cos(course_rad);
+  const double s = std::sin(course_rad);
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), -v.z()};
+}
 
 trajectory::State own_at_approach(const scene::Encounter& encounter, const trajectory::Path& own) {
   if (const auto state = own.at(encounter.cpa_time_s)) return *state;
@@ -165,23 +155,25 @@ trajectory::Path path_to_approach(const scene::Encounter& encounter,
                                   const trajectory::Path& own,
                                   const trajectory::AttitudeOverride& attitude) {
   const trajectory::State own_then = own_at_approach(encounter, own);
-  const CourseFrame frame{passage::course_rad(own_then)};
+  const double course_rad = passage::course_rad(own_then);
   const Vector3 velocity = velocity_of(encounter);
-  const Vector3 relative = velocity - frame.from_world(own_then.velocity_in_world_mps);
+  const auto [ahead_mps, right_mps, up_mps] =
+      passage::offset_from(own_then, own_then.velocity_in_world_mps);
+  const Vector3 relative = velocity - Vector3(ahead_mps, right_mps, up_mps);
   if (!(relative.norm() > kSameVelocityMps))
     throw Error(
         "the intruder has the velocity of the own aircraft at cpa_time_s, so that they stay "
         "as far apart as they are; expected another course_deg, speed_mps or climb_mps",
         encounter.where);
   const Vector3 offset = offset_of(encounter, relative);
-  const trajectory::Path path =
-      trajectory::steady({.position_ned_m = own_then.position_in_world + frame.world_from(offset),
-                          .time_s = encounter.cpa_time_s,
-                          .course_deg = degrees(frame.course_rad) + encounter.course_deg,
-                          .ground_speed_mps = std::hypot(velocity.x(), velocity.y()),
-                          .climb_mps = encounter.climb_mps,
-                          .turn_rate_dps = encounter.turn_rate_dps},
-                         attitude);
+  const trajectory::Path path = trajectory::steady(
+      {.position_ned_m = own_then.position_in_world + in_world(offset, course_rad),
+       .time_s = encounter.cpa_time_s,
+       .course_deg = degrees(course_rad) + encounter.course_deg,
+       .ground_speed_mps = std::hypot(velocity.x(), velocity.y()),
+       .climb_mps = encounter.climb_mps,
+       .turn_rate_dps = encounter.turn_rate_dps},
+      attitude);
   refuse_farthest(encounter, path, own);
   return path;
 }
