@@ -56,7 +56,6 @@ class Reader {
     const double altitude = number("altitude");
     return kMetresOfFoot * Vector3(north, east, -altitude);
   }
-  std::string place() const { return place_; }
 
  private:
   std::string_view bytes_;
