@@ -89,42 +89,6 @@ class CubicSpline {
   std::vector<Vector3> curvature_;
 };
 
-// The headings to keep where the path goes straight up or down or the object stands still: the last
-// defined heading before there, else the first one after. They are looked for once, when one is
-// needed.
-class KeptHeadings {
- public:
-  // The spline must outlive it.
-  explicit KeptHeadings(const CubicSpline& spline)
-      : spline_(spline), step_((spline.end() - spline.begin()) / kSteps) {}
-  double deg_at(double u) const {
-    std::call_once(once_, [this] { look(); });
-    const double step = std::clamp((u - spline_.begin()) / step_, 0.0, static_cast<double>(kSteps));
-    return yaw_deg_[static_cast<std::size_t>(step)];
-  }
-
- private:
-  // Number of equal parts of the path at whose ends a heading is looked for.
-  static constexpr int kSteps = 1024;
-
-  void look() const {
-    std::vector<std::optional<double>> defined(kSteps + 1);
-    for (int i = 0; i <= kSteps; ++i) {
-      const Vector3 v = spline_.at(spline_.begin() + step_ * i, 1);
-      if (has_heading(v)) defined[static_cast<std::size_t>(i)] = degrees(std::atan2(v.y(), v.x()));
-    }
-    const auto first =
-        std::ranges::find_if(defined, [](const auto& yaw) { return yaw.has_value(); });
-    double kept_deg = first == defined.end() ? 0.0 : **first;
-    for (const auto& yaw : defined) yaw_deg_.push_back(kept_deg = yaw.value_or(kept_deg));
-  }
-
-  const CubicSpline& spline_;
-  double step_;
-  mutable std::once_flag once_;
-  mutable std::vector<double> yaw_deg_;
-};
-
 // Heading and climb angle from the velocity, bank angle from a coordinated turn: tan(bank) = v_h *
 // turn rate / g.
 YawPitchRoll attitude_along(const Vector3& velocity,
@@ -152,30 +116,50 @@ State state_with(const Vector3& position,
   return {position, velocity, world_from_body(attitude)};
 }
 
-State state_along(const Vector3& position,
-                  const Vector3& velocity,
-                  const Vector3& acceleration,
-                  const AttitudeOverride& stated,
-                  const KeptHeadings& kept,
-                  double u) {
-  const double kept_yaw_deg = has_heading(velocity) ? 0.0 : kept.deg_at(u);
-  return state_with(
-      position, velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated);
-}
-
-// Neighbouring points may be equal: the object then stands still.
-class AtTimes {
+// A spline that an object flies along. Neighbouring points may be equal: the object then stands
+// still.
+class Curve : public CubicSpline {
  public:
-  AtTimes(std::vector<double> times, std::vector<Vector3> points, const AttitudeOverride& stated)
-      : spline_(std::move(times), std::move(points)), kept_(spline_), stated_(stated) {}
-  State at(double t) const {
-    return state_along(spline_.at(t, 0), spline_.at(t, 1), spline_.at(t, 2), stated_, kept_, t);
+  Curve(std::vector<double> knots, std::vector<Vector3> points, const AttitudeOverride& stated)
+      : CubicSpline(std::move(knots), std::move(points)),
+        stated_(stated),
+        step_((end() - begin()) / kSteps) {}
+  // Where the knots are times.
+  State state_at(double t) const { return state(t, at(t, 1), at(t, 2)); }
+  State state(double u, const Vector3& velocity, const Vector3& acceleration) const {
+    const double kept_yaw_deg = has_heading(velocity) ? 0.0 : kept_deg_at(u);
+    return state_with(
+        at(u, 0), velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated_);
   }
 
  private:
-  CubicSpline spline_;
-  KeptHeadings kept_;
+  // Number of equal parts of the path at whose ends a heading is looked for.
+  static constexpr int kSteps = 1024;
+
+  // The heading to keep where the path goes straight up or down or the object stands still: the
+  // last defined heading before there, else the first one after. They are looked for once, when one
+  // is needed.
+  double kept_deg_at(double u) const {
+    std::call_once(once_, [this] { look(); });
+    const double step = std::clamp((u - begin()) / step_, 0.0, static_cast<double>(kSteps));
+    return yaw_deg_[static_cast<std::size_t>(step)];
+  }
+  void look() const {
+    std::vector<std::optional<double>> defined(kSteps + 1);
+    for (int i = 0; i <= kSteps; ++i) {
+      const Vector3 v = at(begin() + step_ * i, 1);
+      if (has_heading(v)) defined[static_cast<std::size_t>(i)] = degrees(std::atan2(v.y(), v.x()));
+    }
+    const auto first =
+        std::ranges::find_if(defined, [](const auto& yaw) { return yaw.has_value(); });
+    double kept_deg = first == defined.end() ? 0.0 : **first;
+    for (const auto& yaw : defined) yaw_deg_.push_back(kept_deg = yaw.value_or(kept_deg));
+  }
+
   AttitudeOverride stated_;
+  double step_;
+  mutable std::once_flag once_;
+  mutable std::vector<double> yaw_deg_;
 };
 
 double unwrapped(double angle_deg, double before_deg) {
@@ -199,17 +183,14 @@ class AtSpeed {
           std::vector<Vector3> points,
           double speed,
           const AttitudeOverride& stated)
-      : spline_(std::move(knots), std::move(points)),
-        kept_(spline_),
-        speed_(speed),
-        stated_(stated) {
+      : curve_(std::move(knots), std::move(points), stated), speed_(speed) {
     // Number of equal parts of a span.
     constexpr int kParts = 64;
-    u_.push_back(spline_.begin());
+    u_.push_back(curve_.begin());
     length_.push_back(0);
-    for (std::size_t i = 0; i + 1 < spline_.knots().size(); ++i) {
-      const double a = spline_.knots()[i];
-      const double h = (spline_.knots()[i + 1] - a) / kParts;
+    for (std::size_t i = 0; i + 1 < curve_.knots().size(); ++i) {
+      const double a = curve_.knots()[i];
+      const double h = (curve_.knots()[i + 1] - a) / kParts;
       for (int part = 0; part < kParts; ++part) {
         length_.push_back(length_.back() + arc(a + h * part, a + h * (part + 1)));
         u_.push_back(a + h * (part + 1));
@@ -219,17 +200,15 @@ class AtSpeed {
   double end_s() const { return length_.back() / speed_; }
   State at(double t) const {
     const double u = parameter(t * speed_);
-    const Vector3 slope = spline_.at(u, 1);
-    const Vector3 bend = spline_.at(u, 2);
+    const Vector3 slope = curve_.at(u, 1);
+    const Vector3 bend = curve_.at(u, 2);
     const double rate = slope.norm();
-    if (rate < 1e-12)
-      return state_along(spline_.at(u, 0), Vector3::Zero(), Vector3::Zero(), stated_, kept_, u);
+    if (rate < 1e-12) return curve_.state(u, Vector3::Zero(), Vector3::Zero());
     const Vector3 tangent = slope / rate;
     const Vector3 curvature =
         // The derivative of the unit tangent by arc length.
         (bend - tangent * tangent.dot(bend)) / (rate * rate);
-    return state_along(
-        spline_.at(u, 0), speed_ * tangent, speed_ * speed_ * curvature, stated_, kept_, u);
+    return curve_.state(u, speed_ * tangent, speed_ * speed_ * curvature);
   }
 
  private:
@@ -239,10 +218,10 @@ class AtSpeed {
     constexpr double kWeight[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
     const double middle = 0.5 * (a + b);
     const double half = 0.5 * (b - a);
-    double sum = kWeight[0] * spline_.at(middle, 1).norm();
+    double sum = kWeight[0] * curve_.at(middle, 1).norm();
     for (int i = 1; i < 3; ++i)
-      sum += kWeight[i] * (spline_.at(middle - half * kNode[i], 1).norm() +
-                           spline_.at(middle + half * kNode[i], 1).norm());
+      sum += kWeight[i] * (curve_.at(middle - half * kNode[i], 1).norm() +
+                           curve_.at(middle + half * kNode[i], 1).norm());
     return half * sum;
   }
   // The spline's parameter at an arc length: the table gives the first guess and Newton's method
@@ -253,7 +232,7 @@ class AtSpeed {
     const double span = length_[i + 1] - length_[i];
     double u = u_[i] + (span > 0 ? (length - length_[i]) / span : 0.0) * (u_[i + 1] - u_[i]);
     for (int n = 0; n < 8; ++n) {
-      const double rate = spline_.at(u, 1).norm();
+      const double rate = curve_.at(u, 1).norm();
       if (rate < 1e-12) break;
       const double step = (length - length_[i] - arc(u_[i], u)) / rate;
       u = std::clamp(u + step, u_[i], u_[i + 1]);
@@ -262,10 +241,8 @@ class AtSpeed {
     return u;
   }
 
-  CubicSpline spline_;
-  KeptHeadings kept_;
+  Curve curve_;
   double speed_;
-  AttitudeOverride stated_;
   std::vector<double> u_;
   std::vector<double> length_;
 };
@@ -362,11 +339,11 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
           i - 1,
           times_s[i - 1]));
   }
-  const auto curve = std::make_shared<const AtTimes>(
+  const auto curve = std::make_shared<const Curve>(
       std::vector<double>(times_s.begin(), times_s.end()),
       std::vector<Vector3>(waypoints_ned_m.begin(), waypoints_ned_m.end()),
       attitude);
-  return Path(times_s.front(), times_s.back(), [curve](double t) { return curve->at(t); });
+  return Path(times_s.front(), times_s.back(), [curve](double t) { return curve->state_at(t); });
 }
 
 Path uniform(const Vector3& position_ned_m,
@@ -389,14 +366,14 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
 // and the path elsewhere.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude) {
   const auto along =
-      std::make_shared<const AtTimes>(samples.times_s, samples.positions_ned_m, attitude);
+      std::make_shared<const Curve>(samples.times_s, samples.positions_ned_m, attitude);
   const auto angles =
       std::make_shared<const CubicSpline>(samples.times_s, unwrapped_angles(samples));
   const std::array<bool, 3> sampled = {samples.has_angle[0] && !attitude.yaw_deg,
                                        samples.has_angle[1] && !attitude.pitch_deg,
                                        samples.has_angle[2] && !attitude.roll_deg};
   return Path(angles->begin(), angles->end(), [along, angles, sampled](double t) {
-    State state = along->at(t);
+    State state = along->state_at(t);
     YawPitchRoll turned = yaw_pitch_roll(state.world_from_body);
     const Vector3 angle = angles->at(t, 0);
     if (sampled[0]) turned.yaw_deg = angle[0];
