@@ -44,7 +44,7 @@ class Reader {
                  "frame_{} comes after frame_{}; expected increasing numbers", number, last));
       last = number;
       result.camera_ned_m.push_back(point(child(node, "CameraPos_m")));
-      result.frames.push_back(frame(node, number, result.camera_ned_m.back()));
+      result.frames.push_back(frame(node, number));
     }
     return result;
   }
@@ -96,12 +96,9 @@ class Reader {
     return box;
   }
 
-  std::optional<EvisionFrame> frame(const pugi::xml_node& node,
-                                    int number_of_frame,
-                                    const Vector3& camera_ned_m) {
+  std::optional<EvisionFrame> frame(const pugi::xml_node& node, int number_of_frame) {
     EvisionFrame frame;
     frame.number = number_of_frame;
-    frame.camera_ned_m = camera_ned_m;
     frame.rect_px = rectangle(child(node, "IntruderRect_pix"));
     const pugi::xml_node position = node.child("IntruderPos_m");
     if (!position) return std::nullopt;

@@ -19,7 +19,6 @@ namespace airtruth::annotation {
 struct EvisionFrame {
   // The N of frame_N.
   int number = 1;
-  Vector3 camera_ned_m = Vector3::Zero();
   Vector3 intruder_ned_m = Vector3::Zero();
   double distance_m = 0;
   // All zero: no box.

@@ -38,7 +38,6 @@ annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
                                        const annotation::Intruder& intruder) {
   annotation::EvisionFrame frame;
   frame.number = static_cast<int>(truth.frame) + 1;
-  frame.camera_ned_m = truth.camera_position_ned_m;
   frame.intruder_ned_m = *intruder.position_ned_m;
   frame.distance_m = *intruder.range_m;
   if (intruder.covered_box_px) frame.rect_px = *intruder.covered_box_px;
