@@ -30,15 +30,12 @@ export function freePlace([w, h]: Point, places: Point[], room: BoxPx, taken: Bo
 export interface Seen {
   pixel: Point;
   range_m: number;
-  width_px: number;
-  isVisible: boolean;
 }
 
 export const isPlaced = (point: TrackPoint): point is[number, number, number, number, number | null, boolean] =>
     point[1] !== null && point[2] !== null;
-const seenOf = (point: TrackPoint): Seen|null => isPlaced(point) ?
-    {pixel: [point[1], point[2]], range_m: point[3], width_px: point[4] ?? 0, isVisible: point[5]} :
-    null;
+const seenOf = (point: TrackPoint): Seen|null =>
+    (isPlaced(point) ? {pixel: [point[1], point[2]], range_m: point[3]} : null);
 
 // Where a track is in a frame: its points in order of their frames, and what lies between two by straight lines. Beyond
 // its ends it is not there.
@@ -58,14 +55,8 @@ export function seenAt(track: Track, frame: number): Seen|null {
   const share = b[0] > a[0] ? (frame - a[0]) / (b[0] - a[0]) : 0;
   const [from, to] = [seenOf(a), seenOf(b)];
   if (!from || !to) return share < 0.5 ? from : to;
-  const between = (of: (seen: Seen) => number) => mix(of(from), of(to), share);
-  const pixel: Point = [between((seen) => seen.pixel[0]), between((seen) => seen.pixel[1])];
-  return {
-    pixel,
-    range_m: between((seen) => seen.range_m),
-    width_px: between((seen) => seen.width_px),
-    isVisible: share < 0.5 ? from.isVisible : to.isVisible
-  };
+  const pixel: Point = [mix(from.pixel[0], to.pixel[0], share), mix(from.pixel[1], to.pixel[1], share)];
+  return {pixel, range_m: mix(from.range_m, to.range_m, share)};
 }
 
 // The same, going on straight beyond the ends; none of a track without points.
