@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
-import {type Flyer, flyersOf, isSame, momentsOf, numberOf, roomOf, tableOf, trackOf} from '../model/flyers';
+import {type Flyer, isSame, momentsOf, numberOf, roomOf, tableOf, trackOf} from '../model/flyers';
 import {clamp, nedAt, round} from '../model/geometry';
-import {attribute, renewed, s, ui} from './part';
+import {attribute, renewed, s} from './part';
 import {type Drag, SideView, niceStep} from './side_view';
 
 // Around the plot, where text is 16 px: left, right, top and bottom.
@@ -25,16 +25,10 @@ export class HeightView extends SideView {
     super('Height over time', 'Height over time');
   }
 
-  protected update(): void {
-    const {plan, state, clip, frame} = this.now;
-    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
-    if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
-    attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
-    this.px = ui();
+  protected draw(plan: Plan, clip: Clip, flyers: Flyer[], own: Ned|null, width: number, height: number): void {
     [this.left, this.right, this.top, this.bottom] = MARGINS.map((margin) => margin * this.px);
     if (!this.drag) this.frameAll(plan);
-    const own = nedAt(plan, plan.own.ned, frame);
-    const x = this.x(frame / clip.rate_hz);
+    const x = this.x(this.now.frame / clip.rate_hz);
     renewed(this.svg, [
       this.axes(clip, width, height),
       ...(own ? plan.volumes.filter((one) => one.vertical_m > 0)
@@ -42,7 +36,7 @@ export class HeightView extends SideView {
                 []),
       s('polyline', {class: 'own', points: this.points(plan, plan.own.ned)}),
       s('line', {class: 'cursor', x1: x, x2: x, y1: this.top, y2: height - this.bottom}),
-      ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip)),
+      ...flyers.flatMap((flyer) => this.flyer(flyer, plan, clip)),
     ]);
   }
 
@@ -135,9 +129,7 @@ export class HeightView extends SideView {
   private flyer(flyer: Flyer, plan: Plan, clip: Clip): SVGElement[] {
     const track = trackOf(plan, flyer.path);
     if (!track) return [];
-    const group = this.group(flyer);
-    const points = this.points(plan, track.ned);
-    group.append(s('polyline', {class: 'line', points}), s('polyline', {class: 'grip', points}));
+    const group = this.group(flyer, this.points(plan, track.ned));
     const now = nedAt(plan, track.ned, this.now.frame);
     if (now)
       group.append(

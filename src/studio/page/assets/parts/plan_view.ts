@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx, Change, Clip, Ned, Plan, Track} from '../model/contract';
-import {type Flyer, acrossOf, flyerAt, flyersOf, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, withCourse, writtenRange, writtenWidth} from '../model/flyers';
+import {type Flyer, acrossOf, flyerAt, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, withCourse, writtenRange, writtenWidth} from '../model/flyers';
 import {type Point, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
-import {attribute, renewed, s, ui, wordsWidth} from './part';
+import {renewed, s, wordsWidth} from './part';
 import {type Drag, SideView, niceStep} from './side_view';
 
 const MARGIN_PX = 26;
@@ -31,21 +31,15 @@ export class PlanView extends SideView {
     super('From above', 'Plan view, own course up');
   }
 
-  protected update(): void {
-    const {plan, state, clip, frame} = this.now;
-    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
-    if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
-    this.px = ui();
+  protected draw(plan: Plan, clip: Clip, flyers: Flyer[], own: Ned|null, width: number, height: number): void {
     if (!this.drag) this.frameAll(plan, clip, width, height);
-    attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
-    const own = nedAt(plan, plan.own.ned, frame);
     this.labels = [];
     this.taken = [];
     renewed(this.svg, [
       this.grid(width, height),
       ...(own ? [this.fieldOfView(plan, own), ...this.volumes(plan, own)] : []),
       s('polyline', {class: 'own', points: this.points(plan.own.ned)}),
-      ...flyersOf(state.scene).flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
+      ...flyers.flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
       ...(own ? [this.ownMark(plan, clip, own)] : []),
     ]);
     this.svg.append(this.placedLabels(width, height));
@@ -183,10 +177,7 @@ export class PlanView extends SideView {
     const track = trackOf(plan, flyer.path);
     if (!track) return [];
     const isSelected = isSame(flyer.path, this.now.selected);
-    const group = this.group(flyer);
-    group.append(
-        s('polyline', {class: 'line', points: this.points(track.ned)}),
-        s('polyline', {class: 'grip', points: this.points(track.ned)}));
+    const group = this.group(flyer, this.points(track.ned));
     const now = nedAt(plan, track.ned, this.now.frame);
     if (now && own) {
       const [[x, y], [ox, oy]] = [this.at(now), this.at(own)];

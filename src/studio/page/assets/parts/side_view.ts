@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Change} from '../model/contract';
-import {type Flyer, flyerAt, isSame} from '../model/flyers';
-import {round} from '../model/geometry';
+import type {Change, Clip, Ned, Plan} from '../model/contract';
+import {type Flyer, flyerAt, flyersOf, isSame} from '../model/flyers';
+import {nedAt, round} from '../model/geometry';
 import type {Member} from '../model/store';
-import {Part, h, s} from './part';
+import {Part, attribute, h, s, ui} from './part';
 
 export interface Drag {
   kind: 'approach'|'course'|'moment'|'time';
@@ -35,7 +35,17 @@ export abstract class SideView extends Part {
     for (const end of ['pointerup', 'pointercancel'] as const) this.svg.addEventListener(end, () => this.up());
   }
 
-  protected abstract update(): void;
+  protected update(): void {
+    const {plan, state, clip, frame} = this.now;
+    const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
+    if (!plan || !state || !clip || !plan.frames.length || !width || !height) return;
+    this.px = ui();
+    attribute(this.svg, 'viewBox', `0 0 ${width} ${height}`);
+    this.draw(plan, clip, flyersOf(state.scene), nedAt(plan, plan.own.ned, frame), width, height);
+  }
+
+  // `own`: where the own aircraft is in the frame shown.
+  protected abstract draw(plan: Plan, clip: Clip, flyers: Flyer[], own: Ned|null, width: number, height: number): void;
 
   // The flyer under the pointer, which becomes the selected one, and the handle of it.
   protected pressed(event: PointerEvent):
@@ -69,11 +79,14 @@ export abstract class SideView extends Part {
     this.drag = null;
   }
 
-  protected group(flyer: Flyer): SVGGElement {
-    return s('g', {
-      class: `flyer colour-${flyer.colour}${isSame(flyer.path, this.now.selected) ? ' selected' : ''}`,
-      'data-path': JSON.stringify(flyer.path)
-    });
+  // The line of a flyer through points.
+  protected group(flyer: Flyer, points: string): SVGGElement {
+    return s(
+        'g', {
+          class: `flyer colour-${flyer.colour}${isSame(flyer.path, this.now.selected) ? ' selected' : ''}`,
+          'data-path': JSON.stringify(flyer.path)
+        },
+        s('polyline', {class: 'line', points}), s('polyline', {class: 'grip', points}));
   }
 
   // The closest approach; a handle where the path is stated by it.
