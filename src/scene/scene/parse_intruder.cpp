@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/scene/tables.h"
-
 #include <cmath>
 #include <map>
 #include <string>
@@ -9,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "aircraft/wrapper/reader.h"
+#include "scene/scene/tables.h"
 
 namespace airtruth::scene {
 namespace {
