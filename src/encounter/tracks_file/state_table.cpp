@@ -281,30 +281,29 @@ std::string daa_of(const track::Encounter& encounter) {
   std::string text =
       "NAME sx sy sz vx vy vz time\n"
       "[none] [m] [m] [m] [m/s] [m/s] [m/s] [s]\n";
-  struct Row {
-    double time_s;
-    const track::Track* track;
-    std::size_t i;
-  };
-  std::vector<Row> rows;
-  for (const track::Track& track : tracks)
-    for (std::size_t i = 0; i < track.size(); ++i) rows.push_back({track.times_s[i], &track, i});
-  std::ranges::stable_sort(rows, {}, &Row::time_s);
-  for (const auto& [time_s, track, i] : rows) {
-    const Vector3& p = track->positions_ned_m[i];
-    const Vector3& v = track->velocities_ned_mps[i];
-    fmt::format_to(std::back_inserter(text),
-                   "{} {} {} {} {} {} {} {}\n",
-                   track->name,
-                   plain(p.y()),
-                   plain(p.x()),
-                   plain(-p.z()),
-                   plain(v.y()),
-                   plain(v.x()),
-                   plain(-v.z()),
-                   time_s);
+  std::vector<std::size_t> next(tracks.size(), 0);
+  for (;;) {
+    double time_s = HUGE_VAL;
+    for (std::size_t a = 0; a < tracks.size(); ++a)
+      if (next[a] < tracks[a].size()) time_s = std::min(time_s, tracks[a].times_s[next[a]]);
+    if (time_s == HUGE_VAL) return text;
+    for (std::size_t a = 0; a < tracks.size(); ++a) {
+      if (next[a] >= tracks[a].size() || tracks[a].times_s[next[a]] != time_s) continue;
+      const Vector3& p = tracks[a].positions_ned_m[next[a]];
+      const Vector3& v = tracks[a].velocities_ned_mps[next[a]];
+      fmt::format_to(std::back_inserter(text),
+                     "{} {} {} {} {} {} {} {}\n",
+                     tracks[a].name,
+                     plain(p.y()),
+                     plain(p.x()),
+                     plain(-p.z()),
+                     plain(v.y()),
+                     plain(v.x()),
+                     plain(-v.z()),
+                     time_s);
+      ++next[a];
+    }
   }
-  return text;
 }
 
 std::string state_table_of(const track::Encounter& encounter) {

@@ -90,12 +90,6 @@ std::string first_of(const std::string& a, const std::string& b, const std::stri
   return !a.empty() ? a : !b.empty() ? b : c;
 }
 
-// Frame i has the picture names[i].
-void join(Clip& clip, const fs::path& folder, const std::vector<std::string>& names) {
-  clip.media = folder;
-  for (std::size_t i = 0; i < names.size(); ++i) clip.frames[i].picture = names[i];
-}
-
 }  // namespace
 
 void expect_inside(const std::string& name, const Where& where) {
@@ -216,7 +210,8 @@ void join_by_number(Clip& clip,
                                         clip.name));
     names.push_back(found->second.front());
   }
-  join(clip, folder, names);
+  clip.media = folder;
+  for (std::size_t i = 0; i < names.size(); ++i) clip.frames[i].picture = names[i];
 }
 
 void join_in_order(Clip& clip, const fs::path& folder, const Warn& warn) {
@@ -233,7 +228,8 @@ void join_in_order(Clip& clip, const fs::path& folder, const Warn& warn) {
                                       series == 1 ? "" : fmt::format(" of {} series", series),
                                       clip.frames.size(),
                                       clip.name));
-  join(clip, folder, names);
+  clip.media = folder;
+  for (std::size_t i = 0; i < names.size(); ++i) clip.frames[i].picture = names[i];
 }
 
 }  // namespace airtruth::exchange
