@@ -510,43 +510,28 @@ class Am3 : public Tracker {
 
 }  // namespace
 
-Am3Options am3_options(std::uint64_t seed) {
-  Am3Options options;
-  options.seed = seed;
-  return options;
-}
-
-Am3Options am3s_options(std::uint64_t seed) {
-  Am3Options options = am3_options(seed);
-  options.follows_scale = true;
-  return options;
-}
-
-Am3Options wmil_options(std::uint64_t seed) {
-  Am3Options options;
-  options.seed = seed;
-  options.search_radius_px = 25;
-  options.levels = 1;
-  options.voters = 1;
-  options.pool = 150;
-  options.selected = 15;
-  options.memory = 0.85;
-  options.positive_share = INFINITY;
-  options.gap_px = 4;
-  options.hard = 0;
-  return options;
-}
-
-Am3Options mil_options(std::uint64_t seed) {
-  Am3Options options = wmil_options(seed);
-  options.pool = 250;
-  options.selected = 50;
-  options.negatives = 65;
-  options.weighted = false;
-  return options;
-}
-
-std::unique_ptr<Tracker> make_am3(const Am3Options& options) {
+std::unique_ptr<Tracker> make_am3(std::string_view name, std::uint64_t seed) {
+  const bool is_mil = name == "mil";
+  const bool is_single = is_mil || name == "wmil";
+  if (!is_single && name != "am3" && name != "am3s") return nullptr;
+  Am3Options options{.seed = seed, .follows_scale = name == "am3s"};
+  if (is_single) {
+    options.search_radius_px = 25;
+    options.levels = 1;
+    options.voters = 1;
+    options.pool = 150;
+    options.selected = 15;
+    options.memory = 0.85;
+    options.positive_share = INFINITY;
+    options.gap_px = 4;
+    options.hard = 0;
+  }
+  if (is_mil) {
+    options.pool = 250;
+    options.selected = 50;
+    options.negatives = 65;
+    options.weighted = false;
+  }
   return std::make_unique<Am3>(options);
 }
 

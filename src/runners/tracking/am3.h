@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "runners/tracking/tracker.h"
 
@@ -50,15 +51,9 @@ struct Am3Options {
   bool follows_scale = false;  // false: the box keeps its first size
 };
 
-Am3Options am3_options(std::uint64_t seed);
-// AM3 that follows the scale by optical flow (am3.cpp). Its classifiers start anew whenever the
-// scale has changed by half.
-Am3Options am3s_options(std::uint64_t seed);
-// The trackers of Babenko et al. (mil) and of Zhang and Song (wmil): one classifier at one
-// resolution.
-Am3Options mil_options(std::uint64_t seed);
-Am3Options wmil_options(std::uint64_t seed);
-
-std::unique_ptr<Tracker> make_am3(const Am3Options& options);
+// Makes "am3"; "am3s", which follows the scale by optical flow and whose classifiers start anew
+// whenever the scale has changed by half; and the trackers of Babenko et al. ("mil") and of Zhang
+// and Song ("wmil"), one classifier at one resolution. Returns nullptr for any other name.
+std::unique_ptr<Tracker> make_am3(std::string_view name, std::uint64_t seed);
 
 }  // namespace airtruth::tracking

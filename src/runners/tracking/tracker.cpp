@@ -26,10 +26,7 @@ std::vector<std::string> tracker_names() {
 
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOptions& options) {
   const std::uint64_t seed = options.seed;
-  if (name == "am3") return make_am3(am3_options(seed));
-  if (name == "am3s") return make_am3(am3s_options(seed));
-  if (name == "wmil") return make_am3(wmil_options(seed));
-  if (name == "mil") return make_am3(mil_options(seed));
+  if (auto tracker = make_am3(name, seed)) return tracker;
   if (auto tracker = make_opencv_tracker(name, seed)) return tracker;
   if (auto tracker = make_trax_tracker(name, options)) return tracker;
   const std::vector<std::string> names = tracker_names();
