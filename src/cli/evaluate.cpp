@@ -97,14 +97,14 @@ void print_declarations(const char* kind,
                         summary.to_closest_approach_s->mean);
   if (summary.in_time)
     line += fmt::format("; {:g} s before {}: {} of those in {} sequences",
-                        assessment.manoeuvre_s.value_or(0),
-                        assessment.volume,
+                        assessment.options.manoeuvre_s.value_or(0),
+                        assessment.options.volume,
                         share_of(*summary.in_time),
                         summary.in_time->clusters);
   if (summary.impossible > 0)
     line += fmt::format("; {} clips begin too late for it", summary.impossible);
   if (summary.no_violation > 0)
-    line += fmt::format("; {} never violate {}", summary.no_violation, assessment.volume);
+    line += fmt::format("; {} never violate {}", summary.no_violation, assessment.options.volume);
   console.result(line);
 }
 
@@ -159,12 +159,12 @@ void add_detection_options(CLI::App& command, EvaluateDetections& arguments) {
       ->group(group);
   command
       .add_option("--score",
-                  options.point.score,
+                  options.score,
                   "Detections with this score or more count at the operating point")
       ->group(group);
   command
       .add_option("--false-alarms",
-                  options.point.false_alarms_per_image,
+                  options.false_alarms_per_image,
                   "Otherwise the least score with so many false alarms an image at most (default: "
                   "0.1)")
       ->check(CLI::Range(0.0, 1e6))
@@ -198,7 +198,7 @@ void add_detection_options(CLI::App& command, EvaluateDetections& arguments) {
 void print_detections(const scores::Assessment& assessment, Console& console) {
   console.result(row({"detector",
                       "sequences",
-                      fmt::format("AP@{:g}px", assessment.centre_px),
+                      fmt::format("AP@{:g}px", assessment.options.centre_px),
                       "95 %",
                       "AP50",
                       "AP",
@@ -333,14 +333,8 @@ void set_options(Evaluate& arguments, Context& context) {
   for (const std::string& text : arguments.where)
     options.where.push_back(sequences::condition_from(text));
   follow(options, context, "reading the videos", "sequences");
-  detector_evaluation::AssessOptions& detections = arguments.detections.options;
-  detections.ignore = arguments.detections.ignore;
-  detections.with_film = options.with_film;
-  detections.where = options.where;
-  detections.jobs = options.jobs;
-  detections.warn = options.warn;
-  detections.stop = options.stop;
-  detections.progress = options.progress;
+  static_cast<report::RunOptions&>(arguments.detections.options) = options;
+  arguments.detections.options.ignore = arguments.detections.ignore;
 }
 
 void evaluate_trackers(const Evaluate& arguments,
@@ -375,11 +369,7 @@ void evaluate_detectors(const Evaluate& arguments,
   files.write(arguments.out, [&](const fs::path& out) {
     detector_evaluation::write_tables(assessment, out);
     if (arguments.options.with_film)
-      detector_evaluation::write_page(assessment,
-                                      out,
-                                      {.jobs = arguments.options.jobs,
-                                       .progress = arguments.options.progress,
-                                       .stop = arguments.options.stop});
+      detector_evaluation::write_page(assessment, out, arguments.options);
     if (!arguments.figures.empty())
       detector_evaluation::write_figures(assessment, out, arguments.figures);
   });

@@ -90,8 +90,8 @@ void expect_number(const char* option, const std::optional<double>& value) {
 
 void check_options(const AssessOptions& options) {
   expect_number("--centre-px", options.centre_px);
-  expect_number("--score", options.point.score);
-  expect_number("--false-alarms", options.point.false_alarms_per_image);
+  expect_number("--score", options.score);
+  expect_number("--false-alarms", options.false_alarms_per_image);
   expect_number("--manoeuvre-s", options.manoeuvre_s);
   if (options.manoeuvre_s && options.volume.empty())
     throw Error("--manoeuvre-s needs --volume: the volume that the manoeuvre is to avoid");
@@ -114,14 +114,11 @@ scores::Assessment assess(const fs::path& set,
   check_options(options);
   scores::Assessment assessment;
   assessment.set = report::name_of_results(set);
-  assessment.centre_px = options.centre_px;
-  assessment.point = options.point;
-  assessment.manoeuvre_s = options.manoeuvre_s;
-  assessment.volume = options.volume;
+  assessment.options = options;
   for (const sequences::Condition& one : options.where) assessment.where.push_back(one.text);
-  SetTruth truth = set_truth(set, {options.volume, options.ignore, options.warn});
+  SetTruth truth = set_truth(set, options.volume, options.ignore, options.warn);
   assessment.truths = std::move(truth.sequences);
-  assessment.is_weighted = truth.is_weighted;
+  assessment.options.is_weighted = truth.is_weighted;
   assessment.left_out = std::move(truth.left_out);
   // Results are read first, so that their faults are reported before minutes of video are read.
   AllResults found;
@@ -141,14 +138,12 @@ scores::Assessment assess(const fs::path& set,
   std::vector<std::string> names;
   for (const auto& [name, sequences] : found) names.push_back(name);
   assessment.detectors.resize(names.size());
-  const scores::ScoreOptions score_options{
-      options.centre_px, options.point, options.manoeuvre_s, assessment.is_weighted};
   in_parallel(
       names.size(),
       options.jobs,
       [&](std::size_t i) {
         assessment.detectors[i] = scores::score_detector(
-            names[i], std::move(found.at(names[i])), assessment.truths, score_options);
+            names[i], std::move(found.at(names[i])), assessment.truths, assessment.options);
       },
       {},
       options.stop);

@@ -10,6 +10,11 @@
 namespace airtruth::detector_evaluation {
 namespace {
 
+// Stills of all sequences together, some 25 kB each, and of one sequence.
+constexpr std::size_t kMaxStills = 1000;
+constexpr std::size_t kLeastStills = 2;
+constexpr std::size_t kMostStills = 60;
+
 // A cutout to be made, and where it goes.
 struct Wanted {
   Box box;
@@ -31,9 +36,7 @@ struct Plan {
 };
 
 // The cutouts of both galleries, and the stills.
-std::vector<Plan> plans_of(const scores::Assessment& assessment,
-                           const FilmOptions& options,
-                           Film& film) {
+std::vector<Plan> plans_of(const scores::Assessment& assessment, Film& film) {
   std::vector<Plan> plans(assessment.truths.size());
   film.false_alarms.resize(assessment.detectors.size());
   film.misses.resize(assessment.detectors.size());
@@ -61,8 +64,8 @@ std::vector<Plan> plans_of(const scores::Assessment& assessment,
   for (const scores::DetectorScore& detector : assessment.detectors)
     for (const scores::ScoredDetections& scored : detector.sequences)
       with_results.insert(scored.truth);
-  const std::size_t of_one = std::clamp<std::size_t>(
-      options.max_stills / std::max<std::size_t>(1, with_results.size()), 2, options.max_of_one);
+  const std::size_t of_one = std::clamp(
+      kMaxStills / std::max<std::size_t>(1, with_results.size()), kLeastStills, kMostStills);
   for (const std::size_t i : with_results) {
     const std::size_t frames = assessment.truths[i].frames.size();
     plans[i].stills = report::spread_over(frames, of_one);
@@ -121,22 +124,21 @@ std::vector<report::Still> read_film(const scores::Assessment& assessment,
 
 }  // namespace
 
-Film film_of(const scores::Assessment& assessment, const FilmOptions& options) {
+Film film_of(const scores::Assessment& assessment, const report::RunOptions& run) {
   Film film;
   film.sequences.resize(assessment.truths.size());
-  const std::vector<Plan> plans = plans_of(assessment, options, film);
+  const std::vector<Plan> plans = plans_of(assessment, film);
   std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i < plans.size(); ++i)
     if (!plans[i].is_empty()) wanted.push_back(i);
   in_parallel(
       wanted.size(),
-      options.jobs,
+      run.jobs,
       [&](std::size_t i) {
-        film.sequences[wanted[i]] =
-            read_film(assessment, wanted[i], plans[wanted[i]], options.stop);
+        film.sequences[wanted[i]] = read_film(assessment, wanted[i], plans[wanted[i]], run.stop);
       },
-      options.progress,
-      options.stop);
+      run.progress,
+      run.stop);
   return film;
 }
 

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <stop_token>
-#include <string>
 #include <vector>
 
 #include "evaluation/report/film.h"
+#include "evaluation/report/run_options.h"
 #include "evaluation/scores/detector_score.h"
 
 namespace airtruth::detector_evaluation {
@@ -21,19 +18,9 @@ struct Film {
   std::vector<std::vector<report::Cutout>> false_alarms, misses;
 };
 
-struct FilmOptions {
-  // Upper bound for the stills of all sequences together, some 25 kB each.
-  std::size_t max_stills = 1000;
-  // Of one sequence.
-  std::size_t max_of_one = 60;
-  int jobs = 0;  // videos read at a time; 0: one per core
-  std::function<void(std::int64_t done, std::int64_t total)> progress;
-  std::stop_token stop;
-};
-
 // Reads the video of each sequence with results once, as far as its last frame that is shown.
 // Stills are spread over a sequence; the frames of its false alarms and misses are among them while
 // there is room. Throws Error where a video ends before a frame that it should show.
-Film film_of(const scores::Assessment& assessment, const FilmOptions& options);
+Film film_of(const scores::Assessment& assessment, const report::RunOptions& run);
 
 }  // namespace airtruth::detector_evaluation

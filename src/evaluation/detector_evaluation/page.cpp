@@ -14,6 +14,7 @@
 #include "evaluation/detector_evaluation/plots.h"
 #include "evaluation/detector_evaluation/tables.h"
 #include "foundation/base/files.h"
+#include "foundation/json/or_null.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
 #include "show/plot/plot_json.h"
@@ -226,10 +227,10 @@ Json data_of(const scores::Assessment& assessment, const Film& film) {
   Json data = {{"dataset", assessment.set},
                {"version", kVersion},
                {"frames", frames},
-               {"centre_px", assessment.centre_px},
-               {"manoeuvre_s", assessment.manoeuvre_s ? Json(*assessment.manoeuvre_s) : Json()},
-               {"volume", assessment.volume},
-               {"is_weighted", assessment.is_weighted},
+               {"centre_px", assessment.options.centre_px},
+               {"manoeuvre_s", or_null(assessment.options.manoeuvre_s)},
+               {"volume", assessment.options.volume},
+               {"is_weighted", assessment.options.is_weighted},
                {"left_out", assessment.left_out},
                {"plots", report::json_of(detection_plots(assessment))},
                {"detectors", Json::array()},
@@ -247,8 +248,8 @@ Json data_of(const scores::Assessment& assessment, const Film& film) {
 
 void write_page(const scores::Assessment& assessment,
                 const fs::path& out,
-                const FilmOptions& options) {
-  const Film film = film_of(assessment, options);
+                const report::RunOptions& run) {
+  const Film film = film_of(assessment, run);
   write_file(
       out / "detection.html",
       html::page_of("airtruth evaluation of detectors",

@@ -14,7 +14,7 @@ namespace airtruth::detector_evaluation {
 // tracks drawn, and galleries of false alarms and misses. The page needs no network.
 void write_page(const scores::Assessment& assessment,
                 const std::filesystem::path& out,
-                const FilmOptions& options);
+                const report::RunOptions& run);
 
 // Writes the plots (plots.h) into out/figures as detection_NAME.png, .pdf or .svg, each
 // with its gnuplot script and data beside it, and detection_ranking, the average precisions with

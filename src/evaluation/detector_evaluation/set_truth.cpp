@@ -439,9 +439,12 @@ double entry_s(const separation::Volume& volume, const PairState& before, const 
 
 }  // namespace
 
-SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
+SetTruth set_truth(const fs::path& folder,
+                   const std::string& volume,
+                   fs::path ignore,
+                   const Warn& warn) {
   const labelled::LabelledSet set(folder);
-  const dataset::Boxes boxes = set.usual_boxes(options.warn);
+  const dataset::Boxes boxes = set.usual_boxes(warn);
   SetTruth result;
   std::vector<std::int64_t> first_frames;
   std::size_t weighted = 0;
@@ -450,7 +453,7 @@ SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
       result.sequences.push_back(imported_truth(set, name));
       first_frames.push_back(0);
     } else {
-      RenderedTruth rendered = rendered_truth(set.folder(name), boxes, options.volume);
+      RenderedTruth rendered = rendered_truth(set.folder(name), boxes, volume);
       result.sequences.push_back(std::move(rendered.truth));
       first_frames.push_back(rendered.first_background_frame);
       weighted += rendered.has_weight ? 1 : 0;
@@ -467,12 +470,11 @@ SetTruth set_truth(const fs::path& folder, const SetTruthOptions& options) {
                     "a weight of 1",
                     result.sequences.size() - weighted,
                     result.sequences.size()));
-  expect_volume(result, options.volume);
-  fs::path ignore = options.ignore;
+  expect_volume(result, volume);
   if (ignore.empty() && fs::exists(folder / kIgnoreFile)) ignore = folder / kIgnoreFile;
   if (!ignore.empty()) ignore_regions(ignore, first_frames, result.sequences);
   drop_hours_unless_all_known(result);
-  say_what_is_missing(result, options.volume);
+  say_what_is_missing(result, volume);
   return result;
 }
 

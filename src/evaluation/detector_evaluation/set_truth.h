@@ -18,14 +18,6 @@
 // The truth of a data set as the measures of detections take it.
 namespace airtruth::detector_evaluation {
 
-struct SetTruthOptions {
-  // Name of a volume whose violation counts; empty: none.
-  std::string volume;
-  // File of ignored regions; empty: ignore.csv in the set's folder where it is there.
-  fs::path ignore;
-  Warn warn;
-};
-
 struct SetTruth {
   std::vector<scores::TruthSequence> sequences;  // sorted by name
   bool is_weighted = false;                      // a sequence states a weight
@@ -33,10 +25,15 @@ struct SetTruth {
   std::vector<std::string> left_out;
 };
 
+// `volume` is the name of a volume whose violation counts; empty: none. `ignore` is the file of
+// ignored regions; empty: ignore.csv in the set's folder where it is there.
 // An aircraft that is visible without a covered box is in the truth with its visible box and does
 // not count. Throws Error for a volume that is neither known nor any sequence's own, for a broken
 // file of regions, and for a region that fits no sequence.
-SetTruth set_truth(const fs::path& set, const SetTruthOptions& options);
+SetTruth set_truth(const fs::path& set,
+                   const std::string& volume,
+                   fs::path ignore,
+                   const Warn& warn);
 
 // Measures the contrast to noise of every aircraft in the sequence's video; without a video nothing
 // happens. Throws Error where the video ends before the truth does.

@@ -489,11 +489,11 @@ std::string curves_csv(const Detectors& detectors) {
 }
 
 Json point_options_of(const scores::Assessment& assessment) {
-  Json json = {{"centre_px", assessment.centre_px}};
-  if (assessment.point.score)
-    json["score"] = *assessment.point.score;
+  Json json = {{"centre_px", assessment.options.centre_px}};
+  if (assessment.options.score)
+    json["score"] = *assessment.options.score;
   else
-    json["false_alarms_per_image"] = assessment.point.false_alarms_per_image;
+    json["false_alarms_per_image"] = assessment.options.false_alarms_per_image;
   return json;
 }
 
@@ -503,16 +503,17 @@ void write_tables(const scores::Assessment& assessment, const std::filesystem::p
   Detectors detectors;
   for (const scores::DetectorScore& detector : assessment.detectors)
     detectors.push_back(json_of_detector(detector, assessment));
-  Json all = {{"format", kFormat},
-              {"version", kVersion},
-              {"dataset", assessment.set},
-              {"options", point_options_of(assessment)},
-              {"manoeuvre_s", or_null(assessment.manoeuvre_s)},
-              {"volume", assessment.volume.empty() ? Json() : Json(assessment.volume)},
-              {"weighted", assessment.is_weighted},
-              {"where", assessment.where},
-              {"left_out", assessment.left_out},
-              {"detectors", detectors}};
+  Json all = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"dataset", assessment.set},
+      {"options", point_options_of(assessment)},
+      {"manoeuvre_s", or_null(assessment.options.manoeuvre_s)},
+      {"volume", assessment.options.volume.empty() ? Json() : Json(assessment.options.volume)},
+      {"weighted", assessment.options.is_weighted},
+      {"where", assessment.where},
+      {"left_out", assessment.left_out},
+      {"detectors", detectors}};
   report::write_files(out,
                       {{"detectors.csv", report::csv_of(kDetectorColumns, detectors, kNumber)},
                        {"detection_sequences.csv", sequences_csv(assessment)},

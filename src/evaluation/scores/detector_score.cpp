@@ -214,11 +214,10 @@ class Scoring {
     if (result_.froc.points.empty()) return;
     // Where the best detection is a false alarm and one is too many, the point is that of its
     // score.
-    const double score =
-        options_.point.score
-            ? *options_.point.score
-            : evaluation::score_at_false_alarms(sequences, options_.point.false_alarms_per_image)
-                  .value_or(result_.froc.points.front().score);
+    const double score = options_.score ? *options_.score
+                                        : evaluation::score_at_false_alarms(
+                                              sequences, options_.false_alarms_per_image)
+                                              .value_or(result_.froc.points.front().score);
     result_.point = evaluation::froc_at(sequences, score);
   }
 
@@ -237,14 +236,13 @@ class Scoring {
     std::vector<evaluation::Identity> identities;
     for (std::size_t i = 0; i < result_.sequences.size(); ++i) {
       const ScoredDetections& scored = result_.sequences[i];
-      const evaluation::TrackFrames frames =
-          track_frames_of(truth(scored), scored, options_.point.score);
+      const evaluation::TrackFrames frames = track_frames_of(truth(scored), scored, options_.score);
       hotas.push_back(evaluation::hota_of(frames));
       clears.push_back(evaluation::clear_mot_of(frames));
       identities.push_back(evaluation::identity_of(frames));
-      tracks.false_tracks += false_tracks(scored, options_.point.score);
+      tracks.false_tracks += false_tracks(scored, options_.score);
       for (const EncounterScore& one :
-           encounters_of(i, truth(scored), scored, options_.point.score, options_.manoeuvre_s))
+           encounters_of(i, truth(scored), scored, options_.score, options_.manoeuvre_s))
         tracks.encounters.push_back(one);
     }
     tracks.hota = evaluation::combined(hotas);

@@ -73,12 +73,20 @@ struct DetectorScore {
   std::optional<double> frames_per_second_median;
 };
 
-// How the operating point is chosen.
-struct PointOptions {
-  // This score for all detectors.
+struct ScoreOptions {
+  // Radius of matching/boxes.h.
+  double centre_px = 10;
+  // The operating point: this score for all detectors, else the least score with at most as many
+  // false alarms an image.
   std::optional<double> score;
-  // Else the least score with at most as many false alarms an image.
   double false_alarms_per_image = 0.1;
+  // Seconds that a manoeuvre needs before the volume is violated. Needs `volume`.
+  std::optional<double> manoeuvre_s;
+  // Name of a volume (encounter/separation/violation.h, or the scenes' own); empty: none.
+  std::string volume;
+  // True: encounters and the probability of detection also get weighted shares, with
+  // TruthSequence::weight.
+  bool is_weighted = false;
 };
 
 struct Assessment {
@@ -86,26 +94,13 @@ struct Assessment {
   std::vector<TruthSequence> truths;  // sorted by name
   // In order of decreasing AP at the centre distance.
   std::vector<DetectorScore> detectors;
-  double centre_px = 10;
-  PointOptions point;
-  std::optional<double> manoeuvre_s;
-  std::string volume;  // empty: none
-  bool is_weighted = false;
+  ScoreOptions options;
   // The conditions that the sequences meet, as they were asked for.
   std::vector<std::string> where;
   // What the truth lacks, as sentences for people: "No range is known: ...".
   std::vector<std::string> left_out;
 
   bool empty() const { return detectors.empty(); }
-};
-
-struct ScoreOptions {
-  double centre_px = 10;
-  PointOptions point;
-  std::optional<double> manoeuvre_s;
-  // True: encounters and the probability of detection also get weighted shares, with
-  // TruthSequence::weight.
-  bool is_weighted = false;
 };
 
 // What a sequence contributes to the FROC; it has its matches.

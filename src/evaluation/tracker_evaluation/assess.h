@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,12 +10,11 @@
 #include <airtruth/statistics.h>
 #include <airtruth/vot.h>
 
-#include "dataset/sequences/condition.h"
 #include "evaluation/matching/boxes.h"
 #include "evaluation/measures/outcome.h"
+#include "evaluation/report/run_options.h"
 #include "evaluation/tracker_evaluation/truth.h"
 #include "foundation/base/files.h"
-#include "foundation/base/log.h"
 
 namespace airtruth::tracker_evaluation {
 
@@ -87,23 +84,13 @@ struct Assessment {
   std::vector<std::string> where;
 };
 
-struct AssessOptions {
+struct AssessOptions : report::RunOptions {
   // Coordinate that the results give to the first pixel, 0 or 1.
   int origin_px = 0;
   // Empty: the range follows from the lengths of the data set's sequences.
   std::optional<std::pair<int, int>> eao_range;
   // True: frames per second leave out the frames from the first loss on.
   bool until_loss = false;
-  // True: contrast and stills are included, for which the videos are read.
-  bool with_film = true;
-  // Number of threads; 0 means one per core.
-  int jobs = 0;
-  // Sequences for which these do not hold are left out of every measure.
-  std::vector<sequences::Condition> where;
-  Warn warn;
-  std::function<void(std::int64_t done, std::int64_t total)>
-      progress;  // counts videos that were read
-  std::stop_token stop;
 };
 
 // Scores folders of results (trajectories.h) against a data set. A folder's name is the tracker's
