@@ -87,13 +87,11 @@ std::string found_letters(const scores::TruthSequence& truth,
 // The frames with a false alarm at the operating point, as indices.
 Json false_alarm_frames(const scores::ScoredDetections& scored, double score) {
   Json frames = Json::array();
-  for (std::size_t i = 0; i < scored.matches.size(); ++i)
-    for (std::size_t n = 0; n < scored.matches[i].size(); ++n)
-      if (scored.matches[i][n].kind == scores::MatchKind::kFalseAlarm &&
-          scored.detections.frames[i][n].score >= score) {
-        frames.push_back(i);
-        break;
-      }
+  scored.each([&](std::size_t i, const results::Detection& detection, const scores::Match& match) {
+    if (match.kind == scores::MatchKind::kFalseAlarm && detection.score >= score &&
+        (frames.empty() || frames.back() != i))
+      frames.push_back(i);
+  });
   return frames;
 }
 

@@ -376,12 +376,11 @@ SequenceCounts counts_of(const scores::ScoredDetections& scored,
                          const scores::TruthSequence& truth,
                          double score) {
   SequenceCounts counts;
+  scored.each([&](std::size_t, const results::Detection& detection, const scores::Match& match) {
+    if (match.kind == scores::MatchKind::kFalseAlarm && detection.score >= score)
+      ++counts.false_alarms;
+  });
   for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    for (std::size_t k = 0; k < scored.matches[i].size(); ++k)
-      counts.false_alarms += scored.matches[i][k].kind == scores::MatchKind::kFalseAlarm &&
-                                     scored.detections.frames[i][k].score >= score
-                                 ? 1
-                                 : 0;
     counts.detected += std::ssize(scores::detected_in(scored, i, score));
     for (const scores::TruthObject& object : truth.frames[i].objects)
       counts.aircraft += object.is_aircraft() && object.counts ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -13,77 +14,59 @@
 namespace airtruth::scores {
 namespace {
 
-// The frames that show an aircraft, and the tracks that are on it there.
-struct Appearance {
-  std::vector<std::size_t> frames;  // indices in TruthSequence::frames
-  std::vector<const TruthObject*> objects;
-  std::vector<std::set<std::int64_t>> tracks;
-  bool counts = false;  // in any frame
+// A frame that shows an aircraft, and the tracks that are on it there.
+struct Shown {
+  std::size_t frame = 0;  // index in TruthSequence::frames
+  const TruthObject* object = nullptr;
+  std::set<std::int64_t> tracks;
 };
 
-std::map<std::int64_t, Appearance> appearances_of(const TruthSequence& truth) {
-  std::map<std::int64_t, Appearance> appearances;
+// By TruthObject::id.
+std::map<std::int64_t, std::vector<Shown>> appearances_of(const TruthSequence& truth,
+                                                          const ScoredDetections& scored,
+                                                          std::optional<double> score) {
+  std::map<std::int64_t, std::vector<Shown>> appearances;
   for (std::size_t i = 0; i < truth.frames.size(); ++i)
-    for (const TruthObject& object : truth.frames[i].objects) {
-      if (!object.is_aircraft()) continue;
-      Appearance& appearance = appearances[object.id];
-      appearance.frames.push_back(i);
-      appearance.objects.push_back(&object);
-      appearance.tracks.emplace_back();
-      appearance.counts = appearance.counts || object.counts;
-    }
+    for (const TruthObject& object : truth.frames[i].objects)
+      if (object.is_aircraft()) appearances[object.id].push_back({i, &object, {}});
+  scored.each([&](std::size_t i, const results::Detection& detection, const Match& match) {
+    if (!detection.track || !match.object || match.kind == MatchKind::kFalseAlarm ||
+        (score && detection.score < *score))
+      return;
+    std::vector<Shown>& shown = appearances.at(*match.object);
+    std::ranges::lower_bound(shown, i, {}, &Shown::frame)->tracks.insert(*detection.track);
+  });
   return appearances;
-}
-
-void add_tracks(const ScoredDetections& scored,
-                std::optional<double> score,
-                std::map<std::int64_t, Appearance>& appearances) {
-  for (std::size_t i = 0; i < scored.matches.size(); ++i)
-    for (std::size_t k = 0; k < scored.matches[i].size(); ++k) {
-      const results::Detection& detection = scored.detections.frames[i][k];
-      const Match& match = scored.matches[i][k];
-      if (!detection.track || !match.object || match.kind == MatchKind::kFalseAlarm) continue;
-      if (score && detection.score < *score) continue;
-      const auto found = appearances.find(*match.object);
-      if (found == appearances.end()) continue;
-      Appearance& appearance = found->second;
-      const auto at = std::lower_bound(appearance.frames.begin(), appearance.frames.end(), i);
-      if (at == appearance.frames.end() || *at != i) continue;
-      appearance.tracks[static_cast<std::size_t>(at - appearance.frames.begin())].insert(
-          *detection.track);
-    }
 }
 
 // True where the track is on the aircraft in enough of the frames from `first` on.
 bool is_kept(const TruthSequence& truth,
-             const Appearance& appearance,
+             const std::vector<Shown>& shown,
              std::size_t first,
              std::int64_t track) {
   // Time stamps carry rounding errors of their time base.
   constexpr double kRounding_s = 1e-6;
-  const double end_s = truth.frames[appearance.frames[first]].time_s + kKeep_s - kRounding_s;
-  double shown = 0;
+  const double end_s = truth.frames[shown[first].frame].time_s + kKeep_s - kRounding_s;
+  double frames = 0;
   double on = 0;
-  for (std::size_t i = first; i < appearance.frames.size(); ++i) {
-    if (truth.frames[appearance.frames[i]].time_s >= end_s) break;
-    shown += 1;
-    on += appearance.tracks[i].contains(track) ? 1 : 0;
+  for (std::size_t i = first; i < shown.size(); ++i) {
+    if (truth.frames[shown[i].frame].time_s >= end_s) break;
+    frames += 1;
+    on += shown[i].tracks.contains(track) ? 1 : 0;
   }
-  return on >= kKeepShare * shown;
+  return on >= kKeepShare * frames;
 }
 
 std::optional<Declaration> declaration_of(const TruthSequence& truth,
-                                          const Appearance& appearance) {
-  for (std::size_t i = 0; i < appearance.frames.size(); ++i)
-    for (const std::int64_t track : appearance.tracks[i]) {
-      if (!is_kept(truth, appearance, i, track)) continue;
-      const std::size_t frame = appearance.frames[i];
-      return Declaration{frame,
-                         truth.frames[frame].time_s,
-                         track,
-                         appearance.objects[i]->range_m,
-                         appearance.objects[i]->to_closest_approach_s};
-    }
+                                          const std::vector<Shown>& shown) {
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    for (const std::int64_t track : shown[i].tracks)
+      if (is_kept(truth, shown, i, track))
+        return Declaration{shown[i].frame,
+                           truth.frames[shown[i].frame].time_s,
+                           track,
+                           shown[i].object->range_m,
+                           shown[i].object->to_closest_approach_s};
   return std::nullopt;
 }
 
@@ -98,36 +81,19 @@ InTime in_time(const TruthSequence& truth,
   return score.declaration && score.declaration->time_s <= latest_s ? InTime::kYes : InTime::kNo;
 }
 
-EncounterScore score_of(const TruthSequence& truth, const Appearance& appearance) {
+EncounterScore score_of(const TruthSequence& truth, const std::vector<Shown>& shown) {
   EncounterScore score;
-  bool is_first = true;
-  for (std::size_t i = 0; i < appearance.frames.size(); ++i) {
-    const TruthObject& object = *appearance.objects[i];
-    if (!object.counts) continue;
-    if (std::exchange(is_first, false)) {
-      score.first_seen = appearance.frames[i];
-      score.first_seen_range_m = object.range_m;
+  for (const Shown& one : shown) {
+    if (!one.object->counts) continue;
+    const std::optional<double>& range_m = one.object->range_m;
+    if (score.frames_seen++ == 0) {
+      score.first_seen = one.frame;
+      score.first_seen_range_m = range_m;
     }
-    ++score.frames_seen;
-    if (object.range_m)
-      score.least_range_m =
-          std::min(score.least_range_m.value_or(*object.range_m), *object.range_m);
+    if (range_m) score.least_range_m = std::min(score.least_range_m.value_or(*range_m), *range_m);
   }
-  score.declaration = declaration_of(truth, appearance);
+  score.declaration = declaration_of(truth, shown);
   return score;
-}
-
-std::optional<WeightedMean> mean_of(const std::vector<double>& values,
-                                    const std::vector<double>& weights) {
-  double sum = 0;
-  double weight = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    sum += weights[i] * values[i];
-    weight += weights[i];
-  }
-  if (!(weight > 0)) return std::nullopt;
-  return WeightedMean{
-      sum / weight, evaluation::bootstrap_mean(values, weights), std::ssize(values)};
 }
 
 // Values with the weights of their sequences.
@@ -139,7 +105,13 @@ struct Weighted {
     values.push_back(*value);
     weights.push_back(weight);
   }
-  std::optional<WeightedMean> mean() const { return mean_of(values, weights); }
+  std::optional<WeightedMean> mean() const {
+    const double weight = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(weight > 0)) return std::nullopt;
+    const double sum = std::inner_product(values.begin(), values.end(), weights.begin(), 0.0);
+    return WeightedMean{
+        sum / weight, evaluation::bootstrap_mean(values, weights), std::ssize(values)};
+  }
 };
 
 }  // namespace
@@ -149,15 +121,14 @@ std::vector<EncounterScore> encounters_of(std::size_t sequence,
                                           const ScoredDetections& scored,
                                           std::optional<double> score,
                                           std::optional<double> manoeuvre_s) {
-  std::map<std::int64_t, Appearance> appearances = appearances_of(truth);
-  add_tracks(scored, score, appearances);
   std::vector<EncounterScore> scores;
-  for (const auto& [object, appearance] : appearances) {
-    if (!appearance.counts) continue;
-    EncounterScore& one = scores.emplace_back(score_of(truth, appearance));
+  for (const auto& [object, shown] : appearances_of(truth, scored, score)) {
+    EncounterScore one = score_of(truth, shown);
+    if (one.frames_seen == 0) continue;
     one.sequence = sequence;
     one.object = object;
     one.in_time = in_time(truth, one, manoeuvre_s);
+    scores.push_back(one);
   }
   return scores;
 }
@@ -190,23 +161,14 @@ DeclarationSummary summarised(std::span<const EncounterScore> encounters,
 }
 
 std::int64_t false_tracks(const ScoredDetections& scored, std::optional<double> score) {
-  struct Count {
-    std::int64_t all = 0;
-    std::int64_t false_alarms = 0;
-  };
-  std::map<std::int64_t, Count> tracks;
-  for (std::size_t i = 0; i < scored.matches.size(); ++i)
-    for (std::size_t k = 0; k < scored.matches[i].size(); ++k) {
-      const results::Detection& detection = scored.detections.frames[i][k];
-      if (!detection.track || (score && detection.score < *score)) continue;
-      if (scored.matches[i][k].kind == MatchKind::kIgnored) continue;
-      Count& count = tracks[*detection.track];
-      ++count.all;
-      count.false_alarms += scored.matches[i][k].kind == MatchKind::kFalseAlarm ? 1 : 0;
-    }
-  return std::count_if(tracks.begin(), tracks.end(), [](const auto& track) {
-    return 2 * track.second.false_alarms > track.second.all;
+  // Of each track: how many more of its detections are false alarms than are not.
+  std::map<std::int64_t, std::int64_t> excess;
+  scored.each([&](std::size_t, const results::Detection& detection, const Match& match) {
+    if (detection.track && match.kind != MatchKind::kIgnored &&
+        (!score || detection.score >= *score))
+      excess[*detection.track] += match.kind == MatchKind::kFalseAlarm ? 1 : -1;
   });
+  return std::ranges::count_if(excess, [](const auto& track) { return track.second > 0; });
 }
 
 namespace {

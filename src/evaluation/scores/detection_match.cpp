@@ -63,16 +63,26 @@ std::vector<std::vector<Match>> matches_of(const results::SequenceDetections& de
   return matches;
 }
 
+std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections& scored,
+                                                          std::size_t frame) {
+  std::map<std::int64_t, const results::Detection*> best;
+  if (frame >= scored.matches.size()) return best;
+  for (std::size_t k = 0; k < scored.matches[frame].size(); ++k) {
+    const Match& match = scored.matches[frame][k];
+    if (match.kind != MatchKind::kTruePositive) continue;
+    const results::Detection*& found = best[*match.object];
+    const results::Detection& detection = scored.detections.frames[frame][k];
+    if (found == nullptr || detection.score > found->score) found = &detection;
+  }
+  return best;
+}
+
 std::set<std::int64_t> detected_in(const ScoredDetections& scored,
                                    std::size_t frame,
                                    double score) {
   std::set<std::int64_t> detected;
-  if (frame >= scored.matches.size()) return detected;
-  for (std::size_t k = 0; k < scored.matches[frame].size(); ++k) {
-    const Match& match = scored.matches[frame][k];
-    if (match.kind == MatchKind::kTruePositive && scored.detections.frames[frame][k].score >= score)
-      detected.insert(*match.object);
-  }
+  for (const auto& [object, detection] : best_of(scored, frame))
+    if (detection->score >= score) detected.insert(object);
   return detected;
 }
 

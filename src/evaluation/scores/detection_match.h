@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -63,8 +64,18 @@ struct ScoredDetections {
   results::SequenceDetections detections;
   // matches[frame][i] belongs to detections.frames[frame][i].
   std::vector<std::vector<Match>> matches;
+
+  // Calls use(frame, detection, match) for every detection that has a match.
+  void each(const auto& use) const {
+    for (std::size_t i = 0; i < matches.size(); ++i)
+      for (std::size_t k = 0; k < matches[i].size(); ++k)
+        use(i, detections.frames[i][k], matches[i][k]);
+  }
 };
 
+// The detection of the highest score that finds each aircraft of a frame, by TruthObject::id.
+std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections& scored,
+                                                          std::size_t frame);
 // The aircraft that detections of this score or more detect in a frame, by TruthObject::id.
 std::set<std::int64_t> detected_in(const ScoredDetections& scored, std::size_t frame, double score);
 

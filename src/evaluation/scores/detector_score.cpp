@@ -15,59 +15,21 @@
 namespace airtruth::scores {
 namespace {
 
-// Calls each(frame, detection, match) for every detection that has a match.
-template <typename Each>
-void for_each_detection(const ScoredDetections& scored, Each each) {
-  for (std::size_t i = 0; i < scored.matches.size(); ++i)
-    for (std::size_t k = 0; k < scored.matches[i].size(); ++k)
-      each(i, scored.detections.frames[i][k], scored.matches[i][k]);
-}
-
-// The detection of the highest score that finds each aircraft of a frame.
-std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections& scored,
-                                                          std::size_t frame) {
-  std::map<std::int64_t, const results::Detection*> best;
-  for (std::size_t k = 0; k < scored.matches[frame].size(); ++k) {
-    const Match& match = scored.matches[frame][k];
-    if (match.kind != MatchKind::kTruePositive) continue;
-    const results::Detection*& found = best[*match.object];
-    const results::Detection& detection = scored.detections.frames[frame][k];
-    if (found == nullptr || detection.score > found->score) found = &detection;
-  }
-  return best;
-}
-
-struct Bearing {
-  double azimuth_rad = 0;
-  double elevation_rad = 0;
-};
-
 // docs/formats/truth.md: azimuth = atan2(x, z), elevation = atan2(-y, hypot(x, z)).
-std::optional<Bearing> bearing_of(const lens::Lens& lens, const Box& box) {
-  const auto ray = lens.ray_from_pixel(centre_of(box));
-  if (!ray) return std::nullopt;
-  return Bearing{std::atan2(ray->x(), ray->z()),
-                 std::atan2(-ray->y(), std::hypot(ray->x(), ray->z()))};
-}
-
 std::optional<measures::BearingSample> sample_of(const lens::Lens& lens,
                                                  const TruthObject& object,
                                                  const Box& detection_px) {
-  if (!object.azimuth_deg || !object.elevation_deg) return std::nullopt;
-  const auto bearing = bearing_of(lens, detection_px);
-  if (!bearing) return std::nullopt;
-  const double elevation_rad = radians(*object.elevation_deg);
+  const auto ray = lens.ray_from_pixel(centre_of(detection_px));
+  if (!ray || !object.azimuth_deg || !object.elevation_deg) return std::nullopt;
   const double azimuth_rad =
-      std::remainder(bearing->azimuth_rad - radians(*object.azimuth_deg), 2 * kPi);
+      std::remainder(std::atan2(ray->x(), ray->z()) - radians(*object.azimuth_deg), 2 * kPi);
+  const double elevation_rad = std::atan2(-ray->y(), std::hypot(ray->x(), ray->z()));
+  const double true_elevation_rad = radians(*object.elevation_deg);
   measures::BearingSample sample;
   sample.object = object.id;
-  sample.azimuth_mrad = 1000 * azimuth_rad * std::cos(elevation_rad);
-  sample.elevation_mrad = 1000 * (bearing->elevation_rad - elevation_rad);
+  sample.azimuth_mrad = 1000 * azimuth_rad * std::cos(true_elevation_rad);
+  sample.elevation_mrad = 1000 * (elevation_rad - true_elevation_rad);
   return sample;
-}
-
-bool is_in_the_air(const TruthObject& object) {
-  return !annotation::is_on_lens(object.object_class);
 }
 
 // The functions below give a sequence's truth and detections in the form that each measure takes.
@@ -138,18 +100,16 @@ evaluation::AotFlight aot_flight_of(const TruthSequence& truth, const ScoredDete
     evaluation::AotFrame& frame = flight.frames.emplace_back();
     frame.frame = static_cast<std::int64_t>(i);
     for (const TruthObject& object : truth.frames[i].objects) {
-      if (!object.counts || !is_in_the_air(object)) continue;
+      if (!object.counts || annotation::is_on_lens(object.object_class)) continue;
       const int above = !object.above_horizon ? 0 : *object.above_horizon ? 1 : -1;
       frame.objects.push_back(
           {object.id, object.box_px, object.is_aircraft() ? object.range_m : std::nullopt, above});
     }
   }
-  for_each_detection(scored,
-                     [&](std::size_t i, const results::Detection& detection, const Match& match) {
-                       if (match.kind != MatchKind::kIgnored)
-                         flight.frames[i].detections.push_back(
-                             {detection.box_px, detection.score, detection.track});
-                     });
+  scored.each([&](std::size_t i, const results::Detection& detection, const Match& match) {
+    if (match.kind != MatchKind::kIgnored)
+      flight.frames[i].detections.push_back({detection.box_px, detection.score, detection.track});
+  });
   return flight;
 }
 
@@ -162,12 +122,11 @@ evaluation::TrackFrames track_frames_of(const TruthSequence& truth,
     for (const TruthObject& object : truth.frames[i].objects)
       if (object.is_aircraft() && object.counts)
         frames[i].truths.push_back({object.id, object.box_px});
-  for_each_detection(scored,
-                     [&](std::size_t i, const results::Detection& detection, const Match& match) {
-                       if (detection.track && match.kind != MatchKind::kIgnored &&
-                           (!score || detection.score >= *score))
-                         frames[i].answers.push_back({*detection.track, detection.box_px});
-                     });
+  scored.each([&](std::size_t i, const results::Detection& detection, const Match& match) {
+    if (detection.track && match.kind != MatchKind::kIgnored &&
+        (!score || detection.score >= *score))
+      frames[i].answers.push_back({*detection.track, detection.box_px});
+  });
   return frames;
 }
 
@@ -316,20 +275,16 @@ class Scoring {
     std::map<std::string, statistics::TrialsBySequence> mistaken;
     for (std::size_t s = 0; s < result_.sequences.size(); ++s) {
       const ScoredDetections& scored = result_.sequences[s];
-      for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-        std::set<std::int64_t> hit;
-        for (std::size_t k = 0; k < scored.matches[i].size(); ++k) {
-          const Match& match = scored.matches[i][k];
-          if (match.kind != MatchKind::kFalseAlarm || scored.detections.frames[i][k].score < score)
-            continue;
-          ++result_.false_alarms_by[match.what];
-          if (match.object) hit.insert(*match.object);
-        }
-        for (const TruthObject& object : truth(scored).frames[i].objects) {
-          if (object.is_aircraft()) continue;
-          mistaken[object.object_class].add(s, hit.contains(object.id));
-        }
-      }
+      std::set<std::pair<std::size_t, std::int64_t>> hit;  // frame and object
+      scored.each([&](std::size_t i, const results::Detection& detection, const Match& match) {
+        if (match.kind != MatchKind::kFalseAlarm || detection.score < score) return;
+        ++result_.false_alarms_by[match.what];
+        if (match.object) hit.emplace(i, *match.object);
+      });
+      for (std::size_t i = 0; i < scored.matches.size(); ++i)
+        for (const TruthObject& object : truth(scored).frames[i].objects)
+          if (!object.is_aircraft())
+            mistaken[object.object_class].add(s, hit.contains({i, object.id}));
     }
     for (const auto& [what, trials] : mistaken) result_.mistaken_by[what] = trials.proportion();
   }
@@ -365,11 +320,10 @@ evaluation::FrocSequence froc_sequence_of(const TruthSequence& truth,
                                                          : std::optional(found->second->score));
     }
   }
-  for_each_detection(scored,
-                     [&](std::size_t, const results::Detection& detection, const Match& match) {
-                       if (match.kind == MatchKind::kFalseAlarm)
-                         sequence.false_alarm_scores.push_back(detection.score);
-                     });
+  scored.each([&](std::size_t, const results::Detection& detection, const Match& match) {
+    if (match.kind == MatchKind::kFalseAlarm)
+      sequence.false_alarm_scores.push_back(detection.score);
+  });
   return sequence;
 }
 

@@ -71,36 +71,6 @@ bool is_easier(const Miss& a, const Miss& b) {
   return ease(a) < ease(b);
 }
 
-// A run of frames that may go on.
-struct Run {
-  Miss miss;
-  bool is_open = false;
-};
-
-void add_to(Run& run,
-            std::size_t sequence,
-            std::size_t frame,
-            std::size_t index,
-            const TruthObject& object) {
-  Miss& miss = run.miss;
-  if (!run.is_open) {
-    miss = {};
-    miss.sequence = sequence;
-    miss.object = object.id;
-    miss.first_frame = frame;
-    run.is_open = true;
-  }
-  const bool is_better =
-      miss.frames == 0 || std::tuple(object.contrast_to_noise.value_or(0), object.size_px()) >
-                              std::tuple(miss.contrast_to_noise.value_or(0), miss.size_px);
-  ++miss.frames;
-  if (!is_better) return;
-  miss.frame = frame;
-  miss.index = index;
-  miss.contrast_to_noise = object.contrast_to_noise;
-  miss.size_px = object.size_px();
-}
-
 }  // namespace
 
 std::vector<FalseAlarm> false_alarms_of(std::size_t sequence,
@@ -150,25 +120,31 @@ std::vector<Miss> misses_of(std::size_t sequence,
                             const TruthSequence& truth,
                             const ScoredDetections& scored,
                             double score) {
-  std::map<std::int64_t, Run> runs;
+  std::map<std::int64_t, Miss> open;  // that may go on
   std::vector<Miss> misses;
-  const auto close = [&](Run& run) {
-    if (run.is_open) misses.push_back(run.miss);
-    run.is_open = false;
-  };
   for (std::size_t i = 0; i < scored.matches.size(); ++i) {
     const std::set<std::int64_t> detected = detected_in(scored, i, score);
-    std::set<std::int64_t> missed;
+    std::map<std::int64_t, Miss> going_on;
     for (std::size_t k = 0; k < truth.frames[i].objects.size(); ++k) {
       const TruthObject& object = truth.frames[i].objects[k];
       if (!object.is_aircraft() || !object.counts || detected.contains(object.id)) continue;
-      add_to(runs[object.id], sequence, i, k, object);
-      missed.insert(object.id);
+      const auto before = open.extract(object.id);
+      const Miss begun{.sequence = sequence, .object = object.id, .first_frame = i};
+      Miss& miss = going_on.try_emplace(object.id, before ? before.mapped() : begun).first->second;
+      const bool is_better =
+          miss.frames == 0 || std::tuple(object.contrast_to_noise.value_or(0), object.size_px()) >
+                                  std::tuple(miss.contrast_to_noise.value_or(0), miss.size_px);
+      ++miss.frames;
+      if (!is_better) continue;
+      miss.frame = i;
+      miss.index = k;
+      miss.contrast_to_noise = object.contrast_to_noise;
+      miss.size_px = object.size_px();
     }
-    for (auto& [id, run] : runs)
-      if (!missed.contains(id)) close(run);
+    for (const auto& [id, miss] : open) misses.push_back(miss);
+    open = std::move(going_on);
   }
-  for (auto& [id, run] : runs) close(run);
+  for (const auto& [id, miss] : open) misses.push_back(miss);
   return easiest(std::move(misses));
 }
 
