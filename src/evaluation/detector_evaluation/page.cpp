@@ -186,7 +186,7 @@ Json sequence_json(const scores::Assessment& assessment, const Film& film, std::
           {"background", truth.background},
           {"width", std::max(1, truth.width)},
           {"height", std::max(1, truth.height)},
-          {"weight", truth.weight},
+          {"weight", truth.weight.value_or(1)},
           {"frame", frame_numbers},
           {"encounters", encounters_json(truth)},
           {"stills", stills_json(truth, stills)},

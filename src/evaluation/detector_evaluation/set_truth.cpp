@@ -2,9 +2,7 @@
 #include "evaluation/detector_evaluation/set_truth.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
-#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,6 +17,7 @@
 #include "foundation/json/json_object.h"
 #include "labels/annotation/lens_facts.h"
 #include "scene/scene/camera_keys.h"
+#include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
 
 namespace airtruth::detector_evaluation {
@@ -39,16 +38,13 @@ scores::TruthObject object_of(const exchange::Label& label) {
   return object;
 }
 
-void add_encounters(scores::TruthSequence& truth) {
+// The aircraft that any frame shows, with their categories.
+std::map<std::int64_t, std::string> aircraft_in(const scores::TruthSequence& truth) {
   std::map<std::int64_t, std::string> aircraft;
   for (const scores::TruthFrame& frame : truth.frames)
     for (const scores::TruthObject& object : frame.objects)
       if (object.is_aircraft()) aircraft.try_emplace(object.id, object.category);
-  for (const auto& [id, category] : aircraft) {
-    scores::TruthEncounter& encounter = truth.encounters.emplace_back();
-    encounter.id = id;
-    encounter.name = fmt::format("{} {}", category, id);
-  }
+  return aircraft;
 }
 
 scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std::string& name) {
@@ -75,17 +71,10 @@ scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std
       else
         frame.objects.push_back(object_of(label));
   }
-  add_encounters(truth);
+  for (const auto& [id, category] : aircraft_in(truth))
+    truth.encounters.push_back({.id = id, .name = fmt::format("{} {}", category, id)});
   return truth;
 }
-
-// The truth of a sequence that `render` made, without its duration.
-struct RenderedTruth {
-  scores::TruthSequence truth;
-  bool has_weight = false;
-  // The frame of the background video that became the sequence's first.
-  std::int64_t first_background_frame = 0;
-};
 
 const exchange::Label* label_of(const exchange::LabelledFrame& frame, std::int64_t track) {
   for (const exchange::Label& label : frame.labels)
@@ -164,14 +153,6 @@ bool was_asked(const std::vector<annotation::Frame>& frames,
   return false;
 }
 
-std::optional<double> recorded_violation_s(const JsonObject& record, const std::string& volume) {
-  std::optional<double> first;
-  for (const JsonObject& one : record.objects("violations"))
-    if (one.text("volume") == volume)
-      first = std::min(first.value_or(one.number("begin_s")), one.number("begin_s"));
-  return first;
-}
-
 // The violation of a volume that the record does not have.
 void ask_paths(const replay::Finished& finished,
                std::size_t actor,
@@ -187,48 +168,29 @@ void ask_paths(const replay::Finished& finished,
 }
 
 scores::TruthEncounter encounter_of(const replay::Finished& finished,
-                                    const JsonObject* record,
-                                    std::size_t actor,
+                                    std::int64_t id,
                                     const std::string& volume) {
-  scores::TruthEncounter encounter;
-  encounter.id = static_cast<std::int64_t>(actor) + 1;
-  encounter.name = finished.truth.frames.front().intruders[actor].id;
-  if (record != nullptr && record->has("closest_approach")) {
-    const JsonObject closest = record->object("closest_approach");
-    encounter.closest_approach_s = closest.number("time_s");
-    encounter.closest_approach_m = closest.number("distance_m");
+  const std::vector<annotation::Frame>& frames = finished.truth.frames;
+  const auto actor = static_cast<std::size_t>(id) - 1;
+  scores::TruthEncounter encounter{.id = id, .name = frames.front().intruders[actor].id};
+  const auto record =
+      std::ranges::find(finished.encounters, encounter.name, &pipeline::EncounterRecord::id);
+  const bool is_recorded = record != finished.encounters.end();
+  if (is_recorded && record->closest) {
+    encounter.closest_approach_s = record->closest->time_s;
+    encounter.closest_approach_m = record->closest->distance_m;
   }
   if (volume.empty()) return encounter;
-  if (record != nullptr && was_asked(finished.truth.frames, actor, volume)) {
+  if (is_recorded && was_asked(frames, actor, volume)) {
     encounter.has_volume = true;
-    encounter.violation_s = recorded_violation_s(*record, volume);
+    std::optional<double>& first_s = encounter.violation_s;
+    for (const pipeline::NamedInterval& one : record->violations)
+      if (one.volume == volume)
+        first_s = std::min(first_s.value_or(one.time.begin_s), one.time.begin_s);
   } else if (const auto* named = separation::named_volume(volume)) {
     ask_paths(finished, actor, named->volume, encounter);
   }
   return encounter;
-}
-
-void add_recorded_encounters(const replay::Finished& finished,
-                             const JsonObject& record,
-                             const std::string& volume,
-                             scores::TruthSequence& truth) {
-  std::set<std::int64_t> aircraft;
-  for (const scores::TruthFrame& frame : truth.frames)
-    for (const scores::TruthObject& object : frame.objects)
-      if (object.is_aircraft()) aircraft.insert(object.id);
-  const std::vector<JsonObject> records =
-      record.has("encounters") ? record.objects("encounters") : std::vector<JsonObject>{};
-  truth.never_seen = std::count_if(
-      records.begin(), records.end(), [](const JsonObject& one) { return !one.has("first_seen"); });
-  for (const std::int64_t id : aircraft) {
-    const auto actor = static_cast<std::size_t>(id) - 1;
-    const std::string& name = finished.truth.frames.front().intruders[actor].id;
-    const auto found = std::find_if(records.begin(), records.end(), [&](const JsonObject& one) {
-      return one.text("id") == name;
-    });
-    truth.encounters.push_back(
-        encounter_of(finished, found == records.end() ? nullptr : &*found, actor, volume));
-  }
 }
 
 void add_times_to_approach(scores::TruthSequence& truth) {
@@ -240,14 +202,14 @@ void add_times_to_approach(scores::TruthSequence& truth) {
     }
 }
 
-RenderedTruth rendered_truth(const fs::path& folder,
-                             dataset::Boxes boxes,
-                             const std::string& volume) {
+// Without its duration.
+scores::TruthSequence rendered_truth(const fs::path& folder,
+                                     dataset::Boxes boxes,
+                                     const std::string& volume) {
   const replay::Finished finished = replay::open_finished(folder);
   const JsonDocument record(folder / "sequence.json");
-  RenderedTruth rendered;
-  rendered.first_background_frame = finished.scene->background.first_frame;
-  scores::TruthSequence& truth = rendered.truth;
+  scores::TruthSequence truth;
+  truth.first_background_frame = finished.scene->background.first_frame;
   truth.media = finished.video;
   truth.background_file = finished.scene->background.video.filename().string();
   truth.background = finished.scene->background.name.empty() ? truth.background_file
@@ -259,18 +221,19 @@ RenderedTruth rendered_truth(const fs::path& folder,
   truth.height = finished.truth.lens.height;
   truth.lens = annotation::lens_of(finished.truth.lens);
   truth.weather = scene::weather_facts(*finished.scene);
-  if (const auto weight = record.maybe_number("weight")) {
-    if (*weight < 0) record.fail("weight", "a number from 0 on");
-    rendered.has_weight = true;
-    truth.weight = *weight;
-  }
+  truth.weight = record.maybe_number("weight");
+  if (truth.weight && *truth.weight < 0) record.fail("weight", "a number from 0 on");
   for (const annotation::Frame& frame : finished.truth.frames)
     truth.frames.push_back(frame_of(frame, boxes, finished.truth.lens));
   if (truth.frames.size() > 1 && truth.frames.back().time_s > 0)
     truth.frame_rate_hz = static_cast<double>(truth.frames.size() - 1) / truth.frames.back().time_s;
-  if (!finished.truth.frames.empty()) add_recorded_encounters(finished, record, volume, truth);
+  for (const auto& [id, category] : aircraft_in(truth))
+    truth.encounters.push_back(encounter_of(finished, id, volume));
+  if (!truth.frames.empty())
+    truth.never_seen = std::ranges::count_if(
+        finished.encounters, [](const auto& one) { return !one.first_seen.has_value(); });
   add_times_to_approach(truth);
-  return rendered;
+  return truth;
 }
 
 // Frames over the rate. Clips may hold every n-th frame of a video, so the span of the times comes
@@ -293,25 +256,22 @@ void start_at_0(scores::TruthSequence& truth) {
 // Whether a region is for this sequence; then the number that its background's frames have more
 // than the sequence's.
 std::optional<std::int64_t> offset_of(const scores::IgnoredRegion& region,
-                                      const scores::TruthSequence& truth,
-                                      std::int64_t first_of_background) {
+                                      const scores::TruthSequence& truth) {
   if (matches(region.sequence, truth.name)) return 0;
   if (!region.sequence.empty() &&
       (region.sequence == truth.background_file || region.sequence == truth.background))
-    return first_of_background;
+    return truth.first_background_frame;
   return std::nullopt;
 }
 
-void ignore_regions(const fs::path& file,
-                    const std::vector<std::int64_t>& first_frames,
-                    std::vector<scores::TruthSequence>& sequences) {
+void ignore_regions(const fs::path& file, std::vector<scores::TruthSequence>& sequences) {
   for (const scores::IgnoredRegion& region : scores::read_ignored_regions(file)) {
     bool fits_any = false;
-    for (std::size_t s = 0; s < sequences.size(); ++s) {
-      const auto offset = offset_of(region, sequences[s], first_frames[s]);
+    for (scores::TruthSequence& sequence : sequences) {
+      const auto offset = offset_of(region, sequence);
       if (!offset) continue;
       fits_any = true;
-      for (scores::TruthFrame& frame : sequences[s].frames) {
+      for (scores::TruthFrame& frame : sequence.frames) {
         const std::int64_t number = frame.frame + *offset;
         if (number >= region.first_frame && number <= region.last_frame.value_or(number))
           frame.ignored_px.push_back(region.box_px);
@@ -325,18 +285,9 @@ void ignore_regions(const fs::path& file,
   }
 }
 
-// Sequences of which something is known, in words: "3 of 8 sequences".
-using Known = std::function<bool(const scores::TruthSequence&)>;
-bool any_object(const scores::TruthSequence& truth,
-                const std::function<bool(const scores::TruthObject&)>& known) {
-  for (const scores::TruthFrame& frame : truth.frames)
-    for (const scores::TruthObject& object : frame.objects)
-      if (object.is_aircraft() && known(object)) return true;
-  return false;
-}
-
+// `is_known`: of a sequence.
 void leave_out(SetTruth& set,
-               const Known& is_known,
+               const auto& is_known,
                const std::string& what,
                const std::string& where) {
   std::size_t shown = 0;
@@ -351,44 +302,45 @@ void leave_out(SetTruth& set,
         "{} unknown for {} of {} sequences with an aircraft; {}", what, unknown, shown, where));
 }
 
+bool has_range(const scores::TruthSequence& truth) {
+  return std::ranges::any_of(truth.frames, [](const scores::TruthFrame& frame) {
+    return std::ranges::any_of(frame.objects, [](const scores::TruthObject& object) {
+      return object.is_aircraft() && object.range_m;
+    });
+  });
+}
+
 void say_what_is_missing(SetTruth& set, const std::string& volume) {
   std::int64_t never_seen = 0;
   for (const scores::TruthSequence& truth : set.sequences) never_seen += truth.never_seen;
   if (never_seen > 0)
     set.left_out.push_back(fmt::format(
         "{} intruders are never in view; shares of encounters leave them out", never_seen));
-  leave_out(
-      set,
-      [](const scores::TruthSequence& truth) {
-        return any_object(truth,
-                          [](const scores::TruthObject& o) { return o.range_m.has_value(); });
-      },
-      "the range is",
-      "detection by range, declaration ranges and AOT's measures leave them out");
+  const auto of_any_encounter = [](auto is_known) {
+    return [is_known](const scores::TruthSequence& truth) {
+      return std::ranges::any_of(truth.encounters, is_known);
+    };
+  };
+  leave_out(set,
+            has_range,
+            "the range is",
+            "detection by range, declaration ranges and AOT's measures leave them out");
   leave_out(
       set,
       [](const scores::TruthSequence& truth) { return truth.lens.has_value(); },
       "the lens is",
       "bearing errors and detection by azimuth leave them out");
-  leave_out(
-      set,
-      [](const scores::TruthSequence& truth) {
-        return std::any_of(truth.encounters.begin(), truth.encounters.end(), [](const auto& one) {
-          return one.closest_approach_s.has_value();
-        });
-      },
-      "the closest approach is",
-      "times to it leave them out");
+  leave_out(set,
+            of_any_encounter([](const scores::TruthEncounter& one) {
+              return one.closest_approach_s.has_value();
+            }),
+            "the closest approach is",
+            "times to it leave them out");
   if (!volume.empty())
-    leave_out(
-        set,
-        [](const scores::TruthSequence& truth) {
-          return std::any_of(truth.encounters.begin(), truth.encounters.end(), [](const auto& one) {
-            return one.has_volume;
-          });
-        },
-        "whether '" + volume + "' is violated is",
-        "declarations in time leave them out");
+    leave_out(set,
+              of_any_encounter([](const scores::TruthEncounter& one) { return one.has_volume; }),
+              "whether '" + volume + "' is violated is",
+              "declarations in time leave them out");
 }
 
 void drop_hours_unless_all_known(SetTruth& set) {
@@ -446,19 +398,12 @@ SetTruth set_truth(const fs::path& folder,
   const labelled::LabelledSet set(folder);
   const dataset::Boxes boxes = set.usual_boxes(warn);
   SetTruth result;
-  std::vector<std::int64_t> first_frames;
   std::size_t weighted = 0;
   for (const std::string& name : set.names()) {
-    if (set.is_imported(name)) {
-      result.sequences.push_back(imported_truth(set, name));
-      first_frames.push_back(0);
-    } else {
-      RenderedTruth rendered = rendered_truth(set.folder(name), boxes, volume);
-      result.sequences.push_back(std::move(rendered.truth));
-      first_frames.push_back(rendered.first_background_frame);
-      weighted += rendered.has_weight ? 1 : 0;
-    }
-    scores::TruthSequence& truth = result.sequences.back();
+    scores::TruthSequence& truth = result.sequences.emplace_back(
+        set.is_imported(name) ? imported_truth(set, name)
+                              : rendered_truth(set.folder(name), boxes, volume));
+    weighted += truth.weight ? 1 : 0;
     truth.name = name;
     start_at_0(truth);
     truth.duration_s = duration_s(truth);
@@ -472,7 +417,7 @@ SetTruth set_truth(const fs::path& folder,
                     result.sequences.size()));
   expect_volume(result, volume);
   if (ignore.empty() && fs::exists(folder / kIgnoreFile)) ignore = folder / kIgnoreFile;
-  if (!ignore.empty()) ignore_regions(ignore, first_frames, result.sequences);
+  if (!ignore.empty()) ignore_regions(ignore, result.sequences);
   drop_hours_unless_all_known(result);
   say_what_is_missing(result, volume);
   return result;

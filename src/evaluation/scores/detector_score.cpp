@@ -243,7 +243,7 @@ class Scoring {
   std::vector<double> weights_of_sequences() const {
     std::vector<double> weights;
     for (const ScoredDetections& scored : result_.sequences)
-      weights.push_back(truth(scored).weight);
+      weights.push_back(truth(scored).weight.value_or(1));
     return weights;
   }
 

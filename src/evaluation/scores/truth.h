@@ -82,6 +82,8 @@ struct TruthSequence {
   std::string background;
   // The name of the background's file, by which ignored regions may name it.
   std::string background_file;
+  // The frame of that file that became the sequence's first.
+  std::int64_t first_background_frame = 0;
   // The same for sequences over the same frames of one background; empty for an imported clip.
   std::string background_cut;
   // The video that detectors see; may be empty for an imported clip.
@@ -94,8 +96,9 @@ struct TruthSequence {
   std::optional<lens::Lens> lens;
   // What is known of the weather of what was inserted (scene::weather_facts()).
   std::map<std::string, double> weather;
-  // Of the encounter among those of its encounter model; 1 where the set has none.
-  double weight = 1;
+  // Of the encounter among those of its encounter model; empty where the set has none: it counts as
+  // 1.
+  std::optional<double> weight;
   // Of an imported clip: its categories by their numbers in its set.
   std::map<std::int64_t, std::string> category_ids;
   std::vector<TruthFrame> frames;
