@@ -69,18 +69,6 @@ struct Matched {
   std::optional<double> max_range_m;
 };
 
-// Numbers of the tracks of a flight; a detection without a track is one of its own.
-class TrackNumbers {
- public:
-  std::int64_t of(const AotDetection& detection) {
-    return detection.track ? *detection.track : next_own_--;
-  }
-
- private:
-  // Below all numbers of tracks that files hold.
-  std::int64_t next_own_ = -2;
-};
-
 void match_frame(std::size_t flight,
                  const AotFrame& frame,
                  const std::vector<std::pair<const AotDetection*, std::int64_t>>& detections,
@@ -127,12 +115,10 @@ void find_encounters(Matched& matched) {
     encounters.back().push_back(in_range[i]);
   }
   for (std::vector<std::size_t>& encounter : encounters) {
-    double least = *matched.rows[encounter.front()].range_m;
-    double most = least;
-    for (const std::size_t i : encounter) {
-      least = std::min(least, *matched.rows[i].range_m);
-      most = std::max(most, *matched.rows[i].range_m);
-    }
+    const auto range_of = [&](std::size_t i) { return *matched.rows[i].range_m; };
+    const auto [nearest, farthest] = std::ranges::minmax_element(encounter, {}, range_of);
+    const double least = range_of(*nearest);
+    const double most = range_of(*farthest);
     if (std::ssize(encounter) < kEncounterFrames || least > kEncounterLeastRange_m) continue;
     matched.max_range_m = std::max(matched.max_range_m.value_or(most), most);
     matched.encounters.push_back(std::move(encounter));
@@ -143,11 +129,12 @@ Matched matched_of(std::span<const AotFlight> flights, int min_track_frames) {
   Matched matched;
   for (std::size_t f = 0; f < flights.size(); ++f) {
     std::map<std::int64_t, std::int64_t> first_frame;
-    TrackNumbers numbers;
+    // A detection without a track is one of its own, below all numbers of tracks that files hold.
+    std::int64_t next_own = -2;
     for (const AotFrame& frame : flights[f].frames) {
       std::vector<std::pair<const AotDetection*, std::int64_t>> detections;
       for (const AotDetection& detection : frame.detections) {
-        const std::int64_t track = numbers.of(detection);
+        const std::int64_t track = detection.track ? *detection.track : next_own--;
         const std::int64_t first = first_frame.try_emplace(track, frame.frame).first->second;
         if (1 + frame.frame - first >= min_track_frames) detections.emplace_back(&detection, track);
       }

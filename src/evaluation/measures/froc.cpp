@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include <airtruth/froc.h>
 
@@ -10,66 +11,39 @@
 namespace airtruth::evaluation {
 namespace {
 
-// All scores that occur, falling.
-std::vector<double> scores_of(std::span<const FrocSequence> sequences) {
-  std::vector<double> scores;
-  for (const FrocSequence& sequence : sequences) {
-    scores.insert(
-        scores.end(), sequence.false_alarm_scores.begin(), sequence.false_alarm_scores.end());
-    for (const auto& best : sequence.best_scores)
-      if (best) scores.push_back(*best);
-  }
-  std::sort(scores.begin(), scores.end(), std::greater<>());
-  scores.erase(std::unique(scores.begin(), scores.end()), scores.end());
-  return scores;
+// How many of scores that fall are `score` or more.
+double count_at(const std::vector<double>& falling, double score) {
+  return static_cast<double>(std::ranges::upper_bound(falling, score, std::greater<>()) -
+                             falling.begin());
 }
 
-// All scores of one kind, falling.
-class Counter {
- public:
-  void add(double score) { scores_.push_back(score); }
-  void sort() { std::sort(scores_.begin(), scores_.end(), std::greater<>()); }
-  // How many are `score` or more.
-  double at(double score) const {
-    return static_cast<double>(
-        std::upper_bound(scores_.begin(), scores_.end(), score, std::greater<>()) -
-        scores_.begin());
-  }
-
- private:
-  std::vector<double> scores_;
-};
-
-// The scores of a sequence, or of all.
+// The scores of a sequence, or of all, falling.
 struct Sorted {
-  Counter found;
-  Counter false_alarms;
+  std::vector<double> found;
+  std::vector<double> false_alarms;
   double trials = 0;
+
+  explicit Sorted(std::span<const FrocSequence> sequences) {
+    for (const FrocSequence& sequence : sequences) {
+      trials += static_cast<double>(sequence.best_scores.size());
+      for (const auto& best : sequence.best_scores)
+        if (best) found.push_back(*best);
+      const std::vector<double>& alarms = sequence.false_alarm_scores;
+      false_alarms.insert(false_alarms.end(), alarms.begin(), alarms.end());
+    }
+    std::ranges::sort(found, std::greater<>());
+    std::ranges::sort(false_alarms, std::greater<>());
+  }
 };
 
 class Counts {
  public:
-  explicit Counts(std::span<const FrocSequence> sequences) {
+  explicit Counts(std::span<const FrocSequence> sequences) : all_(sequences) {
     for (const FrocSequence& sequence : sequences) {
-      Sorted& sorted = sequences_.emplace_back();
-      sorted.trials = static_cast<double>(sequence.best_scores.size());
-      for (const auto& best : sequence.best_scores)
-        if (best) {
-          sorted.found.add(*best);
-          all_.found.add(*best);
-        }
-      for (const double score : sequence.false_alarm_scores) {
-        sorted.false_alarms.add(score);
-        all_.false_alarms.add(score);
-      }
-      sorted.found.sort();
-      sorted.false_alarms.sort();
+      sequences_.emplace_back(std::span(&sequence, 1));
       images_ += static_cast<double>(sequence.images);
       hours_ += sequence.duration_s / kSecondsPerHour;
-      all_.trials += sorted.trials;
     }
-    all_.found.sort();
-    all_.false_alarms.sort();
   }
 
   FrocPoint at(double score) const {
@@ -77,7 +51,7 @@ class Counts {
     point.score = score;
     std::vector<statistics::Cluster> clusters;
     for (const Sorted& sequence : sequences_)
-      clusters.push_back({sequence.found.at(score), sequence.trials});
+      clusters.push_back({count_at(sequence.found, score), sequence.trials});
     point.detection = statistics::proportion_of(clusters);
     const double alarms = false_alarms_at(score);
     const auto rate = [&](double per) { return per > 0 ? alarms / per : 0; };
@@ -87,25 +61,31 @@ class Counts {
     return point;
   }
 
-  double false_alarms_at(double score) const { return all_.false_alarms.at(score); }
+  // All scores that occur, falling.
+  std::vector<double> scores() const {
+    std::vector<double> scores;
+    std::ranges::merge(all_.found, all_.false_alarms, std::back_inserter(scores), std::greater<>());
+    scores.erase(std::unique(scores.begin(), scores.end()), scores.end());
+    return scores;
+  }
+  double false_alarms_at(double score) const { return count_at(all_.false_alarms, score); }
   double found_share_at(double score) const {
-    return all_.trials > 0 ? all_.found.at(score) / all_.trials : 0;
+    return all_.trials > 0 ? count_at(all_.found, score) / all_.trials : 0;
   }
   double images() const { return images_; }
   double hours() const { return hours_; }
 
  private:
-  std::vector<Sorted> sequences_;
   Sorted all_;
+  std::vector<Sorted> sequences_;
   double images_ = 0;
   double hours_ = 0;
 };
 
 // The scores at which the curve has moved on by a step: of log10 of the false alarms, or of the
 // probability of detection.
-std::vector<double> thinned(const std::vector<double>& scores,
-                            const Counts& counts,
-                            std::size_t most) {
+std::vector<double> thinned(const Counts& counts, std::size_t most) {
+  std::vector<double> scores = counts.scores();
   if (scores.size() <= most) return scores;
   const double steps = static_cast<double>(most) / 2 - 1;
   const auto decade = [&](double score) {
@@ -138,8 +118,7 @@ Froc froc_of(std::span<const FrocSequence> sequences, std::size_t most) {
   }
   froc.flights = std::ssize(sequences);
   froc.hours = counts.hours();
-  for (const double score : thinned(scores_of(sequences), counts, most))
-    froc.points.push_back(counts.at(score));
+  for (const double score : thinned(counts, most)) froc.points.push_back(counts.at(score));
   return froc;
 }
 
@@ -149,8 +128,8 @@ FrocPoint froc_at(std::span<const FrocSequence> sequences, double score) {
 
 std::optional<double> score_at_false_alarms(std::span<const FrocSequence> sequences,
                                             double per_image) {
-  const std::vector<double> scores = scores_of(sequences);
   const Counts counts(sequences);
+  const std::vector<double> scores = counts.scores();
   const double most = per_image * counts.images();
   // False alarms grow as the score falls.
   const auto beyond = std::partition_point(scores.begin(), scores.end(), [&](double score) {

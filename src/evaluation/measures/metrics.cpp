@@ -6,6 +6,7 @@
 #include <airtruth/metrics.h>
 
 #include "foundation/base/median.h"
+#include "foundation/geometry/box.h"
 
 namespace airtruth::evaluation {
 namespace {
@@ -20,26 +21,15 @@ Box bounded(const Box& box, int width, int height) {
   return {x, y, std::clamp(box.width, 0.0, width - x), std::clamp(box.height, 0.0, height - y)};
 }
 
-struct Offset {
-  double x = 0;
-  double y = 0;
-};
-
-Offset offset(const Box& truth, const Box& answer) {
-  // The centres are subtracted first, so that equal boxes are at a distance of exactly 0.
-  return {(answer.x + answer.width / 2) - (truth.x + truth.width / 2),
-          (answer.y + answer.height / 2) - (truth.y + truth.height / 2)};
-}
-
 // OTB's curves and the normalised one.
 void add_curves(const Box& truth, const std::optional<Box>& answer, Score& score) {
   const double shared = answer ? overlap(truth, *answer) : 0;
   double distance = std::numeric_limits<double>::infinity();
   double normalised = distance;
   if (answer) {
-    const Offset off = offset(truth, *answer);
-    distance = std::hypot(off.x, off.y);
-    normalised = std::hypot(off.x / truth.width, off.y / truth.height);
+    const Pixel off = centre_of(*answer) - centre_of(truth);
+    distance = std::hypot(off.x(), off.y());
+    normalised = std::hypot(off.x() / truth.width, off.y() / truth.height);
   }
   for (int k = 0; k < kSuccessSteps; ++k)
     score.success[static_cast<std::size_t>(k)] += shared > 0.05 * k ? 1 : 0;
@@ -67,14 +57,14 @@ struct Offsets {
   double x_most = 0, y_most = 0;
   std::int64_t count = 0;
 
-  void add(const Offset& off) {
-    x += std::abs(off.x);
-    y += std::abs(off.y);
-    xx += off.x * off.x;
-    yy += off.y * off.y;
-    distance += std::hypot(off.x, off.y);
-    x_most = std::max(x_most, std::abs(off.x));
-    y_most = std::max(y_most, std::abs(off.y));
+  void add(const Pixel& off) {
+    x += std::abs(off.x());
+    y += std::abs(off.y());
+    xx += off.x() * off.x();
+    yy += off.y() * off.y();
+    distance += std::hypot(off.x(), off.y());
+    x_most = std::max(x_most, std::abs(off.x()));
+    y_most = std::max(y_most, std::abs(off.y()));
     ++count;
   }
   void write(Score& score) const {
@@ -175,7 +165,7 @@ Score score(std::span<const FramePair> frames, int width, int height) {
     ++score.counted;
     add_curves(*frame.truth, i == 0 ? frame.truth : frame.answer, score);
     if (i == 0) continue;
-    if (frame.answer) offsets.add(offset(*frame.truth, *frame.answer));
+    if (frame.answer) offsets.add(centre_of(*frame.answer) - centre_of(*frame.truth));
     overlaps.add(frame.answer ? overlap(bounded(*frame.truth, width, height),
                                         bounded(*frame.answer, width, height))
                               : 0);

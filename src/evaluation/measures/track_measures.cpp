@@ -14,32 +14,31 @@
 namespace airtruth::evaluation {
 namespace {
 
-// Tracks numbered from 0, with their overlaps.
-
 // Least overlap of a pair in CLEAR MOT and in the Identity measures, as TrackEval has it.
 constexpr double kLeastOverlap = 0.5;
 // The tolerance of comparisons.
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+// Numbers of tracks, from 0.
+using Tracks = Eigen::VectorX<Eigen::Index>;
+
 struct TableFrame {
   // Numbers of the tracks whose boxes are the rows and columns of `overlap`.
-  std::vector<Eigen::Index> truths;
-  std::vector<Eigen::Index> answers;
+  Tracks truths;
+  Tracks answers;
   Eigen::MatrixXd overlap;
-
-  Eigen::Index truth(Eigen::Index row) const { return truths[static_cast<std::size_t>(row)]; }
-  Eigen::Index answer(Eigen::Index column) const {
-    return answers[static_cast<std::size_t>(column)];
-  }
 };
 
 struct TrackTable {
-  Eigen::Index truth_tracks = 0;
-  Eigen::Index answer_tracks = 0;
   // Number of boxes of each track.
   Eigen::VectorXd truth_counts;
   Eigen::VectorXd answer_counts;
   std::vector<TableFrame> frames;
+
+  // A number for each pair of tracks.
+  Eigen::MatrixXd zeros() const {
+    return Eigen::MatrixXd::Zero(truth_counts.size(), answer_counts.size());
+  }
 };
 
 // Numbers by order of the ids.
@@ -54,29 +53,32 @@ Numbers numbers_of(const TrackFrames& frames, std::vector<TrackBox> TrackFrame::
   return numbers;
 }
 
+// The tracks of a frame's boxes, which are counted.
+Tracks tracks_of(const std::vector<TrackBox>& boxes,
+                 const Numbers& numbers,
+                 Eigen::VectorXd& counts) {
+  Tracks tracks(std::ssize(boxes));
+  for (Eigen::Index i = 0; i < tracks.size(); ++i) {
+    tracks(i) = numbers.at(boxes[static_cast<std::size_t>(i)].id);
+    counts(tracks(i)) += 1;
+  }
+  return tracks;
+}
+
 TrackTable table_of(const TrackFrames& frames) {
   const Numbers truths = numbers_of(frames, &TrackFrame::truths);
   const Numbers answers = numbers_of(frames, &TrackFrame::answers);
-  TrackTable table;
-  table.truth_tracks = std::ssize(truths);
-  table.answer_tracks = std::ssize(answers);
-  table.truth_counts = Eigen::VectorXd::Zero(table.truth_tracks);
-  table.answer_counts = Eigen::VectorXd::Zero(table.answer_tracks);
+  TrackTable table{
+      Eigen::VectorXd::Zero(std::ssize(truths)), Eigen::VectorXd::Zero(std::ssize(answers)), {}};
   for (const TrackFrame& frame : frames) {
-    TableFrame& row = table.frames.emplace_back();
-    for (const TrackBox& box : frame.truths) {
-      row.truths.push_back(truths.at(box.id));
-      table.truth_counts(row.truths.back()) += 1;
-    }
-    for (const TrackBox& box : frame.answers) {
-      row.answers.push_back(answers.at(box.id));
-      table.answer_counts(row.answers.back()) += 1;
-    }
-    row.overlap.resize(std::ssize(row.truths), std::ssize(row.answers));
-    for (Eigen::Index t = 0; t < row.overlap.rows(); ++t)
-      for (Eigen::Index a = 0; a < row.overlap.cols(); ++a)
-        row.overlap(t, a) = evaluation::overlap(frame.truths[static_cast<std::size_t>(t)].box_px,
-                                                frame.answers[static_cast<std::size_t>(a)].box_px);
+    const auto overlap = [&](Eigen::Index t, Eigen::Index a) {
+      return evaluation::overlap(frame.truths[static_cast<std::size_t>(t)].box_px,
+                                 frame.answers[static_cast<std::size_t>(a)].box_px);
+    };
+    table.frames.push_back({tracks_of(frame.truths, truths, table.truth_counts),
+                            tracks_of(frame.answers, answers, table.answer_counts),
+                            Eigen::MatrixXd::NullaryExpr(
+                                std::ssize(frame.truths), std::ssize(frame.answers), overlap)});
   }
   return table;
 }
@@ -87,21 +89,18 @@ double threshold(std::size_t step) { return 0.05 + static_cast<double>(step) * 0
 // How well each true track and each answer fit over the whole sequence: the Jaccard index of their
 // boxes, where a pair of boxes counts as its share of the overlaps that either has.
 Eigen::MatrixXd alignment_of(const TrackTable& table) {
-  Eigen::MatrixXd shared = Eigen::MatrixXd::Zero(table.truth_tracks, table.answer_tracks);
+  Eigen::MatrixXd shared = table.zeros();
   for (const TableFrame& frame : table.frames) {
     const Eigen::MatrixXd& overlap = frame.overlap;
     for (Eigen::Index t = 0; t < overlap.rows(); ++t)
       for (Eigen::Index a = 0; a < overlap.cols(); ++a) {
         const double all = overlap.col(a).sum() + overlap.row(t).sum() - overlap(t, a);
-        if (all > kEpsilon) shared(frame.truth(t), frame.answer(a)) += overlap(t, a) / all;
+        if (all > kEpsilon) shared(frame.truths(t), frame.answers(a)) += overlap(t, a) / all;
       }
   }
-  Eigen::MatrixXd alignment(shared.rows(), shared.cols());
-  for (Eigen::Index t = 0; t < shared.rows(); ++t)
-    for (Eigen::Index a = 0; a < shared.cols(); ++a)
-      alignment(t, a) =
-          shared(t, a) / (table.truth_counts(t) + table.answer_counts(a) - shared(t, a));
-  return alignment;
+  const Eigen::MatrixXd boxes = table.truth_counts.replicate(1, shared.cols()) +
+                                table.answer_counts.transpose().replicate(shared.rows(), 1);
+  return shared.cwiseQuotient(boxes - shared);
 }
 
 // Matches of each pair of tracks at each threshold.
@@ -111,31 +110,24 @@ void count_frame(const TableFrame& frame,
                  const Eigen::MatrixXd& alignment,
                  Hota& hota,
                  Matches& matches) {
-  const Eigen::Index truths = frame.overlap.rows();
-  const Eigen::Index answers = frame.overlap.cols();
-  Eigen::MatrixXd cost(truths, answers);
-  for (Eigen::Index t = 0; t < truths; ++t)
-    for (Eigen::Index a = 0; a < answers; ++a)
-      cost(t, a) = -alignment(frame.truth(t), frame.answer(a)) * frame.overlap(t, a);
+  const Eigen::MatrixXd cost = -alignment(frame.truths, frame.answers).cwiseProduct(frame.overlap);
+  const auto answer_of = matching::least_cost_assignment(cost);
   std::array<double, kHotaSteps> matched{};
-  if (truths > 0 && answers > 0) {
-    const auto answer_of = matching::least_cost_assignment(cost);
-    for (Eigen::Index t = 0; t < truths; ++t) {
-      const auto found = answer_of[static_cast<std::size_t>(t)];
-      if (!found) continue;
-      const auto a = static_cast<Eigen::Index>(*found);
-      for (std::size_t k = 0; k < kHotaSteps; ++k) {
-        if (frame.overlap(t, a) < threshold(k) - kEpsilon) break;
-        matched[k] += 1;
-        hota.loc_a[k] += frame.overlap(t, a);
-        matches[k](frame.truth(t), frame.answer(a)) += 1;
-      }
+  for (Eigen::Index t = 0; t < cost.rows(); ++t) {
+    const auto found = answer_of[static_cast<std::size_t>(t)];
+    if (!found) continue;
+    const auto a = static_cast<Eigen::Index>(*found);
+    for (std::size_t k = 0; k < kHotaSteps; ++k) {
+      if (frame.overlap(t, a) < threshold(k) - kEpsilon) break;
+      matched[k] += 1;
+      hota.loc_a[k] += frame.overlap(t, a);
+      matches[k](frame.truths(t), frame.answers(a)) += 1;
     }
   }
   for (std::size_t k = 0; k < kHotaSteps; ++k) {
     hota.true_positives[k] += matched[k];
-    hota.false_negatives[k] += static_cast<double>(truths) - matched[k];
-    hota.false_positives[k] += static_cast<double>(answers) - matched[k];
+    hota.false_negatives[k] += static_cast<double>(cost.rows()) - matched[k];
+    hota.false_positives[k] += static_cast<double>(cost.cols()) - matched[k];
   }
 }
 
@@ -182,7 +174,7 @@ Hota hota_of(const TrackFrames& frames) {
   const Eigen::MatrixXd alignment = alignment_of(table);
   Hota hota;
   Matches matches;
-  matches.fill(Eigen::MatrixXd::Zero(table.truth_tracks, table.answer_tracks));
+  matches.fill(table.zeros());
   for (const TableFrame& frame : table.frames) count_frame(frame, alignment, hota, matches);
   associate(table, matches, hota);
   finish(hota);
@@ -230,7 +222,7 @@ struct Memory {
 class TrackWalk {
  public:
   explicit TrackWalk(const TrackTable& table)
-      : tracks_(static_cast<std::size_t>(table.truth_tracks)) {
+      : tracks_(static_cast<std::size_t>(table.truth_counts.size())) {
     for (const TableFrame& frame : table.frames) count(frame);
     clear_.frames = std::ssize(table.frames);
     for (const Memory& track : tracks_) {
@@ -247,8 +239,8 @@ class TrackWalk {
   Memory& of(Eigen::Index track) { return tracks_[static_cast<std::size_t>(track)]; }
 
   void count(const TableFrame& frame) {
-    const std::int64_t truths = std::ssize(frame.truths);
-    const std::int64_t answers = std::ssize(frame.answers);
+    const std::int64_t truths = frame.truths.size();
+    const std::int64_t answers = frame.answers.size();
     for (const Eigen::Index track : frame.truths) ++of(track).frames;
     // A frame without truths or without answers leaves the pairs of the frame before as they are,
     // as in the toolkit.
@@ -262,9 +254,9 @@ class TrackWalk {
     Eigen::MatrixXd score = frame.overlap;
     for (Eigen::Index t = 0; t < score.rows(); ++t)
       for (Eigen::Index a = 0; a < score.cols(); ++a)
-        score(t, a) = score(t, a) < kLeastOverlap - kEpsilon         ? 0
-                      : of(frame.truth(t)).before == frame.answer(a) ? kKeptPair + score(t, a)
-                                                                     : score(t, a);
+        score(t, a) = score(t, a) < kLeastOverlap - kEpsilon           ? 0
+                      : of(frame.truths(t)).before == frame.answers(a) ? kKeptPair + score(t, a)
+                                                                       : score(t, a);
     const auto answer_of = matching::least_cost_assignment(-score);
     std::vector<Eigen::Index> tracked_before;
     for (const Memory& track : tracks_) tracked_before.push_back(track.before);
@@ -274,10 +266,10 @@ class TrackWalk {
       const auto found = answer_of[static_cast<std::size_t>(t)];
       if (!found || !(score(t, static_cast<Eigen::Index>(*found)) > kEpsilon)) continue;
       const auto a = static_cast<Eigen::Index>(*found);
-      Memory& track = of(frame.truth(t));
-      const Eigen::Index answer = frame.answer(a);
+      Memory& track = of(frame.truths(t));
+      const Eigen::Index answer = frame.answers(a);
       if (track.last != kNone && track.last != answer) ++clear_.identity_switches;
-      if (tracked_before[static_cast<std::size_t>(frame.truth(t))] == kNone) ++track.pieces;
+      if (tracked_before[static_cast<std::size_t>(frame.truths(t))] == kNone) ++track.pieces;
       track.last = track.before = answer;
       ++track.matched;
       ++matched;
@@ -290,22 +282,21 @@ class TrackWalk {
   ClearMot clear_;
 };
 
-double over(double number, std::int64_t of) {
-  return number / static_cast<double>(std::max<std::int64_t>(1, of));
+// A share of nothing is 0.
+double over(auto number, auto of) {
+  return static_cast<double>(number) / std::max(1.0, static_cast<double>(of));
 }
 
 }  // namespace
 
 double ClearMot::mota() const {
-  return over(static_cast<double>(true_positives - false_positives - identity_switches),
+  return over(true_positives - false_positives - identity_switches,
               true_positives + false_negatives);
 }
 double ClearMot::motp() const { return over(overlap_sum, true_positives); }
-double ClearMot::recall() const {
-  return over(static_cast<double>(true_positives), true_positives + false_negatives);
-}
+double ClearMot::recall() const { return over(true_positives, true_positives + false_negatives); }
 double ClearMot::precision() const {
-  return over(static_cast<double>(true_positives), true_positives + false_positives);
+  return over(true_positives, true_positives + false_positives);
 }
 
 ClearMot clear_mot_of(const TrackFrames& frames) { return TrackWalk(table_of(frames)).result(); }
@@ -329,32 +320,27 @@ ClearMot combined(std::span<const ClearMot> sequences) {
 
 namespace {
 
-double over(double number, double of) { return number / std::max(1.0, of); }
-
 // Frames in which each pair of tracks agrees.
 Eigen::MatrixXd agreements_of(const TrackTable& table) {
-  Eigen::MatrixXd agreements = Eigen::MatrixXd::Zero(table.truth_tracks, table.answer_tracks);
+  Eigen::MatrixXd agreements = table.zeros();
   for (const TableFrame& frame : table.frames)
     for (Eigen::Index t = 0; t < frame.overlap.rows(); ++t)
       for (Eigen::Index a = 0; a < frame.overlap.cols(); ++a)
-        if (frame.overlap(t, a) >= kLeastOverlap) agreements(frame.truth(t), frame.answer(a)) += 1;
+        if (frame.overlap(t, a) >= kLeastOverlap)
+          agreements(frame.truths(t), frame.answers(a)) += 1;
   return agreements;
 }
 
 }  // namespace
 
 double Identity::idf1() const {
-  return over(static_cast<double>(true_positives),
+  return over(true_positives,
               static_cast<double>(true_positives) + 0.5 * static_cast<double>(false_positives) +
                   0.5 * static_cast<double>(false_negatives));
 }
-double Identity::recall() const {
-  return over(static_cast<double>(true_positives),
-              static_cast<double>(true_positives + false_negatives));
-}
+double Identity::recall() const { return over(true_positives, true_positives + false_negatives); }
 double Identity::precision() const {
-  return over(static_cast<double>(true_positives),
-              static_cast<double>(true_positives + false_positives));
+  return over(true_positives, true_positives + false_positives);
 }
 
 Identity identity_of(const TrackFrames& frames) {
@@ -363,12 +349,10 @@ Identity identity_of(const TrackFrames& frames) {
   // Each pair saves two wrong boxes for each frame in which it agrees; a track that stays alone
   // saves none. So the fewest wrong boxes are the most agreements.
   double agreed = 0;
-  if (agreements.size() > 0) {
-    const auto answer_of = matching::least_cost_assignment(-agreements);
-    for (Eigen::Index t = 0; t < agreements.rows(); ++t)
-      if (const auto a = answer_of[static_cast<std::size_t>(t)])
-        agreed += agreements(t, static_cast<Eigen::Index>(*a));
-  }
+  const auto answer_of = matching::least_cost_assignment(-agreements);
+  for (Eigen::Index t = 0; t < agreements.rows(); ++t)
+    if (const auto a = answer_of[static_cast<std::size_t>(t)])
+      agreed += agreements(t, static_cast<Eigen::Index>(*a));
   Identity identity;
   identity.true_positives = std::llround(agreed);
   identity.false_negatives = std::llround(table.truth_counts.sum() - agreed);

@@ -39,28 +39,23 @@ double count(const Pixels& p) {
   return std::max(0.0, p.right - p.left + 1) * std::max(0.0, p.bottom - p.top + 1);
 }
 
-// The bounds of a region and the pixels that it contains. The toolkit's empty region lies at the
-// origin.
-struct Region {
-  Pixels bounds;
-  bool is_empty = true;
-};
-
-Region region(const std::optional<Box>& box) {
-  return box ? Region{pixels(*box), false} : Region{};
-}
-
-double region_overlap(const Region& a, const Region& b, int width, int height) {
-  const Pixels both{std::min(a.bounds.left, b.bounds.left),
-                    std::min(a.bounds.top, b.bounds.top),
-                    std::max(a.bounds.right, b.bounds.right),
-                    std::max(a.bounds.bottom, b.bounds.bottom)};
+// The toolkit's empty region lies at the origin.
+double region_overlap(const std::optional<Box>& a,
+                      const std::optional<Box>& b,
+                      int width,
+                      int height) {
+  const Pixels of_a = a ? pixels(*a) : Pixels{};
+  const Pixels of_b = b ? pixels(*b) : Pixels{};
+  const Pixels both{std::min(of_a.left, of_b.left),
+                    std::min(of_a.top, of_b.top),
+                    std::max(of_a.right, of_b.right),
+                    std::max(of_a.bottom, of_b.bottom)};
   if (both.left >= both.right || both.top >= both.bottom) return 1;
   const Pixels part = width > 0 && height > 0 ? cut(both, {0, 0, width - 1.0, height - 1.0}) : both;
   if (part.left >= part.right || part.top >= part.bottom) return 0;
-  if (a.is_empty || b.is_empty) return 0;
-  const Pixels a_cut = cut(a.bounds, part);
-  const Pixels b_cut = cut(b.bounds, part);
+  if (!a || !b) return 0;
+  const Pixels a_cut = cut(of_a, part);
+  const Pixels b_cut = cut(of_b, part);
   const double shared = count(cut(a_cut, b_cut));
   const double all = count(a_cut) + count(b_cut) - shared;
   return all > 0 ? shared / all : 0;
@@ -189,15 +184,15 @@ std::size_t progress_of(const std::vector<double>& overlaps,
 }  // namespace
 
 double pixel_overlap(const Box& a, const Box& b, int width, int height) {
-  return region_overlap(region(a), region(b), width, height);
+  return region_overlap(a, b, width, height);
 }
 
 double frame_overlap(const VotFrame& frame,
                      const std::optional<Box>& truth,
                      int width,
                      int height) {
-  const auto answer = frame.mark == Mark::kAnswer ? frame.box : std::nullopt;
-  return region_overlap(region(answer), region(truth), width, height);
+  return region_overlap(
+      frame.mark == Mark::kAnswer ? frame.box : std::nullopt, truth, width, height);
 }
 
 Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int> eao_range) {
