@@ -71,7 +71,8 @@ class SharedSamples {
 
 class External : public Detector {
  public:
-  explicit External(ExternalOptions options) : options_(std::move(options)) {}
+  External(std::string command, const process::Limits& limits)
+      : command_(std::move(command)), limits_(limits) {}
   External(const External&) = delete;
   External& operator=(const External&) = delete;
   ~External() override { end(); }
@@ -80,9 +81,8 @@ class External : public Detector {
     end();
     log_.clear();
     guarded([&] {
-      child_.emplace(
-          options_.command, process::Child::Transport::kStandard, options_.stop, kAnswerBegins);
-      const auto deadline = process::in(options_.start_s);
+      child_.emplace(command_, process::Child::Transport::kStandard, limits_.stop, kAnswerBegins);
+      const auto deadline = process::in(limits_.start_s);
       hello_ = hello_of(child_->read(deadline));
       if (hello_.frames == FramesBy::kSharedMemory)
         shared_.emplace(static_cast<std::size_t>(sequence.width) *
@@ -98,7 +98,7 @@ class External : public Detector {
       check(child_.has_value(), "a sequence is begun before its frames");
       if (child_->read_if_there()) throw process::Failure("answered before it was asked");
       const std::string samples = samples_of(*frame.picture, hello_.samples);
-      const auto deadline = process::in(options_.answer_s);
+      const auto deadline = process::in(limits_.answer_s);
       if (shared_) std::memcpy(shared_->data(), samples.data(), samples.size());
       child_->write(frame_line(frame, samples.size()), deadline);
       if (!shared_) child_->write(samples, deadline);
@@ -132,7 +132,8 @@ class External : public Detector {
     shared_.reset();
   }
 
-  ExternalOptions options_;
+  std::string command_;
+  process::Limits limits_;
   std::optional<SharedSamples> shared_;
   std::optional<process::Child> child_;
   Hello hello_;
@@ -141,8 +142,8 @@ class External : public Detector {
 
 }  // namespace
 
-std::unique_ptr<Detector> make_external(ExternalOptions options) {
-  return std::make_unique<External>(std::move(options));
+std::unique_ptr<Detector> make_external(std::string command, const process::Limits& limits) {
+  return std::make_unique<External>(std::move(command), limits);
 }
 
 }  // namespace airtruth::detector

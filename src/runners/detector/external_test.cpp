@@ -100,8 +100,8 @@ std::string answering(const std::string& to_frame) {
 }
 constexpr const char* kNothing = R"(echo "{\"frame\":$k,\"detections\":[]}")";
 
-ExternalOptions options(const std::string& command, double seconds = 20) {
-  return {command, seconds, seconds, {}};
+std::unique_ptr<Detector> external(const std::string& command, double seconds = 20) {
+  return make_external(command, {seconds, seconds, {}});
 }
 
 SequenceInput sequence() {
@@ -109,10 +109,10 @@ SequenceInput sequence() {
 }
 
 // What three frames with a program end in; "" for a good end.
-std::string fault_of(const ExternalOptions& settings) {
+std::string fault_of(const std::string& command, double seconds = 20) {
   const image::Picture one = picture();
   try {
-    const auto detector = make_external(settings);
+    const auto detector = external(command, seconds);
     detector->begin(sequence());
     for (int k = 0; k < 3; ++k) detector->detect({k, k / 30.0, &one, k == 0, CameraTurn{}});
     return "";
@@ -120,13 +120,12 @@ std::string fault_of(const ExternalOptions& settings) {
     return error.what();
   }
 }
-std::string fault_of(const std::string& command) { return fault_of(options(command)); }
-std::string hang_of(const std::string& command) { return fault_of(options(command, 0.3)); }
+std::string hang_of(const std::string& command) { return fault_of(command, 0.3); }
 
 TEST(External, AnswersFrameByFrame) {
   const image::Picture one = picture();
-  const auto detector = make_external(options(answering(
-      R"(echo chatter; echo "{\"frame\":$k,\"detections\":[{\"box\":[$k,2,3,4],\"score\":1}]}")")));
+  const auto detector = external(answering(
+      R"(echo chatter; echo "{\"frame\":$k,\"detections\":[{\"box\":[$k,2,3,4],\"score\":1}]}")"));
   for (int sequences = 0; sequences < 2; ++sequences) {
     detector->begin(sequence());
     for (int k = 0; k < 3; ++k) {
@@ -171,8 +170,7 @@ TEST(External, ThatHangsMissesItsDeadline) {
 
 // A frame is larger than the buffer of a pipe, and nobody reads it.
 TEST(External, ThatReadsNothingMissesItsDeadline) {
-  const auto detector =
-      make_external(options(R"(echo '{"hello":{"protocol":1}}'; exec sleep 60)", 0.3));
+  const auto detector = external(R"(echo '{"hello":{"protocol":1}}'; exec sleep 60)", 0.3);
   const image::Picture large = image::make_picture(640, 480, {});
   detector->begin({"one", 640, 480, 30, lens::pinhole_from_vertical_fov(40, {640, 480})});
   EXPECT_THROW(detector->detect({0, 0, &large, {}}), process::Failure);
@@ -190,9 +188,8 @@ TEST(External, LeavesNoProcessBehind) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("airtruth_external_" + std::to_string(::getpid()));
   {
-    const auto detector =
-        make_external(options("trap '' TERM; (trap '' TERM; sleep 300) & echo $! > " +
-                              file.string() + "; " + answering(kNothing)));
+    const auto detector = external("trap '' TERM; (trap '' TERM; sleep 300) & echo $! > " +
+                                   file.string() + "; " + answering(kNothing));
     detector->begin(sequence());
   }
   pid_t grandchild = 0;
@@ -204,9 +201,7 @@ TEST(External, LeavesNoProcessBehind) {
 
 TEST(External, EndsAWaitWhenStopped) {
   std::stop_source stop;
-  ExternalOptions settings = options(answering("exec sleep 60"));
-  settings.stop = stop.get_token();
-  const auto detector = make_external(settings);
+  const auto detector = make_external(answering("exec sleep 60"), {20, 20, stop.get_token()});
   const image::Picture one = picture();
   detector->begin(sequence());
   std::thread later([&] {

@@ -27,6 +27,13 @@ class Failure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// How long a runner's process may take, in seconds, and what ends every wait for it.
+struct Limits {
+  double start_s = 30;   // for its start
+  double answer_s = 30;  // for each answer
+  std::stop_token stop;
+};
+
 // The process of a tracker, or of a detector: a shell command in its own process group, so that all
 // processes that it starts end with it. Its output is read at all times, so that neither side
 // blocks the other. Of output other than messages, at most kMaxLog bytes are kept. A stop ends

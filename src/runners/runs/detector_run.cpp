@@ -243,16 +243,11 @@ class Following {
   results::SequenceDetections found_;
 };
 
-// The threads of each of `jobs` sequences at a time.
-int threads_of(const DetectOptions& options) {
-  return std::max(1, usable_processors() / options.jobs);
-}
-
 class DetectorRun {
  public:
   DetectorRun(const fs::path& out, const DetectOptions& options)
-      : options_(options),
-        detector_options_{options.start_s, options.answer_s, threads_of(options), options.stop} {
+      : options_(options), detector_options_(options) {
+    detector_options_.threads = std::max(1, usable_processors() / options.jobs);
     if (options.association) association::validate(*options.association);
     if (options.min_score && !std::isfinite(*options.min_score))
       throw Error(fmt::format("--min-score is {}; expected a finite number", *options.min_score));

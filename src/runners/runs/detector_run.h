@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,8 @@
 
 namespace airtruth::runs {
 
-struct DetectOptions {
+// `threads` follow from `jobs`.
+struct DetectOptions : DetectorOptions {
   // make_detector.h; each may be NAME=DETECTOR.
   std::vector<std::string> detectors;
   // Pattern for the names of the sequences.
@@ -43,12 +43,9 @@ struct DetectOptions {
   // Tracks made of the detections; empty: the detector's own, if it has any. Without a confident
   // score it is the detector's.
   std::optional<association::AssociationOptions> association;
-  double start_s = 30;
-  double answer_s = 30;
   Warn warn;
   // Counts sequences, or frames of a single video.
   std::function<void(std::int64_t done, std::int64_t total)> progress;
-  std::stop_token stop;
 };
 
 // What a run made of one detector's results.

@@ -87,7 +87,7 @@ std::unique_ptr<detector::Detector> make_detector(std::string_view command,
     const std::string program(command.substr(kExec.size()));
     if (program.find_first_not_of(' ') == std::string::npos)
       throw Error("'" + std::string(command) + "' names no command");
-    return detector::make_external({program, options.start_s, options.answer_s, options.stop});
+    return detector::make_external(program, options);
   }
   if (auto classical = classical::make_classical(command)) return classical;
   if (const auto model = model_of(command)) {

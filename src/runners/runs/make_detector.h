@@ -3,22 +3,19 @@
 
 #include <filesystem>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "runners/detector/detector.h"
+#include "runners/process/child.h"
 
 // A detector by its name: the one place where kinds of detectors plug in.
 namespace airtruth::runs {
 
-struct DetectorOptions {
-  // External programs: time limit for a program's start, and for each answer.
-  double start_s = 30;
-  double answer_s = 30;
+// The limits are for external programs.
+struct DetectorOptions : process::Limits {
   int threads = 1;  // of a network
-  std::stop_token stop;
 };
 
 // The network that ships in data/network-detector.

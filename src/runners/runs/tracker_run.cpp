@@ -37,17 +37,14 @@ constexpr std::int64_t kSkip = 5;
 // Crashes allowed in a run with restarts; after them each start counts as a failure.
 constexpr int kMaxCrashes = 3;
 
-tracking::TrackerOptions tracker_options(const TrackOptions& options, std::uint64_t seed) {
-  return {
-      .seed = seed, .start_s = options.start_s, .answer_s = options.answer_s, .stop = options.stop};
-}
-
 // One run of a tracker, with its answers and its times. A failed tracker gives no more answers
 // until begin() starts it anew.
 class Follower {
  public:
   Follower(const std::string& command, const TrackOptions& options, std::uint64_t seed)
-      : command_(command), options_(tracker_options(options, seed)) {}
+      : command_(command), options_(options) {
+    options_.seed = seed;
+  }
 
   // Starts the tracker on a picture. Returns false where it failed.
   bool begin(const image::Picture& picture, const Box& box) {
@@ -133,13 +130,11 @@ class TrackerRun {
   TrackerRun(const fs::path& out, const TrackOptions& options) : options_(options) {
     require_utf8(options.tracker);
     try {
-      const tracking::TrackerName name =
-          tracking::named(options.tracker, tracker_options(options, options.seed));
+      const tracking::TrackerName name = tracking::named(options.tracker, options);
       command_ = name.command;
       summary_.folder = out / name.name;
       // Error for what is no tracker, before anything is made.
-      if (!name.was_started)
-        tracking::make_tracker(command_, tracker_options(options, options.seed));
+      if (!name.was_started) tracking::make_tracker(command_, options);
     } catch (const process::Failure& error) {
       throw Error("the tracker '" + options.tracker + "' " + error.what());
     }

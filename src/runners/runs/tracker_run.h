@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <stop_token>
 #include <string>
 
 #include "foundation/base/files.h"
@@ -14,17 +13,12 @@
 
 namespace airtruth::runs {
 
-struct TrackOptions {
+struct TrackOptions : tracking::TrackerOptions {
   std::string tracker = "am3";  // tracking::make_tracker, or NAME=trax:COMMAND
   results::Protocol protocol = results::Protocol::kOnePass;
   // Repetitions of the restart protocol; each uses the next seed.
   int repetitions = 1;
   int anchor_step = 50;  // distance between starts in frames
-  std::uint64_t seed = 1;
-  // TraX: time limit for a tracker's start.
-  double start_s = 30;
-  // TraX: time limit for each answer.
-  double answer_s = 30;
   // Pattern for the names of the sequences that are run.
   std::string only = "*";
   // Number of sequences at the same time; times per frame are meaningful only with 1.
@@ -32,7 +26,6 @@ struct TrackOptions {
   Warn warn;
   std::function<void(std::int64_t done, std::int64_t total)>
       progress;  // counts sequences, or frames
-  std::stop_token stop;
 };
 
 struct TrackSummary {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,13 +52,10 @@ class Tracker {
 // there.
 void refuse_unsound(const Box& box, int width, int height);
 
-struct TrackerOptions {
+// The limits are for the process of a TraX tracker.
+struct TrackerOptions : process::Limits {
   // Seed of the built-in trackers; the same seed gives the same result.
   std::uint64_t seed = 1;
-  // Time limits for the process of a TraX tracker, in seconds.
-  double start_s = 30;   // for its start
-  double answer_s = 30;  // for each answer
-  std::stop_token stop;
 };
 
 // Makes a tracker by name: "am3", "am3s", "wmil", "mil"; OpenCV's "opencv-mil", "opencv-kcf",

@@ -182,7 +182,9 @@ image::Picture picture() {
 }
 
 TrackerOptions within(double seconds) {
-  return {.start_s = seconds, .answer_s = seconds, .stop = {}};
+  TrackerOptions options;
+  options.start_s = options.answer_s = seconds;
+  return options;
 }
 
 std::unique_ptr<Tracker> started(const std::string& command) {
