@@ -276,12 +276,6 @@ cv::Rect grown(const cv::Rect& blocks, int by) {
   return {blocks.x - by, blocks.y - by, blocks.width + 2 * by, blocks.height + 2 * by};
 }
 
-double sum_within(const cv::Mat& sums, const cv::Rect& blocks) {
-  const cv::Point low = blocks.tl(), high = blocks.br();
-  return sums.at<double>(high.y, high.x) - sums.at<double>(low.y, high.x) -
-         sums.at<double>(high.y, low.x) + sums.at<double>(low.y, low.x);
-}
-
 // The blocks that a box reaches into; empty where it is not longer than the elements.
 cv::Rect blocks_of(const Level& level, const Box& box_px) {
   const cv::Point low = level.sample_at({box_px.x, box_px.y});

@@ -18,6 +18,10 @@ constexpr Kind kKinds[] = {{"cmo", make_close_minus_open},
 
 }  // namespace
 
+results::Detection detection_of(const Box& box_px, double score) {
+  return {.box_px = box_px, .score = std::round(score * 1000) / 1000};
+}
+
 std::vector<results::Detection> detections_of(std::vector<Blob> blobs, double least) {
   std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
     return a.contrast_to_noise > b.contrast_to_noise;
@@ -37,10 +41,7 @@ std::vector<results::Detection> detections_of(std::vector<Blob> blobs, double le
       same->box_px = blob.box_px;
       continue;
     }
-    results::Detection detection;
-    detection.box_px = blob.box_px;
-    detection.score = std::round(blob.contrast_to_noise * 1000) / 1000;
-    detections.push_back(detection);
+    detections.push_back(detection_of(blob.box_px, blob.contrast_to_noise));
     against_ring.push_back(blob.against_ring);
   }
   return detections;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "runners/classical/blobs.h"
+#include "runners/classical/free_view.h"
 #include "runners/detector/detector.h"
 
 // The detectors that need no training (docs/detection.md):
@@ -32,6 +34,25 @@ std::unique_ptr<detector::Detector> make_frame_difference();
 
 // What the detectors share.
 
+class ClassicalDetector : public detector::Detector {
+ public:
+  void begin(const detector::SequenceInput& sequence) override {
+    lens_.emplace(sequence.lens);
+    view_ = FreeView(sequence.own_aircraft.get());
+  }
+  bool needs_motion() const override { return true; }
+  bool leaves_out_own_aircraft() const override { return true; }
+  std::optional<double> confident_score() const override { return confident_; }
+
+ protected:
+  std::optional<lens::Lens> lens_;
+  FreeView view_;
+  std::optional<double> confident_;
+};
+
+// A detection whose score has four digits.
+results::Detection detection_of(const Box& box_px, double score);
+
 // Weaker blobs are noise more often than not at any size: in a frame of 1280x960 white noise a
 // sample of some thousand independent ones exceeds this many standard deviations.
 inline constexpr double kLeastContrastToNoise = 4;
@@ -40,7 +61,7 @@ inline constexpr double kLeastContrastToNoise = 4;
 inline constexpr double kUsualRateHz = 30;
 
 // The blobs as detections, the strongest first, without those below `least` and without a weaker
-// one of the same object. Scores are the contrast-to-noise ratios, to four digits.
+// one of the same object. Scores are the contrast-to-noise ratios.
 std::vector<results::Detection> detections_of(std::vector<Blob> blobs, double least);
 
 // Noise alone reaches a detector's confident score this often.

@@ -22,11 +22,10 @@ struct FrameBefore {
   Quaternion next_from_this;
 };
 
-class CloseMinusOpen : public detector::Detector {
+class CloseMinusOpen : public ClassicalDetector {
  public:
   void begin(const detector::SequenceInput& sequence) override {
-    lens_.emplace(sequence.lens);
-    view_ = FreeView(sequence.own_aircraft.get());
+    ClassicalDetector::begin(sequence);
     before_.clear();
     // Each level has a quarter of the samples of the one below.
     const double samples = 4.0 / 3 * sequence.width * sequence.height;
@@ -45,10 +44,6 @@ class CloseMinusOpen : public detector::Detector {
     if (before_.size() > kFramesBefore) before_.pop_back();
     return detections_of(std::move(blobs), kLeastContrastToNoise);
   }
-
-  bool needs_motion() const override { return true; }
-  bool leaves_out_own_aircraft() const override { return true; }
-  std::optional<double> confident_score() const override { return confident_; }
 
  private:
   // The mean, over this frame and those before, of the response at the blob's bearing relative to
@@ -75,9 +70,6 @@ class CloseMinusOpen : public detector::Detector {
     return sum / count;
   }
 
-  std::optional<lens::Lens> lens_;
-  FreeView view_;
-  std::optional<double> confident_;
   std::deque<FrameBefore> before_;  // the latest first
 };
 

@@ -34,11 +34,10 @@ constexpr int kLargestCells = kLargestPx / kCellPx;
 // The rounding of both pictures to whole grey levels.
 const double kLeastDifferenceNoise = std::sqrt(2.0 / 12);
 
-class FrameDifference : public detector::Detector {
+class FrameDifference : public ClassicalDetector {
  public:
   void begin(const detector::SequenceInput& sequence) override {
-    lens_.emplace(sequence.lens);
-    view_ = FreeView(sequence.own_aircraft.get());
+    ClassicalDetector::begin(sequence);
     hidden_ = view_.hidden(1);
     before_.release();
     const double cells = double(sequence.width) * sequence.height / (kCellPx * kCellPx);
@@ -63,10 +62,6 @@ class FrameDifference : public detector::Detector {
     before_ = now;
     return detections;
   }
-
-  bool needs_motion() const override { return true; }
-  bool leaves_out_own_aircraft() const override { return true; }
-  std::optional<double> confident_score() const override { return confident_; }
 
  private:
   // The picture before as this frame's camera would have seen it; negative where it did not.
@@ -119,13 +114,11 @@ class FrameDifference : public detector::Detector {
       cv::minMaxLoc(samples(cells), nullptr, &most, nullptr, nullptr, labels(cells) == i);
       cells = without_rim(cells, now.size());
       if (std::max(cells.width, cells.height) > kLargestCells) continue;
-      results::Detection detection;
-      detection.box_px = {double(kCellPx * cells.x),
-                          double(kCellPx * cells.y),
-                          double(kCellPx * cells.width),
-                          double(kCellPx * cells.height)};
-      detection.score = std::round(most * 1000) / 1000;
-      detections.push_back(detection);
+      detections.push_back(detection_of({double(kCellPx * cells.x),
+                                         double(kCellPx * cells.y),
+                                         double(kCellPx * cells.width),
+                                         double(kCellPx * cells.height)},
+                                        most));
     }
     results::sort_by_score(detections);
     return detections;
@@ -144,10 +137,7 @@ class FrameDifference : public detector::Detector {
             std::max(1, cells.height - top - bottom)};
   }
 
-  std::optional<lens::Lens> lens_;
-  FreeView view_;
   cv::Mat hidden_;  // cells that show the own aircraft
-  std::optional<double> confident_;
   cv::Mat before_;
 };
 

@@ -109,11 +109,10 @@ struct Bank {
   LikelihoodRatio ratio;
 };
 
-class HiddenMarkov : public detector::Detector {
+class HiddenMarkov : public ClassicalDetector {
  public:
   void begin(const detector::SequenceInput& sequence) override {
-    lens_.emplace(sequence.lens);
-    view_ = FreeView(sequence.own_aircraft.get());
+    ClassicalDetector::begin(sequence);
     picture_ = {0, 0, double(sequence.width), double(sequence.height)};
     double cells = 0;
     for (const int cell_px : kCellsPx) cells += picture_.area() / (cell_px * cell_px);
@@ -139,10 +138,6 @@ class HiddenMarkov : public detector::Detector {
     results::sort_by_score(detections);
     return detections;
   }
-
-  bool needs_motion() const override { return true; }
-  bool leaves_out_own_aircraft() const override { return true; }
-  std::optional<double> confident_score() const override { return confident_; }
 
  private:
   // The strongest cell of each block, by how much its ln odds exceed those of the strongest cells
@@ -195,26 +190,20 @@ class HiddenMarkov : public detector::Detector {
       const auto bounds = box_at(levels, *pixel, bank.cell_px);
       // Large cells are for what moves fast and can be seen in a single frame.
       if (!bounds && bank.cell_px > kCellsPx[0]) continue;
-      const Box box = bounds.value_or(smallest_box(*pixel));
-      const double score = std::round(peak.score * 1000) / 1000;
+      const results::Detection found =
+          detection_of(bounds.value_or(smallest_box(*pixel)), peak.score);
       const auto same =
           std::find_if(detections.begin(), detections.end(), [&](const results::Detection& other) {
-            return is_same_object(other.box_px, box) || holds(other.box_px, *pixel, kApartPx);
+            return is_same_object(other.box_px, found.box_px) ||
+                   holds(other.box_px, *pixel, kApartPx);
           });
-      if (same != detections.end()) {
-        same->score = std::max(same->score, score);
-        continue;
-      }
-      results::Detection detection;
-      detection.box_px = box;
-      detection.score = score;
-      detections.push_back(detection);
+      if (same != detections.end())
+        same->score = std::max(same->score, found.score);
+      else
+        detections.push_back(found);
     }
   }
 
-  std::optional<lens::Lens> lens_;
-  FreeView view_;
-  std::optional<double> confident_;
   std::vector<Bank> banks_;
   Box picture_;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "foundation/base/median.h"
@@ -17,39 +18,28 @@ constexpr double kLeastBoxSidePx = 1;
 // Each halves the interval, which begins at an object's blurred side: to less than a hundredth.
 constexpr int kHalvings = 8;
 
-// Memory that one region after the other uses.
-struct Scratch {
-  std::vector<char> seen;
-  std::vector<cv::Point> open;
-};
-
-class Grower {
- public:
-  Grower(const Level& level,
-         const cv::Point& seed,
-         int reach,
-         const Excess& excess,
-         double least,
-         Scratch& scratch)
-      : seen_(scratch.seen),
-        open_(scratch.open),
-        level_(level),
-        seed_(seed),
-        reach_(reach),
-        side_(2 * reach + 1),
-        excess_(excess),
-        least_(least),
-        hides_(!level.hidden.empty()) {}
+struct Grower {
+  const Level& level;
+  cv::Point seed;
+  int reach;
+  const Excess& excess;
+  double least;
+  // Memory that one region after the other uses.
+  std::vector<char>& seen;
+  std::vector<cv::Point>& open;
+  bool hides = !level.hidden.empty();
+  double most = 0;
+  Region region = {};
 
   std::optional<Region> grown() {
-    seen_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
-    open_.assign(1, seed_);
-    mark(seed_);
-    region_ = {{}, double(seed_.x), double(seed_.y), double(seed_.x), double(seed_.y)};
-    cv::Point low = seed_, high = seed_;
-    while (!open_.empty()) {
-      const cv::Point at = open_.back();
-      open_.pop_back();
+    seen.assign(static_cast<std::size_t>(side() * side()), 0);
+    open.assign(1, seed);
+    mark(seed);
+    region = {{}, double(seed.x), double(seed.y), double(seed.x), double(seed.y)};
+    cv::Point low = seed, high = seed;
+    while (!open.empty()) {
+      const cv::Point at = open.back();
+      open.pop_back();
       low = {std::min(low.x, at.x), std::min(low.y, at.y)};
       high = {std::max(high.x, at.x), std::max(high.y, at.y)};
       bound(at);
@@ -58,12 +48,11 @@ class Grower {
       else if (!take_around(at))
         return std::nullopt;
     }
-    region_.samples = cv::Rect(low, high + cv::Point(1, 1));
-    region_.share = most_ > least_ ? least_ / most_ : 1;
-    return region_;
+    region.samples = cv::Rect(low, high + cv::Point(1, 1));
+    region.share = most > least ? least / most : 1;
+    return region;
   }
 
- private:
   // Takes what belongs to the region of the samples around one. False where that is out of reach.
   bool take_around(const cv::Point& at) {
     for (int dy = -kGap; dy <= kGap; ++dy)
@@ -72,76 +61,59 @@ class Grower {
         if (!is_inside(next)) continue;
         // Each sample is looked at once.
         if (is_within_reach(next) && !mark(next)) continue;
-        if (excess_(next) < least_) continue;
+        if (excess(next) < least) continue;
         if (!is_within_reach(next)) return false;
-        open_.push_back(next);
+        open.push_back(next);
       }
     return true;
   }
   // The same where all samples around are in reach and in the picture, which is most of the work.
   void take_all_around(const cv::Point& at) {
     for (int dy = -kGap; dy <= kGap; ++dy) {
-      char* seen = &cell({at.x - kGap, at.y + dy});
-      for (int dx = -kGap; dx <= kGap; ++dx, ++seen) {
-        if (*seen != 0) continue;
-        *seen = 1;
+      char* is_seen = &cell({at.x - kGap, at.y + dy});
+      for (int dx = -kGap; dx <= kGap; ++dx, ++is_seen) {
+        if (*is_seen != 0) continue;
+        *is_seen = 1;
         const cv::Point next{at.x + dx, at.y + dy};
-        if (excess_(next) >= least_ && !(hides_ && level_.hides(next))) open_.push_back(next);
+        if (excess(next) >= least && !(hides && level.hides(next))) open.push_back(next);
       }
     }
   }
   bool is_all_within(const cv::Point& p) const {
-    return std::max(std::abs(p.x - seed_.x), std::abs(p.y - seed_.y)) + kGap <= reach_ &&
-           p.x >= kGap && p.y >= kGap && p.x + kGap < level_.picture.cols &&
-           p.y + kGap < level_.picture.rows;
+    return std::max(std::abs(p.x - seed.x), std::abs(p.y - seed.y)) + kGap <= reach &&
+           p.x >= kGap && p.y >= kGap && p.x + kGap < level.picture.cols &&
+           p.y + kGap < level.picture.rows;
   }
   bool is_inside(const cv::Point& p) const {
-    return p.x >= 0 && p.y >= 0 && p.x < level_.picture.cols && p.y < level_.picture.rows &&
-           !(hides_ && level_.hides(p));
+    return p.x >= 0 && p.y >= 0 && p.x < level.picture.cols && p.y < level.picture.rows &&
+           !(hides && level.hides(p));
   }
   bool is_within_reach(const cv::Point& p) const {
-    return std::max(std::abs(p.x - seed_.x), std::abs(p.y - seed_.y)) <= reach_;
+    return std::max(std::abs(p.x - seed.x), std::abs(p.y - seed.y)) <= reach;
   }
   // False where it was marked.
-  bool mark(const cv::Point& p) {
-    char& seen = cell(p);
-    const bool is_new = seen == 0;
-    seen = 1;
-    return is_new;
-  }
+  bool mark(const cv::Point& p) { return std::exchange(cell(p), char{1}) == 0; }
+  int side() const { return 2 * reach + 1; }
   char& cell(const cv::Point& p) {
-    return seen_[static_cast<std::size_t>(p.y - seed_.y + reach_) *
-                     static_cast<std::size_t>(side_) +
-                 static_cast<std::size_t>(p.x - seed_.x + reach_)];
+    return seen[static_cast<std::size_t>(p.y - seed.y + reach) * static_cast<std::size_t>(side()) +
+                static_cast<std::size_t>(p.x - seed.x + reach)];
   }
 
   // The bounds reach as far as the excess does between this sample and its neighbours.
   void bound(const cv::Point& p) {
-    const double here = excess_(p);
-    most_ = std::max(most_, here);
+    const double here = excess(p);
+    most = std::max(most, here);
     const auto reached = [&](int dx, int dy) {
       const cv::Point next{p.x + dx, p.y + dy};
       if (!is_inside(next)) return 0.5;
-      const double there = excess_(next);
-      return here > least_ && there < least_ ? (here - least_) / (here - there) : 0.0;
+      const double there = excess(next);
+      return here > least && there < least ? (here - least) / (here - there) : 0.0;
     };
-    if (p.x - 1 < region_.left) region_.left = std::min(region_.left, p.x - reached(-1, 0));
-    if (p.y - 1 < region_.top) region_.top = std::min(region_.top, p.y - reached(0, -1));
-    if (p.x + 1 > region_.right) region_.right = std::max(region_.right, p.x + reached(1, 0));
-    if (p.y + 1 > region_.bottom) region_.bottom = std::max(region_.bottom, p.y + reached(0, 1));
+    if (p.x - 1 < region.left) region.left = std::min(region.left, p.x - reached(-1, 0));
+    if (p.y - 1 < region.top) region.top = std::min(region.top, p.y - reached(0, -1));
+    if (p.x + 1 > region.right) region.right = std::max(region.right, p.x + reached(1, 0));
+    if (p.y + 1 > region.bottom) region.bottom = std::max(region.bottom, p.y + reached(0, 1));
   }
-
-  std::vector<char>& seen_;
-  std::vector<cv::Point>& open_;
-  const Level& level_;
-  cv::Point seed_;
-  int reach_;
-  int side_;
-  const Excess& excess_;
-  double least_;
-  bool hides_;
-  double most_ = 0;
-  Region region_;
 };
 
 double normal_below(double deviations) { return 0.5 * std::erfc(-deviations / std::sqrt(2.0)); }
@@ -154,8 +126,9 @@ double blur_sigma_px(int step) { return std::sqrt((4.0 * step * step - 1) / 6); 
 
 std::optional<Region> region_around(
     const Level& level, const cv::Point& seed, int reach, const Excess& excess, double least) {
-  thread_local Scratch scratch;
-  return Grower(level, seed, reach, excess, least, scratch).grown();
+  static thread_local std::vector<char> seen;
+  static thread_local std::vector<cv::Point> open;
+  return Grower{level, seed, reach, excess, least, seen, open}.grown();
 }
 
 double side_before_blur(double half_px, double share, double sigma_px) {

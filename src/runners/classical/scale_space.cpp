@@ -155,11 +155,9 @@ cv::Mat clutter_of(const Level& level) {
   cv::integral(squares, sums, CV_64F);
   // The sum of the blocks within a reach, and how many they are.
   const auto within = [&](int bx, int by, int reach) {
-    const int left = std::max(0, bx - reach), right = std::min(squares.cols, bx + reach + 1);
-    const int top = std::max(0, by - reach), bottom = std::min(squares.rows, by + reach + 1);
-    const double sum = sums.at<double>(bottom, right) - sums.at<double>(top, right) -
-                       sums.at<double>(bottom, left) + sums.at<double>(top, left);
-    return std::pair(sum, (right - left) * (bottom - top));
+    const cv::Rect blocks = cv::Rect(bx - reach, by - reach, 2 * reach + 1, 2 * reach + 1) &
+                            cv::Rect({}, squares.size());
+    return std::pair(sum_within(sums, blocks), blocks.area());
   };
   cv::Mat clutter(squares.size(), CV_32F, cv::Scalar(0));
   for (int by = 0; by < squares.rows; ++by)
@@ -197,6 +195,11 @@ Level level_of(cv::Mat picture, int step, const cv::Mat& hidden) {
   return level;
 }
 
+// The value of the block that a sample lies in.
+double at_block(const cv::Mat& blocks, const cv::Point& sample) {
+  return static_cast<double>(blocks.at<float>(sample.y / kBlock, sample.x / kBlock));
+}
+
 }  // namespace
 
 double Level::quietest() { return kLeastTypical; }
@@ -220,20 +223,15 @@ bool Level::is_peak(int bx, int by) const {
 }
 
 double Level::noise_at(const cv::Point& sample) const {
-  const int bx = sample.x / kBlock, by = sample.y / kBlock;
-  return static_cast<double>(typical.at<float>(by, bx)) / kMeanResponse;
+  return at_block(typical, sample) / kMeanResponse;
 }
 
-double Level::clutter_at(const cv::Point& sample) const {
-  const int bx = sample.x / kBlock, by = sample.y / kBlock;
-  return static_cast<double>(clutter.at<float>(by, bx));
-}
+double Level::clutter_at(const cv::Point& sample) const { return at_block(clutter, sample); }
 
 double Level::relative_response(const cv::Point& sample) const {
   if (sample.x < 0 || sample.y < 0 || sample.x >= picture.cols || sample.y >= picture.rows)
     return 0;
-  const int bx = sample.x / kBlock, by = sample.y / kBlock;
-  return response.at<short>(sample) / static_cast<double>(typical.at<float>(by, bx));
+  return response.at<short>(sample) / at_block(typical, sample);
 }
 
 double Level::relative_response_near(const cv::Point& sample, int radius) const {

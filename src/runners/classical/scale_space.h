@@ -30,6 +30,12 @@ inline cv::Rect block_in(const cv::Size& samples, int bx, int by) {
           kBlock,
           kBlock};
 }
+// The sum over a rectangle of blocks, of which `sums` is the integral (CV_64F).
+inline double sum_within(const cv::Mat& sums, const cv::Rect& blocks) {
+  const cv::Point low = blocks.tl(), high = blocks.br();
+  return sums.at<double>(high.y, high.x) - sums.at<double>(low.y, high.x) -
+         sums.at<double>(high.y, low.x) + sums.at<double>(low.y, low.x);
+}
 // Length of the structuring elements, in samples. Close-minus-open responds to objects of at most
 // this length less one; the smoothing makes them two samples longer. So a level of n times fewer
 // samples per side responds to objects of up to 4 n px.
