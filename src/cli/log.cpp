@@ -39,10 +39,7 @@ std::string records(const std::vector<Record>& list, const char* what) {
 }
 
 std::string range_of(const FlightLog& log, double flight_log::Fix::*member) {
-  const auto [low, high] =
-      std::minmax_element(log.fixes.begin(), log.fixes.end(), [&](const auto& a, const auto& b) {
-        return a.*member < b.*member;
-      });
+  const auto [low, high] = std::ranges::minmax_element(log.fixes, {}, member);
   return fmt::format("{:.6g} to {:.6g}", (*low).*member, (*high).*member);
 }
 

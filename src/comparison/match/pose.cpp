@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include <opencv2/imgproc.hpp>
@@ -209,9 +210,7 @@ std::vector<Candidate> coarse_fits(const std::vector<cv::Mat>& masks,
       cv::flip(right, left, 1);
       all.push_back(best_turn(masks, left, {-azimuth_deg, elevation_deg, 0}));
     }
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-    return total_of(a) > total_of(b);
-  });
+  std::ranges::stable_sort(all, std::greater(), total_of);
   all.resize(std::min(all.size(), kClosedIn));
   return all;
 }
@@ -251,9 +250,7 @@ std::vector<Candidate> closed_in(const std::vector<cv::Mat>& masks,
                         candidate.eye.turn_deg));
     close_in(masks, views, stop, candidate);
   }
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& x, const Candidate& y) {
-    return total_of(x) > total_of(y);
-  });
+  std::ranges::stable_sort(all, std::greater(), total_of);
   return all;
 }
 
@@ -290,9 +287,8 @@ std::vector<Contender> contenders_among(const std::vector<std::string>& types,
     last.coarse = coarse_fits({mask}, Views(last.aircraft.mesh), stop);
   }
   if (contenders.empty()) throw Error("no aircraft can be loaded to compare the real one with");
-  std::stable_sort(contenders.begin(), contenders.end(), [](const auto& a, const auto& b) {
-    return total_of(a.coarse[0]) > total_of(b.coarse[0]);
-  });
+  std::ranges::stable_sort(
+      contenders, std::greater(), [](const Contender& one) { return total_of(one.coarse[0]); });
   contenders.resize(std::min(contenders.size(), kTypesClosedIn));
   return contenders;
 }
@@ -324,8 +320,7 @@ std::vector<PoseFit> fit_types(const std::vector<cv::Mat>& masks,
       fits.emplace_back(total_of(fit), next);
     }
   }
-  std::stable_sort(
-      fits.begin(), fits.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(fits, std::greater(), &std::pair<double, PoseFit>::first);
   std::vector<PoseFit> result;
   for (const auto& [total, fit] : fits)
     if (total >= kNearBest * fits[0].first) result.push_back(fit);

@@ -191,7 +191,7 @@ std::optional<SunFit> fit_sun(const scene::Scene& scene,
   for (const Sun& sun : suns(spacing_deg))
     if (const auto fit = fit_of(sun)) coarse.push_back(*fit);
   if (coarse.empty()) return std::nullopt;
-  std::stable_sort(coarse.begin(), coarse.end(), is_better);
+  std::ranges::stable_sort(coarse, is_better);
   SunFit best = coarse[0];
   for (std::size_t i = 0; i < std::min(kSunsClosedIn, coarse.size()); ++i) {
     SunFit here = coarse[i];

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -147,12 +148,10 @@ scores::Assessment assess(const fs::path& set,
       },
       {},
       options.stop);
-  std::stable_sort(assessment.detectors.begin(),
-                   assessment.detectors.end(),
-                   [](const scores::DetectorScore& a, const scores::DetectorScore& b) {
-                     return a.average_precision.ap_centre.value_or(-1) >
-                            b.average_precision.ap_centre.value_or(-1);
-                   });
+  std::ranges::stable_sort(
+      assessment.detectors, std::greater(), [](const scores::DetectorScore& one) {
+        return one.average_precision.ap_centre.value_or(-1);
+      });
   say_who_has_no_tracks(assessment);
   for (const std::string& sentence : assessment.left_out) airtruth::warn(options.warn, sentence);
   return assessment;

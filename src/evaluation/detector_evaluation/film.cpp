@@ -91,10 +91,7 @@ std::optional<Box> subject_of(const scores::Assessment& assessment,
     for (const scores::ScoredDetections& scored : detector.sequences) {
       if (scored.truth != truth || frame >= scored.detections.frames.size()) continue;
       const auto& found = scored.detections.frames[frame];
-      const auto strongest = std::max_element(
-          found.begin(), found.end(), [](const results::Detection& a, const results::Detection& b) {
-            return a.score < b.score;
-          });
+      const auto strongest = std::ranges::max_element(found, {}, &results::Detection::score);
       if (strongest != found.end()) return strongest->box_px;
     }
   return std::nullopt;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -100,10 +102,8 @@ Json detections_in(const scores::ScoredDetections& scored, std::size_t frame) {
   if (frame >= scored.detections.frames.size()) return json;
   const auto& found = scored.detections.frames[frame];
   std::vector<std::size_t> order(found.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return found[a].score > found[b].score;
-  });
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return found[i].score; });
   order.resize(std::min(order.size(), kMaxDrawn));
   for (const std::size_t i : order) {
     const scores::Match& match = scored.matches[frame][i];

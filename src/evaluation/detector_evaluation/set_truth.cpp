@@ -147,8 +147,7 @@ bool was_asked(const std::vector<annotation::Frame>& frames,
   for (const annotation::Frame& frame : frames) {
     if (actor >= frame.intruders.size() || !frame.intruders[actor].encounter) continue;
     const auto& volumes = frame.intruders[actor].encounter->volumes;
-    return std::any_of(
-        volumes.begin(), volumes.end(), [&](const auto& one) { return one.name == volume; });
+    return std::ranges::any_of(volumes, [&](const auto& one) { return one.name == volume; });
   }
   return false;
 }
@@ -344,9 +343,8 @@ void say_what_is_missing(SetTruth& set, const std::string& volume) {
 }
 
 void drop_hours_unless_all_known(SetTruth& set) {
-  const auto unknown = std::count_if(set.sequences.begin(), set.sequences.end(), [](const auto& t) {
-    return !(t.duration_s > 0);
-  });
+  const auto unknown =
+      std::ranges::count_if(set.sequences, [](const auto& t) { return !(t.duration_s > 0); });
   if (unknown == 0) return;
   for (scores::TruthSequence& truth : set.sequences) truth.duration_s = 0;
   set.left_out.push_back(fmt::format(

@@ -99,9 +99,7 @@ void find_encounters(Matched& matched) {
     const Row& row = matched.rows[i];
     return std::tuple(row.flight, row.id, row.frame);
   };
-  std::stable_sort(in_range.begin(), in_range.end(), [&](std::size_t a, std::size_t b) {
-    return place(a) < place(b);
-  });
+  std::ranges::stable_sort(in_range, {}, place);
   std::vector<std::vector<std::size_t>> encounters;
   for (std::size_t i = 0; i < in_range.size(); ++i) {
     const Row& row = matched.rows[in_range[i]];
@@ -142,7 +140,7 @@ Matched matched_of(std::span<const AotFlight> flights, int min_track_frames) {
       ++matched.images;
     }
   }
-  std::sort(matched.scores.begin(), matched.scores.end(), std::greater<>());
+  std::ranges::sort(matched.scores, std::greater<>());
   matched.scores.erase(std::unique(matched.scores.begin(), matched.scores.end()),
                        matched.scores.end());
   find_encounters(matched);
@@ -193,9 +191,8 @@ double hfar_at(const Matched& matched, double score, double hours) {
 }
 
 double fppi_at(const Matched& matched, double score) {
-  const auto alarms = std::count_if(matched.false_detections.begin(),
-                                    matched.false_detections.end(),
-                                    [&](const False& one) { return one.score >= score; });
+  const auto alarms = std::ranges::count_if(matched.false_detections,
+                                            [&](const False& one) { return one.score >= score; });
   return matched.images > 0 ? static_cast<double>(alarms) / static_cast<double>(matched.images) : 0;
 }
 
@@ -225,18 +222,17 @@ AotScore score_at(const Matched& matched, double score, double hours) {
   for (const Row& row : matched.rows)
     if (row.range_m && matched.max_range_m && *row.range_m >= 0 &&
         *row.range_m <= *matched.max_range_m)
-      add(result.afdr, std::any_of(row.matches.begin(), row.matches.end(), [&](const Match& match) {
-            return match.score >= score;
-          }));
+      add(result.afdr,
+          std::ranges::any_of(
+              row.matches, [&](double s) { return s >= score; }, &Match::score));
   return result;
 }
 
 // The least score at which a rate that grows as the score falls is at most `most`.
 template <typename Rate>
 std::optional<double> least_score(const Matched& matched, double most, Rate rate) {
-  const auto beyond = std::partition_point(matched.scores.begin(),
-                                           matched.scores.end(),
-                                           [&](double score) { return rate(score) <= most; });
+  const auto beyond = std::ranges::partition_point(
+      matched.scores, [&](double score) { return rate(score) <= most; });
   if (beyond == matched.scores.begin()) return std::nullopt;
   return *std::prev(beyond);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -64,9 +65,7 @@ class ImageMatcher {
                          is_outside(truth.area_px.value_or(truth.box_px.area()), options.areas));
     order_.resize(image.truths.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-      return !ignored_[a] && ignored_[b];
-    });
+    std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return ignored_[i] != 0; });
     is_taken_.resize(image.truths.size());
   }
 
@@ -77,9 +76,8 @@ class ImageMatcher {
   void match(Add add) {
     std::vector<std::size_t> by_score(image_.detections.size());
     std::iota(by_score.begin(), by_score.end(), std::size_t{0});
-    std::stable_sort(by_score.begin(), by_score.end(), [&](std::size_t a, std::size_t b) {
-      return image_.detections[a].score > image_.detections[b].score;
-    });
+    std::ranges::stable_sort(
+        by_score, std::greater(), [&](std::size_t i) { return image_.detections[i].score; });
     const auto most = static_cast<std::size_t>(std::max(0, options_.max_detections));
     if (by_score.size() > most) by_score.resize(most);
     for (const std::size_t d : by_score) {
@@ -127,9 +125,7 @@ Ranking ranking_of(std::span<const ImageList> sequences, const PrecisionOptions&
       });
     }
   }
-  std::stable_sort(ranking.detections.begin(),
-                   ranking.detections.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
+  std::ranges::stable_sort(ranking.detections, std::greater(), &Ranked::score);
   return ranking;
 }
 
@@ -245,9 +241,8 @@ Curves curves_of(std::span<const ImageList> sequences, Likeness likeness, double
       result.curve ? drawn_curves(ranking) : std::vector<PrecisionCurve>{};
   if (drawn.size() < 2) return result;
   std::vector<double> values(drawn.size());
-  std::transform(drawn.begin(), drawn.end(), values.begin(), [](const PrecisionCurve& curve) {
-    return curve.average_precision;
-  });
+  std::ranges::transform(
+      drawn, values.begin(), std::identity(), &PrecisionCurve::average_precision);
   result.interval = statistics::percentile_interval(values);
   result.band.emplace();
   for (std::size_t i = 0; i < kRecallSteps; ++i) {

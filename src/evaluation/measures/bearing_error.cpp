@@ -90,9 +90,7 @@ Spread spread_of(std::vector<Value> values) {
   std::map<std::size_t, std::size_t> numbers;
   for (Value& one : values)
     one.sequence = numbers.try_emplace(one.sequence, numbers.size()).first->second;
-  std::stable_sort(values.begin(), values.end(), [](const Value& a, const Value& b) {
-    return std::abs(a.value) < std::abs(b.value);
-  });
+  std::ranges::stable_sort(values, {}, [](const Value& one) { return std::abs(one.value); });
   Spread spread = spread_of(values, std::vector<double>(numbers.size(), 1.0));
   spread.intervals = intervals_of(values, numbers.size());
   return spread;

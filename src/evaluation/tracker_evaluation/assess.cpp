@@ -2,6 +2,7 @@
 #include "evaluation/tracker_evaluation/assess.h"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include <fmt/format.h>
@@ -295,8 +296,7 @@ void add_films(std::vector<TruthClip>& truths,
                const AssessOptions& options) {
   std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i < truths.size(); ++i)
-    if (std::any_of(
-            found.begin(), found.end(), [&](const auto& one) { return !one.second[i].empty(); }))
+    if (std::ranges::any_of(found, [&](const auto& one) { return !one.second[i].empty(); }))
       wanted.push_back(i);
   const std::size_t each = std::clamp(
       kMaxStills / std::max<std::size_t>(1, wanted.size()), kMinStillsOfOne, kMaxStillsOfOne);
@@ -354,12 +354,9 @@ Assessment assess(const fs::path& set,
     assessment.trackers.push_back(
         scored(report::name_of_results(folder), found[report::name_of_results(folder)]));
   warn_of_short_curves(assessment, options.warn);
-  std::stable_sort(assessment.trackers.begin(),
-                   assessment.trackers.end(),
-                   [](const ScoredTracker& a, const ScoredTracker& b) {
-                     return (a.overall ? a.overall->auc : std::nullopt) >
-                            (b.overall ? b.overall->auc : std::nullopt);
-                   });
+  std::ranges::stable_sort(assessment.trackers, std::greater(), [](const ScoredTracker& one) {
+    return one.overall ? one.overall->auc : std::nullopt;
+  });
   for (std::size_t i = 0; i < assessment.trackers.size(); ++i)
     for (std::size_t j = i + 1; j < assessment.trackers.size(); ++j)
       if (assessment.trackers[i].overall && assessment.trackers[j].overall)

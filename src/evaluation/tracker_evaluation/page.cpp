@@ -294,9 +294,8 @@ Json trackers_json(const Assessment& assessment) {
     const ScoredTracker& tracker = assessment.trackers[k];
     Json json = json_of(tracker);
     json["style"] = plot::json_of(plot::style_of(k));
-    json["sequences"] = std::count_if(tracker.sequences.begin(),
-                                      tracker.sequences.end(),
-                                      [](const ScoredSequence& s) { return s.score.has_value(); });
+    json["sequences"] = std::ranges::count_if(
+        tracker.sequences, [](const ScoredSequence& s) { return s.score.has_value(); });
     trackers.push_back(json);
   }
   return trackers;

@@ -57,9 +57,8 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& w
       truths.back().weather = facts.weather;
     }
   }
-  std::sort(truths.begin(), truths.end(), [](const TruthClip& a, const TruthClip& b) {
-    return a.clip.name < b.clip.name;
-  });
+  std::ranges::sort(
+      truths, {}, [](const TruthClip& one) -> auto& { return one.clip.name; });
   return truths;
 }
 

@@ -28,15 +28,12 @@ constexpr std::array<std::pair<const char*, Matrix>, 4> kMatrices = {{{"rgb", Ma
 
 template <typename Table, typename Value>
 const char* name_in(const Table& table, Value value) {
-  return std::find_if(
-             table.begin(), table.end(), [&](const auto& row) { return row.second == value; })
-      ->first;
+  return std::ranges::find(table, value, [](const auto& row) { return row.second; })->first;
 }
 
 template <typename Table>
 auto value_in(const Table& table, const std::string& name, const char* what) {
-  const auto found =
-      std::find_if(table.begin(), table.end(), [&](const auto& row) { return name == row.first; });
+  const auto found = std::ranges::find(table, name, [](const auto& row) { return row.first; });
   if (found == table.end())
     throw Error(std::string(what) + " is '" + name.substr(0, 80) +
                 "'; expected one of <airtruth/picture.h>");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <tuple>
 
 #include "runners/classical/region.h"
 
@@ -249,18 +251,15 @@ std::vector<Blob> blobs_of(const std::vector<Level>& levels, const BlobOptions& 
         if (largest >= options.least_response * typical && level.is_peak(bx, by))
           blocks.push_back({-largest / std::hypot(typical, clutter), {bx, by}});
       }
-    const auto order = [](const auto& a, const auto& b) {
-      return std::tie(a.first, a.second.y, a.second.x) < std::tie(b.first, b.second.y, b.second.x);
-    };
-    std::sort(blocks.begin(), blocks.end(), order);
+    std::ranges::sort(blocks, {}, [](const auto& one) {
+      return std::tuple(one.first, one.second.y, one.second.x);
+    });
     if (blocks.size() > options.most_of_a_level) blocks.resize(options.most_of_a_level);
     for (const auto& [weight, block] : blocks)
       if (auto blob = blob_at(levels, number, strongest_in_block(level, block.x, block.y)))
         blobs.push_back(*blob);
   }
-  std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
-    return a.contrast_to_noise > b.contrast_to_noise;
-  });
+  std::ranges::stable_sort(blobs, std::greater(), &Blob::contrast_to_noise);
   return blobs;
 }
 

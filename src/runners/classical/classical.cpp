@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace airtruth::classical {
 namespace {
@@ -23,9 +24,7 @@ results::Detection detection_of(const Box& box_px, double score) {
 }
 
 std::vector<results::Detection> detections_of(std::vector<Blob> blobs, double least) {
-  std::stable_sort(blobs.begin(), blobs.end(), [](const Blob& a, const Blob& b) {
-    return a.contrast_to_noise > b.contrast_to_noise;
-  });
+  std::ranges::stable_sort(blobs, std::greater(), &Blob::contrast_to_noise);
   std::vector<results::Detection> detections;
   std::vector<double> against_ring;  // of the blobs whose boxes the detections have
   for (const Blob& blob : blobs) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <opencv2/imgproc.hpp>
 
@@ -167,8 +168,7 @@ class HiddenMarkov : public ClassicalDetector {
         cv::minMaxLoc(odds(block), nullptr, nullptr, nullptr, &at);
         found.push_back({at + block.tl(), score});
       }
-    std::stable_sort(
-        found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.score > b.score; });
+    std::ranges::stable_sort(found, std::greater(), &Peak::score);
     std::vector<Peak> own;
     for (const Peak& peak : found)
       if (own.size() < kMostPeaks && std::none_of(own.begin(), own.end(), [&](const Peak& other) {

@@ -330,19 +330,13 @@ class DetectorRun {
         detectors.emplace_back(*results, part, detector_options_, options_);
     if (detectors.empty()) return;
     const DetectionClip clip = with_facts(make_clip());
-    const bool with_motion =
-        std::any_of(detectors.begin(), detectors.end(), [](const Following& detector) {
-          return detector.needs_motion();
-        });
+    const bool with_motion = std::ranges::any_of(detectors, &Following::needs_motion);
     ClipFrames frames(clip, with_motion, options_.warn);
     for (Following& detector : detectors) detector.begin(frames.sequence());
     while (const auto frame = frames.next()) {
       if (options_.stop.stop_requested()) throw Interrupted();
       for (Following& detector : detectors) detector.detect(*frame);
-      if (std::all_of(detectors.begin(), detectors.end(), [](const Following& detector) {
-            return detector.is_broken();
-          }))
-        break;
+      if (std::ranges::all_of(detectors, &Following::is_broken)) break;
       if (progress) progress(frame->index + 1, std::max(frame->index + 1, frames.count_estimate()));
     }
     for (Following& detector : detectors) detector.finish();

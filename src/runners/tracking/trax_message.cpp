@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "foundation/base/names.h"
 #include "runners/process/child.h"
 #include "runners/results/detections.h"
 #include "runners/results/vot_regions.h"
@@ -34,12 +35,6 @@ bool is_key(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](unsigned char c) {
            return std::isalnum(c) != 0 || c == '.' || c == '_';
          });
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
 }
 
 std::string excerpt(std::string_view text) {
@@ -119,9 +114,8 @@ std::optional<Message> parse_line(std::string_view line) {
   std::string_view rest = line.substr(kPrefix.size());
   if (!rest.empty() && rest.back() == '\r') rest.remove_suffix(1);
   const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-  const std::string word = lower(rest.substr(0, end));
-  const auto* type = std::find_if(
-      kTypes.begin(), kTypes.end(), [&](const auto& known) { return known.first == word; });
+  const std::string word = lower_case(rest.substr(0, end));
+  const auto* type = std::ranges::find(kTypes, word, [](const auto& one) { return one.first; });
   if (type == kTypes.end())
     throw process::Failure("'" + excerpt(rest.substr(0, end)) + "' is no type of message");
   rest.remove_prefix(end);
@@ -143,9 +137,8 @@ std::optional<Message> parse_line(std::string_view line) {
 
 std::string line_of(const Message& message) {
   std::string line(kPrefix);
-  line += std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& known) {
-            return known.second == message.type;
-          })->first;
+  line +=
+      std::ranges::find(kTypes, message.type, [](const auto& one) { return one.second; })->first;
   for (const std::string& argument : message.arguments) line += " " + in_quotes(argument);
   for (const auto& [key, value] : message.properties) line += " " + in_quotes(key + "=" + value);
   return line + "\n";
