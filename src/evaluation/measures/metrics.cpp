@@ -5,6 +5,7 @@
 
 #include <airtruth/metrics.h>
 
+#include "evaluation/measures/score_measures.h"
 #include "foundation/base/median.h"
 #include "foundation/geometry/box.h"
 
@@ -120,33 +121,15 @@ void end_curves(double count, Score& score) {
   divide(score.normalised, count);
 }
 
-// Separates the measures that are averaged over sequences from those over the frames of all
-// sequences.
-constexpr std::optional<double> Score::*kOfSequences[] = {&Score::x_mean_px,
-                                                          &Score::x_rmse_px,
-                                                          &Score::x_most_px,
-                                                          &Score::y_mean_px,
-                                                          &Score::y_rmse_px,
-                                                          &Score::y_most_px,
-                                                          &Score::centre_mean_px,
-                                                          &Score::auc,
-                                                          &Score::precision_20px,
-                                                          &Score::normalised_auc,
-                                                          &Score::frames_per_second,
-                                                          &Score::frames_per_second_median};
-constexpr std::optional<double> Score::*kOfFrames[] = {
-    &Score::average_overlap, &Score::success_50, &Score::success_75};
-
-// The mean over the sequences that have the measure, each with the weight that `weight_of` gives.
+// The mean over the sequences that have the measure.
 std::optional<double> weighted_mean(std::span<const Score> scores,
-                                    std::optional<double> Score::*member,
-                                    const auto& weight_of) {
+                                    const measures::ScoreMeasure& measure) {
   double sum = 0;
   double weights = 0;
   for (const Score& score : scores) {
-    if (!(score.*member)) continue;
-    sum += *(score.*member) * weight_of(score);
-    weights += weight_of(score);
+    if (!(score.*measure.value)) continue;
+    sum += *(score.*measure.value) * measure.weight_of(score);
+    weights += measure.weight_of(score);
   }
   return weights > 0 ? std::optional(sum / weights) : std::nullopt;
 }
@@ -195,12 +178,8 @@ Score mean_of(std::span<const Score> scores) {
     }
   }
   end_curves(n, mean);
-  for (const auto member : kOfSequences)
-    mean.*member = weighted_mean(scores, member, [](const Score&) { return 1.0; });
-  // The first frame, which GOT-10k omits, always shows the target.
-  for (const auto member : kOfFrames)
-    mean.*member = weighted_mean(
-        scores, member, [](const Score& s) { return static_cast<double>(s.counted - 1); });
+  for (const measures::ScoreMeasure& measure : measures::kScoreMeasures)
+    mean.*measure.value = weighted_mean(scores, measure);
   return mean;
 }
 

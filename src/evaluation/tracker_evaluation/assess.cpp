@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "evaluation/measures/score_measures.h"
 #include "evaluation/report/tables.h"
 #include "evaluation/statistics/bins.h"
 #include "foundation/base/error.h"
@@ -58,24 +59,23 @@ void add_one_pass(const TruthClip& truth,
 
 evaluation::RestartRuns restart_runs(const TruthClip& truth,
                                      const results::TrackerResults& results) {
-  evaluation::RestartRuns runs{truth.vot(), {}};
+  evaluation::RestartRuns runs{results::vot_truth(truth.clip), {}};
   for (const results::TrackerResults::Run& run : results.restart) runs.runs.push_back(run.frames);
   return runs;
 }
 
 evaluation::MultiStartRuns multistart_runs(const TruthClip& truth,
                                            const results::TrackerResults& results) {
-  evaluation::MultiStartRuns runs{truth.vot(), {}};
+  evaluation::MultiStartRuns runs{results::vot_truth(truth.clip), {}};
   const std::int64_t length = std::ssize(truth.clip.frames);
-  for (std::size_t i = 0; i < results.multistart.size(); ++i) {
-    const std::int64_t anchor = results.anchors[i];
+  for (const results::TrackerResults::Run& run : results.multistart) {
+    const std::int64_t anchor = run.anchor;
     // An anchor in the exact middle is equally far from both ends; it runs forward, as in
     // anchors_of().
-    const bool goes_forward = std::ssize(results.multistart[i].frames) == length - anchor;
-    const bool goes_backward = std::ssize(results.multistart[i].frames) == anchor + 1;
-    runs.runs.push_back({anchor,
-                         goes_backward && (!goes_forward || anchor >= (length + 1) / 2),
-                         results.multistart[i].frames});
+    const bool goes_forward = std::ssize(run.frames) == length - anchor;
+    const bool goes_backward = std::ssize(run.frames) == anchor + 1;
+    runs.runs.push_back(
+        {anchor, goes_backward && (!goes_forward || anchor >= (length + 1) / 2), run.frames});
   }
   return runs;
 }
@@ -116,101 +116,92 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
   return results;
 }
 
-class Scoring {
- public:
-  Scoring(const std::vector<TruthClip>& truths, std::pair<int, int> eao_range, bool until_loss)
-      : truths_(truths), eao_range_(eao_range), until_loss_(until_loss) {}
-
-  // found[i] belongs to the i-th truth.
-  ScoredTracker operator()(const std::string& name,
-                           const std::vector<results::TrackerResults>& found) const {
-    ScoredTracker tracker;
-    tracker.name = name;
-    std::vector<evaluation::RestartRuns> restarts;
-    std::vector<evaluation::MultiStartRuns> multistarts;
-    for (std::size_t i = 0; i < truths_.size(); ++i) {
-      const results::TrackerResults& results = found[i];
-      if (results.empty()) continue;
-      ScoredSequence scored;
-      scored.truth = i;
-      scored.name = truths_[i].clip.name;
-      if (!results.one_pass.empty())
-        add_one_pass(truths_[i], results.one_pass.front(), until_loss_, scored);
-      if (!results.restart.empty()) {
-        restarts.push_back(restart_runs(truths_[i], results));
-        scored.restart = evaluation::restart_score({&restarts.back(), 1}, eao_range_);
+void break_down(const std::vector<TruthClip>& truths, ScoredTracker& tracker) {
+  std::vector<measures::Outcome> all;
+  std::map<std::string, std::vector<std::optional<double>>> values;
+  std::map<std::string, std::vector<measures::Outcome>> by_background;
+  for (const ScoredSequence& sequence : tracker.sequences) {
+    const TruthClip& truth = truths[sequence.truth];
+    for (const measures::Outcome& outcome : sequence.outcomes) {
+      all.push_back(outcome);
+      values["range_m"].push_back(truth.range_m[outcome.frame]);
+      values["size_px"].push_back(truth.size_px[outcome.frame]);
+      values["contrast"].push_back(truth.contrast[outcome.frame]);
+      by_background[truth.background].push_back(outcome);
+      for (const auto& [key, edges] : statistics::kWeatherEdges) {
+        const auto fact = truth.weather.find(key);
+        values[key].push_back(fact == truth.weather.end() ? std::nullopt
+                                                          : std::optional(fact->second));
       }
-      if (!results.multistart.empty()) {
-        multistarts.push_back(multistart_runs(truths_[i], results));
-        scored.multistart = evaluation::multistart_score({&multistarts.back(), 1}, eao_range_);
-      }
-      tracker.sequences.push_back(std::move(scored));
     }
-    if (!restarts.empty()) tracker.restart = evaluation::restart_score(restarts, eao_range_);
-    if (!multistarts.empty())
-      tracker.multistart = evaluation::multistart_score(multistarts, eao_range_);
-    summarise(tracker);
-    return tracker;
   }
+  tracker.angle_mrad = measures::mean_of(all).angle_mrad;
+  tracker.bins["range_m"] = measures::breakdown(all, values["range_m"], statistics::kRangeEdges_m);
+  tracker.bins["size_px"] = measures::breakdown(all, values["size_px"], kSizeEdges_px);
+  tracker.bins["contrast"] = measures::breakdown(all, values["contrast"], kContrastEdges);
+  for (const auto& [key, edges] : statistics::kWeatherEdges)
+    if (auto bins = measures::breakdown(all, values[key], edges); !bins.empty())
+      tracker.bins[key] = std::move(bins);
+  for (const auto& [name, outcomes] : by_background)
+    tracker.backgrounds[name] = measures::mean_of(outcomes);
+}
 
- private:
-  void summarise(ScoredTracker& tracker) const {
-    std::vector<Score> scores;
-    for (const ScoredSequence& sequence : tracker.sequences) {
-      if (!sequence.score) continue;
-      scores.push_back(*sequence.score);
-      tracker.lost += sequence.loss ? 1 : 0;
-    }
-    if (scores.empty()) return;
-    tracker.overall = evaluation::mean_of(scores);
-    for (const Measure& measure : measures()) {
-      std::vector<double> values;
-      std::vector<double> weights;
-      for (const Score& score : scores) {
-        if (!(score.*measure.value)) continue;
-        values.push_back(*(score.*measure.value));
-        if (measure.weighs_by_frames) weights.push_back(static_cast<double>(score.counted - 1));
-      }
-      tracker.intervals[measure.name] = evaluation::bootstrap_mean(values, weights);
-    }
-    break_down(tracker);
+void summarise(const std::vector<TruthClip>& truths, ScoredTracker& tracker) {
+  std::vector<Score> scores;
+  for (const ScoredSequence& sequence : tracker.sequences) {
+    if (!sequence.score) continue;
+    scores.push_back(*sequence.score);
+    tracker.lost += sequence.loss ? 1 : 0;
   }
-
-  void break_down(ScoredTracker& tracker) const {
-    std::vector<measures::Outcome> all;
-    std::map<std::string, std::vector<std::optional<double>>> values;
-    std::map<std::string, std::vector<measures::Outcome>> by_background;
-    for (const ScoredSequence& sequence : tracker.sequences) {
-      const TruthClip& truth = truths_[sequence.truth];
-      for (const measures::Outcome& outcome : sequence.outcomes) {
-        all.push_back(outcome);
-        values["range_m"].push_back(truth.range_m[outcome.frame]);
-        values["size_px"].push_back(truth.size_px[outcome.frame]);
-        values["contrast"].push_back(truth.contrast[outcome.frame]);
-        by_background[truth.background].push_back(outcome);
-        for (const auto& [key, edges] : statistics::kWeatherEdges) {
-          const auto fact = truth.weather.find(key);
-          values[key].push_back(fact == truth.weather.end() ? std::nullopt
-                                                            : std::optional(fact->second));
-        }
-      }
+  if (scores.empty()) return;
+  tracker.overall = evaluation::mean_of(scores);
+  for (const measures::ScoreMeasure& measure : measures::kScoreMeasures) {
+    std::vector<double> values;
+    std::vector<double> weights;
+    for (const Score& score : scores) {
+      if (!(score.*measure.value)) continue;
+      values.push_back(*(score.*measure.value));
+      weights.push_back(measure.weight_of(score));
     }
-    tracker.angle_mrad = measures::mean_of(all).angle_mrad;
-    tracker.bins["range_m"] =
-        measures::breakdown(all, values["range_m"], statistics::kRangeEdges_m);
-    tracker.bins["size_px"] = measures::breakdown(all, values["size_px"], kSizeEdges_px);
-    tracker.bins["contrast"] = measures::breakdown(all, values["contrast"], kContrastEdges);
-    for (const auto& [key, edges] : statistics::kWeatherEdges)
-      if (auto bins = measures::breakdown(all, values[key], edges); !bins.empty())
-        tracker.bins[key] = std::move(bins);
-    for (const auto& [name, outcomes] : by_background)
-      tracker.backgrounds[name] = measures::mean_of(outcomes);
+    tracker.intervals[measure.name] = evaluation::bootstrap_mean(values, weights);
   }
+  break_down(truths, tracker);
+}
 
-  const std::vector<TruthClip>& truths_;
-  std::pair<int, int> eao_range_;
-  bool until_loss_ = false;
-};
+// `about` states the truths, the range and the frames that count; found[i] belongs to its i-th
+// truth.
+ScoredTracker scored_tracker(const Assessment& about,
+                             const std::string& name,
+                             const std::vector<results::TrackerResults>& found) {
+  ScoredTracker tracker;
+  tracker.name = name;
+  std::vector<evaluation::RestartRuns> restarts;
+  std::vector<evaluation::MultiStartRuns> multistarts;
+  for (std::size_t i = 0; i < about.truths.size(); ++i) {
+    const TruthClip& truth = about.truths[i];
+    const results::TrackerResults& results = found[i];
+    if (results.empty()) continue;
+    ScoredSequence scored;
+    scored.truth = i;
+    scored.name = truth.clip.name;
+    if (!results.one_pass.empty())
+      add_one_pass(truth, results.one_pass.front(), about.until_loss, scored);
+    if (!results.restart.empty()) {
+      restarts.push_back(restart_runs(truth, results));
+      scored.restart = evaluation::restart_score({&restarts.back(), 1}, about.eao_range);
+    }
+    if (!results.multistart.empty()) {
+      multistarts.push_back(multistart_runs(truth, results));
+      scored.multistart = evaluation::multistart_score({&multistarts.back(), 1}, about.eao_range);
+    }
+    tracker.sequences.push_back(std::move(scored));
+  }
+  if (!restarts.empty()) tracker.restart = evaluation::restart_score(restarts, about.eao_range);
+  if (!multistarts.empty())
+    tracker.multistart = evaluation::multistart_score(multistarts, about.eao_range);
+  summarise(about.truths, tracker);
+  return tracker;
+}
 
 TrackerPair compared(const ScoredTracker& a, const ScoredTracker& b) {
   TrackerPair comparison{a.name, b.name, 0, {}};
@@ -249,41 +240,32 @@ void leave_out_others(const fs::path& folder,
     throw Error("holds no result for any sequence for which --where holds", {folder.string()});
 }
 
-// Where a curve ends before the range over which its mean is taken. last: the range's last index.
-void warn_of_short_curve(const std::string& tracker,
-                         const char* protocol,
-                         std::size_t points,
-                         std::pair<int, int> range,
-                         int last,
-                         const Warn& warn) {
-  const int end = static_cast<int>(points) - 1;
-  if (range.first <= std::min(end, last) && last <= end) return;
-  airtruth::warn(
-      warn,
-      fmt::format("{}: the EAO curve of its {} runs ends at {}; of the range {} to {} {}",
-                  tracker,
-                  protocol,
-                  end,
-                  range.first,
-                  last,
-                  range.first <= end && range.first <= last
-                      ? "the part up to there counts"
-                      : "nothing is there, so it has no EAO"));
-}
-
+// Where a curve ends before the range over which its mean is taken.
 void warn_of_short_curves(const Assessment& assessment, const Warn& warn) {
-  const auto range = assessment.eao_range;
+  const int first = assessment.eao_range.first;
+  const int end_of_range = assessment.eao_range.second;
+  // `last`: the range's last index.
+  const auto look_at = [&](const ScoredTracker& tracker,
+                           const char* protocol,
+                           const std::vector<double>& curve,
+                           int last) {
+    const int end = static_cast<int>(curve.size()) - 1;
+    if (first <= std::min(end, last) && last <= end) return;
+    airtruth::warn(
+        warn,
+        fmt::format("{}: the EAO curve of its {} runs ends at {}; of the range {} to {} {}",
+                    tracker.name,
+                    protocol,
+                    end,
+                    first,
+                    last,
+                    first <= end && first <= last ? "the part up to there counts"
+                                                  : "nothing is there, so it has no EAO"));
+  };
   for (const ScoredTracker& tracker : assessment.trackers) {
-    if (tracker.restart)
-      warn_of_short_curve(
-          tracker.name, "restart", tracker.restart->eao_curve.size(), range, range.second, warn);
+    if (tracker.restart) look_at(tracker, "restart", tracker.restart->eao_curve, end_of_range);
     if (tracker.multistart)
-      warn_of_short_curve(tracker.name,
-                          "multistart",
-                          tracker.multistart->eao_curve.size(),
-                          range,
-                          range.second - 1,
-                          warn);
+      look_at(tracker, "multistart", tracker.multistart->eao_curve, end_of_range - 1);
   }
 }
 
@@ -310,26 +292,6 @@ void add_films(std::vector<TruthClip>& truths,
 
 }  // namespace
 
-const std::vector<Measure>& measures() {
-  static const std::vector<Measure> all = {
-      {"auc", &Score::auc, true, false},
-      {"precision_20px", &Score::precision_20px, true, false},
-      {"normalised_auc", &Score::normalised_auc, true, false},
-      {"average_overlap", &Score::average_overlap, true, true},
-      {"success_50", &Score::success_50, true, true},
-      {"success_75", &Score::success_75, true, true},
-      {"centre_mean_px", &Score::centre_mean_px, false, false},
-      {"x_mean_px", &Score::x_mean_px, false, false},
-      {"x_rmse_px", &Score::x_rmse_px, false, false},
-      {"x_most_px", &Score::x_most_px, false, false},
-      {"y_mean_px", &Score::y_mean_px, false, false},
-      {"y_rmse_px", &Score::y_rmse_px, false, false},
-      {"y_most_px", &Score::y_most_px, false, false},
-      {"frames_per_second", &Score::frames_per_second, true, false},
-      {"frames_per_second_median", &Score::frames_per_second_median, true, false}};
-  return all;
-}
-
 Assessment assess(const fs::path& set,
                   const std::vector<fs::path>& results,
                   const AssessOptions& options) {
@@ -349,10 +311,10 @@ Assessment assess(const fs::path& set,
     leave_out_others(folder, assessment.truths, options.where, found[name]);
   }
   if (options.with_film) add_films(assessment.truths, found, options);
-  const Scoring scored(assessment.truths, assessment.eao_range, options.until_loss);
-  for (const fs::path& folder : results)
-    assessment.trackers.push_back(
-        scored(report::name_of_results(folder), found[report::name_of_results(folder)]));
+  for (const fs::path& folder : results) {
+    const std::string name = report::name_of_results(folder);
+    assessment.trackers.push_back(scored_tracker(assessment, name, found[name]));
+  }
   warn_of_short_curves(assessment, options.warn);
   std::ranges::stable_sort(assessment.trackers, std::greater(), [](const ScoredTracker& one) {
     return one.overall ? one.overall->auc : std::nullopt;

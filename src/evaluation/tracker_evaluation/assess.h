@@ -18,16 +18,6 @@
 
 namespace airtruth::tracker_evaluation {
 
-// One number of a sequence's score, by which trackers are compared and ranked, with an interval.
-struct Measure {
-  const char* name;
-  std::optional<double> evaluation::Score::*value;
-  bool more_is_better;
-  // Sequences are weighted by their frames, as for GOT-10k's measures.
-  bool weighs_by_frames;
-};
-const std::vector<Measure>& measures();
-
 // The first frame at which a tracker lost its object.
 struct FirstLoss {
   std::int64_t frame = 0;  // frame number in the video

@@ -4,6 +4,7 @@
 #include <airtruth/version.h>
 #include <fmt/format.h>
 
+#include "evaluation/measures/score_measures.h"
 #include "evaluation/report/tables.h"
 
 namespace airtruth::tracker_evaluation {
@@ -21,7 +22,7 @@ Json json_of(const std::optional<Score>& score) {
   const auto of = [&](const auto& value) { return score ? Json(value(*score)) : Json(); };
   Json json = {{"frames", of([](const Score& s) { return s.frames; })},
                {"frames_with_target", of([](const Score& s) { return s.counted; })}};
-  for (const Measure& measure : measures())
+  for (const measures::ScoreMeasure& measure : measures::kScoreMeasures)
     json[measure.name] = of([&](const Score& s) { return or_null(s.*measure.value); });
   json["success"] = of([](const Score& s) { return s.success; });
   json["precision"] = of([](const Score& s) { return s.precision; });
@@ -80,7 +81,7 @@ Json overall_of(const ScoredTracker& tracker) {
   Json overall = json_of(tracker.overall);
   overall["angle_mrad"] = or_null(tracker.angle_mrad);
   overall["sequences_lost"] = tracker.lost;
-  for (const Measure& measure : measures())
+  for (const measures::ScoreMeasure& measure : measures::kScoreMeasures)
     overall["intervals_95"][measure.name] = report::json_of(tracker.intervals.at(measure.name));
   return overall;
 }
@@ -89,7 +90,7 @@ Json overall_of(const ScoredTracker& tracker) {
 std::string score_columns(const std::string& place) {
   std::string columns =
       ",frames=" + place + "frames,frames_with_target=" + place + "frames_with_target";
-  for (const Measure& measure : measures())
+  for (const measures::ScoreMeasure& measure : measures::kScoreMeasures)
     columns += fmt::format(",{0}={1}{0}", measure.name, place);
   return columns + ",angle_mrad=" + place + "angle_mrad";
 }
@@ -101,7 +102,7 @@ constexpr const char* kVotColumns =
 
 std::string trackers_csv(const Assessment& assessment) {
   std::string columns = "tracker=name" + score_columns("overall/");
-  for (const Measure& measure : measures())
+  for (const measures::ScoreMeasure& measure : measures::kScoreMeasures)
     columns += fmt::format(",{0}_*_95=overall/intervals_95/{0}", measure.name);
   std::vector<Json> rows;
   for (const ScoredTracker& tracker : assessment.trackers)

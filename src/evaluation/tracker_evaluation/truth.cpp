@@ -38,12 +38,6 @@ PixelBox covered(const Box& box) {
 
 }  // namespace
 
-evaluation::VotTruth TruthClip::vot() const {
-  evaluation::VotTruth result{{}, clip.width, clip.height};
-  for (std::size_t i = 0; i < clip.frames.size(); ++i) result.boxes.push_back(box(i));
-  return result;
-}
-
 std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& warn) {
   const dataset::Boxes boxes = set.usual_boxes(warn);
   std::vector<TruthClip> truths;

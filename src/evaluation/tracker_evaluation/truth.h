@@ -8,12 +8,12 @@
 #include <vector>
 
 #include <airtruth/labels.h>
-#include <airtruth/vot.h>
 
 #include "camera/lens/lens.h"
 #include "dataset/labelled/labelled_set.h"
 #include "evaluation/report/film.h"
 #include "foundation/base/log.h"
+#include "runners/results/trajectories.h"
 
 namespace airtruth::tracker_evaluation {
 
@@ -35,11 +35,7 @@ struct TruthClip {
   // Some frames, for the page.
   std::vector<report::Still> stills;
 
-  std::optional<Box> box(std::size_t i) const {
-    const auto& labels = clip.frames[i].labels;
-    return labels.empty() ? std::nullopt : std::optional(labels.front().box_px);
-  }
-  evaluation::VotTruth vot() const;
+  std::optional<Box> box(std::size_t i) const { return results::box_of(clip.frames[i]); }
 };
 
 constexpr report::CutoutOptions kClose = {

@@ -64,23 +64,19 @@ std::vector<double> read_times(const fs::path& file, std::size_t frames) {
   return seconds;
 }
 
-const exchange::Label* label_of(const exchange::LabelledFrame& frame) {
-  return frame.labels.empty() ? nullptr : &frame.labels.front();
-}
-
 using Tracks = std::map<std::int64_t, std::map<std::int64_t, Box>>;  // [frame][id]
 
 // The track with the greatest overlap with the truth in the first frame where any track overlaps
 // it.
 std::optional<std::int64_t> overlapping_track(const Tracks& tracks, const exchange::Clip& clip) {
   for (const exchange::LabelledFrame& frame : clip.frames) {
-    const exchange::Label* label = label_of(frame);
+    const auto truth = box_of(frame);
     const auto here = tracks.find(frame.frame);
-    if (label == nullptr || here == tracks.end()) continue;
+    if (!truth || here == tracks.end()) continue;
     double best = 0;
     std::optional<std::int64_t> found;
     for (const auto& [id, box] : here->second)
-      if (const double shared = evaluation::overlap(box, label->box_px); shared > best) {
+      if (const double shared = evaluation::overlap(box, *truth); shared > best) {
         best = shared;
         found = id;
       }
@@ -141,7 +137,6 @@ void expect_begun(const Trajectory& trajectory, const fs::path& file) {
 
 TrackerResults::Run one_pass_run(const fs::path& file, const exchange::Clip& clip, int origin_px) {
   TrackerResults::Run run;
-  run.file = file;
   run.frames = is_mot(file) ? read_mot(file, clip) : read_trajectory(file, origin_px);
   // VOT's unsupervised runs mark their start.
   for (VotFrame& frame : run.frames)
@@ -182,7 +177,7 @@ void add_vot_runs(const fs::path& folder,
   for (const fs::path& file : vot_files(folder)) {
     const auto number = number_of(file, clip.name);
     if (!number) continue;
-    TrackerResults::Run run{read_trajectory(file, origin_px), {}, file};
+    TrackerResults::Run run{read_trajectory(file, origin_px), {}, *number};
     run.seconds =
         read_times(file.parent_path() / (file.stem().string() + "_time.value"), run.frames.size());
     expect_begun(run.frames, file);
@@ -198,7 +193,6 @@ void add_vot_runs(const fs::path& folder,
                                 *number + 1),
                     {file.string()});
       results.multistart.push_back(std::move(run));
-      results.anchors.push_back(*number);
     } else {
       expect_length(run.frames, clip, file);
       results.restart.push_back(std::move(run));
@@ -268,6 +262,16 @@ TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, 
   for (const char* place : kVotPlaces)
     add_vot_runs(folder / place / clip.name, clip, origin_px, results);
   return results;
+}
+
+std::optional<Box> box_of(const exchange::LabelledFrame& frame) {
+  return frame.labels.empty() ? std::nullopt : std::optional(frame.labels.front().box_px);
+}
+
+evaluation::VotTruth vot_truth(const exchange::Clip& clip) {
+  evaluation::VotTruth truth{{}, clip.width, clip.height};
+  for (const exchange::LabelledFrame& frame : clip.frames) truth.boxes.push_back(box_of(frame));
+  return truth;
 }
 
 std::vector<std::string> tracked_sequences_in(const fs::path& folder) {

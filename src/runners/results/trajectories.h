@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,12 +52,11 @@ struct TrackerResults {
   struct Run {
     evaluation::Trajectory frames;
     std::vector<double> seconds;  // empty where no times exist
-    fs::path file;
+    std::int64_t anchor = 0;      // of a multistart run
   };
   std::vector<Run> one_pass;  // at most one
   std::vector<Run> restart;
   std::vector<Run> multistart;
-  std::vector<std::int64_t> anchors;  // anchor of each multistart run
   bool empty() const { return one_pass.empty() && restart.empty() && multistart.empty(); }
 };
 
@@ -68,6 +68,10 @@ struct TrackerResults {
 // track overlaps it. Throws Error with file and line for text that is not a result, for a run whose
 // length differs from the clip's, and for times whose number differs from their run's.
 TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px);
+
+// The box of a clip's object in a frame; empty where it is not shown.
+std::optional<Box> box_of(const exchange::LabelledFrame& frame);
+evaluation::VotTruth vot_truth(const exchange::Clip& clip);
 
 // Returns the sorted names of the sequences for which a folder has results.
 std::vector<std::string> tracked_sequences_in(const fs::path& folder);

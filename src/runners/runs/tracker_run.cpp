@@ -121,10 +121,6 @@ struct Record {
   }
 };
 
-const Box* truth_of(const exchange::LabelledFrame& frame) {
-  return frame.labels.empty() ? nullptr : &frame.labels.front().box_px;
-}
-
 class TrackerRun {
  public:
   TrackerRun(const fs::path& out, const TrackOptions& options) : options_(options) {
@@ -275,19 +271,10 @@ class TrackerRun {
         return;
       case results::Protocol::kMultiStart:
         for (const evaluation::Anchor& anchor :
-             evaluation::anchors_of(vot_truth(clip), options_.anchor_step))
+             evaluation::anchors_of(results::vot_truth(clip), options_.anchor_step))
           follow_from(clip, frames, anchor, results::Protocol::kMultiStart);
         return;
     }
-  }
-
-  static evaluation::VotTruth vot_truth(const exchange::Clip& clip) {
-    evaluation::VotTruth truth{{}, clip.width, clip.height};
-    for (const exchange::LabelledFrame& frame : clip.frames) {
-      const Box* box = truth_of(frame);
-      truth.boxes.push_back(box != nullptr ? std::optional(*box) : std::nullopt);
-    }
-    return truth;
   }
 
   const image::Picture& picture_of(video::NumberedFrames& frames,
@@ -314,7 +301,7 @@ class TrackerRun {
     for (std::int64_t i = anchor.frame; i >= 0 && i < std::ssize(clip.frames); i += way) {
       const auto at = static_cast<std::size_t>(i);
       if (i == anchor.frame) {
-        const Box& box = *truth_of(clip.frames[at]);
+        const Box box = *results::box_of(clip.frames[at]);
         follower.begin(picture_of(frames, clip, at), box);
         const bool marks = protocol == results::Protocol::kMultiStart;
         record.add(marks ? Mark::kBegun : Mark::kAnswer, box, follower.seconds());
@@ -341,8 +328,8 @@ class TrackerRun {
     bool is_begun = false;
     std::int64_t skip = 0;
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
-      const Box* truth = truth_of(clip.frames[i]);
-      if (!is_begun && (skip > 0 || truth == nullptr)) {
+      const auto truth = results::box_of(clip.frames[i]);
+      if (!is_begun && (skip > 0 || !truth)) {
         skip -= skip > 0 ? 1 : 0;
         record.add(Mark::kUnknown, {}, 0);
         continue;
@@ -357,9 +344,9 @@ class TrackerRun {
       const auto box = follower.next(picture_of(frames, clip, i));
       crashes += follower.is_broken() ? 1 : 0;
       const evaluation::VotFrame answer{Mark::kAnswer, box};
-      const bool failed = follower.is_broken() ||
-                          (truth != nullptr &&
-                           evaluation::frame_overlap(answer, *truth, clip.width, clip.height) <= 0);
+      const bool failed =
+          follower.is_broken() ||
+          (truth && evaluation::frame_overlap(answer, *truth, clip.width, clip.height) <= 0);
       record.add(
           failed ? Mark::kFailed : Mark::kAnswer, failed ? std::nullopt : box, follower.seconds());
       is_begun = !failed;
