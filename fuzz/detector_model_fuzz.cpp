@@ -23,7 +23,7 @@ ModelDescription description(bool heat_map) {
   if (heat_map) {
     description.output = HeatMapOutput{"heat", "offset", "size"};
   } else {
-    description.output = Yolov5Output{"boxes"};
+    description.output = YoloOutput{"boxes", YoloOutput::Order::kYolov5};
   }
   return description;
 }

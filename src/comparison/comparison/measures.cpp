@@ -19,9 +19,12 @@ double spread(std::vector<double> values) {
   return values.size() < 3 ? 0 : half_spread(std::move(values));
 }
 
-Pair pair_from(const std::string& name,
-               const std::vector<double>& real,
-               const std::vector<double>& made) {
+using Side = appearance::Looks Compared::*;
+
+// `values_of`: those of the real or of the inserted aircraft.
+Pair pair_from(const std::string& name, const auto& values_of) {
+  const std::vector<double> real = values_of(&Compared::real);
+  const std::vector<double> made = values_of(&Compared::made);
   if (real.empty() || made.empty()) return {name, kUnknown, 0, kUnknown, 0};
   return {name, median(real), spread(real), median(made), spread(made)};
 }
@@ -51,13 +54,12 @@ constexpr Measure kMeasures[] = {
     {"steps on the 8 px grid over others", &appearance::Looks::blockiness}};
 
 Pair pair_of(const Measure& measure, const std::vector<Compared>& all) {
-  const auto values_of = [&](const appearance::Looks Compared::*one) {
+  return pair_from(measure.name, [&](Side one) {
     std::vector<double> values;
     for (const Compared& c : all)
       if (!measure.of_edge || (c.*one).edge_width_px > 0) values.push_back((c.*one).*measure.value);
     return values;
-  };
-  return pair_from(measure.name, values_of(&Compared::real), values_of(&Compared::made));
+  });
 }
 
 bool in_a_row(const std::vector<Compared>& all, std::size_t i) {
@@ -66,39 +68,36 @@ bool in_a_row(const std::vector<Compared>& all, std::size_t i) {
 
 // How much the contrast changes from one compared frame to the next.
 Pair flicker_of(const std::vector<Compared>& all) {
-  std::vector<double> real, made;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (!in_a_row(all, i)) continue;
-    real.push_back(std::abs(all[i].real.contrast - all[i - 1].real.contrast));
-    made.push_back(std::abs(all[i].made.contrast - all[i - 1].made.contrast));
-  }
-  return pair_from("flicker of contrast, frame to frame", real, made);
+  return pair_from("flicker of contrast, frame to frame", [&](Side one) {
+    std::vector<double> values;
+    for (std::size_t i = 1; i < all.size(); ++i)
+      if (in_a_row(all, i))
+        values.push_back(std::abs((all[i].*one).contrast - (all[i - 1].*one).contrast));
+    return values;
+  });
 }
 
 Pair motion_of(const std::vector<Compared>& all) {
-  std::vector<double> real, made;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    const auto& shift = all[i].background_shift_px;
-    if (!in_a_row(all, i) || !shift) continue;
-    real.push_back((all[i].real.centre_px - all[i - 1].real.centre_px - *shift).norm());
-    made.push_back((all[i].made.centre_px - all[i - 1].made.centre_px - *shift).norm());
-  }
-  return pair_from("motion against the background, px/frame", real, made);
+  return pair_from("motion against the background, px/frame", [&](Side one) {
+    std::vector<double> values;
+    for (std::size_t i = 1; i < all.size(); ++i)
+      if (const auto& shift = all[i].background_shift_px; shift && in_a_row(all, i))
+        values.push_back(((all[i].*one).centre_px - (all[i - 1].*one).centre_px - *shift).norm());
+    return values;
+  });
 }
 
 // How far a centre lies from the middle of those before and after it.
 Pair unsteadiness_of(const std::vector<Compared>& all) {
-  std::vector<double> real, made;
-  const auto off = [](const Pixel& a, const Pixel& b, const Pixel& c) {
-    return (b - (a + c) / 2).norm();
-  };
-  for (std::size_t i = 2; i < all.size(); ++i) {
-    if (!in_a_row(all, i) || !in_a_row(all, i - 1)) continue;
-    const Compared &a = all[i - 2], &b = all[i - 1], &c = all[i];
-    real.push_back(off(a.real.centre_px, b.real.centre_px, c.real.centre_px));
-    made.push_back(off(a.made.centre_px, b.made.centre_px, c.made.centre_px));
-  }
-  return pair_from("unsteadiness of the centre, px", real, made);
+  return pair_from("unsteadiness of the centre, px", [&](Side one) {
+    std::vector<double> values;
+    for (std::size_t i = 2; i < all.size(); ++i) {
+      if (!in_a_row(all, i) || !in_a_row(all, i - 1)) continue;
+      const Pixel around = ((all[i - 2].*one).centre_px + (all[i].*one).centre_px) / 2;
+      values.push_back(((all[i - 1].*one).centre_px - around).norm());
+    }
+    return values;
+  });
 }
 
 std::string shown(double value, double spread) {

@@ -137,8 +137,8 @@ HeatMapOutput heat_map_of(const JsonObject& json) {
   return output;
 }
 
-Yolov8Output yolov8_of(const JsonObject& json) {
-  using Order = Yolov8Output::Order;
+YoloOutput yolov8_of(const JsonObject& json) {
+  using Order = YoloOutput::Order;
   json.expect_keys_among({"kind", "boxes", "order"});
   return {json.text("boxes"),
           word<Order>(json,
@@ -156,7 +156,7 @@ decltype(ModelDescription::output) output_of(const JsonObject& json) {
   if (kind == Kind::kHeatMap) return heat_map_of(json);
   if (kind == Kind::kYolov8) return yolov8_of(json);
   json.expect_keys_among({"kind", "boxes"});
-  return Yolov5Output{json.text("boxes")};
+  return YoloOutput{json.text("boxes"), YoloOutput::Order::kYolov5};
 }
 
 std::vector<std::string> classes_of(const JsonObject& json) {
@@ -177,8 +177,7 @@ std::vector<std::string> output_names(const ModelDescription& description) {
   if (const auto* map = std::get_if<HeatMapOutput>(&description.output)) {
     return {map->heat, map->offset, map->size};
   }
-  if (const auto* yolo = std::get_if<Yolov8Output>(&description.output)) return {yolo->boxes};
-  return {std::get<Yolov5Output>(description.output).boxes};
+  return {std::get<YoloOutput>(description.output).boxes};
 }
 
 std::filesystem::path description_path(const std::filesystem::path& model) {

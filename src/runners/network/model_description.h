@@ -50,24 +50,20 @@ struct HeatMapOutput {
   SizeUnit size_unit = SizeUnit::kPixel;
 };
 
-// One output of 1 x n x (5 + classes), as YOLOv5 writes it: the centre's x and y, width and height
-// in pixels of the input, objectness, and each class's probability.
-struct Yolov5Output {
+// One output of the YOLO family: of each box the centre's x and y, width and height in pixels of
+// the input, and each class's probability.
+struct YoloOutput {
   std::string boxes;
-};
-
-// One output of 1 x (4 + classes) x n, as YOLOv8 to YOLO12 write it: the centre's x and y, width
-// and height in pixels of the input, and each class's probability. There is no objectness.
-struct Yolov8Output {
-  std::string boxes;
-  // kFromShape: the shape decides whether the values of a box or the boxes come first.
-  enum class Order { kFromShape, kValuesFirst, kBoxesFirst };
+  // kYolov5: 1 x n x (5 + classes), as YOLOv5 writes it, with the objectness before the classes.
+  // Else 1 x (4 + classes) x n, as YOLOv8 to YOLO12 write it, without objectness. kFromShape: the
+  // shape decides whether the values of a box or the boxes come first.
+  enum class Order { kYolov5, kFromShape, kValuesFirst, kBoxesFirst };
   Order order = Order::kFromShape;
 };
 
 struct ModelDescription {
   NetworkInput input;
-  std::variant<HeatMapOutput, Yolov5Output, Yolov8Output> output;
+  std::variant<HeatMapOutput, YoloOutput> output;
   std::vector<std::string> classes;
   double score_threshold = 0.1;
   // A detection at or above it may begin a track.

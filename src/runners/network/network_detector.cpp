@@ -39,10 +39,12 @@ Samples trial_of(const NetworkInput& input) {
   return samples;
 }
 
-bool is_cut(const Box& box, const Samples& piece, const Placement& placement) {
-  return (placement.cut_left && box.x <= 0) || (placement.cut_top && box.y <= 0) ||
-         (placement.cut_right && box.right() >= piece.width) ||
-         (placement.cut_bottom && box.bottom() >= piece.height);
+// Whether a box touches a side of its tile on which the frame goes on: its object may be cut.
+bool is_cut(const Box& box, const Piece& tile, const image::Picture& picture) {
+  const auto& [samples, place] = tile;
+  return (place.x_px > 0 && box.x <= 0) || (place.y_px > 0 && box.y <= 0) ||
+         (place.x_px + samples.width < picture.width && box.right() >= samples.width) ||
+         (place.y_px + samples.height < picture.height && box.bottom() >= samples.height);
 }
 
 bool is_centred_in(const image::Picture& picture, const Box& box) {
@@ -122,7 +124,7 @@ class OnnxDetector : public detector::Detector {
       const auto& [samples, placement] = pieces[i];
       for (results::Detection& one :
            decoded(child_->run(samples), description_, samples.width, samples.height)) {
-        const bool cut = is_cut(one.box_px, samples, placement);
+        const bool cut = !is_letterbox() && is_cut(one.box_px, pieces[i], picture);
         one.box_px = in_frame(one.box_px, placement);
         // The padding of a whole frame and of tiles repeats the frame's last samples: what has its
         // centre there is no part of the frame.

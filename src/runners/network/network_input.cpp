@@ -69,14 +69,7 @@ std::vector<Piece> tiles(const Samples& frame, const NetworkInput& input) {
   std::vector<Piece> pieces;
   for (const int y : tile_starts(frame.height, input.height, input.overlap_px)) {
     for (const int x : tile_starts(frame.width, input.width, input.overlap_px)) {
-      Placement placement;
-      placement.x_px = x;
-      placement.y_px = y;
-      placement.cut_left = x > 0;
-      placement.cut_top = y > 0;
-      placement.cut_right = x + input.width < frame.width;
-      placement.cut_bottom = y + input.height < frame.height;
-      pieces.push_back({part_of(frame, x, y, input.width, input.height), placement});
+      pieces.push_back({part_of(frame, x, y, input.width, input.height), {double(x), double(y)}});
     }
   }
   return pieces;
@@ -96,12 +89,8 @@ std::vector<Piece> letterbox(Samples frame, const NetworkInput& input) {
   const bool is_area = scale < 1 && input.resize == NetworkInput::Resize::kArea;
   cv::resize(
       mat_of(frame), inside, inside.size(), 0, 0, is_area ? cv::INTER_AREA : cv::INTER_LINEAR);
-  Placement placement;
-  placement.scale = scale;
-  placement.x_px = -left / scale;
-  placement.y_px = -top / scale;
   std::vector<Piece> pieces;
-  pieces.push_back({std::move(samples), placement});
+  pieces.push_back({std::move(samples), {-left / scale, -top / scale, scale}});
   return pieces;
 }
 

@@ -16,11 +16,6 @@ struct Placement {
   double x_px = 0;
   double y_px = 0;
   double scale = 1;
-  // The sides on which the frame goes on beyond the piece: an object there may be cut.
-  bool cut_left = false;
-  bool cut_top = false;
-  bool cut_right = false;
-  bool cut_bottom = false;
 };
 
 struct Piece {

@@ -173,8 +173,8 @@ YoloBoxes yolov5_boxes(const Tensor& tensor, const std::string& name, int classe
 
 // Both orders fit where there are as many boxes as values. A shape of 1 x boxes x 6 is also that of
 // networks that leave out duplicates themselves (YOLOv10, YOLO26): two corners, score and class.
-YoloBoxes yolov8_boxes(const Tensor& tensor, const Yolov8Output& output, int classes) {
-  using Order = Yolov8Output::Order;
+YoloBoxes yolov8_boxes(const Tensor& tensor, const YoloOutput& output, int classes) {
+  using Order = YoloOutput::Order;
   const int values = 4 + classes;
   const std::vector<int>& shape = tensor.shape;
   const bool flat = shape.size() == 3 && shape[0] == 1;
@@ -203,10 +203,9 @@ YoloBoxes yolov8_boxes(const Tensor& tensor, const Yolov8Output& output, int cla
 
 YoloBoxes yolo_boxes(const Tensor& tensor, const ModelDescription& description) {
   const auto classes = static_cast<int>(description.classes.size());
-  if (const auto* yolov8 = std::get_if<Yolov8Output>(&description.output)) {
-    return yolov8_boxes(tensor, *yolov8, classes);
-  }
-  return yolov5_boxes(tensor, std::get<Yolov5Output>(description.output).boxes, classes);
+  const auto& output = std::get<YoloOutput>(description.output);
+  return output.order == YoloOutput::Order::kYolov5 ? yolov5_boxes(tensor, output.boxes, classes)
+                                                    : yolov8_boxes(tensor, output, classes);
 }
 
 std::vector<results::Detection> of_yolo(const YoloBoxes& all, const ModelDescription& description) {

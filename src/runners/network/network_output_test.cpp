@@ -63,9 +63,9 @@ TEST(HeatMap, CellsThatDoNotDivideTheInputAreRefused) {
                Error);
 }
 
-ModelDescription yolov8(int classes, Yolov8Output::Order order = {}) {
+ModelDescription yolov8(int classes, YoloOutput::Order order = YoloOutput::Order::kFromShape) {
   ModelDescription description = heat_map(classes);
-  description.output = Yolov8Output{"output0", order};
+  description.output = YoloOutput{"output0", order};
   return description;
 }
 
@@ -93,7 +93,7 @@ std::string fault_of(const Tensor& tensor, const ModelDescription& description) 
 }
 
 TEST(Yolov8, AShapeThatFitsTwiceIsAsked) {
-  using Order = Yolov8Output::Order;
+  using Order = YoloOutput::Order;
   const Tensor square{{1, 5, 5}, std::vector<float>(25, 0.5f)};
   EXPECT_NE(fault_of(square, yolov8(1)).find("expected \"order\""), std::string::npos);
   EXPECT_EQ(fault_of(square, yolov8(1, Order::kValuesFirst)), "");
@@ -108,7 +108,7 @@ TEST(Yolov8, AnotherNumberOfClassesIsAnError) {
   EXPECT_NE(fault_of(kValuesFirst, yolov8(4)).find("expected 1 x 8 x boxes or 1 x boxes x 8"),
             std::string::npos);
   ModelDescription yolov5 = yolov8(3);
-  yolov5.output = Yolov5Output{"output0"};
+  yolov5.output = YoloOutput{"output0", YoloOutput::Order::kYolov5};
   EXPECT_NE(fault_of(kBoxesFirst, yolov5).find("kind \"yolov8\""), std::string::npos);
 }
 
