@@ -25,17 +25,20 @@
 namespace airtruth::cli {
 namespace {
 
-// What `evaluate` is told about detectors' results.
-struct EvaluateDetections {
-  detector_evaluation::AssessOptions options;
+struct Evaluate {
+  std::string set;
+  std::vector<std::string> results;
+  std::string out;
+  std::vector<int> eao_range;
+  std::string against;
+  std::vector<std::string> where;
+  bool no_page = false;
+  std::string figures;
+  tracker_evaluation::AssessOptions options;
+  detector_evaluation::AssessOptions detections;
   std::string ignore;
   // MOTChallenge text is a detector's, also where it has tracks.
   bool is_detections = false;
-
-  // Which of the results are a detector's.
-  bool holds(const std::filesystem::path& results) const {
-    return detector_evaluation::holds_detections(results, is_detections);
-  }
 };
 
 // A cell of a table of results, "-" where nothing was measured.
@@ -147,8 +150,8 @@ void print_false_alarms(const scores::DetectorScore& detector, Console& console)
   console.result(detector.name + ": false alarms on " + line);
 }
 
-void add_detection_options(CLI::App& command, EvaluateDetections& arguments) {
-  detector_evaluation::AssessOptions& options = arguments.options;
+void add_detection_options(CLI::App& command, Evaluate& arguments) {
+  detector_evaluation::AssessOptions& options = arguments.detections;
   const auto group = "Detectors' results";
   command
       .add_option("--centre-px",
@@ -216,56 +219,43 @@ void print_detections(const scores::Assessment& assessment, Console& console) {
   }
 }
 
-struct Evaluate {
-  std::string set;
-  std::vector<std::string> results;
-  std::string out;
-  std::vector<int> eao_range;
-  std::string against;
-  std::vector<std::string> where;
-  bool no_page = false;
-  std::string figures;
-  tracker_evaluation::AssessOptions options;
-  EvaluateDetections detections;
-};
+constexpr auto kOnePassLine =
+    "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}";
 
 std::string one_pass_line(const tracker_evaluation::ScoredTracker& tracker,
                           const evaluation::Score& s) {
-  const auto interval = tracker.intervals.at("auc");
-  return fmt::format(
-      "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}",
-      tracker.name,
-      std::ranges::count_if(tracker.sequences,
-                            [](const auto& one) { return one.score.has_value(); }),
-      number(s.auc, 3),
-      interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-",
-      number(s.precision_20px, 3),
-      number(s.normalised_auc, 3),
-      number(s.average_overlap, 3),
-      number(s.success_50, 3),
-      number(s.centre_mean_px, 1),
-      number(tracker.angle_mrad, 1),
-      tracker.lost,
-      number(s.frames_per_second, 1),
-      number(s.frames_per_second_median, 1));
+  return fmt::format(kOnePassLine,
+                     tracker.name,
+                     std::ranges::count_if(tracker.sequences,
+                                           [](const auto& one) { return one.score.has_value(); }),
+                     number(s.auc, 3),
+                     interval(tracker.intervals.at("auc")),
+                     number(s.precision_20px, 3),
+                     number(s.normalised_auc, 3),
+                     number(s.average_overlap, 3),
+                     number(s.success_50, 3),
+                     number(s.centre_mean_px, 1),
+                     number(tracker.angle_mrad, 1),
+                     tracker.lost,
+                     number(s.frames_per_second, 1),
+                     number(s.frames_per_second_median, 1));
 }
 
 void print_one_pass(const tracker_evaluation::Assessment& assessment, Console& console) {
-  console.result(fmt::format(
-      "{:<20} {:>9} {:>6} {:>15} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>4} {:>10} {:>10}",
-      "tracker",
-      "sequences",
-      "AUC",
-      "95 %",
-      "P@20",
-      "NP",
-      "AO",
-      "SR50",
-      "centre px",
-      "mrad",
-      "lost",
-      "frames/s",
-      "median"));
+  console.result(fmt::format(kOnePassLine,
+                             "tracker",
+                             "sequences",
+                             "AUC",
+                             "95 %",
+                             "P@20",
+                             "NP",
+                             "AO",
+                             "SR50",
+                             "centre px",
+                             "mrad",
+                             "lost",
+                             "frames/s",
+                             "median"));
   for (const tracker_evaluation::ScoredTracker& tracker : assessment.trackers)
     if (tracker.overall) console.result(one_pass_line(tracker, *tracker.overall));
 }
@@ -332,8 +322,8 @@ void set_options(Evaluate& arguments, Context& context) {
   for (const std::string& text : arguments.where)
     options.where.push_back(sequences::condition_from(text));
   follow(options, context, "reading the videos", "sequences");
-  static_cast<report::RunOptions&>(arguments.detections.options) = options;
-  arguments.detections.options.ignore = arguments.detections.ignore;
+  static_cast<report::RunOptions&>(arguments.detections) = options;
+  arguments.detections.ignore = arguments.ignore;
 }
 
 void evaluate_trackers(const Evaluate& arguments,
@@ -364,7 +354,7 @@ void evaluate_detectors(const Evaluate& arguments,
                         const RunFiles& files,
                         Console& console) {
   const scores::Assessment assessment =
-      detector_evaluation::assess(arguments.set, results, arguments.detections.options);
+      detector_evaluation::assess(arguments.set, results, arguments.detections);
   files.write(arguments.out, [&](const fs::path& out) {
     detector_evaluation::write_tables(assessment, out);
     if (arguments.options.with_film)
@@ -380,7 +370,7 @@ void run_evaluate(Evaluate arguments, Context& context) {
   if (!arguments.figures.empty()) report::check_figures(arguments.figures);
   if (!arguments.against.empty()) tracker_evaluation::check_evaluation(arguments.against);
   RunFiles files;
-  files.reads(arguments.against).reads(arguments.detections.ignore).writes_into(arguments.out);
+  files.reads(arguments.against).reads(arguments.ignore).writes_into(arguments.out);
   for (const std::string& results : arguments.results)
     if (!fs::is_directory(results)) files.reads(results);
   files.begin();
@@ -388,7 +378,9 @@ void run_evaluate(Evaluate arguments, Context& context) {
   std::vector<fs::path> of_trackers;
   std::vector<fs::path> of_detectors;
   for (const std::string& results : arguments.results)
-    (arguments.detections.holds(results) ? of_detectors : of_trackers).emplace_back(results);
+    (detector_evaluation::holds_detections(results, arguments.is_detections) ? of_detectors
+                                                                             : of_trackers)
+        .emplace_back(results);
   if (!arguments.against.empty() && of_trackers.empty())
     throw Error("--against compares rankings of trackers, and there are no trackers' results");
   if (!of_detectors.empty()) evaluate_detectors(arguments, of_detectors, files, context.console());
@@ -445,7 +437,7 @@ void add_evaluate(CLI::App& app, Context& context) {
           "Folder for evaluation.json, detection.json, the tables, report.html and detection.html")
       ->required();
   add_measure_options(command, *arguments);
-  add_detection_options(*command, arguments->detections);
+  add_detection_options(*command, *arguments);
   command->add_option("--against",
                       arguments->against,
                       "Another evaluation.json: how far do the two rankings agree?");

@@ -189,30 +189,23 @@ void expect_same(const SequenceDetections& read,
                 {file.string()});
 }
 
-std::vector<SequenceDetections> read_own(const fs::path& folder,
-                                         const std::vector<std::string>& names,
-                                         std::span<const ExpectedSequence> set) {
+// A folder that `airtruth detect` made, or one of MOTChallenge results.
+std::vector<SequenceDetections> read_folder(const fs::path& folder,
+                                            bool is_own,
+                                            const std::vector<std::string>& names,
+                                            std::span<const ExpectedSequence> set) {
   expect_known(names, set, folder);
   std::vector<SequenceDetections> all;
   for (const ExpectedSequence& expected : set) {
-    if (!has_sequence(folder, expected.name)) continue;
-    all.push_back(read_sequence(folder, expected.name));
-    expect_same(all.back(), expected, facts_file(folder, expected.name));
-  }
-  return all;
-}
-
-std::vector<SequenceDetections> read_mot(const fs::path& folder,
-                                         const std::vector<std::string>& names,
-                                         std::span<const ExpectedSequence> set) {
-  expect_known(names, set, folder);
-  std::vector<SequenceDetections> all;
-  for (const ExpectedSequence& expected : set) {
-    const fs::path file = mot_file(folder, expected.name);
-    if (file.empty()) continue;
-    FrameList frames(expected.name, expected.width, expected.height, expected.frames);
-    read_mot_text(file, frames);
-    all.push_back(frames.take());
+    if (is_own) {
+      if (!has_sequence(folder, expected.name)) continue;
+      all.push_back(read_sequence(folder, expected.name));
+      expect_same(all.back(), expected, facts_file(folder, expected.name));
+    } else if (const fs::path file = mot_file(folder, expected.name); !file.empty()) {
+      FrameList frames(expected.name, expected.width, expected.height, expected.frames);
+      read_mot_text(file, frames);
+      all.push_back(frames.take());
+    }
   }
   return all;
 }
@@ -281,8 +274,8 @@ std::vector<SequenceDetections> read_detections(const fs::path& source,
   if (!fs::exists(source)) throw Error("does not exist", {source.string()});
   if (!fs::is_directory(source)) return read_coco_results(source, set);
   const std::vector<std::string> names = mot_names(source);
-  if (fs::exists(source / "detector.json")) return read_own(source, names, set);
-  if (!names.empty()) return read_mot(source, names, set);
+  const bool is_own = fs::exists(source / "detector.json");
+  if (is_own || !names.empty()) return read_folder(source, is_own, names, set);
   if (const fs::path file = only_json(source); !file.empty()) return read_coco_results(file, set);
   throw Error(
       "holds no results; expected what `airtruth detect` made, MOTChallenge text (SEQUENCE.txt) or "

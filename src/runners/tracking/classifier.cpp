@@ -177,16 +177,40 @@ void Classifier::learn(const Pyramid& pyramid,
 }
 
 // From here on the matrices hold log-ratios.
-void Classifier::select_weighted(const Matrix& object,
-                                 std::span<const float> weights,
-                                 const Matrix& around) {
+
+// Selects one weak classifier after another: in each round that with the greatest gain. What is
+// selected so far says `strong_object` and `strong_around` of the samples;
+// gains_of_round(strong_object, strong_around) returns the gain of each weak classifier.
+void Classifier::select(const Matrix& object, const Matrix& around, const auto& gains_of_round) {
   std::vector<float> strong_object(object.samples(), 0);
   std::vector<float> strong_around(around.samples(), 0);
-  std::vector<float> slope_object(object.samples());
-  std::vector<float> slope_around(around.samples());
   std::vector<bool> taken(pool_.size(), false);
   const int rounds = std::min(options_.selected, static_cast<int>(pool_.size()));
   for (int round = 0; round < rounds; ++round) {
+    const auto gain_of = gains_of_round(strong_object, strong_around);
+    std::size_t best = 0;
+    double most = -INFINITY;
+    for (std::size_t k = 0; k < pool_.size(); ++k) {
+      if (taken[k]) continue;
+      const double gain = gain_of(k);
+      if (gain > most) {
+        most = gain;
+        best = k;
+      }
+    }
+    taken[best] = true;
+    selected_.push_back(best);
+    add(object.row(best), strong_object);
+    add(around.row(best), strong_around);
+  }
+}
+
+void Classifier::select_weighted(const Matrix& object,
+                                 std::span<const float> weights,
+                                 const Matrix& around) {
+  std::vector<float> slope_object(object.samples());
+  std::vector<float> slope_around(around.samples());
+  select(object, around, [&](const auto& strong_object, const auto& strong_around) {
     float bag = 1e-12f;
     float outside = 1e-12f;
     for (std::size_t j = 0; j < strong_object.size(); ++j) {
@@ -199,55 +223,28 @@ void Classifier::select_weighted(const Matrix& object,
       slope_around[j] = t * (1 - t);
       outside += 1 - t;
     }
-    std::size_t best = 0;
-    float best_gain = -INFINITY;
-    for (std::size_t k = 0; k < pool_.size(); ++k) {
-      if (taken[k]) continue;
-      const float gain =
-          dot(object.row(k), slope_object) / bag - dot(around.row(k), slope_around) / outside;
-      if (gain > best_gain) {
-        best_gain = gain;
-        best = k;
-      }
-    }
-    taken[best] = true;
-    selected_.push_back(best);
-    add(object.row(best), strong_object);
-    add(around.row(best), strong_around);
-  }
+    return [&, bag, outside](std::size_t k) {
+      return dot(object.row(k), slope_object) / bag - dot(around.row(k), slope_around) / outside;
+    };
+  });
 }
 
 // Babenko et al. 2011, algorithm 2: one positive bag by noisy-OR, each negative a bag of its own.
 void Classifier::select_noisy_or(const Matrix& object, const Matrix& around) {
-  std::vector<float> strong_object(object.samples(), 0);
-  std::vector<float> strong_around(around.samples(), 0);
-  std::vector<bool> taken(pool_.size(), false);
-  const int rounds = std::min(options_.selected, static_cast<int>(pool_.size()));
-  for (int round = 0; round < rounds; ++round) {
-    std::size_t best = 0;
-    double least = INFINITY;
-    for (std::size_t k = 0; k < pool_.size(); ++k) {
-      if (taken[k]) continue;
+  select(object, around, [&](const auto& strong_object, const auto& strong_around) {
+    return [&](std::size_t k) {
       const std::span<const float> inside = object.row(k);
       const std::span<const float> beside = around.row(k);
       double none = 1;
       for (std::size_t j = 0; j < strong_object.size(); ++j)
         none *= 1 - sigmoid(strong_object[j] + inside[j]);
-      double cost = -std::log(1 - none + 1e-5) / static_cast<double>(strong_object.size());
+      const double gain = std::log(1 - none + 1e-5) / static_cast<double>(strong_object.size());
       double outside = 0;
       for (std::size_t j = 0; j < strong_around.size(); ++j)
         outside -= std::log(1 - sigmoid(strong_around[j] + beside[j]) + 1e-5f);
-      cost += outside / static_cast<double>(strong_around.size());
-      if (cost < least) {
-        least = cost;
-        best = k;
-      }
-    }
-    taken[best] = true;
-    selected_.push_back(best);
-    add(object.row(best), strong_object);
-    add(around.row(best), strong_around);
-  }
+      return gain - outside / static_cast<double>(strong_around.size());
+    };
+  });
 }
 
 }  // namespace airtruth::tracking

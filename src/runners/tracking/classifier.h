@@ -71,6 +71,7 @@ class Classifier {
   Matrix features(const Pyramid& pyramid, std::span<const Place> places) const;
   void move(std::size_t weak, const Matrix& object, const Matrix& around);
   void to_ratios(Matrix& values) const;
+  void select(const Matrix& object, const Matrix& around, const auto& gains_of_round);
   void select_weighted(const Matrix& object, std::span<const float> weights, const Matrix& around);
   void select_noisy_or(const Matrix& object, const Matrix& around);
 

@@ -75,21 +75,6 @@ class Window {
   Box window_;
 };
 
-// OpenCV throws for boxes at the border and for boxes of a few pixels; the tracker then counts as
-// having lost its object.
-Answer answer_of(const std::function<bool(Box&)>& update, const Box& last) {
-  Answer answer{last, 1, false};
-  try {
-    answer.lost = !update(answer.box_px);
-  } catch (const cv::Exception&) {
-    answer.lost = true;
-  }
-  const Box& b = answer.box_px;
-  if (!std::isfinite(b.x + b.y + b.width + b.height)) answer.lost = true;
-  if (answer.lost) answer = {last, 0, true};
-  return answer;
-}
-
 // cv::Tracker takes whole pixels.
 bool init(cv::Tracker& tracker, const cv::Mat& frame, const Box& box) {
   tracker.init(frame,
@@ -139,17 +124,17 @@ class OpenCvTracker : public Tracker {
   }
   Answer update() override {
     if (broken_) return {last_, 0, true};
-    const Answer answer = answer_of(
-        [&](Box& box) {
-          Rectangle found;
-          if (!tracking::update(*tracker_, frame_, found)) return false;
-          box = window_.object_in(
-              {double(found.x), double(found.y), double(found.width), double(found.height)});
-          return true;
-        },
-        last_);
-    last_ = answer.box_px;
-    return answer;
+    Rectangle found;
+    bool is_found = false;
+    try {
+      is_found = tracking::update(*tracker_, frame_, found);
+    } catch (const cv::Exception&) {  // for boxes at the border and for boxes of a few pixels
+    }
+    const Box b = window_.object_in(
+        {double(found.x), double(found.y), double(found.width), double(found.height)});
+    if (!is_found || !std::isfinite(b.x + b.y + b.width + b.height)) return {last_, 0, true};
+    last_ = b;
+    return {b, 1, false};
   }
 
  private:
