@@ -266,9 +266,7 @@ Looks looks_of(const Patch& patch) {
                    median_or_0(values_where(patch.grey, around));
   const cv::Mat level = surroundings_of(patch.grey, around);
   add_contrast(patch.grey - level, patch.silhouette, looks);
-  const Outline outline = outline_of(patch.grey, patch.silhouette, level);
-  looks.edge_width_px = outline.edge_width_px;
-  looks.halo = outline.halo;
+  static_cast<Outline&>(looks) = outline_of(patch.grey, patch.silhouette, level);
   looks.noise = laplacian_deviation(patch.grey, inside);
   looks.background_noise = laplacian_deviation(patch.grey, around);
   looks.fine_share = share_above(patch.grey, 0.25);

@@ -28,14 +28,20 @@ struct Patch {
 // leaves the picture.
 std::optional<Patch> patch_of(const image::Picture& picture, const Box& box);
 
-struct Looks {
+// How the camera reproduces the outline of a silhouette, from profiles across the outline.
+struct Outline {
+  double edge_width_px = 0;  // 10 to 90 % of the step, median along the outline; 0: no clear edge
+  // Overshoot of the sky beside the outline relative to the sky further off, away from the
+  // aircraft, as a share of the step.
+  double halo = 0;
+};
+
+struct Looks : Outline {
   double contrast = 0;  // median of the silhouette less that of its surroundings, code values
   // Of the silhouette less the plane through its surroundings, code values: the brightest and the
   // darkest pixel, and the means over the whole silhouette of what lies above and of what lies
   // below (their sum is the mean contrast). Above is 0 or more, below is 0 or less.
   double peak_above = 0, peak_below = 0, mean_above = 0, mean_below = 0;
-  double edge_width_px = 0;     // 10 to 90 %, median along the outline
-  double halo = 0;              // overshoot of the sky along the outline, share of the step
   double noise = 0;             // of the silhouette's inside: robust deviation of its Laplacian
   double background_noise = 0;  // the same of the surroundings
   double fine_share = 0;        // of the patch's spectrum above 1/4 cycle a pixel
@@ -52,14 +58,6 @@ Looks looks_of(const Patch& patch);
 
 // Hellinger (1909) distance of two histograms, 0..1.
 double distance(const std::array<double, 24>& a, const std::array<double, 24>& b);
-
-// How the camera reproduces the outline of a silhouette, from profiles across the outline.
-struct Outline {
-  double edge_width_px = 0;  // 10 to 90 % of the step, median along the outline; 0: no clear edge
-  // Overshoot of the sky beside the outline relative to the sky further off, away from the
-  // aircraft, as a share of the step.
-  double halo = 0;
-};
 
 // `level`: the surroundings (surroundings_of()). All of one size; `grey` and `level` float.
 Outline outline_of(const cv::Mat& grey, const cv::Mat& silhouette, const cv::Mat& level);

@@ -99,7 +99,8 @@ class Comparing {
       match(found.masks, matched);
     else
       load(matched);
-    render(matched, fitting_scale(matched));
+    const double scale = fitting_scale(matched);
+    render_beside(matched, boxes_, scale, staged_.path(), true);
     compare();
   }
 
@@ -289,10 +290,6 @@ class Comparing {
         if (options_.progress) options_.progress(p.frames_done, 2 * p.frames_total);
       };
     pipeline::render(placed_beside(given, boxes, scale), folder, how);
-  }
-
-  void render(const scene::Scene& given, double scale) {
-    render_beside(given, boxes_, scale, staged_.path(), true);
   }
 
   // What the inserted aircraft's size must be multiplied by to look as large as the real one, both

@@ -69,9 +69,7 @@ std::vector<results::Detection> Associator::step(const detector::FrameInput& fra
   check(lens_.has_value(), "Associator::begin comes before step");
   for (results::Detection& detection : detections) detection.track.reset();
   predict(frame);
-  const std::vector<Seen> seen = seen_in(detections);
-  detection_of_track_.assign(tracks_.size(), std::nullopt);
-  taken_.assign(detections.size(), false);
+  std::vector<Seen> seen = seen_in(detections);
   match(detections, seen, true, true);
   match(detections, seen, true, false);
   match(detections, seen, false, true);
@@ -91,6 +89,7 @@ void Associator::predict(const detector::FrameInput& frame) {
   for (Track& track : tracks_) {
     track.filter.predict(seconds, turn, error_rad);
     ++track.frames;
+    track.detection.reset();
   }
 }
 
@@ -136,7 +135,7 @@ std::vector<Associator::Seen> Associator::seen_in(
 }
 
 void Associator::match(const std::vector<results::Detection>& detections,
-                       const std::vector<Seen>& seen,
+                       std::vector<Seen>& seen,
                        bool declared,
                        bool confident) {
   std::vector<GatedPair> pairs;
@@ -145,11 +144,11 @@ void Associator::match(const std::vector<results::Detection>& detections,
   double alone = 0;
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
-    if (track.number.has_value() != declared || detection_of_track_[t]) continue;
+    if (track.number.has_value() != declared || track.detection) continue;
     for (std::size_t s = 0; s < seen.size(); ++s) {
       const results::Detection& detection = detections[seen[s].index];
-      if (seen[s].confident != confident || taken_[seen[s].index] ||
-          detection.category != track.category || !track.filter.is_near(seen[s].sighting, kGate)) {
+      if (seen[s].confident != confident || seen[s].taken || detection.category != track.category ||
+          !track.filter.is_near(seen[s].sighting, kGate)) {
         continue;
       }
       const auto comparison = track.filter.compare(seen[s].sighting);
@@ -162,20 +161,20 @@ void Associator::match(const std::vector<results::Detection>& detections,
   const auto chosen = least_cost_pairs(pairs, tracks_.size(), seen.size(), alone);
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     if (!chosen[t]) continue;
-    const Seen& one = seen[*chosen[t]];
-    detection_of_track_[t] = one.index;
-    taken_[one.index] = true;
-    tracks_[t].filter.update(one.sighting);
-    tracks_[t].seen_s = time_s_;
-    if (confident) ++tracks_[t].hits;
+    Seen& one = seen[*chosen[t]];
+    one.taken = true;
+    Track& track = tracks_[t];
+    track.detection = one.index;
+    track.filter.update(one.sighting);
+    track.seen_s = time_s_;
+    if (confident) ++track.hits;
   }
 }
 
 void Associator::declare(std::vector<results::Detection>& detections) {
-  for (std::size_t t = 0; t < tracks_.size(); ++t) {
-    Track& track = tracks_[t];
+  for (Track& track : tracks_) {
     if (!track.number && track.hits >= options_.declare_m) track.number = ++declared_;
-    if (detection_of_track_[t]) detections[*detection_of_track_[t]].track = track.number;
+    if (track.detection) detections[*track.detection].track = track.number;
   }
 }
 
@@ -190,9 +189,9 @@ void Associator::end_tracks() {
 void Associator::begin_tracks(std::vector<results::Detection>& detections,
                               const std::vector<Seen>& seen) {
   for (const Seen& one : seen) {
-    if (!one.confident || taken_[one.index]) continue;
+    if (!one.confident || one.taken) continue;
     Track track{
-        DirectionFilter(one.sighting), detections[one.index].category, 1, 1, time_s_, std::nullopt};
+        DirectionFilter(one.sighting), detections[one.index].category, 1, 1, time_s_, {}, {}};
     if (options_.declare_m == 1) {
       track.number = ++declared_;
       detections[one.index].track = track.number;

@@ -60,19 +60,21 @@ class Associator {
     int frames = 1;  // since its first detection, that frame included
     int hits = 1;    // of them, those with a confident detection
     double seen_s = 0;
-    std::optional<std::int64_t> number;  // declared
+    std::optional<std::int64_t> number;    // declared
+    std::optional<std::size_t> detection;  // of this frame
   };
   struct Seen {
     std::size_t index;  // among the frame's detections
     Sighting sighting;
     bool confident;
+    bool taken = false;  // by a track
   };
   std::optional<Sighting> sighting_of(const Box& box) const;
   std::vector<Seen> seen_in(const std::vector<results::Detection>& detections) const;
   void predict(const detector::FrameInput& frame);
   // Gives detections of one confidence to tracks of one state that have none yet.
   void match(const std::vector<results::Detection>& detections,
-             const std::vector<Seen>& seen,
+             std::vector<Seen>& seen,
              bool declared,
              bool confident);
   void declare(std::vector<results::Detection>& detections);
@@ -83,9 +85,6 @@ class Associator {
   std::optional<lens::Lens> lens_;
   double rad_per_px_ = 0;  // in the middle of the picture
   std::vector<Track> tracks_;
-  // Of this frame: the detection of each track, and whether a detection has a track.
-  std::vector<std::optional<std::size_t>> detection_of_track_;
-  std::vector<bool> taken_;
   std::int64_t declared_ = 0;
   double time_s_ = 0;  // of the latest frame
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/runs/clips.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -26,13 +27,8 @@ std::string name_of(fs::path video) {
   return name.empty() ? "video" : name;
 }
 
-video::ReaderOptions reader_options(const DetectionClip& clip, bool with_motion) {
-  video::ReaderOptions options;
-  options.first_frame = clip.first_frame;
-  options.frame_count = clip.frame_count;
-  options.picture_rate_hz = clip.frame_rate_hz;
-  options.threads = 1;
-  options.with_cuts = with_motion;
+video::ReaderOptions with_cuts(video::ReaderOptions options, bool wanted) {
+  options.with_cuts = wanted;
   return options;
 }
 
@@ -45,7 +41,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
     const exchange::Clip labelled = set.clip(name);
     if (labelled.media.empty()) throw Error("'" + name + "' has no video");
     clip.media = labelled.media;
-    clip.frame_rate_hz = labelled.frame_rate_hz;
+    clip.reading.picture_rate_hz = labelled.frame_rate_hz;
     for (const exchange::LabelledFrame& frame : labelled.frames) clip.frames.push_back(frame.frame);
     return clip;
   }
@@ -87,9 +83,9 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
     if (const int count = ++count_of_name[clip.name]; count > 1)
       clip.name += fmt::format("-{}", count);
     clip.own_aircraft = background.mask;
-    clip.first_frame = background.first_frame;
-    clip.frame_rate_hz = background.frame_rate_hz;
-    clip.frame_count = background.frame_count;
+    clip.reading.first_frame = background.first_frame;
+    clip.reading.picture_rate_hz = background.frame_rate_hz;
+    clip.reading.frame_count = background.frame_count;
     clip.lens = annotation::lens_of(annotation::read_truth(set.folder(name) / "truth.jsonl").lens);
     clips.push_back(std::move(clip));
   }
@@ -116,7 +112,7 @@ lens::Lens guessed_lens(int width, int height) {
 
 ClipFrames::ClipFrames(const DetectionClip& clip, bool with_motion, const Warn& warn)
     : clip_(clip),
-      reader_(clip.media, reader_options(clip, with_motion), warn),
+      reader_(clip.media, with_cuts(clip.reading, with_motion), warn),
       sequence_{
           clip.name,
           reader_.info().width,
@@ -141,8 +137,8 @@ ClipFrames::ClipFrames(const DetectionClip& clip, bool with_motion, const Warn& 
 std::int64_t ClipFrames::count_estimate() const {
   if (!clip_.frames.empty()) return std::ssize(clip_.frames);
   const std::int64_t all = reader_.info().frame_count_estimate;
-  if (clip_.frame_count) return *clip_.frame_count;
-  return all > clip_.first_frame ? all - clip_.first_frame : 0;
+  if (clip_.reading.frame_count) return *clip_.reading.frame_count;
+  return std::max<std::int64_t>(0, all - clip_.reading.first_frame);
 }
 
 std::optional<detector::FrameInput> ClipFrames::next() {

@@ -23,11 +23,9 @@ struct DetectionClip {
   std::string name;
   // A video, a folder or a pattern of numbered images.
   fs::path media;
-  std::int64_t first_frame = 0;
-  std::optional<std::int64_t> frame_count;
-  // Of pictures; empty: the video's own.
-  std::optional<double> frame_rate_hz;
-  // Numbers of the frames in the video, ascending, counted from first_frame; empty: all frames.
+  video::ReaderOptions reading = {.threads = 1};
+  // Numbers of the frames in the video, ascending, counted from the first that is
+  // read; empty: all frames.
   std::vector<std::int64_t> frames;
   // Empty where nothing states one.
   std::optional<lens::Lens> lens;

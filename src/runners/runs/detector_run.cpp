@@ -312,7 +312,7 @@ class DetectorRun {
       clip.own_aircraft.reset();
     }
     if (!clip.own_aircraft && options_.masks) clip.own_aircraft = options_.mask;
-    if (!clip.frame_rate_hz) clip.frame_rate_hz = options_.frame_rate_hz;
+    if (!clip.reading.picture_rate_hz) clip.reading.picture_rate_hz = options_.frame_rate_hz;
     if (clip.lens || !options_.lens) return clip;
     const video::StreamInfo info = video::Reader(clip.media, {.threads = 1}).info();
     clip.lens = lens::read_calibration(*options_.lens, {info.width, info.height}, options_.warn);
