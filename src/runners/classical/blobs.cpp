@@ -115,15 +115,10 @@ std::optional<Blob> blob_of(const AgainstRing& ring, const Region& region, std::
   // Wings that reach across the ring are neither noise nor surroundings.
   const auto around = surroundings_of(level, ring.sample, coarser(region.samples, ring.finer), 1);
   if (!around) return std::nullopt;
-  Blob blob;
-  blob.box_px = box_of(region, ring.fine);
-  blob.against_ring =
+  const double to_noise =
       std::abs(level.picture.at<short>(ring.sample) - around->middle) / around->noise;
-  blob.contrast_to_noise = blob.against_ring;
-  blob.is_dark = ring.contrast < 0;
-  blob.level = number;
-  blob.sample = ring.sample;
-  return blob;
+  return Blob{
+      box_of(region, ring.fine), to_noise, to_noise, ring.contrast < 0, number, ring.sample};
 }
 
 // The connected samples that are as dark (or bright) as a sample that responds, to half of its
@@ -166,13 +161,9 @@ std::optional<Blob> against_response(const Level& level,
   const cv::Rect own(region->samples.tl() - margin, region->samples.br() + margin);
   const auto noise = noise_of_responses(level, sample, own);
   if (!noise) return std::nullopt;
-  Blob blob;
-  blob.contrast_to_noise = response_to_noise(level, sample, std::max(typical, *noise));
-  if (blob.contrast_to_noise <= least) return std::nullopt;
-  blob.box_px = box_of(*region, level);
-  blob.level = number;
-  blob.sample = sample;
-  return blob;
+  const double to_noise = response_to_noise(level, sample, std::max(typical, *noise));
+  if (to_noise <= least) return std::nullopt;
+  return Blob{box_of(*region, level), to_noise, 0, false, number, sample};
 }
 
 // The object by its parts, within the one of its bounds that holds them best. Those by the ring are
@@ -195,13 +186,8 @@ std::optional<Blob> by_parts(const std::vector<Level>& levels,
     boxes.push_back(box_of(*region, level));
   const auto whole = whole_of_parts(levels, number, boxes);
   if (!whole) return std::nullopt;
-  Blob blob;
-  blob.box_px = whole->box_px;
-  blob.contrast_to_noise = blob.against_ring = whole->to_noise;
-  blob.is_dark = level.is_dark.at<std::uint8_t>(sample) != 0;
-  blob.level = number;
-  blob.sample = sample;
-  return blob;
+  const bool is_dark = level.is_dark.at<std::uint8_t>(sample) != 0;
+  return Blob{whole->box_px, whole->to_noise, whole->to_noise, is_dark, number, sample};
 }
 
 }  // namespace
