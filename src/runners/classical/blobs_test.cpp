@@ -14,6 +14,10 @@
 namespace airtruth::classical {
 namespace {
 
+// Samples of level 0 keep this share of the noise of the picture's pixels: the norm of the kernel
+// [1 2 1; 2 4 2; 1 2 1] / 16.
+constexpr double kNoiseShare = 0.375;
+
 // The smoothing by [1 2 1] keeps this much of the contrast of a target whose middle is a pixel's.
 double kept_by_smoothing(const Target& target) {
   const auto along = [](double sigma) { return 0.5 + 0.5 * std::exp(-0.5 / (sigma * sigma)); };

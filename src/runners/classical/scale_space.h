@@ -43,10 +43,6 @@ inline constexpr int kElement = 7;
 // Length of the elements along an object, on the levels above the first: an aircraft from ahead is
 // several times as wide as it is high.
 inline constexpr int kLongElement = 3 * kElement;
-// Samples of level 0 keep this share of the noise of the picture's pixels: the norm of the kernel
-// [1 2 1; 2 4 2; 1 2 1] / 16.
-inline constexpr double kNoiseShare = 0.375;
-
 struct Level {
   // Side of a sample in pixels of the picture: 1, 2, 4, ...
   int step = 1;

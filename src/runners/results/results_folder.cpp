@@ -244,14 +244,6 @@ bool has_sequence(const fs::path& folder, const std::string& name) {
   return fs::exists(facts_file(folder, name)) && fs::exists(text_file(folder, name));
 }
 
-std::vector<std::string> detected_sequences_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  if (!fs::is_directory(folder)) return names;
-  for (const std::string& name : mot_names(folder))
-    if (has_sequence(folder, name)) names.push_back(name);
-  return names;
-}
-
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name) {
   const JsonDocument facts(facts_file(folder, name));
   const std::string format = std::string("\"") + kFormat + "\"";

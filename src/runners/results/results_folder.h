@@ -48,8 +48,6 @@ struct ExpectedSequence {
 void write_sequence(const fs::path& folder, const SequenceDetections& detections);
 // True where both files of a sequence are there.
 bool has_sequence(const fs::path& folder, const std::string& name);
-// The sorted names of all sequences that are there.
-std::vector<std::string> detected_sequences_in(const fs::path& folder);
 // Reads both files. Throws Error as read_detections does.
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name);
 

@@ -153,31 +153,23 @@ std::optional<double> median_ratio(const Flow& flow) {
   return median(std::move(ratios));
 }
 
-// Measures the growth of an object from one frame to the next by the optical flow of points within
-// it (the median flow of Kalal, Mikolajczyk and Matas 2010, "Forward-backward error: automatic
-// detection of tracking failures", section 4). Points without texture are left out, because they
-// belong to the sky in the box's corners and do not move.
-class ScaleFollower {
- public:
-  // Stores the object's picture.
-  void keep(const image::Plane& luma, const Box& box) { kept_ = patch(luma, box); }
-  // Returns the ratio of sizes since keep(), between 0.9 and 1.1. `box` is the object's present
-  // place at its old size. Returns empty where too few points can be followed.
-  std::optional<double> ratio(const image::Plane& luma, const Box& box) const {
-    const image::Plane now = patch(luma, box);
-    if (now.width != kept_.width || now.height != kept_.height) return std::nullopt;
-    const Points points = points_in(image::mat_of(kept_));
-    if (points.size() < kMinPoints) return std::nullopt;
-    const Flow flow = followed(image::mat_of(kept_), image::mat_of(now), points);
-    if (flow.from.size() < kMinPoints) return std::nullopt;
-    const auto ratio = median_ratio(flow);
-    if (!ratio) return std::nullopt;
-    return std::clamp(*ratio, 1 - kMaxChange, 1 + kMaxChange);
-  }
-
- private:
-  image::Plane kept_;
-};
+// The growth of an object from one frame to the next by the optical flow of points within it (the
+// median flow of Kalal, Mikolajczyk and Matas 2010, "Forward-backward error: automatic detection of
+// tracking failures", section 4): the ratio of sizes, between 0.9 and 1.1. Points without texture
+// are left out, because they belong to the sky in the box's corners and do not move. `kept` is the
+// object's patch of the frame before; `box` is its present place at its old size. Empty where too
+// few points can be followed.
+std::optional<double> growth(const image::Plane& kept, const image::Plane& luma, const Box& box) {
+  const image::Plane now = patch(luma, box);
+  if (now.width != kept.width || now.height != kept.height) return std::nullopt;
+  const Points points = points_in(image::mat_of(kept));
+  if (points.size() < kMinPoints) return std::nullopt;
+  const Flow flow = followed(image::mat_of(kept), image::mat_of(now), points);
+  if (flow.from.size() < kMinPoints) return std::nullopt;
+  const auto ratio = median_ratio(flow);
+  if (!ratio) return std::nullopt;
+  return std::clamp(*ratio, 1 - kMaxChange, 1 + kMaxChange);
+}
 
 class Am3 : public Tracker {
  public:
@@ -203,7 +195,7 @@ class Am3 : public Tracker {
         begin(box());
         return answer;
       }
-      scale_follower_.keep(*luma_, box());
+      kept_ = patch(*luma_, box());
     }
     learn(false);
     return answer;
@@ -233,7 +225,7 @@ class Am3 : public Tracker {
             Seed(options_.seed).stream("pool", static_cast<std::uint64_t>(level * 100 + voter)));
     hard_.assign(static_cast<std::size_t>(levels_), {});
     learn(true);
-    if (options_.follows_scale) scale_follower_.keep(*luma_, box);
+    if (options_.follows_scale) kept_ = patch(*luma_, box);
   }
 
   static int window_side(double side, int most) {
@@ -413,7 +405,7 @@ class Am3 : public Tracker {
 
   void follow_scale() {
     const Box now = box();
-    const auto ratio = scale_follower_.ratio(*luma_, now);
+    const auto ratio = growth(kept_, *luma_, now);
     if (!ratio) return;
     const bool too_small = *ratio < 1 && now.width * *ratio < kMinObjectPx;
     if (too_small || now.width * *ratio > luma_->width || now.height * *ratio > luma_->height)
@@ -504,7 +496,7 @@ class Am3 : public Tracker {
   int levels_ = 1;
   std::vector<Classifier> classifiers_;   // [level * voters + voter]
   std::vector<std::vector<Pixel>> hard_;  // by level: corners in the picture
-  ScaleFollower scale_follower_;
+  image::Plane kept_;  // the object's patch of the frame before, where the scale is followed
   Random random_;
 };
 

@@ -21,16 +21,8 @@ class Pyramid {
   int width(int level) const { return width_ >> level; }
   int height(int level) const { return height_ >> level; }
 
-  // Returns the sum over [x, x + width) by [y, y + height) of a level, in units of 1 / 4^level grey
-  // levels.
-  float sum(int level, int x, int y, int width, int height) const {
-    const std::uint32_t* above = sums_.data() + offset(level, x, y);
-    const std::uint32_t* below = above + offset(level, 0, height);
-    const std::ptrdiff_t right = offset(level, width, 0);
-    return static_cast<float>(below[right] - below[0] - above[right] + above[0]);
-  }
-  // The sums, and the way in them to a pixel of a level, to add fixed corner offsets to many
-  // positions.
+  // The sums, in grey levels, of what is above and to the left of each pixel, and the way in them
+  // to a pixel of a level.
   const std::uint32_t* sums() const { return sums_.data(); }
   std::ptrdiff_t offset(int level, int x, int y) const { return (y * stride_ + x) << level; }
 
