@@ -12,6 +12,7 @@
 
 #include "aircraft/wrapper/reader.h"
 #include "dataset/catalogue/folder.h"
+#include "dataset/set_report/encounters.h"
 #include "scene/scene/camera_keys.h"
 
 namespace airtruth::set_report {
@@ -140,7 +141,7 @@ std::string labels_text(const std::vector<Portrait>& portraits, const Scenes& sc
 void add_encounters(const std::vector<Portrait>& portraits, const Scenes& scenes, Card& card) {
   std::vector<pipeline::EncounterRecord> records;
   for (const Portrait& portrait : portraits)
-    for (const Encountered& one : portrait.encounters) records.push_back(one.record);
+    records.insert(records.end(), portrait.encounters.begin(), portrait.encounters.end());
   std::vector<std::string> volumes;
   const auto add = [&](const std::string& name) {
     if (std::find(volumes.begin(), volumes.end(), name) == volumes.end()) volumes.push_back(name);

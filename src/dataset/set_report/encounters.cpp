@@ -19,28 +19,6 @@ const annotation::Intruder* intruder_of(const annotation::Frame& frame, const st
   return nullptr;
 }
 
-std::optional<Encountered::Closest> closest_of(const std::vector<annotation::Frame>& frames,
-                                               const EncounterRecord& record) {
-  if (!record.closest) return std::nullopt;
-  const double time_s = record.closest->time_s;
-  const auto after =
-      std::find_if(frames.begin(), frames.end(), [&](const annotation::Frame& frame) {
-        return frame.time_s >= time_s;
-      });
-  if (after == frames.end()) return std::nullopt;
-  const auto before = after == frames.begin() ? after : after - 1;
-  const annotation::Intruder* from = intruder_of(*before, record.id);
-  const annotation::Intruder* to = intruder_of(*after, record.id);
-  if (from == nullptr || to == nullptr) return std::nullopt;
-  const double span_s = after->time_s - before->time_s;
-  const double share = span_s > 0 ? (time_s - before->time_s) / span_s : 0;
-  const auto between = [&](const Vector3& a, const Vector3& b) {
-    return numbers(a + share * (b - a));
-  };
-  return Encountered::Closest{between(before->camera_position_ned_m, after->camera_position_ned_m),
-                              between(*from->position_ned_m, *to->position_ned_m)};
-}
-
 // "head-on 3, overtaking 1": the values in the order of their table, those without one at the end.
 template <typename Enum, typename Of>
 std::string counts_of(const Records& records, Of of, const std::string& without) {
@@ -104,13 +82,33 @@ std::string violations_text(const Records& records, const std::vector<std::strin
 
 }  // namespace
 
-std::array<double, 3> numbers(const Vector3& ned_m) { return {ned_m.x(), ned_m.y(), ned_m.z()}; }
-
-std::vector<Encountered> encounters_of(const replay::Finished& finished) {
-  std::vector<Encountered> encounters;
+std::optional<double> closest_s(const replay::Finished& finished, const std::string& id) {
   for (const EncounterRecord& record : finished.encounters)
-    encounters.push_back({record, closest_of(finished.truth.frames, record)});
-  return encounters;
+    if (record.id == id && record.closest) return record.closest->time_s;
+  return std::nullopt;
+}
+
+std::optional<ClosestPlaces> closest_places(const std::vector<annotation::Frame>& frames,
+                                            const EncounterRecord& record) {
+  if (!record.closest) return std::nullopt;
+  const double time_s = record.closest->time_s;
+  const auto after =
+      std::find_if(frames.begin(), frames.end(), [&](const annotation::Frame& frame) {
+        return frame.time_s >= time_s;
+      });
+  if (after == frames.end()) return std::nullopt;
+  const auto before = after == frames.begin() ? after : after - 1;
+  const annotation::Intruder* from = intruder_of(*before, record.id);
+  const annotation::Intruder* to = intruder_of(*after, record.id);
+  if (from == nullptr || to == nullptr) return std::nullopt;
+  const double span_s = after->time_s - before->time_s;
+  const double share = span_s > 0 ? (time_s - before->time_s) / span_s : 0;
+  const auto between = [&](const Vector3& a, const Vector3& b) {
+    const Vector3 at = a + share * (b - a);
+    return std::array{at.x(), at.y(), at.z()};
+  };
+  return ClosestPlaces{between(before->camera_position_ned_m, after->camera_position_ned_m),
+                       between(*from->position_ned_m, *to->position_ned_m)};
 }
 
 std::string encounters_text(const Records& records, const std::vector<std::string>& volumes) {

@@ -12,22 +12,17 @@
 // the record of encounters have none.
 namespace airtruth::set_report {
 
-// One encounter of a sequence.
-struct Encountered {
-  pipeline::EncounterRecord record;
-  // North, east, down of both aircraft at the closest approach: between the two frames around it,
-  // in proportion to time. Empty where it comes after the last frame.
-  struct Closest {
-    std::array<double, 3> own_ned_m{};
-    std::array<double, 3> intruder_ned_m{};
-  };
-  std::optional<Closest> closest;
+// When an intruder is nearest; empty where the sequence has no record of it.
+std::optional<double> closest_s(const replay::Finished& finished, const std::string& id);
+
+// North, east, down of both aircraft at the closest approach of an encounter: between the two
+// frames around it, in proportion to time. Empty where it comes after the last frame.
+struct ClosestPlaces {
+  std::array<double, 3> own_ned_m{};
+  std::array<double, 3> intruder_ned_m{};
 };
-
-// North, east and down as the page's JSON holds them.
-std::array<double, 3> numbers(const Vector3& ned_m);
-
-std::vector<Encountered> encounters_of(const replay::Finished& finished);
+std::optional<ClosestPlaces> closest_places(const std::vector<annotation::Frame>& frames,
+                                            const pipeline::EncounterRecord& record);
 
 // One sentence for each kind of fact: how many encounters of each class, how close they come, when
 // they are first seen and which volumes they violate. `volumes`: the names of those that the truth

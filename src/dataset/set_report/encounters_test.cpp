@@ -30,10 +30,10 @@ replay::Finished passing() {
 }
 
 TEST(Encounters, TheClosestApproachLiesBetweenTwoFrames) {
-  const auto encounters = encounters_of(passing());
-  ASSERT_EQ(encounters.size(), 1u);
-  ASSERT_TRUE(encounters[0].closest);
-  const auto& [own, intruder] = *encounters[0].closest;
+  const replay::Finished finished = passing();
+  const auto places = closest_places(finished.truth.frames, finished.encounters[0]);
+  ASSERT_TRUE(places);
+  const auto& [own, intruder] = *places;
   EXPECT_NEAR(own[0], 20 * 1.97, 1e-9);
   EXPECT_NEAR(own[2], -100, 1e-9);
   EXPECT_NEAR(intruder[0], 100 - 30 * 1.97, 1e-9);
@@ -41,13 +41,14 @@ TEST(Encounters, TheClosestApproachLiesBetweenTwoFrames) {
 }
 
 TEST(Encounters, AfterTheClipItHasNoPlace) {
-  replay::Finished finished = passing();
-  finished.encounters[0].closest->time_s = 2.91;
-  EXPECT_FALSE(encounters_of(finished)[0].closest);
-  finished.encounters[0].closest->time_s = 2.9;
-  EXPECT_TRUE(encounters_of(finished)[0].closest);
-  finished.encounters[0].id = "other";
-  EXPECT_FALSE(encounters_of(finished)[0].closest);
+  const replay::Finished finished = passing();
+  pipeline::EncounterRecord record = finished.encounters[0];
+  record.closest->time_s = 2.91;
+  EXPECT_FALSE(closest_places(finished.truth.frames, record));
+  record.closest->time_s = 2.9;
+  EXPECT_TRUE(closest_places(finished.truth.frames, record));
+  record.id = "other";
+  EXPECT_FALSE(closest_places(finished.truth.frames, record));
 }
 
 TEST(Encounters, TheCardCountsThem) {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <stop_token>
@@ -11,59 +10,24 @@
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
-#include "dataset/set_report/encounters.h"
 #include "dataset/set_report/film.h"
+#include "picture/video/reader.h"
 #include "scene/scene/scene.h"
+#include "sequence/replay/finished.h"
 
 namespace airtruth::set_report {
 
-// The content of the report page for one sequence, read from its record, its truth and its video.
-// Series are thinned to at most kMaxPoints points.
+// What the report page and the data card count of one sequence, and its pictures.
 struct Portrait {
-  // Number of points of a series: a display choice.
-  static constexpr std::size_t kMaxPoints = 120;
   // The grid of cells over the picture in which the centres of boxes are counted.
   static constexpr int kCellColumns = 32;
   static constexpr int kCellRows = 24;
 
-  // One intruder in one frame.
-  struct Point {
-    std::int64_t frame = 0;
-    double time_s = 0;
-    std::optional<double> range_m, azimuth_deg;
-    // Negative after the closest approach; empty where the sequence has no record of it.
-    std::optional<double> to_closest_s;
-    std::optional<std::array<double, 3>> position_ned_m;
-    // Size of the covered box, or of the visible box where there is no covered one.
-    std::optional<double> width_px, height_px;
-    const char* state = "";
-  };
-  struct Intruder {
-    std::string id;
-    std::string aircraft;
-    std::string object_class;  // labels/annotation/object_class.h
-    std::vector<Point> points;
-  };
-  struct Camera {
-    std::int64_t frame = 0;
-    std::array<double, 3> position_ned_m{};
-    double yaw_deg = 0;
-    // Displacement of the picture's centre by the measured camera motion.
-    double shift_px = 0;
-    double roll_deg = 0;
-  };
-
   labelled::ClipFacts facts;
-  std::string folder;              // the folder of the sequence's files
-  std::vector<std::string> files;  // file names in `folder`
-  int width = 0, height = 0;
-  double duration_s = 0;
-  std::optional<double> horizontal_fov_deg;
+  video::StreamInfo info;
   std::optional<scene::Scene> scene;  // the effective scene; empty for an imported clip
-  std::vector<Intruder> intruders;
-  std::vector<Camera> camera;
   // In the order of the scene; empty for an imported clip and an older sequence.
-  std::vector<Encountered> encounters;
+  std::vector<pipeline::EncounterRecord> encounters;
   // Frames of aircraft with the state visible, hidden, outside, behind and ended, in this order.
   std::array<std::int64_t, 5> frames_by_state{};
   // Number of these visible states that have a covered box.
@@ -75,17 +39,19 @@ struct Portrait {
   std::map<std::string, std::int64_t> boxes_by_class;
   // Number of box centres in each cell, row by row from the top.
   std::vector<std::int64_t> centres;
-  // The ids of all intruders (replay::intruder_ids).
-  std::vector<std::string> ids;
   Film film;
-  // Empty where the pictures are separate files.
-  std::filesystem::path video;
 };
 
-// `stills` is the highest number of pictures in its film; 0: no film, and no frame is decoded.
+// `finished`: the sequence of that name. `stills` is the highest number of pictures in its film; 0:
+// no film, and no frame is decoded.
 Portrait portrait_of(const labelled::LabelledSet& set,
                      const std::string& name,
+                     const replay::Finished& finished,
                      std::size_t stills,
                      const std::stop_token& stop);
+
+// The frames of which the series of the page and the histograms are, by index: at most 120 of a
+// sequence, a display choice.
+std::vector<std::size_t> sampled_frames(const annotation::Truth& truth);
 
 }  // namespace airtruth::set_report

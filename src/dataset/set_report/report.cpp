@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/set_report/card.h"
+#include "dataset/set_report/encounters.h"
 #include "dataset/set_report/portrait.h"
 #include "dataset/set_report/totals.h"
 #include "foundation/base/error.h"
@@ -19,6 +22,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/text.h"
+#include "sequence/setup/from_scene.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
 #include "show/plot/plot_json.h"
@@ -33,18 +37,6 @@ constexpr std::size_t kMaxStills = 1000;
 constexpr std::size_t kMaxStillsOfOne = 60;
 constexpr std::size_t kMinStillsOfOne = 4;
 
-template <typename T>
-Json json_of(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
-
-double rounded(double value, double unit) { return std::round(value / unit) * unit; }
-Json rounded(const std::optional<double>& value, double unit) {
-  return value ? Json(rounded(*value, unit)) : Json();
-}
-
-// The data is stored in columns because a page of a thousand sequences holds a hundred thousand
-// points.
 template <typename Row, typename Value>
 Json column(const std::vector<Row>& rows, const Value& value) {
   Json values = Json::array();
@@ -52,34 +44,77 @@ Json column(const std::vector<Row>& rows, const Value& value) {
   return values;
 }
 
-Json series_of(const Portrait::Intruder& intruder) {
-  using Point = Portrait::Point;
-  const auto along = [&](std::size_t axis) {
-    return column(intruder.points, [axis](const Point& p) {
-      return p.position_ned_m ? Json(rounded((*p.position_ned_m)[axis], 0.1)) : Json();
-    });
-  };
-  const auto of = [&](const auto& value) { return column(intruder.points, value); };
-  return {{"id", intruder.id},
-          {"aircraft", intruder.aircraft},
-          {"frame", of([](const Point& p) { return p.frame; })},
-          {"range_m", of([](const Point& p) { return rounded(p.range_m, 0.1); })},
-          {"width_px", of([](const Point& p) { return json_of(p.width_px); })},
-          {"height_px", of([](const Point& p) { return json_of(p.height_px); })},
-          {"north_m", along(0)},
-          {"east_m", along(1)},
-          {"down_m", along(2)},
-          {"state", of([](const Point& p) { return p.state; })},
-          {"to_closest_s", of([](const Point& p) { return rounded(p.to_closest_s, 0.001); })}};
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+Json rounded(const std::optional<double>& value, double unit) {
+  return value ? Json(rounded(*value, unit)) : Json();
+}
+
+// The series are stored in columns because a page of a thousand sequences holds a hundred thousand
+// points.
+void add_place(const std::optional<Vector3>& ned_m, Json& series) {
+  for (const auto& [key, axis] :
+       {std::pair("north_m", 0), std::pair("east_m", 1), std::pair("down_m", 2)})
+    series[key].push_back(ned_m ? Json(rounded((*ned_m)[axis], 0.1)) : Json());
+}
+
+void add_point(const replay::Finished& finished,
+               const annotation::Frame& frame,
+               const annotation::Intruder& intruder,
+               Json& series) {
+  const auto box = annotation::box_to_show(intruder);
+  const auto closest = closest_s(finished, intruder.id);
+  series["frame"].push_back(frame.frame);
+  series["range_m"].push_back(rounded(intruder.range_m, 0.1));
+  series["width_px"].push_back(box ? Json(double(box->width)) : Json());
+  series["height_px"].push_back(box ? Json(double(box->height)) : Json());
+  add_place(intruder.position_ned_m, series);
+  series["state"].push_back(enum_name(intruder.state));
+  series["to_closest_s"].push_back(closest ? Json(rounded(*closest - frame.time_s, 0.001))
+                                           : Json());
+}
+
+void add_camera(const annotation::Frame& frame, const lens::ImageSize& size, Json& series) {
+  const Homography& h = frame.shake.frame_from_reference;
+  const Vector3 middle(size.width / 2.0, size.height / 2.0, 1);
+  const double yaw_deg = frame.camera_attitude_yaw_pitch_roll_deg.yaw_deg;
+  series["frame"].push_back(frame.frame);
+  add_place(frame.camera_position_ned_m, series);
+  series["yaw_deg"].push_back(rounded(yaw_deg, 0.01));
+  // Of the picture's centre by the measured motion.
+  series["shift_px"].push_back(
+      rounded(((h * middle).hnormalized() - middle.head<2>()).norm(), 0.01));
+  series["roll_deg"].push_back(rounded(degrees(std::atan2(h(1, 0), h(0, 0))), 0.001));
+}
+
+Json intruders_json(const replay::Finished& finished) {
+  Json list = Json::array();
+  std::map<std::string, std::size_t> places;
+  for (const std::size_t i : sampled_frames(finished.truth))
+    for (const annotation::Intruder& intruder : finished.truth.frames[i].intruders) {
+      const auto [place, is_new] = places.emplace(intruder.id, list.size());
+      if (is_new) list.push_back({{"id", intruder.id}, {"aircraft", intruder.aircraft}});
+      add_point(finished, finished.truth.frames[i], intruder, list[place->second]);
+    }
+  return list;
+}
+
+// Of an imported clip nothing is known of it.
+Json camera_json(const replay::Finished& finished, const lens::ImageSize& size) {
+  Json series;
+  for (const char* key :
+       {"frame", "north_m", "east_m", "down_m", "yaw_deg", "shift_px", "roll_deg"})
+    series[key] = Json::array();
+  if (finished.scene)
+    for (const std::size_t i : sampled_frames(finished.truth))
+      add_camera(finished.truth.frames[i], size, series);
+  return series;
 }
 
 // The records as sequence.json has them, with the places of the closest approach.
-Json encounters_json(const Portrait& portrait) {
-  std::vector<pipeline::EncounterRecord> records;
-  for (const Encountered& one : portrait.encounters) records.push_back(one.record);
-  Json list = pipeline::json_of(records);
+Json encounters_json(const replay::Finished& finished) {
+  Json list = pipeline::json_of(finished.encounters);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const auto& closest = portrait.encounters[i].closest;
+    const auto closest = closest_places(finished.truth.frames, finished.encounters[i]);
     if (!closest) continue;
     list[i]["own_ned_m"] = closest->own_ned_m;
     list[i]["intruder_ned_m"] = closest->intruder_ned_m;
@@ -87,21 +122,10 @@ Json encounters_json(const Portrait& portrait) {
   return list;
 }
 
-Json camera_of(const Portrait& portrait) {
-  using Camera = Portrait::Camera;
-  const auto of = [&](const auto& value) { return column(portrait.camera, value); };
-  return {{"frame", of([](const Camera& c) { return c.frame; })},
-          {"north_m", of([](const Camera& c) { return rounded(c.position_ned_m[0], 0.1); })},
-          {"east_m", of([](const Camera& c) { return rounded(c.position_ned_m[1], 0.1); })},
-          {"down_m", of([](const Camera& c) { return rounded(c.position_ned_m[2], 0.1); })},
-          {"yaw_deg", of([](const Camera& c) { return rounded(c.yaw_deg, 0.01); })},
-          {"shift_px", of([](const Camera& c) { return rounded(c.shift_px, 0.01); })},
-          {"roll_deg", of([](const Camera& c) { return rounded(c.roll_deg, 0.001); })}};
-}
-
 // Of the containers that airtruth writes and imports, browsers play these.
 bool plays_in_browsers(const fs::path& video) {
-  return video.extension() == ".mp4" || video.extension() == ".webm";
+  return fs::is_regular_file(video) &&
+         (video.extension() == ".mp4" || video.extension() == ".webm");
 }
 
 Json film_json(const Film& film) {
@@ -128,20 +152,30 @@ fs::path beside(const fs::path& page, const fs::path& path) {
   return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
 }
 
-Json json_of(const Portrait& portrait, const fs::path& page) {
-  const auto link = [folder = beside(page, portrait.folder)](const std::string& file) {
-    return (folder / file).generic_string();
-  };
-  const auto& scene = portrait.scene;
+// The files of a sequence by name, without hidden ones, as the page links to them.
+Json links_of(const fs::path& folder, const fs::path& page) {
+  std::set<std::string> links;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && !entry.path().filename().string().starts_with("."))
+      links.insert((beside(page, folder) / entry.path().filename()).generic_string());
+  return links;
+}
+
+Json json_of(const replay::Finished& finished, const Portrait& portrait, const fs::path& page) {
+  const auto& scene = finished.scene;
+  const lens::ImageSize size{portrait.info.width, portrait.info.height};
+  const double seconds = static_cast<double>(finished.truth.frames.size()) /
+                         std::max(1e-9, portrait.info.frame_rate.value());
   return {
       {"name", portrait.facts.name},
       {"background", portrait.facts.background_name},
       {"aircraft", portrait.facts.categories},
       {"frames", portrait.facts.frames},
-      {"seconds", rounded(portrait.duration_s, 0.01)},
-      {"width", portrait.width},
-      {"height", portrait.height},
-      {"fov_deg", rounded(portrait.horizontal_fov_deg, 0.1)},
+      {"seconds", rounded(seconds, 0.01)},
+      {"width", size.width},
+      {"height", size.height},
+      {"fov_deg",
+       scene ? Json(rounded(setup::lens_of(scene->lens, size).horizontal_fov_deg(), 0.1)) : Json()},
       {"sun_azimuth_deg", scene ? Json(rounded(scene->light.sun_azimuth_deg, 0.1)) : Json()},
       {"sun_elevation_deg", scene ? Json(rounded(scene->light.sun_elevation_deg, 0.1)) : Json()},
       {"weather", portrait.facts.weather},
@@ -153,28 +187,31 @@ Json json_of(const Portrait& portrait, const fs::path& page) {
       {"loop_side", portrait.film.loop_side},
       {"stills", film_json(portrait.film)},
       {"poster", portrait.film.poster},
-      {"ids", portrait.ids},
+      {"ids", replay::intruder_ids(finished.truth)},
       {"video",
-       plays_in_browsers(portrait.video) ? Json(beside(page, portrait.video).generic_string())
+       plays_in_browsers(finished.video) ? Json(beside(page, finished.video).generic_string())
                                          : Json()},
-      {"intruders", column(portrait.intruders, series_of)},
-      {"camera", camera_of(portrait)},
-      {"encounters", encounters_json(portrait)},
-      {"files", column(portrait.files, link)}};
+      {"intruders", intruders_json(finished)},
+      {"camera", camera_json(finished, size)},
+      {"encounters", encounters_json(finished)},
+      {"files", links_of(finished.folder, page)}};
 }
 
 // The sequences of a set, and the counts over them.
 struct Gallery {
   std::vector<Portrait> portraits;
-  std::vector<bool> is_shown;
+  // As the page reads them; null where one is not shown.
+  std::vector<Json> shown;
   Totals totals;
 };
 
-// Of a sequence that is not shown, no frame is decoded and no series is kept.
-Gallery gallery_of(const labelled::LabelledSet& labelled, const ReportOptions& options) {
+// Of a sequence that is not shown, no frame is decoded.
+Gallery gallery_of(const labelled::LabelledSet& labelled,
+                   const fs::path& page,
+                   const ReportOptions& options) {
   const std::size_t count = labelled.names().size();
-  Gallery gallery{std::vector<Portrait>(count), std::vector<bool>(count, false), {}};
-  for (const std::size_t i : thinned(count, options.max_shown)) gallery.is_shown[i] = true;
+  Gallery gallery{std::vector<Portrait>(count), std::vector<Json>(count), {}};
+  const std::vector<std::size_t> shown = thinned(count, options.max_shown);
   const std::size_t stills =
       std::clamp(kMaxStills / std::max<std::size_t>(1, count), kMinStillsOfOne, kMaxStillsOfOne);
   std::mutex mutex;
@@ -182,16 +219,16 @@ Gallery gallery_of(const labelled::LabelledSet& labelled, const ReportOptions& o
       count,
       options.jobs,
       [&](std::size_t i) {
-        const bool is_shown = gallery.is_shown[i];
+        const bool is_shown = std::ranges::binary_search(shown, i);
+        const std::string& name = labelled.names()[i];
+        const replay::Finished finished = replay::open_finished(labelled.folder(name));
         Portrait portrait =
-            portrait_of(labelled, labelled.names()[i], is_shown ? stills : 0, options.stop);
+            portrait_of(labelled, name, finished, is_shown ? stills : 0, options.stop);
+        if (is_shown) gallery.shown[i] = json_of(finished, portrait, page);
         const std::lock_guard lock(mutex);
-        gallery.totals.add(portrait);  // sums of whole numbers, the same in any order
-        if (!is_shown) {
-          portrait.intruders = {};
-          portrait.camera = {};
-          portrait.centres = {};
-        }
+        // Sums of whole numbers, the same in any order.
+        gallery.totals.add(finished, portrait);
+        portrait.centres = {};
         gallery.portraits[i] = std::move(portrait);
       },
       options.progress,
@@ -253,13 +290,13 @@ std::vector<html::PageBlob> pictures_of(const std::vector<const Portrait*>& port
 void write_report(const fs::path& set, const fs::path& out, const ReportOptions& options) {
   check_output_file(out, options.overwrite);
   const labelled::LabelledSet labelled(set);
-  const Gallery gallery = gallery_of(labelled, options);
+  Gallery gallery = gallery_of(labelled, out, options);
   std::vector<const Portrait*> shown;
   Json sequences = Json::array();
   for (std::size_t i = 0; i < gallery.portraits.size(); ++i) {
-    if (!gallery.is_shown[i]) continue;
+    if (gallery.shown[i].is_null()) continue;
     shown.push_back(&gallery.portraits[i]);
-    sequences.push_back(json_of(gallery.portraits[i], out));
+    sequences.push_back(std::move(gallery.shown[i]));
   }
   Json card = Json::object();
   for (const auto& [key, text] : card_of(set, gallery.portraits)) card[key] = text;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "dataset/set_report/encounters.h"
 #include "labels/annotation/object_class.h"
 
 namespace airtruth::set_report {
@@ -72,7 +73,7 @@ void Histogram::add(double value) {
       std::clamp<std::ptrdiff_t>(above - 1, 0, std::ssize(counts) - 1))];
 }
 
-void Totals::add(const Portrait& portrait) {
+void Totals::add(const replay::Finished& finished, const Portrait& portrait) {
   frames += portrait.facts.frames;
   for (std::size_t s = 0; s < by_state.size(); ++s) by_state[s] += portrait.frames_by_state[s];
   without_box += portrait.without_box;
@@ -80,17 +81,17 @@ void Totals::add(const Portrait& portrait) {
   negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
   for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
-  for (const Portrait::Intruder& intruder : portrait.intruders) {
-    if (!annotation::is_aircraft(intruder.object_class)) continue;
-    for (const Portrait::Point& point : intruder.points) {
-      if (!point.width_px) continue;
-      size_px.add(std::max(*point.width_px, *point.height_px));
-      if (point.range_m) range_m.add(*point.range_m);
-      if (point.to_closest_s) to_closest_s.add(*point.to_closest_s);
-      if (point.azimuth_deg) azimuth_deg.add(*point.azimuth_deg);
+  for (const std::size_t i : sampled_frames(finished.truth))
+    for (const annotation::Intruder& intruder : finished.truth.frames[i].intruders) {
+      const auto box = annotation::box_to_show(intruder);
+      if (!box || !annotation::is_aircraft(intruder.object_class)) continue;
+      size_px.add(std::max(box->width, box->height));
+      if (intruder.range_m) range_m.add(*intruder.range_m);
+      if (intruder.azimuth_deg) azimuth_deg.add(*intruder.azimuth_deg);
+      if (const auto closest = closest_s(finished, intruder.id))
+        to_closest_s.add(*closest - finished.truth.frames[i].time_s);
     }
-  }
-  for (const Encountered& one : portrait.encounters) add_encounter(one.record, *this);
+  for (const auto& record : portrait.encounters) add_encounter(record, *this);
   for (const double value : portrait.film.contrasts) contrast.add(value);
 }
 

@@ -22,7 +22,8 @@ struct Histogram {
   void add(double value);
 };
 
-// Counts over a whole data set, made from the thinned series of its portraits.
+// Counts over a whole data set, made from its portraits and, for histograms, from the frames that
+// their series would show.
 struct Totals {
   // Number of cells over the picture.
   static constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
@@ -55,7 +56,7 @@ struct Totals {
   Histogram to_closest_s{{-20, -10, -5, -2, 0, 2, 4, 6, 8, 10, 15, 20, 30, 60, 120}};
   Histogram contrast{{0, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 256}};
 
-  void add(const Portrait& portrait);
+  void add(const replay::Finished& finished, const Portrait& portrait);
 };
 
 struct OverviewPlot {
