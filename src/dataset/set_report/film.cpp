@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
@@ -41,8 +42,7 @@ std::optional<std::size_t> largest_frame(const std::vector<annotation::Frame>& f
     for (const annotation::Intruder& intruder : frames[i].intruders) {
       const auto box = annotation::box_to_show(intruder);
       if (!box) continue;
-      const std::pair<bool, int> here{!(intruder.cut_by_frame > 0),
-                                      std::max(box->width, box->height)};
+      const std::pair<bool, int> here{!(intruder.cut_by_frame > 0), longer_side(*box)};
       if (largest && here <= most) continue;
       largest = i;
       most = here;
@@ -59,47 +59,6 @@ std::vector<Film::Marked> marked(const annotation::Frame& frame,
       boxes.push_back({static_cast<std::size_t>(place), *box});
     }
   return boxes;
-}
-
-std::vector<bool> chosen(std::size_t count, const std::vector<std::size_t>& indices) {
-  std::vector<bool> result(count, false);
-  for (const std::size_t i : indices) result[i] = true;
-  return result;
-}
-
-}  // namespace
-
-std::vector<std::size_t> thinned(std::size_t n, std::size_t most) {
-  std::vector<std::size_t> indices;
-  const std::size_t count = std::min(n, most);
-  for (std::size_t k = 0; k < count; ++k)
-    indices.push_back(count == 1 ? 0 : k * (n - 1) / (count - 1));
-  return indices;
-}
-
-namespace {
-
-// The frames of a sequence that its film shows.
-struct Selection {
-  // For each frame: whether it is a still, and whether it is in the loop.
-  std::vector<bool> is_still, is_in_loop;
-  // The frame with the largest box, and the last one with a box; empty if none has a box.
-  std::optional<std::size_t> poster, last_seen;
-};
-
-Selection selected_frames(const std::vector<annotation::Frame>& frames, std::size_t most_stills) {
-  std::vector<std::size_t> seen;
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    if (first_box(frames[i])) seen.push_back(i);
-  std::vector<std::size_t> in_loop;
-  for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop.push_back(seen[k]);
-  Selection selected;
-  selected.is_in_loop = chosen(frames.size(), in_loop);
-  selected.is_still = chosen(frames.size(), thinned(frames.size(), most_stills));
-  selected.poster = largest_frame(frames);
-  if (selected.poster) selected.is_still[*selected.poster] = true;
-  if (!seen.empty()) selected.last_seen = seen.back();
-  return selected;
 }
 
 Film::Still still_of(const image::Picture& picture,
@@ -125,9 +84,25 @@ Film::Still still_of(const image::Picture& picture,
 
 }  // namespace
 
+std::vector<std::size_t> thinned(std::size_t n, std::size_t most) {
+  std::vector<std::size_t> indices;
+  const std::size_t count = std::min(n, most);
+  for (std::size_t k = 0; k < count; ++k)
+    indices.push_back(count == 1 ? 0 : k * (n - 1) / (count - 1));
+  return indices;
+}
+
 Film film_of(const replay::Finished& finished, std::size_t most, const std::stop_token& stop) {
   const auto& frames = finished.truth.frames;
-  const Selection selected = selected_frames(frames, most);
+  std::vector<std::size_t> seen;  // the frames with a box
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (first_box(frames[i])) seen.push_back(i);
+  std::set<std::size_t> in_loop;
+  for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop.insert(seen[k]);
+  const std::vector<std::size_t> even = thinned(frames.size(), most);
+  std::set<std::size_t> shown(even.begin(), even.end());
+  const std::optional<std::size_t> poster = largest_frame(frames);
+  if (poster) shown.insert(*poster);
   const std::vector<std::string> ids = replay::intruder_ids(finished.truth);
   Film film;
   std::vector<image::Rgb8> squares;
@@ -136,14 +111,14 @@ Film film_of(const replay::Finished& finished, std::size_t most, const std::stop
     if (stop.stop_requested()) throw Interrupted();
     const auto frame = reader.next();
     if (!frame) {
-      if (!selected.last_seen || i > *selected.last_seen) break;
+      if (seen.empty() || i > seen.back()) break;
       throw Error("holds fewer frames than its truth", {finished.video.string()});
     }
-    if (selected.is_still[i]) {
-      if (i == selected.poster) film.poster = film.stills.size();
+    if (shown.contains(i)) {
+      if (i == poster) film.poster = film.stills.size();
       film.stills.push_back(still_of(frame->picture, frames[i], ids));
     }
-    if (!selected.is_in_loop[i]) continue;
+    if (!in_loop.contains(i)) continue;
     const PixelBox box = *first_box(frames[i]);
     film.contrasts.push_back(drawing::contrast(frame->picture, box));
     squares.push_back(drawing::enlarged(frame->picture, as_box(box), kLoopSide));
