@@ -447,12 +447,6 @@ DrawnIntruder seen_intruder(const EncounterRule& rule,
 
 }  // namespace
 
-std::size_t background_of(const EncounterRule& rule,
-                          const std::vector<Background>& backgrounds,
-                          std::int64_t index) {
-  return stratified_background(rule.backgrounds, backgrounds, rule.seed, rule.count, index);
-}
-
 Draws add_encounter(scene::Scene& scene,
                     const EncounterRule& rule,
                     std::int64_t index,

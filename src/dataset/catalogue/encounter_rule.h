@@ -22,7 +22,6 @@ class Sampler;
 
 namespace airtruth::catalogue {
 
-struct Background;
 struct Catalogue;
 
 // A rule for encounters: intruders that pass the own aircraft as a model of traffic or a stated
@@ -86,11 +85,6 @@ fs::path kept_model(const fs::path& folder, const fs::path& model_file);
 // a data set, the copy there. Throws Error with line and column.
 std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
                                            const Catalogue& catalogue);
-
-// The background of sequence `index`.
-std::size_t background_of(const EncounterRule& rule,
-                          const std::vector<Background>& backgrounds,
-                          std::int64_t index);
 
 // Gives the scene, whose camera is the own aircraft, the intruders of sequence `index` and, where
 // they come from a model, its weight: the product of those of the intruders. A negative sequence

@@ -29,8 +29,7 @@ std::int64_t size_of(const Rule& rule) {
            static_cast<std::int64_t>(product->trajectories.size()) *
            static_cast<std::int64_t>(product->aircraft.size());
   if (const auto* drawn = std::get_if<Drawn>(&rule)) return drawn->count;
-  if (const auto* encounters = std::get_if<EncounterRule>(&rule)) return encounters->count;
-  return 1;
+  return std::get<EncounterRule>(rule).count;
 }
 
 std::string filled(std::string pattern, std::string_view key, const std::string& value) {
@@ -82,19 +81,30 @@ void take_weather(const DrawnSequence& drawn, scene::Scene& scene) {
   std::erase(scene.camera_model.automatic, "air.extinction_per_km");
 }
 
+// An item of a numbered rule before anything is in its scene.
+Item empty_item(const Catalogue& catalogue,
+                const auto& rule,
+                std::int64_t index,
+                std::size_t background) {
+  Item item;
+  item.index = index;
+  item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
+  item.background = background;
+  item.frame_count = rule.frame_count;
+  item.scene = scene_over(catalogue, background);
+  item.scene.name = item.name;
+  return item;
+}
+
 // The random values of a rule of [[random]] for one sequence. Until place() knows the background,
 // its paths are provisional and belong to a clip at kAssumedRateHz.
 Item item_of(const Catalogue& catalogue,
              const Drawn& rule,
              std::int64_t index,
              DrawnSequence drawn) {
-  Item item;
-  item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
+  Item item = empty_item(catalogue, rule, index, drawn.background);
   item.rule = &rule;
   item.drawn = std::move(drawn);
-  item.background = item.drawn.background;
-  item.frame_count = rule.frame_count;
-  item.scene = scene_over(catalogue, item.background);
   if (item.drawn.sun_azimuth_deg) item.scene.light.sun_azimuth_deg = *item.drawn.sun_azimuth_deg;
   if (item.drawn.sun_elevation_deg)
     item.scene.light.sun_elevation_deg = *item.drawn.sun_elevation_deg;
@@ -119,11 +129,11 @@ Item item_of(const Catalogue& catalogue, const Drawn& rule, std::int64_t index) 
 }
 
 Item item_of(const Catalogue& catalogue, const EncounterRule& rule, std::int64_t index) {
-  Item item;
-  item.name = filled(rule.name, "{index}", fmt::format("{:06}", index));
-  item.frame_count = rule.frame_count;
-  item.background = background_of(rule, catalogue.backgrounds, index);
-  item.scene = scene_over(catalogue, item.background);
+  Item item = empty_item(
+      catalogue,
+      rule,
+      index,
+      stratified_background(rule.backgrounds, catalogue.backgrounds, rule.seed, rule.count, index));
   item.encounter_rule = &rule;
   item.index_in_rule = index;
   add_encounter(item.scene, rule, index);
@@ -177,9 +187,7 @@ Item stream_item(const Catalogue& catalogue,
   DrawnSequence drawn = draw(rule, catalogue.backgrounds, seed, place.index);
   drawn.background = place.background;
   Item item = item_of(catalogue, rule, place.index, std::move(drawn));
-  item.index = place.index;
   item.first_frame = place.first_frame;
-  item.scene.name = item.name;
   item.distractors = draw_distractors(catalogue.distractors, seed, place.index);
   return item;
 }
@@ -188,13 +196,7 @@ Item stream_item(const Catalogue& catalogue,
                  const EncounterRule& rule,
                  const StreamPlace& place,
                  std::uint64_t seed) {
-  Item item;
-  item.index = place.index;
-  item.name = filled(rule.name, "{index}", fmt::format("{:06}", place.index));
-  item.frame_count = rule.frame_count;
-  item.background = place.background;
-  item.scene = scene_over(catalogue, item.background);
-  item.scene.name = item.name;
+  Item item = empty_item(catalogue, rule, place.index, place.background);
   item.encounter_rule = &rule;
   item.index_in_rule = place.index % rule.count;
   item.first_frame = place.first_frame;
