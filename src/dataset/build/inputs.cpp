@@ -75,7 +75,7 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                  .info(),
              files);
   files.frames = end_of(background, files.frames);
-  files.log_start = log_start(background, files.video);
+  files.camera = camera_with_log(background, files.video);
   return files;
 }
 
@@ -86,12 +86,14 @@ void take_facts(const video::StreamInfo& info, catalogue::BackgroundFiles& files
   files.frames = info.frame_count_estimate;
 }
 
-catalogue::LogStart log_start(const catalogue::Background& background, const fs::path& video) {
-  if (!background.camera.log) return {};
+std::optional<scene::Camera> camera_with_log(const catalogue::Background& background,
+                                             const fs::path& video) {
+  if (!background.camera.log) return std::nullopt;
   scene::Camera camera = background.camera;
   camera.clip_start_s = video::time_of_first_frame_s(
       video, {.first_frame = background.first_frame, .picture_rate_hz = background.frame_rate_hz});
-  return {camera.clip_start_s, setup::level_attitude(camera)};
+  if (const auto level = setup::level_attitude(camera)) camera.attitude_yaw_pitch_roll_deg = level;
+  return camera;
 }
 
 video::StreamInfo stream_of(const catalogue::Background& background) {

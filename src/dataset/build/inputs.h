@@ -22,8 +22,9 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
 // Takes the size, rate and length of a background's video.
 void take_facts(const video::StreamInfo& info, catalogue::BackgroundFiles& files);
 
-// Throws Error where the video or the camera's log cannot be read.
-catalogue::LogStart log_start(const catalogue::Background& background, const fs::path& video);
+// BackgroundFiles::camera. Throws Error where the video or the camera's log cannot be read.
+std::optional<scene::Camera> camera_with_log(const catalogue::Background& background,
+                                             const fs::path& video);
 
 // The size, rate and number of frames of a background: as its virtual flight states them, or as its
 // video does. Throws Error where the video cannot be read.

@@ -153,7 +153,7 @@ class Planner {
     take_facts(stream_of(background), facts.files);
     facts.size = double(facts.files.width) * facts.files.height / kUsualPixels;
     if (const auto* video = std::get_if<fs::path>(&background.source))
-      facts.files.log_start = log_start(background, *video);
+      facts.files.camera = camera_with_log(background, *video);
     const double whole = static_cast<double>(facts.files.frames) * facts.size;
     if (std::holds_alternative<synthetic::FlightOptions>(background.source))
       plan_.core_s += whole * kCosts.flown;

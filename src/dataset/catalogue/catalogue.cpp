@@ -63,7 +63,7 @@ Background background_from(const TableReader& table) {
   background.motion = scene::motion_in(table);
   background.camera = scene::camera_in(table, background.motion);
   // Encounters are drawn before a frame is read, so that no horizon gives an attitude. That of a
-  // log without one is LogStart::level_attitude.
+  // log without one is that of BackgroundFiles::camera.
   if (!background.camera.log && !background.camera.path_file &&
       !background.camera.attitude_yaw_pitch_roll_deg)
     background.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{};

@@ -251,10 +251,7 @@ std::int64_t random_first_frame(const Item& item,
 }  // namespace
 
 Draws draw_in_view(Item& item, const BackgroundFiles& files) {
-  scene::Camera& camera = item.scene.camera;
-  camera.clip_start_s = files.log_start.clip_start_s;
-  if (files.log_start.level_attitude)
-    camera.attitude_yaw_pitch_roll_deg = files.log_start.level_attitude;
+  if (files.camera) item.scene.camera = *files.camera;
   if (item.encounter_rule == nullptr) return {};
   check_length(item, files);
   const Views views{setup::lens_of(item.scene.lens, {files.width, files.height}),

@@ -17,13 +17,6 @@ class SharedInputs;
 
 namespace airtruth::catalogue {
 
-// Where a camera's log stands at its background's first_frame; nothing of a camera without a log.
-struct LogStart {
-  double clip_start_s = 0;  // on the video's clock
-  // Where neither the scene nor the log states an attitude (sequence/setup/level_camera.h).
-  std::optional<YawPitchRoll> level_attitude;
-};
-
 // The files of a background on this machine, and the facts of its video.
 struct BackgroundFiles {
   fs::path video;
@@ -32,7 +25,9 @@ struct BackgroundFiles {
   int height = 0;
   double frame_rate_hz = 0;  // 0: unknown
   std::int64_t frames = 0;   // counted from the video's first frame; 0: unknown
-  LogStart log_start;
+  // Of a background with a flight log: its camera with the time of first_frame on the video's clock
+  // and, where neither the scene nor the log states an attitude, a level one.
+  std::optional<scene::Camera> camera;
 };
 
 // One sequence of a catalogue.
