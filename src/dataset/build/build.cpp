@@ -61,9 +61,7 @@ class Work {
       warn(options_.warn,
            fmt::format("{} more warnings say the same of other sequences over the same backgrounds",
                        repeated_));
-    std::sort(summary_.failures.begin(),
-              summary_.failures.end(),
-              [](const Failure& a, const Failure& b) { return a.name < b.name; });
+    std::ranges::sort(summary_.failures, {}, &Failure::name);
     return summary_;
   }
 

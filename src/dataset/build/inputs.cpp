@@ -172,10 +172,8 @@ void check_sources(const catalogue::Catalogue& catalogue) {
 catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
                                  const std::map<std::string, fs::path>& videos) {
   for (const auto& [name, video] : videos) {
-    const auto replaced = std::find_if(
-        catalogue.backgrounds.begin(),
-        catalogue.backgrounds.end(),
-        [&, n = name](const catalogue::Background& background) { return background.name == n; });
+    const auto replaced =
+        std::ranges::find(catalogue.backgrounds, name, &catalogue::Background::name);
     if (replaced == catalogue.backgrounds.end())
       throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
     replaced->source = video;

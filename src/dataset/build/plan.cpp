@@ -96,13 +96,10 @@ class Planner {
   // Of a sequence by itself.
   double cost_of(const catalogue::Item& item, std::int64_t frames, double size) const {
     const scene::Scene& scene = item.scene;
-    const auto distractors = static_cast<double>(
-        scene.lens_marks.size() +
-        static_cast<std::size_t>(std::count_if(scene.intruders.begin(),
-                                               scene.intruders.end(),
-                                               [](const auto& one) { return !is_aircraft(one); })));
-    const auto others = static_cast<double>(
-        std::max<std::size_t>(1, scene.intruders.size() + scene.lens_marks.size()) - 1);
+    const std::ptrdiff_t things = std::ssize(scene.intruders) + std::ssize(scene.lens_marks);
+    const auto distractors =
+        static_cast<double>(things - std::ranges::count_if(scene.intruders, scene::is_aircraft));
+    const auto others = static_cast<double>(std::max<std::ptrdiff_t>(1, things) - 1);
     const bool has_camera = has_camera_model(scene);
     const double other = (kCosts.thing_in_frame + size * kCosts.thing_in_picture) *
                          (has_camera ? kCosts.things_in_camera_model : 1);

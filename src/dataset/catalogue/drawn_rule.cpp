@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -203,12 +204,10 @@ void read_paths(const TableReader& table, Drawn& drawn) {
 bool may_have(const Background& background, std::initializer_list<const char*> names) {
   const scene::CameraModel& model = background.camera_model;
   return background.realism.automatic || background.realism.file ||
-         std::any_of(names.begin(), names.end(), [&](const char* name) {
-           const auto* number =
-               std::get_if<scene::CameraKey::Number>(&scene::camera_key(name)->member);
-           return (model.*(*number)).has_value() ||
-                  std::find(model.automatic.begin(), model.automatic.end(), name) !=
-                      model.automatic.end();
+         std::ranges::any_of(names, [&](const char* name) {
+           const auto& member = scene::camera_key(name)->member;
+           return (model.*std::get<scene::CameraKey::Number>(member)).has_value() ||
+                  std::ranges::count(model.automatic, name) > 0;
          });
 }
 
@@ -281,23 +280,15 @@ std::vector<AircraftType> types_in(const TableReader& table) {
   if (!patterns)
     throw Error("has no aircraft; expected names or patterns of `airtruth aircraft list`",
                 table.where());
-  std::map<std::string, AircraftType> types;
+  std::map<std::string, std::set<std::string>> liveries_of;
   for (std::size_t i = 0; i < patterns->size(); ++i) {
     const std::vector<std::string> names = fleet::aircraft_fitting((*patterns)[i]);
-    for (const std::string& name : names) {
-      const std::string type = name.substr(0, name.find('/'));
-      types[type].name = type;
-      types[type].liveries.push_back(name);
-    }
+    for (const std::string& name : names) liveries_of[name.substr(0, name.find('/'))].insert(name);
     if (names.empty()) throw Error(no_aircraft_fits((*patterns)[i]), table.where("aircraft", i));
   }
   std::vector<AircraftType> result;
-  for (auto& [name, type] : types) {
-    std::sort(type.liveries.begin(), type.liveries.end());
-    type.liveries.erase(std::unique(type.liveries.begin(), type.liveries.end()),
-                        type.liveries.end());
-    result.push_back(std::move(type));
-  }
+  for (const auto& [type, liveries] : liveries_of)
+    result.push_back({type, {liveries.begin(), liveries.end()}});
   return result;
 }
 

@@ -283,9 +283,8 @@ track::Track own_track(const scene::Scene& scene, const EncounterRule& rule) {
 
 bool is_high_enough(const track::Track& track, const track::Track& own, double cpa_s) {
   if (track::state_at(own, cpa_s).position_ned_m.z() > -kLowestFlightM) return true;
-  return std::all_of(track.positions_ned_m.begin(),
-                     track.positions_ned_m.end(),
-                     [](const Vector3& p) { return p.z() <= -kLowestFlightM; });
+  return std::ranges::all_of(track.positions_ned_m,
+                             [](const Vector3& p) { return p.z() <= -kLowestFlightM; });
 }
 
 struct Passage {
@@ -409,8 +408,7 @@ DrawnIntruder drawn_intruder(const EncounterRule& rule,
                                 : from_geometry(rule, own, wanted, index, k + draw * kNextDraw);
   Random random = Seed(rule.seed).stream("aircraft", number);
   const Fitting fitting = fitting_types(rule, demands_of(passage.track));
-  const bool suits =
-      std::find(fitting.types.begin(), fitting.types.end(), &wanted) != fitting.types.end();
+  const bool suits = std::ranges::count(fitting.types, &wanted) > 0;
   const AircraftType& type = suits ? wanted : *one_of(random, fitting.types);
   DrawnIntruder drawn{{}, passage.weight};
   scene::Intruder& intruder = drawn.intruder;

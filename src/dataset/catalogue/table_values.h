@@ -50,16 +50,14 @@ std::vector<std::size_t> places_of(const scene::TableReader& table,
   const auto patterns = table.texts(key);
   for (std::size_t i = 0; i < things.size(); ++i) {
     const bool wanted =
-        !patterns ||
-        std::any_of(patterns->begin(), patterns->end(), [&](const std::string& pattern) {
+        !patterns || std::ranges::any_of(*patterns, [&](const std::string& pattern) {
           return matches(pattern, things[i].name);
         });
     if (wanted) result.push_back(i);
   }
   for (const std::string& pattern : patterns.value_or(std::vector<std::string>{})) {
-    const bool used = std::any_of(things.begin(), things.end(), [&](const auto& thing) {
-      return matches(pattern, thing.name);
-    });
+    const bool used = std::ranges::any_of(
+        things, [&](const auto& thing) { return matches(pattern, thing.name); });
     if (!used) place_of(things, pattern, what, table.where(key));
   }
   if (result.empty()) throw Error("there is no [[" + std::string(what) + "]]", table.where());

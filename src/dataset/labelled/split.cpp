@@ -41,10 +41,6 @@ std::vector<Group> groups_of(const std::vector<ClipFacts>& clips, Split split, s
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 // Frames and groups that the parts have so far.
 struct Filled {
   std::array<double, 3> frames{};
@@ -75,9 +71,8 @@ void warn_of_shared_backgrounds(const std::vector<ClipFacts>& clips,
   std::map<std::string, std::set<std::string>> parts_of_background;
   for (const ClipFacts& clip : clips)
     parts_of_background[clip.background].insert(parts.at(clip.name));
-  const auto shared = std::count_if(parts_of_background.begin(),
-                                    parts_of_background.end(),
-                                    [](const auto& entry) { return entry.second.size() > 1; });
+  const auto shared = std::ranges::count_if(
+      parts_of_background, [](const auto& entry) { return entry.second.size() > 1; });
   if (shared > 0)
     airtruth::warn(
         warn,

@@ -36,11 +36,9 @@ std::vector<std::string_view> all_effects() {
 }
 
 bool has_effect(const scene::CameraModel& model, std::string_view effect) {
-  return std::any_of(scene::kCameraModelKeys.begin(),
-                     scene::kCameraModelKeys.end(),
-                     [&](const scene::CameraKey& key) {
-                       return key.effect == effect && scene::is_above_zero(model, key);
-                     });
+  return std::ranges::any_of(scene::kCameraModelKeys, [&](const scene::CameraKey& key) {
+    return key.effect == effect && scene::is_above_zero(model, key);
+  });
 }
 
 std::string share_of(std::size_t count, std::size_t all) {

@@ -24,8 +24,7 @@ template <typename Enum, typename Of>
 std::string counts_of(const Records& records, Of of, const std::string& without) {
   std::vector<std::string> parts;
   const auto add = [&](const std::optional<Enum>& value, const std::string& name) {
-    const auto count = std::count_if(
-        records.begin(), records.end(), [&](const EncounterRecord& r) { return of(r) == value; });
+    const auto count = std::ranges::count(records, value, of);
     if (count > 0) parts.push_back(fmt::format("{} {}", name, count));
   };
   for (const EnumName<Enum>& known : enum_names(Enum{})) add(known.value, known.name);
@@ -70,10 +69,8 @@ std::string first_seen_text(const Records& records) {
 std::string violations_text(const Records& records, const std::vector<std::string>& volumes) {
   std::vector<std::string> parts;
   for (const std::string& volume : volumes) {
-    const auto count = std::count_if(records.begin(), records.end(), [&](const EncounterRecord& r) {
-      return std::any_of(r.violations.begin(), r.violations.end(), [&](const auto& violation) {
-        return violation.volume == volume;
-      });
+    const auto count = std::ranges::count_if(records, [&](const EncounterRecord& r) {
+      return std::ranges::count(r.violations, volume, &pipeline::NamedInterval::volume) > 0;
     });
     parts.push_back(fmt::format("{} in {}", volume, count));
   }
@@ -92,10 +89,8 @@ std::optional<ClosestPlaces> closest_places(const std::vector<annotation::Frame>
                                             const EncounterRecord& record) {
   if (!record.closest) return std::nullopt;
   const double time_s = record.closest->time_s;
-  const auto after =
-      std::find_if(frames.begin(), frames.end(), [&](const annotation::Frame& frame) {
-        return frame.time_s >= time_s;
-      });
+  const auto after = std::ranges::find_if(
+      frames, [&](double at_s) { return at_s >= time_s; }, &annotation::Frame::time_s);
   if (after == frames.end()) return std::nullopt;
   const auto before = after == frames.begin() ? after : after - 1;
   const annotation::Intruder* from = intruder_of(*before, record.id);

@@ -55,7 +55,7 @@ std::vector<Film::Marked> marked(const annotation::Frame& frame,
   std::vector<Film::Marked> boxes;
   for (const annotation::Intruder& intruder : frame.intruders)
     if (const auto box = annotation::box_to_show(intruder)) {
-      const auto place = std::find(ids.begin(), ids.end(), intruder.id) - ids.begin();
+      const auto place = std::ranges::find(ids, intruder.id) - ids.begin();
       boxes.push_back({static_cast<std::size_t>(place), *box});
     }
   return boxes;
@@ -67,10 +67,8 @@ Film::Still still_of(const image::Picture& picture,
   const image::Rgb8 small =
       drawing::small_copy(image::rgb8_from_picture(picture), Film::kStillWidth);
   Film::Still still{truth.frame, video::jpeg_of(small, kStillQuality), marked(truth, ids)};
-  const auto largest = std::max_element(
-      still.boxes.begin(), still.boxes.end(), [](const Film::Marked& a, const Film::Marked& b) {
-        return longer_side(a.box) < longer_side(b.box);
-      });
+  const auto largest = std::ranges::max_element(
+      still.boxes, {}, [](const Film::Marked& one) { return longer_side(one.box); });
   if (largest == still.boxes.end()) return still;
   const PixelBox& box = largest->box;
   still.zoom_px = std::max(kLeastZoomPx, kSurroundings * longer_side(box));

@@ -121,10 +121,8 @@ void Frames::keep_within_bounds(const Run& used, std::size_t bytes) {
     all += run->bytes;
   }
   while (runs_.size() > 1 && (all > most_bytes_ || runs_.size() > kMostOpen)) {
-    const auto oldest =
-        std::min_element(runs_.begin(), runs_.end(), [](const auto& a, const auto& b) {
-          return a.second->last_use < b.second->last_use;
-        });
+    const auto oldest = std::ranges::min_element(
+        runs_, {}, [](const auto& entry) { return entry.second->last_use; });
     all -= oldest->second->bytes;
     runs_.erase(oldest);
   }
