@@ -45,8 +45,7 @@ annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
 }
 
 std::size_t aircraft_of(const scene::Scene& scene) {
-  return static_cast<std::size_t>(
-      std::count_if(scene.intruders.begin(), scene.intruders.end(), scene::is_aircraft));
+  return static_cast<std::size_t>(std::ranges::count_if(scene.intruders, scene::is_aircraft));
 }
 
 nlohmann::ordered_json json_of(const std::vector<Checksum>& files) {
@@ -70,12 +69,10 @@ std::vector<Checksum> checksums_below(const fs::path& folder) {
 }  // namespace
 
 std::vector<fs::path> model_files(const setup::World& world) {
-  std::vector<fs::path> models;
+  std::set<fs::path> models;
   for (const setup::Actor& actor : world.actors)
-    for (const fs::path& source : actor.type->aircraft->sources) models.push_back(source);
-  std::sort(models.begin(), models.end());
-  models.erase(std::unique(models.begin(), models.end()), models.end());
-  return models;
+    models.insert(actor.type->aircraft->sources.begin(), actor.type->aircraft->sources.end());
+  return {models.begin(), models.end()};
 }
 
 Outputs::Outputs(const fs::path& folder,

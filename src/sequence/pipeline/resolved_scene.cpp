@@ -106,13 +106,8 @@ bool may_be_missing(std::string_view name, const scene::Realism& realism) {
          (rule == scene::IfUnmeasured::kLeftOutWithAuto && realism.automatic);
 }
 
-bool is_named(const scene::Scene& scene, const std::string& key) {
-  const auto& named = scene.camera_model.automatic;
-  return std::find(named.begin(), named.end(), key) != named.end();
-}
-
 bool is_wanted(const scene::Scene& scene, const std::string& key) {
-  return is_named(scene, key) || scene.realism.automatic;
+  return scene.realism.automatic || std::ranges::count(scene.camera_model.automatic, key) > 0;
 }
 
 // Fills in unstated values from the camera file. Returns whether a requested value is still
@@ -193,8 +188,7 @@ void take_measured(scene::Scene& scene,
   const scene::CameraModel from_clip = camera_file::model_of(found);
   scene::for_each_camera_key(
       [&](const char* key, auto& value, const auto& seen) {
-        const auto& wanted = stated.to_measure;
-        if (std::find(wanted.begin(), wanted.end(), key) == wanted.end()) return;
+        if (std::ranges::count(stated.to_measure, key) == 0) return;
         value = seen;
         if (value && (stated.realism.profile || of_clip.at(key).missing.empty())) return;
         std::string what = fmt::format("{} cannot be measured: {}", key, of_clip.at(key).missing);
@@ -282,9 +276,8 @@ setup::FramePose frame_near(const setup::MotionSource& motion,
 }
 
 bool is_given_by_what_is_seen(const scene::Scene& scene) {
-  return std::any_of(scene.intruders.begin(), scene.intruders.end(), [](const auto& intruder) {
-    return !intruder.seen.empty();
-  });
+  return std::ranges::any_of(scene.intruders,
+                             [](const auto& intruder) { return !intruder.seen.empty(); });
 }
 
 lens::ImageSize size_of(const video::StreamInfo& info) { return {info.width, info.height}; }
@@ -326,9 +319,8 @@ void check_weather(const scene::Scene& scene, const std::vector<std::string>& to
       [&](const std::optional<double>& factor,
           const char* name,
           const std::vector<std::pair<std::string, std::optional<double>>>& values) {
-        const bool has_value = std::any_of(values.begin(), values.end(), [&](const auto& value) {
-          return value.second ||
-                 std::find(to_measure.begin(), to_measure.end(), value.first) != to_measure.end();
+        const bool has_value = std::ranges::any_of(values, [&](const auto& value) {
+          return value.second || std::ranges::count(to_measure, value.first) > 0;
         });
         if (factor && !has_value)
           throw Error(

@@ -187,8 +187,8 @@ class Previewer {
     for (const PreviewRow& row : rows)
       if (row.box_px) range_at[row.time_s] = std::max(range_at[row.time_s], row.range_m);
     std::vector<double> order = seen;
-    std::stable_sort(
-        order.begin(), order.end(), [&](double a, double b) { return range_at[a] > range_at[b]; });
+    std::ranges::stable_sort(
+        order, std::ranges::greater(), [&](double time_s) { return range_at[time_s]; });
     for (const double time_s : order) {
       stop_if_asked();
       setup::Moment here = moment(time_s);

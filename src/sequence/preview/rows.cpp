@@ -69,9 +69,8 @@ std::size_t middle_of(const scene::Scene& scene, const std::vector<std::size_t>&
   Vector3 mean = Vector3::Zero();
   for (const std::size_t actor : actors) mean += scene.intruders[actor].offset_ned_m;
   mean /= static_cast<double>(actors.size());
-  return *std::min_element(actors.begin(), actors.end(), [&](std::size_t a, std::size_t b) {
-    return (scene.intruders[a].offset_ned_m - mean).norm() <
-           (scene.intruders[b].offset_ned_m - mean).norm();
+  return *std::ranges::min_element(actors, {}, [&](std::size_t actor) {
+    return (scene.intruders[actor].offset_ned_m - mean).norm();
   });
 }
 
@@ -153,9 +152,8 @@ std::vector<std::string> approach_lines(const setup::World& world,
                                    to_side(closest->offset.ahead_m, "ahead", "behind"),
                                    to_side(closest->offset.right_m, "right", "left"),
                                    to_side(closest->offset.above_m, "above", "below"));
-    const bool is_seen = std::any_of(rows.begin(), rows.end(), [&](const PreviewRow& row) {
-      return row.party == i && row.box_px;
-    });
+    const bool is_seen = std::ranges::any_of(
+        rows, [&](const PreviewRow& row) { return row.party == i && row.box_px; });
     if (!is_seen)
       if (const auto nearest = setup::nearest_approach(world, party.middle, duration_s))
         line += nearest->off_view_deg > 0

@@ -10,6 +10,7 @@
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "picture/video/reader.h"
+#include "picture/video/writer.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/resolved_scene.h"
@@ -75,9 +76,7 @@ std::vector<std::string> mask_faults(const Finished& sequence, const pipeline::W
   std::vector<std::string> faults;
   for (const annotation::Intruder& intruder : again.truth.intruders) {
     const std::string name = insertion::mask_name(intruder.id, again.truth.frame);
-    const auto made = std::find_if(again.masks.begin(), again.masks.end(), [&](const auto& mask) {
-      return mask.name == name;
-    });
+    const auto made = std::ranges::find(again.masks, name, &insertion::MaskFile::name);
     const bool is_there = fs::exists(sequence.folder / name);
     if (is_there != (made != again.masks.end()) ||
         (is_there && read_file(sequence.folder / name) != made->png))

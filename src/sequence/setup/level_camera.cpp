@@ -86,8 +86,7 @@ std::string state_attitude(scene::Camera& camera,
       "of the horizon in {} of its first {} frames",
       attitude.pitch_deg,
       attitude.roll_deg,
-      std::count_if(
-          horizons.found.begin(), horizons.found.end(), [](const auto& one) { return !!one; }),
+      std::ranges::count_if(horizons.found, [](const auto& one) { return one.has_value(); }),
       frames.empty() ? 0 : frames.back().frame + 1);
 }
 

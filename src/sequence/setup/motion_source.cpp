@@ -73,9 +73,8 @@ void warn_of(const ClipMotion& found, bool has_gyro, const Warn& warn) {
   if (!warn) return;
   if (has_gyro && !found.gyro)
     warn("the video's gyro does not agree with its motion; it is not used");
-  const auto away = std::count_if(found.frames.begin(), found.frames.end(), [](const auto& frame) {
-    return frame.state == motion::State::kTurnedAway;
-  });
+  const auto away =
+      std::ranges::count(found.frames, motion::State::kTurnedAway, &motion::FrameMotion::state);
   if (away > 0)
     warn(
         fmt::format("in {} frames the camera has turned so far from the first that no homography "
@@ -225,10 +224,7 @@ MotionSource::Measured MotionSource::at(std::size_t k) const {
 
 MotionSource::Measured MotionSource::nearest(double time_s) const {
   check(ready_ && !all_.empty(), "the clip's motion is known");
-  const auto after =
-      std::lower_bound(all_.begin(), all_.end(), time_s, [](const auto& motion, double t) {
-        return motion.time_s < t;
-      });
+  const auto after = std::ranges::lower_bound(all_, time_s, {}, &motion::FrameMotion::time_s);
   auto k = static_cast<std::size_t>(after - all_.begin());
   if (k == all_.size() || (k > 0 && time_s - all_[k - 1].time_s <= all_[k].time_s - time_s)) --k;
   return at(k);
