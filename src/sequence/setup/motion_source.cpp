@@ -168,15 +168,9 @@ MotionSource MotionSource::of_frames(MotionInputs inputs, std::span<const video:
   MotionSource source(inputs);
   std::vector<motion::FrameMotion> measured;
   for (const video::Frame& frame : frames)
-    measured.push_back(source.none_ || frames.size() == 1
-                           ? reference_at(frame, source.lens_.has_value())
-                           : source.measured(frame));
-  if (!source.none_) {
-    source.set_pass(std::move(measured));
-    return source;
-  }
-  source.all_ = std::move(measured);
-  source.ready_ = true;
+    measured.push_back(frames.size() == 1 ? reference_at(frame, source.lens_.has_value())
+                                          : source.measured(frame));
+  source.set_pass(std::move(measured));
   return source;
 }
 
@@ -208,7 +202,6 @@ void MotionSource::measure(const MotionPass& pass) {
 }
 
 MotionSource::Measured MotionSource::next(const video::Frame& frame) {
-  if (none_) return {reference_at(frame), {}};
   if (!ready_) {
     const motion::FrameMotion motion = guard_.next(measured(frame));
     return {motion, motion::shake_of({motion}, 0)};
@@ -218,7 +211,6 @@ MotionSource::Measured MotionSource::next(const video::Frame& frame) {
 }
 
 MotionSource::Measured MotionSource::at(std::size_t k) const {
-  if (none_) return {all_[k], {}};
   return {all_[k], needs_change_ ? motion::shake_of(all_, k) : motion::shake_of({all_[k]}, 0)};
 }
 
@@ -231,6 +223,7 @@ MotionSource::Measured MotionSource::nearest(double time_s) const {
 }
 
 motion::FrameMotion MotionSource::measured(const video::Frame& frame) {
+  if (none_) return reference_at(frame);
   if (!estimator_) estimator_.emplace(estimator());
   motion::FrameMotion motion =
       estimator_->next(frame.picture, frame.time_s, frame.damaged, frame.begins_shot);
