@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -70,10 +71,13 @@ class Previewer {
     result.notes = opened_.notes;
     result.rows =
         preview_rows(world(), parties_, times, [&](double time_s) { return moment(time_s); });
-    result.approaches = approach_lines(world(), parties_, result.rows, duration_s_);
-    const auto seen = times_in_view(result.rows);
-    std::vector<cv::Mat> parts = {title(result.approaches), top(result.rows, seen)};
-    if (!seen.empty()) parts.push_back(moments(chosen(seen)));
+    std::set<std::size_t> seen;
+    for (const PreviewRow& row : result.rows)
+      if (row.box_px) seen.insert(row.party);
+    result.approaches = approach_lines(world(), parties_, seen, duration_s_);
+    const auto times_seen = times_in_view(result.rows);
+    std::vector<cv::Mat> parts = {title(result.approaches), top(result.rows, times_seen)};
+    if (!times_seen.empty()) parts.push_back(moments(chosen(times_seen)));
     parts.push_back(table(result.rows));
     result.picture = stacked(parts);
     return result;
@@ -175,7 +179,8 @@ class Previewer {
   double main_time(const std::vector<PreviewRow>& rows) const {
     const PreviewRow* nearest = nullptr;
     for (const PreviewRow& row : rows)
-      if (row.box_px && (nearest == nullptr || row.range_m < nearest->range_m)) nearest = &row;
+      if (row.box_px && (nearest == nullptr || row.nearest.range_m < nearest->nearest.range_m))
+        nearest = &row;
     return nearest != nullptr ? nearest->time_s : 0;
   }
 
@@ -185,7 +190,7 @@ class Previewer {
     const insertion::Ambient ambient = ambient_in(frame.picture, moment(main_time(rows)));
     std::map<double, double> range_at;
     for (const PreviewRow& row : rows)
-      if (row.box_px) range_at[row.time_s] = std::max(range_at[row.time_s], row.range_m);
+      if (row.box_px) range_at[row.time_s] = std::max(range_at[row.time_s], row.nearest.range_m);
     std::vector<double> order = seen;
     std::ranges::stable_sort(
         order, std::ranges::greater(), [&](double time_s) { return range_at[time_s]; });
@@ -288,7 +293,7 @@ class Previewer {
     const auto camera = world().camera.at(0);
     image::Rgb8 plan = drawing::plan_view(lines,
                                           yaw_pitch_roll(camera->world_from_body).yaw_deg,
-                                          view_deg(world()),
+                                          world().lens.horizontal_fov_deg(),
                                           kSideWidthPx,
                                           plan_px);
     image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, height_px - plan_px);

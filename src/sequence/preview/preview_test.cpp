@@ -49,17 +49,17 @@ TEST(PreviewRows, NumbersAreThoseOfAHeadOnEncounter) {
   });
   ASSERT_EQ(rows.size(), 6u);
   const double focal_px = 240 / std::tan(radians(30));
-  EXPECT_NEAR(rows[0].range_m, std::sqrt(300.0 * 300 + 20 * 20 + 10 * 10), 1e-6);
-  EXPECT_NEAR(rows[0].bearing_deg.value(), degrees(std::atan2(20, 300)), 1e-6);
-  EXPECT_NEAR(rows[0].tcpa_s.value(), 4, 1e-6);
-  EXPECT_NEAR(rows[0].above_m, 10, 1e-9);
+  EXPECT_NEAR(rows[0].nearest.range_m, std::sqrt(300.0 * 300 + 20 * 20 + 10 * 10), 1e-6);
+  EXPECT_NEAR(rows[0].nearest.relative_bearing_deg.value(), degrees(std::atan2(20, 300)), 1e-6);
+  EXPECT_NEAR(rows[0].nearest.tcpa_s.value(), 4, 1e-6);
+  EXPECT_NEAR(rows[0].nearest.above_m, 10, 1e-9);
   ASSERT_TRUE(rows[0].box_px);
   EXPECT_NEAR(rows[0].box_px->x + rows[0].box_px->width / 2, 320 + focal_px * 20 / 300, 1);
   // 11 m of span.
   EXPECT_NEAR(rows[0].box_px->width, focal_px * 11 / 300, 1);
-  EXPECT_FALSE(rows[4].box_px);  // abeam
-  EXPECT_FALSE(rows[5].tcpa_s);  // diverging
-  const auto lines = approach_lines(world, parties, rows, 5);
+  EXPECT_FALSE(rows[4].box_px);          // abeam
+  EXPECT_FALSE(rows[5].nearest.tcpa_s);  // diverging
+  const auto lines = approach_lines(world, parties, {0}, 5);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], testing::HasSubstr("near: closest 22.4 m at 4.00 s"));
   EXPECT_THAT(table_text(rows), testing::HasSubstr("out of view"));
@@ -92,9 +92,9 @@ TEST(PreviewRows, AFlockIsOneRow) {
     nearest_m =
         std::min(nearest_m, (moment.states[i]->position_in_world - Vector3(0, 0, -150)).norm());
   }
-  EXPECT_NEAR(rows[0].range_m, nearest_m, 1e-9);
+  EXPECT_NEAR(rows[0].nearest.range_m, nearest_m, 1e-9);
   EXPECT_LT(rows[0].box_px->right(), rows[1].box_px->x);
-  EXPECT_EQ(approach_lines(world, parties, rows, 1).size(), 3u);
+  EXPECT_EQ(approach_lines(world, parties, {0, 1, 2}, 1).size(), 3u);
 }
 
 TEST(Preview, ThePictureShowsTheIntruderWhereTheRowsSay) {

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "encounter/passage/passage.h"
-#include "encounter/separation/measures.h"
 
 namespace airtruth::preview {
 namespace {
@@ -34,27 +33,19 @@ Box around(const Box& a, const Box& b) {
 std::optional<PreviewRow> row_of(const setup::World& world,
                                  const setup::Moment& moment,
                                  const Party& party) {
-  PreviewRow row;
-  std::optional<separation::Measures> nearest;
+  PreviewRow row{.time_s = moment.time_s, .intruder = party.name};
+  bool is_there = false;
   for (const std::size_t actor : party.actors) {
     if (!moment.states[actor]) continue;
     const separation::Measures m = separation::measures(passage::mover_of(moment.camera),
                                                         passage::mover_of(*moment.states[actor]));
-    if (!nearest || m.range_m < nearest->range_m) nearest = m;
+    if (!is_there || m.range_m < row.nearest.range_m) row.nearest = m;
+    is_there = true;
     const auto& box = moment.boxes[actor].box;
     if (box && setup::meets_frame(*box, world.lens.size()))
       row.box_px = row.box_px ? around(*row.box_px, *box) : *box;
   }
-  if (!nearest) return std::nullopt;
-  const separation::Measures& m = *nearest;
-  row.time_s = moment.time_s;
-  row.intruder = party.name;
-  row.range_m = m.range_m;
-  row.bearing_deg = m.relative_bearing_deg;
-  row.above_m = m.above_m;
-  row.closing_mps = m.closing_speed_mps;
-  row.tcpa_s = m.tcpa_s;
-  return row;
+  return is_there ? std::optional(row) : std::nullopt;
 }
 
 // A flock's members are "ID-1", "ID-2", ... of one table.
@@ -135,7 +126,7 @@ std::optional<passage::Approach> nearest_of(const setup::World& world,
 
 std::vector<std::string> approach_lines(const setup::World& world,
                                         const std::vector<Party>& parties,
-                                        const std::vector<PreviewRow>& rows,
+                                        const std::set<std::size_t>& seen,
                                         double duration_s) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < parties.size(); ++i) {
@@ -152,9 +143,7 @@ std::vector<std::string> approach_lines(const setup::World& world,
                                    to_side(closest->offset.ahead_m, "ahead", "behind"),
                                    to_side(closest->offset.right_m, "right", "left"),
                                    to_side(closest->offset.above_m, "above", "below"));
-    const bool is_seen = std::ranges::any_of(
-        rows, [&](const PreviewRow& row) { return row.party == i && row.box_px; });
-    if (!is_seen)
+    if (!seen.contains(i))
       if (const auto nearest = setup::nearest_approach(world, party.middle, duration_s))
         line += nearest->off_view_deg > 0
                     ? fmt::format("; never in view, nearest at {:.2f} s, {:.1f} degrees outside",
@@ -164,14 +153,6 @@ std::vector<std::string> approach_lines(const setup::World& world,
     lines.push_back(line);
   }
   return lines;
-}
-
-double view_deg(const setup::World& world) {
-  const lens::Lens& lens = world.lens;
-  const auto ray = [&](double x) { return lens.ray_from_pixel({x, lens.size().height / 2.0}); };
-  const auto left = ray(0.5), right = ray(lens.size().width - 0.5);
-  if (!left || !right) return 180;
-  return degrees(std::acos(std::clamp(left->normalized().dot(right->normalized()), -1.0, 1.0)));
 }
 
 std::vector<std::string> table_heading() {
@@ -194,11 +175,11 @@ std::vector<std::string> table_cells(const PreviewRow& row) {
           row.box_px ? centre(row.box_px->x, row.box_px->width) : "out of view",
           row.box_px ? centre(row.box_px->y, row.box_px->height) : "-",
           row.box_px ? fmt::format("{:.1f}", row.box_px->width) : "-",
-          fmt::format("{:.0f}", row.range_m),
-          cell(row.bearing_deg, "{:.1f}"),
-          fmt::format("{:.0f}", row.above_m),
-          cell(row.closing_mps, "{:.1f}"),
-          cell(row.tcpa_s, "{:.1f}")};
+          fmt::format("{:.0f}", row.nearest.range_m),
+          cell(row.nearest.relative_bearing_deg, "{:.1f}"),
+          fmt::format("{:.0f}", row.nearest.above_m),
+          cell(row.nearest.closing_speed_mps, "{:.1f}"),
+          cell(row.nearest.tcpa_s, "{:.1f}")};
 }
 
 std::string table_text(const std::vector<PreviewRow>& rows) {

@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "encounter/separation/measures.h"
 #include "foundation/geometry/box.h"
 #include "scene/scene/scene.h"
 #include "sequence/setup/moment.h"
@@ -31,13 +33,7 @@ struct PreviewRow {
   std::string intruder;  // its name
   // The exact box, of a flock around those in view; empty where none is in view.
   std::optional<Box> box_px;
-  // These are of the nearest.
-  double range_m = 0;
-  // From the own course, right positive; empty where the own aircraft hovers.
-  std::optional<double> bearing_deg;
-  double above_m = 0;
-  std::optional<double> closing_mps;
-  std::optional<double> tcpa_s;
+  separation::Measures nearest;  // of the nearest one
 };
 
 // Whole seconds of a clip, at most 60 of them: where the clip is longer they are further apart.
@@ -51,14 +47,11 @@ std::vector<PreviewRow> preview_rows(
     const std::function<setup::Moment(double time_s)>& moment_at_time);
 
 // "b737: closest 61 m (60 right, 11 above) at 8.00 s", and where it never comes into view how near
-// it comes to it. Of a flock, the nearest member's.
+// it comes to it. Of a flock, the nearest member's. `seen`: the parties that are ever in view.
 std::vector<std::string> approach_lines(const setup::World& world,
                                         const std::vector<Party>& parties,
-                                        const std::vector<PreviewRow>& rows,
+                                        const std::set<std::size_t>& seen,
                                         double duration_s);
-
-// The horizontal view between the middles of the left and the right edge.
-double view_deg(const setup::World& world);
 
 std::vector<std::string> table_heading();
 std::vector<std::string> table_cells(const PreviewRow& row);

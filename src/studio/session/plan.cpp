@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -211,7 +212,7 @@ class Planner {
              {{"ned", own},
               {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
               {"attitude", stage_.attitude_words()}}},
-            {"horizontal_fov_deg", hundredths(preview::view_deg(stage_.world()))},
+            {"horizontal_fov_deg", hundredths(stage_.world().lens.horizontal_fov_deg())},
             {"sun",
              {{"azimuth_deg", stage_.scene().light.sun_azimuth_deg},
               {"elevation_deg", stage_.scene().light.sun_elevation_deg}}},
@@ -225,7 +226,7 @@ class Planner {
   // Of the middles, with what is ever in view.
   std::vector<std::string> approach_words() const {
     std::vector<preview::Party> single;
-    std::vector<preview::PreviewRow> rows;
+    std::set<std::size_t> seen;
     for (std::size_t i = 0; i < parties_.size(); ++i) {
       single.push_back({parties_[i].name, {i}, i});
       const bool is_seen = std::ranges::any_of(moments_, [&](const auto& moment) {
@@ -234,12 +235,9 @@ class Planner {
           return is_in_view(moment, stage_.world().actors[actor].path);
         });
       });
-      if (!is_seen) continue;
-      rows.emplace_back();
-      rows.back().party = i;
-      rows.back().box_px.emplace();
+      if (is_seen) seen.insert(i);
     }
-    return preview::approach_lines(middles_, single, rows, stage_.duration_s());
+    return preview::approach_lines(middles_, single, seen, stage_.duration_s());
   }
 
   Json track(std::size_t place, const std::string& approach) const {
