@@ -107,12 +107,8 @@ class Work {
   }
 
   pipeline::Options run_options() const {
-    pipeline::Options options;
-    options.cache = folder_.cache();
-    options.shared = shared_;
-    options.stop = options_.stop;
-    options.warn = options_.warn;
-    return options;
+    return {
+        .cache = folder_.cache(), .shared = shared_, .warn = options_.warn, .stop = options_.stop};
   }
 
   // Measures the motion and the camera of a background once for all the sequences over it.

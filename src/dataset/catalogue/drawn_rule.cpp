@@ -312,9 +312,7 @@ double DrawnNumber::greatest() const {
   return any_of.empty() ? high : *std::max_element(any_of.begin(), any_of.end());
 }
 
-double DrawnNumber::draw(Random& random) const {
-  return any_of.empty() ? random.uniform(low, high) : one_of(random, any_of);
-}
+double DrawnNumber::draw(Random& random) const { return at(random.uniform()); }
 
 double DrawnNumber::draw_in_logarithm(Random& random) const {
   return at_in_logarithm(random.uniform());
@@ -332,27 +330,23 @@ scene::Encounter DrawnApproach::draw(Random random, double usual_speed_mps) cons
   const auto maybe = [&](const std::optional<DrawnNumber>& number) {
     return number ? std::optional(number->draw(random)) : std::nullopt;
   };
-  scene::Encounter encounter;
-  encounter.cpa_time_s = maybe(cpa_time_s).value_or(0);
-  encounter.cpa_right_m = maybe(cpa_right_m);
-  encounter.cpa_ahead_m = maybe(cpa_ahead_m);
-  encounter.cpa_above_m = cpa_above_m.draw(random);
-  encounter.course_deg = course_deg.draw(random);
-  encounter.speed_mps = maybe(speed_mps).value_or(usual_speed_mps);
-  encounter.climb_mps = climb_mps.draw(random);
-  encounter.turn_rate_dps = turn_rate_dps.draw(random);
-  encounter.where = where;
-  return encounter;
+  return {.cpa_time_s = maybe(cpa_time_s).value_or(0),
+          .cpa_right_m = maybe(cpa_right_m),
+          .cpa_ahead_m = maybe(cpa_ahead_m),
+          .cpa_above_m = cpa_above_m.draw(random),
+          .course_deg = course_deg.draw(random),
+          .speed_mps = maybe(speed_mps).value_or(usual_speed_mps),
+          .climb_mps = climb_mps.draw(random),
+          .turn_rate_dps = turn_rate_dps.draw(random),
+          .where = where};
 }
 
 scene::Seen DrawnSeen::draw(Random& random) const {
-  scene::Seen seen;
-  seen.time_s = time_s.draw(random);
+  scene::Seen seen{.time_s = time_s.draw(random), .where = where};
   seen.pixel.x() = x_px.draw(random);
   seen.pixel.y() = y_px.draw(random);
   if (range_m) seen.range_m = range_m->draw_in_logarithm(random);
   if (width_px) seen.width_px = width_px->draw_in_logarithm(random);
-  seen.where = where;
   return seen;
 }
 

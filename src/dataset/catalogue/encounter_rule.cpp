@@ -410,14 +410,12 @@ DrawnIntruder drawn_intruder(const EncounterRule& rule,
   const Fitting fitting = fitting_types(rule, demands_of(passage.track));
   const bool suits = std::ranges::count(fitting.types, &wanted) > 0;
   const AircraftType& type = suits ? wanted : *one_of(random, fitting.types);
-  DrawnIntruder drawn{{}, passage.weight};
-  scene::Intruder& intruder = drawn.intruder;
-  intruder.id = rule.two_intruders > 0 ? fmt::format("intruder-{}", k + 1) : "intruder";
-  intruder.aircraft = one_of(random, type.liveries);
-  intruder.waypoints_ned_m = std::move(passage.track.positions_ned_m);
-  intruder.times_s = std::move(passage.track.times_s);
-  intruder.where = rule.where;
-  return drawn;
+  return {{.id = rule.two_intruders > 0 ? fmt::format("intruder-{}", k + 1) : "intruder",
+           .aircraft = one_of(random, type.liveries),
+           .waypoints_ned_m = std::move(passage.track.positions_ned_m),
+           .times_s = std::move(passage.track.times_s),
+           .where = rule.where},
+          passage.weight};
 }
 
 // An intruder that is in view for as long as the rule asks, or the longest of all that were drawn.

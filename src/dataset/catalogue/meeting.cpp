@@ -175,12 +175,10 @@ bool lay_stated_path(scene::Intruder& intruder, const Encounter& encounter, cons
 }
 
 scene::Intruder intruder_of(const Drawn& rule, const Encounter& encounter, std::size_t k) {
-  scene::Intruder intruder;
-  intruder.id = rule.numbers_intruders ? fmt::format("intruder-{}", k + 1) : "intruder";
-  intruder.aircraft = encounter.aircraft;
-  intruder.speed_mps = encounter.speed_mps;
-  intruder.where = rule.where;
-  return intruder;
+  return {.id = rule.numbers_intruders ? fmt::format("intruder-{}", k + 1) : "intruder",
+          .aircraft = encounter.aircraft,
+          .speed_mps = encounter.speed_mps,
+          .where = rule.where};
 }
 
 void lay_path(scene::Intruder& intruder,

@@ -61,9 +61,7 @@ quality = 18
 constexpr double kVerticalFovDeg = 100;
 
 synthetic::FlightOptions flight_options(const DemoOptions& options) {
-  synthetic::FlightOptions flight;
-  flight.seed = options.seed;
-  flight.frame_count = options.frame_count;
+  synthetic::FlightOptions flight{.seed = options.seed, .frame_count = options.frame_count};
   flight.lens = lens::fisheye_from_vertical_fov(kVerticalFovDeg, {flight.width, flight.height});
   return flight;
 }
@@ -96,20 +94,15 @@ pipeline::Summary make_demo(const std::filesystem::path& out, const DemoOptions&
   make_folders(out);
   const RunLock lock(out, out, run.warn);
   const synthetic::Flight flight(flight_options(options));
-  VirtualFlightOptions how;
-  how.stop = run.stop;
-  how.progress = staged(run, "flying");
-  write_flight(flight, out / "flight.mp4", how);
+  write_flight(flight, out / "flight.mp4", {.stop = run.stop, .progress = staged(run, "flying")});
   write_file(out / "flight.csv", synthetic::csv_from_flight(flight));
   video::write_still(out / "own_aircraft.png", insertion::picture_of(flight.own_aircraft()));
   write_file(out / "demo.toml", scene_text(flight.options(), options.seed));
   const pipeline::Summary summary =
       pipeline::render(scene::read_scene(out / "demo.toml"), out, run);
-  replay::OverlayOptions overlay;
-  overlay.overwrite = true;
-  overlay.stop = run.stop;
-  overlay.progress = staged(run, "overlay");
-  replay::write_overlay(replay::open_finished(summary.folder), out / "overlay.mp4", overlay);
+  replay::write_overlay(replay::open_finished(summary.folder),
+                        out / "overlay.mp4",
+                        {.overwrite = true, .stop = run.stop, .progress = staged(run, "overlay")});
   return summary;
 }
 

@@ -32,10 +32,9 @@ void write_flight(const synthetic::Flight& flight,
                   const fs::path& out,
                   const VirtualFlightOptions& options) {
   const synthetic::FlightOptions& what = flight.options();
-  video::WriterOptions writer_options;
-  writer_options.format = options.format;
-  writer_options.quality = options.quality;
-  video::Writer writer(out, stream_of(what, flight.frame(0)), writer_options);
+  video::Writer writer(out,
+                       stream_of(what, flight.frame(0)),
+                       {.format = options.format, .quality = options.quality});
   using FramePtr = std::shared_ptr<video::Frame>;
   int next = 0;
   const auto in_flight = static_cast<std::size_t>(tbb::info::default_concurrency()) + 2;

@@ -34,13 +34,11 @@ constexpr double kAboveM = 15;  // how much higher the intruder passes: chosen
 constexpr int kSteps = 40;      // moments at which the view is tested
 
 scene::Encounter encounter_of(const Candidate& candidate, double duration_s) {
-  scene::Encounter encounter;
-  encounter.cpa_time_s = candidate.cpa_share * std::min(duration_s, kMaxApproachS);
-  encounter.cpa_right_m = candidate.right_m;
-  encounter.cpa_above_m = kAboveM;
-  encounter.course_deg = candidate.course_deg;
-  encounter.speed_mps = candidate.speed_mps;
-  return encounter;
+  return {.cpa_time_s = candidate.cpa_share * std::min(duration_s, kMaxApproachS),
+          .cpa_right_m = candidate.right_m,
+          .cpa_above_m = kAboveM,
+          .course_deg = candidate.course_deg,
+          .speed_mps = candidate.speed_mps};
 }
 
 bool is_in_picture(const Pixel& pixel, lens::ImageSize size) {

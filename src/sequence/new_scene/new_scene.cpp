@@ -120,11 +120,11 @@ LensWords guessed_lens(lens::ImageSize size,
 }
 
 LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) {
-  video::ReaderOptions reader_options;
-  reader_options.frame_count = kMaxEstimateFrames;
-  reader_options.picture_rate_hz = options.picture_rate_hz;
-  reader_options.with_cuts = true;
-  video::Reader reader(video, reader_options, options.warn);
+  video::Reader reader(video,
+                       {.frame_count = kMaxEstimateFrames,
+                        .picture_rate_hz = options.picture_rate_hz,
+                        .with_cuts = true},
+                       options.warn);
   const lens::ImageSize size{reader.info().width, reader.info().height};
   focal_length::LensEstimator estimator(size.width, size.height);
   const std::int64_t total = std::min(kMaxEstimateFrames, reader.info().frame_count_estimate);
@@ -233,11 +233,11 @@ struct Part {
 std::vector<motion::FrameMotion> motion_in(const fs::path& video,
                                            const lens::Lens& lens,
                                            const NewSceneOptions& options) {
-  video::ReaderOptions reader_options;
-  reader_options.frame_count = kMaxMotionFrames;
-  reader_options.picture_rate_hz = options.picture_rate_hz;
-  reader_options.with_cuts = true;
-  video::Reader reader(video, reader_options, options.warn);
+  video::Reader reader(video,
+                       {.frame_count = kMaxMotionFrames,
+                        .picture_rate_hz = options.picture_rate_hz,
+                        .with_cuts = true},
+                       options.warn);
   const std::int64_t total = std::min(kMaxMotionFrames, reader.info().frame_count_estimate);
   return setup::measure_motion(std::move(reader),
                                motion::Estimator(lens, {}, nullptr),

@@ -75,12 +75,12 @@ camera_file::Calibration measured_on(const scene::Scene& scene,
   how.progress = [&](std::int64_t done, std::int64_t total) {
     if (options.progress) options.progress({done, total, "measuring the camera"});
   };
-  camera_file::CacheKey key;
-  key.video_sha256 = setup::sha256_of_video(scene.background.video, inputs);
-  if (scene.background.mask) key.mask_sha256 = sha256_of_file(*scene.background.mask);
-  key.lens = setup::words_of(*how.lens);
-  key.altitude_m = how.altitude_m;
-  key.tone = how.tone;
+  const camera_file::CacheKey key{
+      setup::sha256_of_video(scene.background.video, inputs),
+      scene.background.mask ? sha256_of_file(*scene.background.mask) : "",
+      setup::words_of(*how.lens),
+      how.altitude_m,
+      how.tone};
   return camera_file::calibrate_once(
       scene.background.video, how, cache_of(options, "calibration"), key);
 }
@@ -242,13 +242,13 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
 }  // namespace
 
 video::Reader open_background(const scene::Scene& scene, const Options& options) {
-  video::ReaderOptions reader_options;
-  reader_options.first_frame = scene.background.first_frame;
-  reader_options.frame_count = scene.background.frame_count;
-  reader_options.picture_rate_hz = scene.background.frame_rate_hz;
-  reader_options.threads = options.threads;
-  reader_options.with_cuts = true;
-  video::Reader reader(scene.background.video, reader_options, options.warn);
+  video::Reader reader(scene.background.video,
+                       {.first_frame = scene.background.first_frame,
+                        .frame_count = scene.background.frame_count,
+                        .picture_rate_hz = scene.background.frame_rate_hz,
+                        .threads = options.threads,
+                        .with_cuts = true},
+                       options.warn);
   if (!reader.info().is_rate_stated)
     throw Error(
         "the background is of numbered pictures, which state no rate; expected "

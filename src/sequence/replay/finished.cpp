@@ -28,10 +28,7 @@ namespace {
 constexpr std::int64_t kMaxFrames = 1'000'000;
 
 video::Frame frame_at(const fs::path& path, std::int64_t index) {
-  video::ReaderOptions options;
-  options.first_frame = index;
-  options.frame_count = 1;
-  auto frame = video::Reader(path, options).next();
+  auto frame = video::Reader(path, {.first_frame = index, .frame_count = 1}).next();
   if (!frame) throw Error("holds no frame " + std::to_string(index), {path.string()});
   return std::move(*frame);
 }
@@ -68,7 +65,7 @@ annotation::Frame frame_of(const exchange::LabelledFrame& labelled) {
   frame.frame = labelled.frame;
   frame.time_s = labelled.time_s.value_or(0);
   for (const exchange::Label& label : labelled.labels) {
-    annotation::Intruder intruder;
+    annotation::Intruder& intruder = frame.intruders.emplace_back();
     intruder.id = label.category + " " + std::to_string(label.track);
     intruder.aircraft = label.category;
     intruder.object_class = label.object_class;
@@ -76,17 +73,13 @@ annotation::Frame frame_of(const exchange::LabelledFrame& labelled) {
     intruder.exact_box_px = label.box_px;
     intruder.visible_box_px = pixels_of(label.box_px);
     intruder.range_m = label.range_m;
-    frame.intruders.push_back(intruder);
   }
   return frame;
 }
 
 Finished open_labelled(const fs::path& folder) {
   const exchange::Clip clip = exchange::read_labels(folder / "labels.jsonl");
-  Finished finished;
-  finished.folder = folder;
-  finished.name = clip.name;
-  finished.video = clip.media;
+  Finished finished{.folder = folder, .name = clip.name, .video = clip.media};
   if (clip.media.empty()) throw Error("names no video", {(folder / "labels.jsonl").string()});
   for (const exchange::LabelledFrame& frame : clip.frames) {
     if (frame.frame >= kMaxFrames)
@@ -109,8 +102,7 @@ Finished open_finished(const fs::path& folder) {
   if (!fs::exists(record_file))
     throw Error("holds no sequence.json; expected a folder that `airtruth render` has finished",
                 {folder.string()});
-  Finished finished;
-  finished.folder = folder;
+  Finished finished{.folder = folder};
   const JsonDocument record(record_file);
   finished.name = record.text("name");
   // A manipulated record must not name files outside its folder.

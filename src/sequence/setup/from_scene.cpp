@@ -166,12 +166,10 @@ Vector3 to_sun_in_world(const scene::Light& light) {
 }
 
 Shutter shutter_of(const scene::CameraModel& model) {
-  Shutter shutter;
   check(!model.angle_deg && model.automatic.empty(), "the camera model is resolved");
-  shutter.exposure_s = model.exposure_s.value_or(0);
-  shutter.readout_s = model.readout_s.value_or(0);
-  shutter.readout = model.readout.value_or(Readout::kDown);
-  return shutter;
+  return {model.exposure_s.value_or(0),
+          model.readout_s.value_or(0),
+          model.readout.value_or(Readout::kDown)};
 }
 
 image::ToneCurve tone_of(const scene::CameraModel& model) { return {model.gamma.value_or(0)}; }
@@ -197,15 +195,13 @@ std::array<float, 3> light_in_weather(const scene::Weather& weather) {
 }
 
 composite::Sensor sensor_of(const scene::CameraModel& model) {
-  composite::Sensor sensor;
-  sensor.sharpening = model.sharpening.value_or(0);
-  sensor.sharpening_px = model.sharpening_px.value_or(sensor.sharpening_px);
-  sensor.noise_gain = model.noise_gain.value_or(0);
-  sensor.noise_floor = model.noise_floor.value_or(0);
-  sensor.noise_correlation_px = model.noise_correlation_px.value_or(0);
-  sensor.chroma_spread_px = model.chroma_spread_px.value_or(0);
-  sensor.tone = tone_of(model);
-  return sensor;
+  return {.sharpening = model.sharpening.value_or(0),
+          .sharpening_px = model.sharpening_px.value_or(composite::Sensor().sharpening_px),
+          .noise_gain = model.noise_gain.value_or(0),
+          .noise_floor = model.noise_floor.value_or(0),
+          .noise_correlation_px = model.noise_correlation_px.value_or(0),
+          .tone = tone_of(model),
+          .chroma_spread_px = model.chroma_spread_px.value_or(0)};
 }
 
 bool has_codec(const scene::CameraModel& model) { return model.codec_step.value_or(0) > 0; }
