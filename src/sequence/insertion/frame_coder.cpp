@@ -31,29 +31,29 @@ FrameCoder::FrameCoder(double codec_step) : codec_(quantiser_of(codec_step)) {}
 
 image::Picture FrameCoder::reference(const PixelBox& box,
                                      const image::Picture& now,
-                                     image::Picture Past::*part) const {
+                                     image::Picture Part::*samples) const {
   image::Picture result = now.clone();
-  for (const Past& past : past_)
-    image::paste(result, past.*part, past.box.x - box.x, past.box.y - box.y);
+  for (const Part& past : past_)
+    image::paste(result, past.*samples, past.box.x - box.x, past.box.y - box.y);
   return result;
 }
 
 composite::Coded FrameCoder::code(const PixelBox& box,
                                   const image::Picture& with_layer,
                                   const image::Picture& background) {
-  windows_.push_back({box, background.clone()});
-  return {codec_.coded(with_layer, reference(box, background, &Past::painted)),
-          codec_.coded(background, reference(box, background, &Past::background))};
+  windows_.push_back({box, background.clone(), {}});
+  return {codec_.coded(with_layer, reference(box, background, &Part::painted)),
+          codec_.coded(background, reference(box, background, &Part::background))};
 }
 
 void FrameCoder::finish_frame(const image::Picture& painted) {
   past_.clear();
-  for (const Window& window : windows_) {
+  for (const Part& window : windows_) {
     const PixelBox box = kept_around(window.box, painted);
     image::Picture background = image::crop(painted, box);
-    for (const Window& other : windows_)
+    for (const Part& other : windows_)
       image::paste(background, other.background, other.box.x - box.x, other.box.y - box.y);
-    past_.push_back({box, image::crop(painted, box), std::move(background)});
+    past_.push_back({box, std::move(background), image::crop(painted, box)});
   }
   windows_.clear();
 }

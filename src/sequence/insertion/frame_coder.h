@@ -28,23 +28,19 @@ class FrameCoder final : public composite::PatchCoder {
   void finish_frame(const image::Picture& painted);
 
  private:
-  // Samples of the last finished frame, within the frame.
-  struct Past {
+  // Samples of a frame, within the frame. A frame that is not finished is not painted yet.
+  struct Part {
     PixelBox box{};
+    image::Picture background;
     image::Picture painted;
-    image::Picture background;
-  };
-  struct Window {
-    PixelBox box{};
-    image::Picture background;
   };
   image::Picture reference(const PixelBox& box,
                            const image::Picture& now,
-                           image::Picture Past::*part) const;
+                           image::Picture Part::*samples) const;
 
   video::PatchCodec codec_;
-  std::vector<Past> past_;
-  std::vector<Window> windows_;  // of the current frame
+  std::vector<Part> past_;     // of the last finished frame
+  std::vector<Part> windows_;  // of the current frame
 };
 
 }  // namespace airtruth::insertion
