@@ -26,6 +26,7 @@
 #include "foundation/json/or_null.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/render.h"
+#include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
@@ -127,7 +128,7 @@ class Work {
     if (needed_[i]) pipeline::measure_ahead(scene, how);
     stage = "measuring the camera of " + name;
     try {
-      pipeline::calibrate_ahead(scene, how);
+      if (pipeline::needs_calibration(scene)) pipeline::calibration_of(scene, how);
       // Each sequence over this background reports the error; the others are made.
     } catch (const Error&) {
     }

@@ -36,32 +36,18 @@ catalogue::BackgroundFiles fly(const catalogue::Background& background,
                                const catalogue::Folder& folder,
                                const BuildOptions& options) {
   const fs::path stem = folder.backgrounds() / background.name;
-  catalogue::BackgroundFiles files;
-  files.video = stem.string() + ".mp4";
-  files.mask = stem.string() + ".mask.png";
+  catalogue::BackgroundFiles files{.video = stem.string() + ".mp4",
+                                   .mask = stem.string() + ".mask.png"};
   // The video is the last file that appears.
   if (fs::exists(files.video)) return files;
   fs::create_directories(folder.backgrounds());
   const synthetic::Flight flight(flight_over(background, wanted));
   write_file(stem.string() + ".csv", synthetic::csv_from_flight(flight));
   video::write_still(*files.mask, insertion::picture_of(flight.own_aircraft()));
-  demo::VirtualFlightOptions how;
-  how.stop = options.stop;
-  how.progress = [&](std::int64_t done, std::int64_t total) {
+  const auto progress = [&](std::int64_t done, std::int64_t total) {
     if (options.progress) options.progress({done, total, "flying " + background.name});
   };
-  demo::write_flight(flight, files.video, how);
-  return files;
-}
-
-catalogue::BackgroundFiles files_of(const catalogue::Background& background,
-                                    const catalogue::Folder& folder,
-                                    const BuildOptions& options) {
-  catalogue::BackgroundFiles files;
-  if (const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source))
-    return fly(background, *flight, folder, options);
-  files.video = std::get<fs::path>(background.source);
-  files.mask = background.mask;
+  demo::write_flight(flight, files.video, {.stop = options.stop, .progress = progress});
   return files;
 }
 
@@ -70,7 +56,11 @@ catalogue::BackgroundFiles files_of(const catalogue::Background& background,
 catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                    const catalogue::Folder& folder,
                                    const BuildOptions& options) {
-  catalogue::BackgroundFiles files = files_of(background, folder, options);
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  catalogue::BackgroundFiles files =
+      flight != nullptr ? fly(background, *flight, folder, options)
+                        : catalogue::BackgroundFiles{.video = std::get<fs::path>(background.source),
+                                                     .mask = background.mask};
   take_facts(video::Reader(files.video, {.picture_rate_hz = background.frame_rate_hz, .threads = 1})
                  .info(),
              files);
@@ -111,14 +101,6 @@ video::StreamInfo stream_of(const catalogue::Background& background) {
 }
 
 namespace {
-
-void check_aircraft(const catalogue::Aircraft& aircraft) {
-  try {
-    fleet::aircraft_file(aircraft.aircraft);
-  } catch (const Error& error) {
-    throw Error(error.message(), aircraft.where);
-  }
-}
 
 void check_video(const catalogue::Background& background) {
   const auto* video = std::get_if<fs::path>(&background.source);
@@ -164,7 +146,8 @@ void check_names(const catalogue::Catalogue& catalogue) {
 }  // namespace
 
 void check_sources(const catalogue::Catalogue& catalogue) {
-  for (const catalogue::Aircraft& aircraft : catalogue.aircraft) check_aircraft(aircraft);
+  for (const catalogue::Aircraft& aircraft : catalogue.aircraft)
+    setup::at_place(aircraft.where, [&] { return fleet::aircraft_file(aircraft.aircraft); });
   for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i) check_background(catalogue, i);
   check_names(catalogue);
 }

@@ -534,10 +534,6 @@ camera_file::Calibration calibration_of(const scene::Scene& scene, const Options
   return measured_on(filled, size, mask ? &*mask : nullptr, *inputs_of(options), options);
 }
 
-void calibrate_ahead(const scene::Scene& scene, const Options& options) {
-  if (needs_calibration(scene)) calibration_of(scene, options);
-}
-
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
   const lens::ImageSize size{info.width, info.height};
   const auto mask = insertion::read_mask(scene, size);

@@ -129,10 +129,6 @@ bool needs_calibration(const scene::Scene& scene);
 // measured on the whole clip, which takes long.
 camera_file::Calibration calibration_of(const scene::Scene& scene, const Options& options);
 
-// Calibrates the scene's background and stores the result in the cache, unless the cache holds it
-// already. Does nothing where the scene needs no calibration.
-void calibrate_ahead(const scene::Scene& scene, const Options& options);
-
 // The folder of the cache for one kind of result: "motion", "calibration" or "ambient_occlusion";
 // empty: none.
 fs::path cache_folder(const Options& options, const char* kind);
