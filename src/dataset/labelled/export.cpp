@@ -187,24 +187,18 @@ class Export {
     std::set<std::string> categories;
     for (const std::string& name : set_.names()) {
       facts.push_back(set_.facts(name));
-      for (const std::string& category : facts.back().categories) categories.insert(category);
+      const auto& named = options_.one_class ? facts.back().distractors : facts.back().categories;
+      categories.insert(named.begin(), named.end());
     }
-    if (options_.one_class) {
-      std::set<std::string> distractors;
-      for (const ClipFacts& one : facts)
-        distractors.insert(one.distractors.begin(), one.distractors.end());
-      categories = std::move(distractors);
-      categories.insert("aircraft");
-    }
+    if (options_.one_class) categories.insert("aircraft");
     parts_ = parted(facts, options_.split, options_.shares, options_.seed, options_.warn);
     // GOT-10k's toolkit asserts that a subset is train, val or test, and scores val by its truth.
-    if (options_.format == exchange::Format::kGot10k)
-      for (auto& [name, part] : parts_)
-        if (part == "all") part = "val";
     // torchvision asserts that an image set of VOC is train, val or trainval.
-    if (options_.format == exchange::Format::kVoc)
-      for (auto& [name, part] : parts_)
-        if (part == "all") part = "trainval";
+    const char* whole = options_.format == exchange::Format::kGot10k ? "val"
+                        : options_.format == exchange::Format::kVoc  ? "trainval"
+                                                                     : "all";
+    for (auto& [name, part] : parts_)
+      if (part == "all") part = whole;
     write_.categories = {categories.begin(), categories.end()};
     write_.image_extension = extension_of(*options_.images);
     write_.with_images = *options_.images != Images::kNone;
@@ -217,10 +211,10 @@ class Export {
                             std::int64_t frame,
                             const exchange::Label& label) { return cells_of(frame, label); };
     }
-    const std::vector<std::string> order = {"train", "val", "test", "trainval", "all"};
-    for (const std::string& part : order)
-      if (std::any_of(parts_.begin(), parts_.end(), [&](auto& p) { return p.second == part; }))
-        write_.parts.push_back(part);
+    write_.parts = {"train", "val", "test", "trainval", "all"};
+    std::erase_if(write_.parts, [this](const std::string& part) {
+      return std::ranges::none_of(parts_, [&](const auto& one) { return one.second == part; });
+    });
   }
 
   // A rendered sequence has its video and its size.

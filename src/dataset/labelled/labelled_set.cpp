@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/folder.h"
@@ -120,31 +119,30 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
   facts.name = name;
   const fs::path file = folder(name) / "sequence.json";
   const JsonDocument record(file);
-  std::set<std::string> categories;
   if (record.has("scene_toml")) {
     const scene::Scene scene = scene::parse_scene(record.text("scene_toml"), file);
     facts.background = scene.background.video.string();
     facts.background_name = scene.background.name;
     facts.weather = scene::weather_facts(scene);
     facts.frames = record.object("summary").count("frames");
-    std::set<std::string> distractors;
     for (const scene::Intruder& intruder : scene.intruders)
       if (is_aircraft(intruder))
-        categories.insert(sequences::category_of(intruder.aircraft));
+        facts.categories.insert(sequences::category_of(intruder.aircraft));
       else
-        distractors.insert(enum_name(intruder.distractor->kind));
-    for (const scene::LensMark& mark : scene.lens_marks) distractors.insert(enum_name(mark.kind));
-    categories.insert(distractors.begin(), distractors.end());
-    facts.distractors = {distractors.begin(), distractors.end()};
+        facts.distractors.insert(enum_name(intruder.distractor->kind));
+    for (const scene::LensMark& mark : scene.lens_marks)
+      facts.distractors.insert(enum_name(mark.kind));
+    facts.categories.insert(facts.distractors.begin(), facts.distractors.end());
   } else {
     facts.background = record.maybe_text("media").value_or(name);
     facts.frames = record.count("frames");
-    for (const std::string& category : record.texts("categories")) categories.insert(category);
+    for (const std::string& category : record.texts("categories"))
+      facts.categories.insert(category);
   }
   if (facts.background_name.empty())
     facts.background_name = fs::path(facts.background).filename().string();
-  if (record.has("distractors")) facts.distractors = record.texts("distractors");
-  facts.categories = {categories.begin(), categories.end()};
+  if (record.has("distractors"))
+    for (const std::string& kind : record.texts("distractors")) facts.distractors.insert(kind);
   return facts;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,9 @@ struct ClipFacts {
   // What the scene or catalogue calls it, or the name of its file.
   std::string background_name;
   // The categories of the objects that may appear in the sequence.
-  std::vector<std::string> categories;
+  std::set<std::string> categories;
   // Those of them that are no aircraft.
-  std::vector<std::string> distractors;
+  std::set<std::string> distractors;
   std::int64_t frames = 0;
   // scene::weather_facts() of its scene; empty for an imported clip.
   std::map<std::string, double> weather;
