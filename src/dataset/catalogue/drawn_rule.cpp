@@ -98,6 +98,8 @@ std::optional<DrawnNumber> number_in(const TableReader& table,
         table.table(key, {"any_of"}).numbers("any_of", limits).value_or(std::vector<double>{});
     if (drawn.any_of.empty())
       table.fail(key, fmt::format("{} has no any_of; expected a list of numbers", key));
+    drawn.low = std::ranges::min(drawn.any_of);
+    drawn.high = std::ranges::max(drawn.any_of);
   } else if (table.is_array(key)) {
     const Range range = range_in(table, key, limits);
     drawn.low = range.low;
@@ -154,13 +156,13 @@ std::optional<DrawnApproach> drawn_approach_in(const TableReader& rule) {
       number_in(table, "turn_rate_dps", scene::kTurnRate).value_or(drawn.turn_rate_dps);
   table.exclude("cpa_right_m", {"cpa_ahead_m"});  // drawn apart, they are no closest approach
   const double steepest_mps =
-      std::max(std::abs(drawn.climb_mps.least()), std::abs(drawn.climb_mps.greatest()));
-  if (drawn.speed_mps && steepest_mps > drawn.speed_mps->least())
+      std::max(std::abs(drawn.climb_mps.low), std::abs(drawn.climb_mps.high));
+  if (drawn.speed_mps && steepest_mps > drawn.speed_mps->low)
     table.fail("climb_mps",
                fmt::format("climb_mps reaches {} at a speed_mps of {}; expected no more than the "
                            "speed",
                            scene::shown(steepest_mps),
-                           scene::shown(drawn.speed_mps->least())));
+                           scene::shown(drawn.speed_mps->low)));
   return drawn;
 }
 
@@ -171,12 +173,12 @@ std::vector<DrawnSeen> drawn_seen_in(const TableReader& rule) {
     result.push_back(seen_from(table));
     if (result.size() < 2) continue;
     const DrawnSeen& before = result[result.size() - 2];
-    if (!(result.back().time_s.least() > before.time_s.greatest()))
+    if (!(result.back().time_s.low > before.time_s.high))
       table.fail("time_s",
                  fmt::format("time_s may be {}, not after the {} of the [[random.seen]] before; "
                              "expected later times",
-                             scene::shown(result.back().time_s.least()),
-                             scene::shown(before.time_s.greatest())));
+                             scene::shown(result.back().time_s.low),
+                             scene::shown(before.time_s.high)));
   }
   if (result.size() == 1)
     throw Error("[[random.seen]] is alone; expected at least two of them", result[0].where);
@@ -304,19 +306,7 @@ std::vector<Drawn> drawn_rules(const TableReader& root, const Catalogue& catalog
   return result;
 }
 
-double DrawnNumber::least() const {
-  return any_of.empty() ? low : *std::min_element(any_of.begin(), any_of.end());
-}
-
-double DrawnNumber::greatest() const {
-  return any_of.empty() ? high : *std::max_element(any_of.begin(), any_of.end());
-}
-
 double DrawnNumber::draw(Random& random) const { return at(random.uniform()); }
-
-double DrawnNumber::draw_in_logarithm(Random& random) const {
-  return at_in_logarithm(random.uniform());
-}
 
 double DrawnNumber::at(double share) const {
   return any_of.empty() ? low + share * (high - low) : one_at(share, any_of);
@@ -345,8 +335,8 @@ scene::Seen DrawnSeen::draw(Random& random) const {
   scene::Seen seen{.time_s = time_s.draw(random), .where = where};
   seen.pixel.x() = x_px.draw(random);
   seen.pixel.y() = y_px.draw(random);
-  if (range_m) seen.range_m = range_m->draw_in_logarithm(random);
-  if (width_px) seen.width_px = width_px->draw_in_logarithm(random);
+  if (range_m) seen.range_m = range_m->at_in_logarithm(random.uniform());
+  if (width_px) seen.width_px = width_px->at_in_logarithm(random.uniform());
   return seen;
 }
 

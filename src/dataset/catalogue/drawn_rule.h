@@ -23,18 +23,15 @@ struct Catalogue;
 // A number that a rule draws: evenly from low to high, or one of a list. In a file it is a number,
 // [low, high] or { any_of = [...] }.
 struct DrawnNumber {
+  // The least and the greatest.
   double low = 0;
   double high = 0;
-  std::vector<double> any_of;  // empty: the range holds
+  std::vector<double> any_of;  // empty: all of the range
 
-  double least() const;
-  double greatest() const;
   double draw(Random& random) const;
   // The number at a share from 0 up to 1: of a range evenly, or in its logarithm.
   double at(double share) const;
   double at_in_logarithm(double share) const;
-  // Evenly in the logarithm, for sizes and ranges.
-  double draw_in_logarithm(Random& random) const;
 };
 
 // [random.encounter]. Empty: as in a scene, but for cpa_time_s (the meeting moment) and speed_mps
