@@ -20,8 +20,10 @@ const annotation::Intruder* intruder_of(const annotation::Frame& frame, const st
 }
 
 // "head-on 3, overtaking 1": the values in the order of their table, those without one at the end.
-template <typename Enum, typename Of>
-std::string counts_of(const Records& records, Of of, const std::string& without) {
+template <typename Enum>
+std::string counts_of(const Records& records,
+                      std::optional<Enum> EncounterRecord::*of,
+                      const std::string& without) {
   std::vector<std::string> parts;
   const auto add = [&](const std::optional<Enum>& value, const std::string& name) {
     const auto count = std::ranges::count(records, value, of);
@@ -59,10 +61,7 @@ std::string first_seen_text(const Records& records) {
   std::string text = "first seen at " + spread(ranges_m, "m");
   if (!ahead_s.empty()) text += ", " + spread(ahead_s, "s") + " before the closest approach";
   text += ", then against the horizon: " +
-          counts_of<passage::AgainstHorizon>(
-              records,
-              [](const EncounterRecord& r) { return r.horizon_when_first_seen; },
-              "never seen");
+          counts_of(records, &EncounterRecord::horizon_when_first_seen, "never seen");
   return text;
 }
 
@@ -111,12 +110,10 @@ std::string encounters_text(const Records& records, const std::vector<std::strin
   std::vector<std::string> parts = {
       fmt::format("{}, seen from the own aircraft: {}",
                   records.size(),
-                  counts_of<passage::Meeting>(
-                      records,
-                      [](const EncounterRecord& r) { return r.meeting; },
-                      "of no course (one of the two hovers, or both fly alike)")),
-      counts_of<passage::VerticalMotion>(
-          records, [](const EncounterRecord& r) { return r.vertical_motion; }, "of no height")};
+                  counts_of(records,
+                            &EncounterRecord::meeting,
+                            "of no course (one of the two hovers, or both fly alike)")),
+      counts_of(records, &EncounterRecord::vertical_motion, "of no height")};
   const auto distances_m = values_of(records, [](const EncounterRecord& r) {
     return r.closest ? std::optional(r.closest->distance_m) : std::nullopt;
   });
