@@ -222,19 +222,13 @@ scene::Intruder laid(const scene::Scene& scene,
                      setup::SharedInputs* shared) {
   // A range until the size of the picture is known.
   constexpr double kProvisionalRangeM = 100;
-  if (size.width == 0) {
-    scene::Intruder leader = flock.leader;
-    lay_path(leader,
-             flock.encounter,
-             scene.camera,
-             clip,
-             flock.encounter.range_m.value_or(kProvisionalRangeM));
-    return leader;
-  }
-  scene::Scene alone = scene;
-  alone.intruders = {flock.leader};
-  meet(alone, 0, flock.encounter, clip, size, shared);
-  return alone.intruders.front();
+  scene::Intruder leader = flock.leader;
+  const Encounter& encounter = flock.encounter;
+  if (size.width == 0)
+    lay_path(leader, encounter, scene.camera, clip, encounter.range_m.value_or(kProvisionalRangeM));
+  else
+    meet(leader, scene, encounter, clip, size, shared);
+  return leader;
 }
 
 scene::LensMark laid(const DrawnMark& drawn, const DrawnClip& clip, const lens::ImageSize& size) {

@@ -286,7 +286,7 @@ void place(Item& item,
   const lens::ImageSize size{files.width, files.height};
   if (item.rule != nullptr)
     for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k)
-      meet(item.scene, k, item.drawn.encounters[k], clip, size, shared);
+      meet(item.scene.intruders[k], item.scene, item.drawn.encounters[k], clip, size, shared);
   lay_distractors(item.scene, item.distractors, clip, size, shared);
 }
 

@@ -114,46 +114,33 @@ void lay_through(scene::Intruder& intruder,
     lay_turn(intruder, encounter, meeting, meets_s, clip.duration_s());
 }
 
-// The place of an aircraft in a direction from the camera, from which its exact box has a given
-// size; empty where no range gives the size.
-struct Sized {
-  const projection::Sight& sight;
-  Vector3 camera_ned_m;
-  Vector3 direction;
-  double size_px = 0;
-  // That sets the angles of its moving parts.
-  double turned_s = 0;
-
-  std::optional<Vector3> position(const projection::SilhouettePoints& silhouette,
-                                  const Quaternion& world_from_body,
-                                  double first_guess_m) const {
-    constexpr double kWithinShare = 1e-5;  // of the size: chosen
-    constexpr int kMaxRounds = 60;         // chosen
-    constexpr double kFarthestM = 1e6;     // beyond it nothing is visible: chosen
-    double range_m = first_guess_m;
-    for (int round = 0; round < kMaxRounds; ++round) {
-      const Vector3 at = raised(camera_ned_m + range_m * direction);
-      const auto exact =
-          projection::exact_box(sight, silhouette, Rigid{world_from_body, at}, turned_s);
-      if (!exact.box || exact.partly_unseen) {
-        // A part of the aircraft is behind the camera or beyond the lens's field.
-        range_m *= 2;
-        if (range_m > kFarthestM) return std::nullopt;
-        continue;
-      }
-      const double ratio = std::max(exact.box->width, exact.box->height) / size_px;
-      if (std::abs(ratio - 1) < kWithinShare) return at;
-      // At long range the product of size and range is constant.
-      range_m *= ratio;
-    }
-    return std::nullopt;
-  }
-
-  Vector3 raised(Vector3 at) const {
+// The place in a direction from the camera at which the longer side of an aircraft's exact box,
+// which box_at(place) gives, has a size; empty where no range gives it.
+std::optional<Vector3> sized_place(const Vector3& camera_ned_m,
+                                   const Vector3& direction,
+                                   double size_px,
+                                   double range_m,
+                                   const auto& box_at) {
+  constexpr double kWithinShare = 1e-5;  // of the size: chosen
+  constexpr int kMaxRounds = 60;         // chosen
+  constexpr double kFarthestM = 1e6;     // beyond it nothing is visible: chosen
+  for (int round = 0; round < kMaxRounds; ++round) {
+    Vector3 at = camera_ned_m + range_m * direction;
     if (camera_ned_m.z() < -kLowestFlightM) at.z() = std::min(at.z(), -kLowestFlightM);
-    return at;
+    const projection::ExactBox exact = box_at(at);
+    if (!exact.box || exact.partly_unseen) {
+      // A part of the aircraft is behind the camera or beyond the lens's field.
+      range_m *= 2;
+      if (range_m > kFarthestM) return std::nullopt;
+      continue;
+    }
+    const double ratio = std::max(exact.box->width, exact.box->height) / size_px;
+    if (std::abs(ratio - 1) < kWithinShare) return at;
+    // At long range the product of size and range is constant.
+    range_m *= ratio;
   }
-};
+  return std::nullopt;
+}
 
 trajectory::State state_at(const trajectory::Path& own, double time_s, const Where& where) {
   if (const auto state = own.at(time_s)) return *state;
@@ -195,15 +182,14 @@ void lay_path(scene::Intruder& intruder,
   lay_through(intruder, encounter, meeting, clip);
 }
 
-void meet(scene::Scene& scene,
-          std::size_t k,
+void meet(scene::Intruder& intruder,
+          const scene::Scene& scene,
           const Encounter& encounter,
           const DrawnClip& clip,
           const lens::ImageSize& size,
           setup::SharedInputs* shared) {
   // Length for the first estimate of the range.
   constexpr double kUsualLengthM = 15;
-  scene::Intruder& intruder = scene.intruders[k];
   if (lay_stated_path(intruder, encounter, clip)) return;
   const double meets_s = meeting_s(encounter, clip);
   const trajectory::Path own = setup::camera_path(scene.camera);
@@ -221,13 +207,12 @@ void meet(scene::Scene& scene,
   setup::SharedInputs unshared;
   const auto type = (shared != nullptr ? *shared : unshared).type_of(intruder, path, {}, {});
   const projection::Sight sight = setup::sight_of(lens, {}, own, camera, meets_s, {});
-  const Sized sized{sight,
-                    camera.position_in_world,
-                    direction,
-                    *encounter.size_px,
-                    meets_s + intruder.spin_time_s};
-  const auto position =
-      sized.position(type->silhouette, path.at(meets_s)->world_from_body, guess_m);
+  const Quaternion attitude = path.at(meets_s)->world_from_body;
+  const auto position = sized_place(
+      camera.position_in_world, direction, *encounter.size_px, guess_m, [&](const Vector3& at) {
+        return projection::exact_box(
+            sight, type->silhouette, Rigid{attitude, at}, meets_s + intruder.spin_time_s);
+      });
   if (!position)
     throw Error(
         fmt::format("{} has a size of {:.1f} px at no range in the direction azimuth {:.1f}, "

@@ -39,7 +39,7 @@ void lay_path(scene::Intruder& intruder,
               const DrawnClip& clip,
               double range_m);
 
-// Gives intruder k of a scene its final path. Where the encounter has a size, the range is the one
+// Gives an intruder of a scene its final path. Where the encounter has a size, the range is the one
 // at which the longest side of the exact box at the meeting moment has that size. The exact box
 // bounds the aircraft's silhouette in its attitude at that moment, projected through the scene's
 // lens from the nominal camera with an instantaneous shutter. Where the camera is more than
@@ -47,8 +47,8 @@ void lay_path(scene::Intruder& intruder,
 // meeting moment; its elevation is raised if necessary. Throws Error where no range gives the size.
 // `shared` gives the aircraft where it is not nullptr.
 constexpr double kLowestFlightM = 30;
-void meet(scene::Scene& scene,
-          std::size_t k,
+void meet(scene::Intruder& intruder,
+          const scene::Scene& scene,
           const Encounter& encounter,
           const DrawnClip& clip,
           const lens::ImageSize& size,
