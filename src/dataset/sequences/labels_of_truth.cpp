@@ -31,11 +31,7 @@ std::optional<Box> box_of(const annotation::Intruder& intruder,
         boxes == dataset::Boxes::kVisible ? intruder.visible_box_px : intruder.covered_box_px;
     return box ? std::optional(as_box(*box)) : std::nullopt;
   }
-  if (!intruder.exact_box_px) return std::nullopt;
-  const Box& e = *intruder.exact_box_px;
-  const double x = std::max(e.x, 0.0), y = std::max(e.y, 0.0);
-  const Box cut{x, y, std::min(e.right(), frame.width) - x, std::min(e.bottom(), frame.height) - y};
-  return cut.width > 0 && cut.height > 0 ? std::optional(cut) : std::nullopt;
+  return intruder.exact_box_px ? intersection(*intruder.exact_box_px, frame) : std::nullopt;
 }
 
 exchange::Label label_of(const annotation::Intruder& intruder,

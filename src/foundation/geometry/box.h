@@ -24,13 +24,19 @@ inline PixelBox pixels_of(const Box& box) {
   return {x, y, bounded(std::ceil(box.right())) - x, bounded(std::ceil(box.bottom())) - y};
 }
 
-inline std::optional<PixelBox> intersection(const PixelBox& a, const PixelBox& b) {
-  const int x = std::max(a.x, b.x);
-  const int y = std::max(a.y, b.y);
-  const int width = std::min(a.right(), b.right()) - x;
-  const int height = std::min(a.bottom(), b.bottom()) - y;
-  if (width <= 0 || height <= 0) return std::nullopt;
-  return PixelBox{x, y, width, height};
+// Of two boxes of either kind.
+template <typename AnyBox = PixelBox>
+std::optional<AnyBox> intersection(const AnyBox& a, const AnyBox& b) {
+  const auto x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+  const auto width = std::min(a.right(), b.right()) - x;
+  const auto height = std::min(a.bottom(), b.bottom()) - y;
+  if (!(width > 0 && height > 0)) return std::nullopt;
+  return AnyBox{x, y, width, height};
+}
+template <typename AnyBox = PixelBox>
+AnyBox bounds(const AnyBox& a, const AnyBox& b) {
+  const auto x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+  return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
 // The number of pixels, and the index of one of them where they stand row by row.
@@ -64,12 +70,6 @@ inline Box wider(const Box& box, double margin_px) {
 inline PixelBox wider(const PixelBox& box, int margin_px) {
   return {
       box.x - margin_px, box.y - margin_px, box.width + 2 * margin_px, box.height + 2 * margin_px};
-}
-
-inline PixelBox bounds(const PixelBox& a, const PixelBox& b) {
-  const int x = std::min(a.x, b.x);
-  const int y = std::min(a.y, b.y);
-  return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
 // The bounding box of points. It is empty before the first point.

@@ -18,13 +18,6 @@ int quantiser_of(double codec_step) {
 // finds this frame's background there. libx264 searches 16 px around its prediction.
 constexpr int kKeptAroundPx = 32;
 
-PixelBox kept_around(const PixelBox& box, const image::Picture& frame) {
-  const int right = std::min(frame.width, box.right() + kKeptAroundPx);
-  const int bottom = std::min(frame.height, box.bottom() + kKeptAroundPx);
-  const int x = std::max(0, box.x - kKeptAroundPx), y = std::max(0, box.y - kKeptAroundPx);
-  return {x, y, right - x, bottom - y};
-}
-
 }  // namespace
 
 FrameCoder::FrameCoder(double codec_step) : codec_(quantiser_of(codec_step)) {}
@@ -49,7 +42,8 @@ composite::Coded FrameCoder::code(const PixelBox& box,
 void FrameCoder::finish_frame(const image::Picture& painted) {
   past_.clear();
   for (const Part& window : windows_) {
-    const PixelBox box = kept_around(window.box, painted);
+    const PixelBox box =
+        *intersection(wider(window.box, kKeptAroundPx), {0, 0, painted.width, painted.height});
     image::Picture background = image::crop(painted, box);
     for (const Part& other : windows_)
       image::paste(background, other.background, other.box.x - box.x, other.box.y - box.y);

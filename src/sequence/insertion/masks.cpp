@@ -25,20 +25,17 @@ std::vector<composite::AlphaMask> alpha_masks(const annotation::Frame& truth,
 std::vector<std::uint8_t> samples_in(const composite::AlphaMask& mask, const PixelBox& part) {
   const auto width = static_cast<std::size_t>(part.width);
   std::vector<std::uint8_t> samples(width * static_cast<std::size_t>(part.height), 0);
-  if (mask.empty()) return samples;
-  const int left = std::max(mask.patch.x, part.x);
-  const int right = std::min(mask.patch.right(), part.right());
-  if (left >= right) return samples;
+  const auto both = mask.empty() ? std::nullopt : intersection(mask.patch, part);
+  if (!both) return samples;
   const auto offset = [](int y, std::size_t row, int x) {
     return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row +
                                        static_cast<std::size_t>(x));
   };
   const auto step = static_cast<std::size_t>(mask.patch.width);
-  for (int y = std::max(mask.patch.y, part.y); y < std::min(mask.patch.bottom(), part.bottom());
-       ++y)
-    std::copy_n(mask.alpha.begin() + offset(y - mask.patch.y, step, left - mask.patch.x),
-                right - left,
-                samples.begin() + offset(y - part.y, width, left - part.x));
+  for (int y = both->y; y < both->bottom(); ++y)
+    std::copy_n(mask.alpha.begin() + offset(y - mask.patch.y, step, both->x - mask.patch.x),
+                both->width,
+                samples.begin() + offset(y - part.y, width, both->x - part.x));
   return samples;
 }
 

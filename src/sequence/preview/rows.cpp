@@ -23,12 +23,6 @@ std::string to_side(double value, const char* positive, const char* negative) {
   return fmt::format("{:.1f} {}", std::abs(value), value <= -0.05 ? negative : positive);
 }
 
-Box around(const Box& a, const Box& b) {
-  const double x = std::min(a.x, b.x);
-  const double y = std::min(a.y, b.y);
-  return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
-}
-
 // Empty where none of the party is in the world.
 std::optional<PreviewRow> row_of(const setup::World& world,
                                  const setup::Moment& moment,
@@ -43,7 +37,7 @@ std::optional<PreviewRow> row_of(const setup::World& world,
     is_there = true;
     const auto& box = moment.boxes[actor].box;
     if (box && setup::meets_frame(*box, world.lens.size()))
-      row.box_px = row.box_px ? around(*row.box_px, *box) : *box;
+      row.box_px = row.box_px ? bounds(*row.box_px, *box) : *box;
   }
   return is_there ? std::optional(row) : std::nullopt;
 }
