@@ -19,6 +19,7 @@
 #include "labels/annotation/lens_facts.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
+#include "picture/video/writer.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"

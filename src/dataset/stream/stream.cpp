@@ -24,6 +24,7 @@
 #include "foundation/image/layer.h"
 #include "labels/annotation/object_class.h"
 #include "picture/composite/cover.h"
+#include "picture/video/writer.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/setup/shared_inputs.h"
