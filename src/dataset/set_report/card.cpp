@@ -171,20 +171,17 @@ std::string camera_sentence(const std::vector<Scene>& scenes) {
 }
 
 std::string motion_sentence(const std::vector<Scene>& scenes) {
-  const std::size_t all = scenes.size();
-  const auto by = [&](scene::MotionModel model) {
-    return count_of(scenes, [&](const Scene& s) { return s.motion.model == model; });
-  };
   std::vector<std::string> parts;
-  if (const std::size_t n = by(scene::MotionModel::kRotation); n > 0)
-    parts.push_back("a rotation through the lens, measured in the video, exact for what is far" +
-                    share_of(n, all));
-  if (const std::size_t n = by(scene::MotionModel::kHomography); n > 0)
-    parts.push_back("a homography, measured in the video, exact for what is far through a pinhole" +
-                    share_of(n, all));
-  if (const std::size_t n = by(scene::MotionModel::kNone); n > 0)
-    parts.push_back("none is looked for: the camera moves along its stated path alone" +
-                    share_of(n, all));
+  const auto add = [&](scene::MotionModel model, const std::string& words) {
+    const std::size_t n = count_of(scenes, [&](const Scene& s) { return s.motion.model == model; });
+    if (n > 0) parts.push_back(words + share_of(n, scenes.size()));
+  };
+  add(scene::MotionModel::kRotation,
+      "a rotation through the lens, measured in the video, exact for what is far");
+  add(scene::MotionModel::kHomography,
+      "a homography, measured in the video, exact for what is far through a pinhole");
+  add(scene::MotionModel::kNone,
+      "none is looked for: the camera moves along its stated path alone");
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 

@@ -167,16 +167,6 @@ void check_profile(const scene::Realism& realism,
         realism.where);
 }
 
-// The measured values, combined with the camera's profile; where no profile is named, by the median
-// of cameras.
-camera_file::Calibration with_camera(camera_file::Calibration measured,
-                                     const scene::Realism& realism) {
-  return camera_file::with_profile(
-      std::move(measured),
-      realism.profile ? camera_file::camera_profile(*realism.profile, realism.where)
-                      : camera_file::usual_camera());
-}
-
 // Takes the requested values from the clip, as far as it can be measured, and from the camera's
 // profile.
 void take_measured(scene::Scene& scene,
@@ -184,22 +174,27 @@ void take_measured(scene::Scene& scene,
                    camera_file::Calibration measured,
                    const Warn& to_warn) {
   const camera_file::Quantities of_clip = measured.quantities;
-  const camera_file::Calibration found = with_camera(std::move(measured), stated.realism);
+  const scene::Realism& realism = stated.realism;
+  // Where no profile is named, by the median of cameras.
+  const camera_file::Calibration found = camera_file::with_profile(
+      std::move(measured),
+      realism.profile ? camera_file::camera_profile(*realism.profile, realism.where)
+                      : camera_file::usual_camera());
   const scene::CameraModel from_clip = camera_file::model_of(found);
   scene::for_each_camera_key(
       [&](const char* key, auto& value, const auto& seen) {
         if (std::ranges::count(stated.to_measure, key) == 0) return;
         value = seen;
-        if (value && (stated.realism.profile || of_clip.at(key).missing.empty())) return;
+        if (value && (realism.profile || of_clip.at(key).missing.empty())) return;
         std::string what = fmt::format("{} cannot be measured: {}", key, of_clip.at(key).missing);
         if (key == std::string_view("air.airlight") && !found.no_horizon.empty())
           what += " (" + found.no_horizon + ")";
-        if (!stated.realism.fallback && !may_be_missing(key, stated.realism))
+        if (!realism.fallback && !may_be_missing(key, realism))
           throw Error(
               what + (value ? "; state it, name the camera's profile in [realism], or set fallback "
                               "= true to take what cameras have in the median"
                             : "; state it, or set fallback = true in [realism] to leave it out"),
-              stated.realism.where.line > 0 ? stated.realism.where : Where{scene.file.string()});
+              realism.where.line > 0 ? realism.where : Where{scene.file.string()});
         // The profile's words for a camera file say again that the clip does not show it.
         const std::string& source = found.quantities.at(key).source;
         warn(to_warn,
@@ -207,7 +202,7 @@ void take_measured(scene::Scene& scene,
       },
       scene.camera_model,
       from_clip);
-  if (stated.realism.profile)
+  if (realism.profile)
     for (const std::string& key : stated.to_measure)
       if (const std::string& doubt = found.quantities.at(key).doubt; !doubt.empty())
         warn(to_warn, key + " is doubtful: " + doubt);
@@ -239,26 +234,6 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
   return info;
 }
 
-}  // namespace
-
-video::Reader open_background(const scene::Scene& scene, const Options& options) {
-  video::Reader reader(scene.background.video,
-                       {.first_frame = scene.background.first_frame,
-                        .frame_count = scene.background.frame_count,
-                        .picture_rate_hz = scene.background.frame_rate_hz,
-                        .threads = options.threads,
-                        .with_cuts = true},
-                       options.warn);
-  if (!reader.info().is_rate_stated)
-    throw Error(
-        "the background is of numbered pictures, which state no rate; expected "
-        "frame_rate_hz, their frames a second, in [background]",
-        scene.background.where);
-  return reader;
-}
-
-namespace {
-
 // The frame of a known motion that a moment of [[intruder.seen]] is about.
 setup::FramePose frame_near(const setup::MotionSource& motion,
                             const video::StreamInfo& info,
@@ -289,8 +264,6 @@ void simplify_for_preview(scene::Scene& scene) {
   scene.camera_model.codec_step.reset();
 }
 
-}  // namespace
-
 // Of pixels that are not square, the focal lengths in their widths and heights differ.
 void take_pixel_shape(scene::Scene& scene, const video::StreamInfo& info) {
   const double width_of_height = info.sample_aspect.value();
@@ -315,27 +288,25 @@ void expect_standard_range(const scene::Scene& scene, const video::StreamInfo& i
 
 // A factor of [weather] has something to multiply, be it measured later.
 void check_weather(const scene::Scene& scene, const std::vector<std::string>& to_measure) {
-  const auto expect =
-      [&](const std::optional<double>& factor,
-          const char* name,
-          const std::vector<std::pair<std::string, std::optional<double>>>& values) {
-        const bool has_value = std::ranges::any_of(values, [&](const auto& value) {
-          return value.second || std::ranges::count(to_measure, value.first) > 0;
-        });
-        if (factor && !has_value)
-          throw Error(
-              fmt::format("[weather] {} is a factor on {}, which the scene has not; expected a "
-                          "number or \"auto\" there, or [realism]",
-                          name,
-                          values.front().first),
-              scene.weather.where);
-      };
+  const auto is_known = [&](const std::optional<double>& value, const char* key) {
+    return value || std::ranges::count(to_measure, key) > 0;
+  };
+  const auto refuse = [&](const char* name, const char* key) {
+    throw Error(fmt::format("[weather] {} is a factor on {}, which the scene has not; expected a "
+                            "number or \"auto\" there, or [realism]",
+                            name,
+                            key),
+                scene.weather.where);
+  };
   const scene::CameraModel& model = scene.camera_model;
-  expect(scene.weather.blur, "blur", {{"optics.point_spread_px", model.point_spread_px}});
-  expect(scene.weather.noise,
-         "noise",
-         {{"sensor.noise_gain", model.noise_gain}, {"sensor.noise_floor", model.noise_floor}});
+  if (scene.weather.blur && !is_known(model.point_spread_px, "optics.point_spread_px"))
+    refuse("blur", "optics.point_spread_px");
+  if (scene.weather.noise && !is_known(model.noise_gain, "sensor.noise_gain") &&
+      !is_known(model.noise_floor, "sensor.noise_floor"))
+    refuse("noise", "sensor.noise_gain");
 }
+
+}  // namespace
 
 StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
@@ -373,6 +344,22 @@ scene::Scene with_measured_camera(StatedScene stated,
     take_measured(stated.scene, stated, std::move(measured), options.warn);
   }
   return std::move(stated.scene);
+}
+
+video::Reader open_background(const scene::Scene& scene, const Options& options) {
+  video::Reader reader(scene.background.video,
+                       {.first_frame = scene.background.first_frame,
+                        .frame_count = scene.background.frame_count,
+                        .picture_rate_hz = scene.background.frame_rate_hz,
+                        .threads = options.threads,
+                        .with_cuts = true},
+                       options.warn);
+  if (!reader.info().is_rate_stated)
+    throw Error(
+        "the background is of numbered pictures, which state no rate; expected "
+        "frame_rate_hz, their frames a second, in [background]",
+        scene.background.where);
+  return reader;
 }
 
 OpenedScene open_scene(const scene::Scene& scene, const Options& options) {
