@@ -111,15 +111,6 @@ double drawn_bank_deg(Random random, const Drawn& rule, const fleet::FlightLimit
   return random.uniform(-most_deg, most_deg);
 }
 
-// The random numbers of one intruder. What was added later has a stream of its own, so that older
-// catalogues draw what they drew.
-struct Streams {
-  Random bank;
-  Random path;
-  // Of types[share * n].
-  double share_of_types = 0;
-};
-
 // A path by its closest approach or by what is seen; false where the rule has neither.
 bool draw_stated_path(const Drawn& rule, Random of_path, Encounter& encounter) {
   if (rule.approach) {
@@ -130,16 +121,18 @@ bool draw_stated_path(const Drawn& rule, Random of_path, Encounter& encounter) {
   return rule.approach || !rule.seen.empty();
 }
 
-Encounter drawn_encounter(Random& random, const Streams& streams, const Drawn& rule) {
+// What was added later has a stream of its own, so that older catalogues draw what they drew.
+Encounter drawn_encounter(
+    Random& random, Random of_bank, Random of_path, double share_of_types, const Drawn& rule) {
   Encounter encounter;
-  encounter.aircraft = drawn_aircraft(random, streams.share_of_types, rule.types);
+  encounter.aircraft = drawn_aircraft(random, share_of_types, rule.types);
   const fleet::FlightLimits* limits = fleet::flight_limits(encounter.aircraft);
   encounter.speed_mps = drawn(random, speed_range(rule, limits));
   encounter.meeting_share = random.uniform(0.2, 0.8);
-  if (draw_stated_path(rule, streams.path, encounter)) return encounter;
+  if (draw_stated_path(rule, of_path, encounter)) return encounter;
   draw_place(random, rule.place, encounter);
   encounter.climb_deg = drawn(random, climb_range(rule, limits, encounter.speed_mps));
-  encounter.bank_deg = drawn_bank_deg(streams.bank, rule, limits);
+  encounter.bank_deg = drawn_bank_deg(of_bank, rule, limits);
   return encounter;
 }
 
@@ -208,24 +201,21 @@ DrawnSequence draw(const Drawn& rule,
   const Turn turn = turn_of(rule, seed_value, index);
   const auto each = static_cast<std::uint64_t>(rule.intruders.high);
   const pairing::Strata types = turn.strata(seed, "types of " + rule.name, each);
-  const auto share_of_types = [&](std::int64_t k) {
-    return types.spaced(turn.place * each + static_cast<std::uint64_t>(k), 0);
-  };
-  result.encounters.push_back(drawn_encounter(
-      random, {stream("bank of sequence "), stream("path of sequence "), share_of_types(0)}, rule));
-  if (rule.sun_azimuth_deg) result.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);
-  if (rule.sun_elevation_deg) result.sun_elevation_deg = drawn(random, *rule.sun_elevation_deg);
   Random of_count = stream("intruders of sequence ");
   const std::int64_t count = drawn(of_count, rule.intruders);
-  for (std::int64_t k = 1; k < count; ++k) {
-    const std::string which = std::to_string(k + 1) + " of sequence ";
-    Random other = stream("intruder " + which);
-    result.encounters.push_back(drawn_encounter(other,
-                                                {stream("bank of intruder " + which),
-                                                 stream("path of intruder " + which),
-                                                 share_of_types(k)},
-                                                rule));
+  for (std::int64_t k = 0; k < count; ++k) {
+    const std::string which =
+        k == 0 ? "sequence " : "intruder " + std::to_string(k + 1) + " of sequence ";
+    Random other = stream(which);
+    result.encounters.push_back(
+        drawn_encounter(k == 0 ? random : other,
+                        stream("bank of " + which),
+                        stream("path of " + which),
+                        types.spaced(turn.place * each + static_cast<std::uint64_t>(k), 0),
+                        rule));
   }
+  if (rule.sun_azimuth_deg) result.sun_azimuth_deg = drawn(random, *rule.sun_azimuth_deg);
+  if (rule.sun_elevation_deg) result.sun_elevation_deg = drawn(random, *rule.sun_elevation_deg);
   if (rule.daytime) {
     const SunPosition sun =
         drawn_sun(stream("time of sequence "), *rule.daytime, result.encounters[0].aircraft);
