@@ -125,31 +125,28 @@ std::optional<NearestApproach> nearest_approach(const World& world,
                                                 double end_s) {
   std::optional<NearestApproach> best;
   const lens::ImageSize size = world.lens.size();
+  // A coarse walk along the image's border.
+  std::vector<Vector3> edges;
+  for (int i = 0; i <= 64; ++i) {
+    const double x = i / 64.0 * size.width, y = i / 64.0 * size.height;
+    for (const Pixel& edge :
+         {Pixel(x, 0), Pixel(x, size.height), Pixel(0, y), Pixel(size.width, y)})
+      if (const auto ray = world.lens.ray_from_pixel(edge)) edges.push_back(*ray);
+  }
   for (double time_s = 0; time_s <= end_s; time_s += std::max(end_s / 2000, 1e-3)) {
     const auto state = world.actors[actor].path.at(time_s);
     const auto camera = world.camera.at(time_s);
     if (!state || !camera) continue;
-    const Rigid world_from_cam =
-        camera->world_from_body_rigid() * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
-    const Vector3 p_in_cam = world_from_cam.inverse() * state->position_in_world;
+    const Vector3 p_in_cam =
+        world_from_shaken_cam(*camera, {}, 0).inverse() * state->position_in_world;
     const auto pixel = world.lens.pixel_from_cam(p_in_cam);
     if (pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() <= size.width &&
         pixel->y() <= size.height)
       return NearestApproach{time_s, 0, p_in_cam.norm()};
-    // The nearest pixel of the image to the direction, through a coarse walk along the image's
-    // border.
     double off = kPi;
-    for (int i = 0; i <= 64; ++i) {
-      const double s = i / 64.0;
-      for (const Pixel& edge : {Pixel(s * size.width, 0),
-                                Pixel(s * size.width, size.height),
-                                Pixel(0, s * size.height),
-                                Pixel(size.width, s * size.height)}) {
-        const auto ray = world.lens.ray_from_pixel(edge);
-        if (ray && p_in_cam.norm() > 0)
-          off = std::min(off, std::acos(std::clamp(ray->dot(p_in_cam.normalized()), -1.0, 1.0)));
-      }
-    }
+    if (p_in_cam.norm() > 0)
+      for (const Vector3& ray : edges)
+        off = std::min(off, std::acos(std::clamp(ray.dot(p_in_cam.normalized()), -1.0, 1.0)));
     if (!best || degrees(off) < best->off_view_deg)
       best = NearestApproach{time_s, degrees(off), p_in_cam.norm()};
   }
