@@ -73,11 +73,9 @@ class Work {
   void count() {
     needed_.assign(catalogue_.backgrounds.size(), std::nullopt);
     is_used_.assign(catalogue_.backgrounds.size(), false);
-    bool any = false;
     for (std::int64_t i = options_.share; i < expansion_.size(); i += options_.shares) {
       const catalogue::Item item = expansion_.at(i);
       if (!is_wanted(item)) continue;
-      any = true;
       ++total_;
       if (folder_.holds(item)) {
         ++summary_.kept;
@@ -91,7 +89,7 @@ class Work {
       needed =
           item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);
     }
-    if (!any && options_.only != "*")
+    if (total_ == 0 && options_.only != "*")
       throw Error("no sequence of the catalogue fits '" + options_.only + "'");
   }
 

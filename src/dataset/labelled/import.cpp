@@ -57,12 +57,6 @@ void join_given_pictures(exchange::Clip& clip, const Warn& warn) {
     clip.frames[i].picture = images->files[i].lexically_relative(clip.media).string();
 }
 
-// The frames of pictures are numbered by their places.
-void number_by_place(exchange::Clip& clip) {
-  for (std::size_t i = 0; i < clip.frames.size(); ++i)
-    clip.frames[i].frame = static_cast<std::int64_t>(i);
-}
-
 void expect_size(exchange::Clip& clip, int width, int height, const fs::path& file) {
   if (clip.width == 0) {
     clip.width = width;
@@ -192,7 +186,8 @@ void complete(std::vector<exchange::Clip>& clips,
     require_utf8(clip.media);
     if (video != options.videos.end()) join_given_pictures(clip, options.warn);
     if (has_pictures(clip)) {
-      number_by_place(clip);
+      // The frames of pictures are numbered by their places.
+      for (std::int64_t i = 0; exchange::LabelledFrame & frame : clip.frames) frame.frame = i++;
       expect_one_line(clip);
     }
     ask_video(clip, options.warn);

@@ -69,8 +69,7 @@ std::vector<std::string> sequences_in(const fs::path& folder) {
 // Whether a folder of `sequences` with this name holds sequences of a divided set: its name
 // consists of digits.
 bool is_numbered_folder(const std::string& name) {
-  return !name.empty() &&
-         std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
 }
 
 SequenceFolders divided_set_in(const fs::path& root) {
