@@ -83,11 +83,6 @@ Row row_of(const annotation::Intruder& intruder) {
   return row;
 }
 
-template <typename Enum>
-std::string name_or_nothing(const std::optional<Enum>& value) {
-  return value ? enum_name(*value) : "";
-}
-
 // "NAME BEGIN END", in seconds, each after a semicolon.
 std::string text_of(const std::vector<pipeline::NamedInterval>& violations) {
   std::vector<std::string> words;
@@ -111,9 +106,9 @@ Row row_of(const pipeline::EncounterRecord& record) {
   closest("ahead_m", [](const Approach& a) { return a.offset.ahead_m; });
   closest("right_m", [](const Approach& a) { return a.offset.right_m; });
   closest("above_m", [](const Approach& a) { return a.offset.above_m; });
-  row.add("meeting", name_or_nothing(record.meeting));
-  row.add("vertical_motion", name_or_nothing(record.vertical_motion));
-  row.add("horizon", name_or_nothing(record.horizon));
+  row.add("meeting", enum_name(record.meeting, ""));
+  row.add("vertical_motion", enum_name(record.vertical_motion, ""));
+  row.add("horizon", enum_name(record.horizon, ""));
   const auto seen = [&](const char* name, auto value) {
     row.add(std::string("first_seen_") + name, of(record.first_seen, value));
   };
@@ -127,7 +122,7 @@ Row row_of(const pipeline::EncounterRecord& record) {
           record.first_seen && record.closest
               ? std::optional(record.closest->time_s - record.first_seen->time_s)
               : std::nullopt);
-  row.add("first_seen_horizon", name_or_nothing(record.horizon_when_first_seen));
+  row.add("first_seen_horizon", enum_name(record.horizon_when_first_seen, ""));
   row.add("violations", text_of(record.violations));
   return row;
 }

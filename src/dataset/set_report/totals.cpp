@@ -50,15 +50,10 @@ plot::Plot bars(const std::map<std::string, std::int64_t>& counts, const std::st
 constexpr const char* kNoMeeting = "hovering";
 constexpr const char* kNeverSeen = "never seen";
 
-template <typename Enum>
-std::string name_or(const std::optional<Enum>& value, const char* without) {
-  return value ? enum_name(*value) : without;
-}
-
 void add_encounter(const pipeline::EncounterRecord& record, Totals& totals) {
   ++totals.encounters;
-  ++totals.meetings[name_or(record.meeting, kNoMeeting)];
-  ++totals.horizons_when_first_seen[name_or(record.horizon_when_first_seen, kNeverSeen)];
+  ++totals.meetings[enum_name(record.meeting, kNoMeeting)];
+  ++totals.horizons_when_first_seen[enum_name(record.horizon_when_first_seen, kNeverSeen)];
   if (record.closest) totals.closest_m.add(record.closest->distance_m);
   if (!record.first_seen) return;
   totals.first_seen_m.add(record.first_seen->range_m);

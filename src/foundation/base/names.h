@@ -37,6 +37,12 @@ constexpr const char* enum_name(Enum value) {
   return nullptr;
 }
 
+// The name of a value, or `otherwise` where there is none.
+template <typename Enum>
+std::string enum_name(const std::optional<Enum>& value, const char* otherwise) {
+  return value ? enum_name(*value) : otherwise;
+}
+
 // The value of that name; empty where no value has it. Letter case matters.
 template <typename Enum>
 constexpr std::optional<Enum> enum_named(std::string_view name) {
