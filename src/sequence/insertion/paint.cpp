@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/insertion/paint.h"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -51,7 +52,11 @@ shade::Light light_on_intruders(const scene::Scene& scene, const Ambient& ambien
                      ambient.ground,
                      is_by_key(scene) ? std::nullopt : std::optional(ambient.surroundings)};
   if (!scene::states_any_key(scene.weather)) return light;
-  const std::array<float, 3> by = setup::light_in_weather(scene.weather);
+  const double exposure = scene.weather.exposure.value_or(1);
+  const double red = std::sqrt(scene.weather.white_balance.value_or(1));
+  const std::array by = {static_cast<float>(exposure * red),
+                         static_cast<float>(exposure),
+                         static_cast<float>(exposure / red)};
   const auto sun_share = static_cast<float>(scene.weather.sun_share.value_or(1));
   for (std::size_t c = 0; c < 3; ++c) {
     light.sun[c] *= by[c] * sun_share;

@@ -134,13 +134,6 @@ void Outputs::finish(const scene::Scene& scene,
   for (annotation::EvisionWriter& file : evision_) file.finish();
   video::write_still(folder_ / "preview.jpg", sheet_.sheet());
   if (scene.output.masks) flush_files(folder_);
-  write_record(scene, inputs, encounters, summary);
-}
-
-void Outputs::write_record(const scene::Scene& scene,
-                           const std::vector<Checksum>& inputs,
-                           const std::vector<EncounterRecord>& encounters,
-                           const Summary& summary) const {
   nlohmann::ordered_json record;
   record["format"] = "airtruth sequence 1";
   record["version"] = kVersion;

@@ -51,10 +51,6 @@ class Outputs {
  private:
   // Throws Error where the truth could not be written so far.
   void check_truth(const char* what) const;
-  void write_record(const scene::Scene& scene,
-                    const std::vector<Checksum>& inputs,
-                    const std::vector<EncounterRecord>& encounters,
-                    const Summary& summary) const;
 
   fs::path folder_;
   annotation::LensFacts lens_;

@@ -186,14 +186,6 @@ scene::CameraModel camera_in_weather(const scene::Scene& scene) {
   return model;
 }
 
-std::array<float, 3> light_in_weather(const scene::Weather& weather) {
-  const double exposure = weather.exposure.value_or(1);
-  const double red = std::sqrt(weather.white_balance.value_or(1));
-  return {static_cast<float>(exposure * red),
-          static_cast<float>(exposure),
-          static_cast<float>(exposure / red)};
-}
-
 composite::Sensor sensor_of(const scene::CameraModel& model) {
   return {.sharpening = model.sharpening.value_or(0),
           .sharpening_px = model.sharpening_px.value_or(composite::Sensor().sharpening_px),

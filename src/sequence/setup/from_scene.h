@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -53,8 +52,6 @@ image::ToneCurve tone_of(const scene::CameraModel& model);
 
 // The camera model of what is inserted: that of the clip, changed by [weather].
 scene::CameraModel camera_in_weather(const scene::Scene& scene);
-// [weather]: the factor on the light of sky and ground, by channel. The sun's has sun_share beside.
-std::array<float, 3> light_in_weather(const scene::Weather& weather);
 
 // [optics] and [sensor]: what the camera does to samples after the point spread. Quantities that
 // the model lacks are 0: no sharpening, no noise, no chroma spread.
