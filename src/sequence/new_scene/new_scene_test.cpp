@@ -111,7 +111,8 @@ TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
   // A clip that begins 2 s into the video begins 2 s into the log.
   scene::Scene later = scene;
   later.background.first_frame = 60;
-  later.camera.clip_start_s = setup::clip_start_s(later.background);
+  later.camera.clip_start_s = video::time_of_first_frame_s(
+      later.background.video, {.first_frame = later.background.first_frame});
   EXPECT_NEAR(later.camera.clip_start_s, 2, 1e-9);
   EXPECT_NEAR(
       setup::camera_path(later.camera).end_s(), setup::camera_path(scene.camera).end_s() - 2, 1e-9);

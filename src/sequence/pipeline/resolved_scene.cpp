@@ -314,7 +314,11 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   expect_standard_range(scene, info);
   take_pixel_shape(result.scene, info);
   take_angle(result.scene, info);
-  if (scene.camera.log) result.scene.camera.clip_start_s = setup::clip_start_s(scene.background);
+  if (scene.camera.log)
+    result.scene.camera.clip_start_s =
+        video::time_of_first_frame_s(scene.background.video,
+                                     {.first_frame = scene.background.first_frame,
+                                      .picture_rate_hz = scene.background.frame_rate_hz});
   scene::CameraFile file;
   if (scene.realism.file) file = file_of(scene, {info.width, info.height});
   fill_from_file(result.scene, file);

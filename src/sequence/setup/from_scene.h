@@ -26,11 +26,17 @@ namespace airtruth::setup {
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& warn = {});
 
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
+//
+// Of a log the position at the first frame is the stated one; without it the aircraft is over the
+// origin at the log's height above take-off, or at the default height of a scene where the log
+// states none. The attitude at the first frame is the stated one; without it it is the log's, and
+// for a log without attitudes the aircraft is level and heads along its path. It is held, since the
+// measured motion turns the camera from there; where follows_log_attitude is true it is the log's
+// throughout.
+//
+// Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
+// not cover the first frame.
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn = {});
-
-// The camera's clip_start_s: time of the background's first_frame in seconds from the video's first
-// frame. Errors as of video::Reader.
-double clip_start_s(const scene::Background& background);
 
 // [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is
 // `seen` must have been placed (seen.h).
@@ -71,20 +77,7 @@ decltype(auto) at_place(const Where& where, Make make) {
   }
 }
 
-// Where the own aircraft really flew: the log of a scene's [camera].
-
 // Reads a flight log of any format, also out of a GoPro's video. Errors as of read_flight_log().
 flight_log::FlightLog read_log(const std::filesystem::path& path);
-
-// The camera's path from its log, on the clip's clock. The position at the first frame is the
-// stated one; without it the aircraft is over the origin at the log's height above take-off, or at
-// the default height of a scene where the log states none. The attitude at the first frame is the
-// stated one; without it it is the log's, and for a log without attitudes the aircraft is level and
-// heads along its path. It is held, since the measured motion turns the camera from there; where
-// follows_log_attitude is true it is the log's throughout.
-//
-// Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
-// not cover the first frame.
-trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn = {});
 
 }  // namespace airtruth::setup
