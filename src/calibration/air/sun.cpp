@@ -48,10 +48,7 @@ using Terms = Eigen::Matrix<double, 8, 1>;
 struct Direction {
   double azimuth_deg = 0, elevation_deg = 0;
 
-  Vector3 vector() const {
-    const double a = radians(azimuth_deg), e = radians(elevation_deg);
-    return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), -std::sin(e)};
-  }
+  Vector3 vector() const { return unit_vector(azimuth_deg, elevation_deg); }
 };
 
 // The terms of the light from the direction `d`: four of the height, four of the angle to the sun.

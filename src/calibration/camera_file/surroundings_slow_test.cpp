@@ -41,10 +41,10 @@ TEST(Calibrate, FindsTheSun) {
     const Calibration c = calibrate_flight(o, {});
     ASSERT_TRUE(c.quantities.at("light.sun_azimuth_deg").is_measured())
         << c.quantities.at("light.sun_azimuth_deg").missing;
-    const double off = degrees(
-        std::acos(-synthetic::sun_in_world(c.quantities.at("light.sun_azimuth_deg").value().value,
-                                           c.quantities.at("light.sun_elevation_deg").value().value)
-                       .dot(-synthetic::sun_in_world(azimuth, elevation))));
+    const double off =
+        degrees(std::acos(-unit_vector(c.quantities.at("light.sun_azimuth_deg").value().value,
+                                       c.quantities.at("light.sun_elevation_deg").value().value)
+                               .dot(-unit_vector(azimuth, elevation))));
     std::printf("sun off by %.1f degrees\n", off);
     EXPECT_LT(off, 10);
   }
@@ -77,7 +77,7 @@ TEST(Calibrate, MeasuresTheAir) {
         << c.quantities.at("air.extinction_per_km").note;
     expect_within(c, "air.extinction_per_km", extinction_per_km, 0.1);
     // The sky at the horizon, over the azimuths that the lens sees.
-    const synthetic::Sky sky(synthetic::sun_in_world(o.sun_azimuth_deg, o.sun_elevation_deg));
+    const synthetic::Sky sky(unit_vector(o.sun_azimuth_deg, o.sun_elevation_deg));
     synthetic::LinearRgb airlight = synthetic::LinearRgb::Zero();
     for (int degree = -60; degree <= 60; degree += 10)
       airlight += sky.haze({std::cos(radians(degree)), std::sin(radians(degree)), 0}) / 13;

@@ -69,7 +69,7 @@ TEST(Sun, IsFoundFromAnInsertedAircraft) {
   const auto fit = fit_sun(unlit, {{0.5, &picture, seen->box}}, kSpacingDeg);
   ASSERT_TRUE(fit);
   const auto towards = [](double azimuth_deg, double elevation_deg) {
-    return shade::to_sun(azimuth_deg, elevation_deg);
+    return unit_vector(azimuth_deg, elevation_deg);
   };
   const double apart_deg =
       degrees(std::acos(towards(fit->azimuth_deg, fit->elevation_deg).dot(towards(130, 40))));

@@ -41,12 +41,7 @@ double meeting_s(const Encounter& encounter, const DrawnClip& clip) {
 }
 
 Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_from_camera_body) {
-  const double azimuth = radians(encounter.azimuth_deg);
-  const double elevation = radians(encounter.elevation_deg);
-  const Vector3 in_body(std::cos(elevation) * std::cos(azimuth),
-                        std::cos(elevation) * std::sin(azimuth),
-                        -std::sin(elevation));
-  return world_from_camera_body * in_body;
+  return world_from_camera_body * unit_vector(encounter.azimuth_deg, encounter.elevation_deg);
 }
 
 void lay_straight(scene::Intruder& intruder,
@@ -54,11 +49,8 @@ void lay_straight(scene::Intruder& intruder,
                   const Vector3& meeting,
                   double meets_s,
                   double clip_s) {
-  const double heading = radians(encounter.heading_deg);
-  const double climb = radians(encounter.climb_deg);
-  const Vector3 velocity = encounter.speed_mps * Vector3(std::cos(climb) * std::cos(heading),
-                                                         std::cos(climb) * std::sin(heading),
-                                                         -std::sin(climb));
+  const Vector3 velocity =
+      encounter.speed_mps * unit_vector(encounter.heading_deg, encounter.climb_deg);
   intruder.waypoints_ned_m = {meeting - meets_s * velocity,
                               meeting + (clip_s + kPastClip_s - meets_s) * velocity};
 }

@@ -6,6 +6,11 @@
 
 namespace airtruth {
 
+Vector3 unit_vector(double azimuth_deg, double elevation_deg) {
+  const double a = radians(azimuth_deg), e = radians(elevation_deg);
+  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), -std::sin(e)};
+}
+
 Quaternion world_from_body(const YawPitchRoll& attitude) {
   using Eigen::AngleAxisd;
   return Quaternion(AngleAxisd(radians(attitude.yaw_deg), Vector3::UnitZ()) *

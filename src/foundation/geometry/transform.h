@@ -25,6 +25,11 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
 constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
 
+// The unit vector of an azimuth and an elevation above the plane of the first two axes: from north
+// towards east in world, from ahead towards the right in body.
+//   unit_vector(90, 30) = (0, 0.866, -0.5)
+Vector3 unit_vector(double azimuth_deg, double elevation_deg);
+
 // A rigid motion b_from_a: p_in_b = rotation * p_in_a + translation. The rotation is a unit
 // quaternion; the translation is the origin of a in b, in metres. The product c_from_b * b_from_a
 // is c_from_a.

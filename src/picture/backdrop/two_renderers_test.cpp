@@ -24,7 +24,7 @@ constexpr double kTime = 0.37;
 const lens::Pinhole kLens{{kFocalPx, kFocalPx}, {80.3, 63.6}};
 
 const shade::Light kSunny{
-    shade::to_sun(130, 40), {0.9f, 0.85f, 0.8f}, {0.25f, 0.3f, 0.4f}, {0.1f, 0.09f, 0.06f}};
+    unit_vector(130, 40), {0.9f, 0.85f, 0.8f}, {0.25f, 0.3f, 0.4f}, {0.1f, 0.09f, 0.06f}};
 const shade::Light kOvercast{{0, 0, -1}, {0, 0, 0}, {0.8f, 0.9f, 1}, {0.3f, 0.25f, 0.2f}};
 
 struct Precision {

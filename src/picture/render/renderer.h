@@ -24,8 +24,8 @@
 //
 // Example: in a frame of 1280 x 960 pixels a pinhole with a vertical view of 75 degrees has a focal
 // length of 480 / tan(37.5 deg) = 625.5 px, and a wing of 11 m, viewed square-on from 500 m, spans
-// 625.5 * 11 / 500 = 13.8 px. For a sun in the east, 30 degrees high, to_sun(90, 30) is (0, 0.866,
-// -0.5).
+// 625.5 * 11 / 500 = 13.8 px. For a sun in the east, 30 degrees high, unit_vector(90, 30) is (0,
+// 0.866, -0.5).
 namespace airtruth::render {
 
 // The camera of one frame.

@@ -36,7 +36,7 @@ image::Layer textured_layer(const fleet::Aircraft& aircraft,
                   side,
                   side};
   shade::Light light;
-  light.to_sun_in_world = shade::to_sun(160, 40);
+  light.to_sun_in_world = unit_vector(160, 40);
   light.sun = {0.6f, 0.58f, 0.55f};
   light.surroundings = shade::Environment::of([](const Vector3& d) {
     return d.z() > 0 ? image::Rgb{0.05f, 0.05f, 0.04f} : image::Rgb{0.15f, 0.2f, 0.26f};

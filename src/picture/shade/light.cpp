@@ -106,10 +106,4 @@ Rgb Environment::radiance(const Eigen::Vector3f& direction_in_world) const {
   return sum(direction_in_world, {1, 1, 1});
 }
 
-Vector3 to_sun(double azimuth_deg, double elevation_deg) {
-  const double a = radians(azimuth_deg);
-  const double e = radians(elevation_deg);
-  return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), -std::sin(e)};
-}
-
 }  // namespace airtruth::shade

@@ -61,7 +61,4 @@ struct Light {
   std::optional<Environment> surroundings = {};
 };
 
-// The unit vector to_sun_in_world for an azimuth (from north towards east) and an elevation.
-Vector3 to_sun(double azimuth_deg, double elevation_deg);
-
 }  // namespace airtruth::shade

@@ -9,14 +9,6 @@
 
 namespace airtruth::synthetic {
 
-Vector3 sun_in_world(double azimuth_deg, double elevation_deg) {
-  const double azimuth = radians(azimuth_deg);
-  const double elevation = radians(elevation_deg);
-  return {std::cos(elevation) * std::cos(azimuth),
-          std::cos(elevation) * std::sin(azimuth),
-          -std::sin(elevation)};
-}
-
 Sky::Sky(const Vector3& sun_in_world) : sun_(sun_in_world) {
   // A low sun is redder and weaker.
   const float up = static_cast<float>(std::max(-sun_.z(), 0.02));

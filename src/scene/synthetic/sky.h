@@ -26,9 +26,6 @@ class Sky {
   LinearRgb sunlight_;
 };
 
-// The unit vector towards the sun, north-east-down.
-Vector3 sun_in_world(double azimuth_deg, double elevation_deg);
-
 // Fair-weather cumulus as a volume that repeats every 20 km and shadows itself from the sun, and
 // thin cirrus far above. The volume is sampled once, while the sky's panorama is drawn; the frames
 // use only its shadow on the ground.

@@ -49,13 +49,9 @@ image::Rgb8 tile(const fleet::Aircraft& aircraft,
   const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {tile_px / 2.0, tile_px / 2.0}},
                         {tile_px, tile_px});
   const Vector3 centre = 0.5 * (size.low_in_body + size.high_in_body);
-  const double azimuth = radians(pose.azimuth_deg);
-  const double elevation = radians(pose.elevation_deg);
-  const Vector3 to_eye(std::cos(elevation) * std::cos(azimuth),
-                       std::cos(elevation) * std::sin(azimuth),
-                       -std::sin(elevation));
+  const Vector3 to_eye = unit_vector(pose.azimuth_deg, pose.elevation_deg);
   // The aircraft stands level at the origin, nose north; the eye looks back at its middle.
-  const Quaternion eye = world_from_body({degrees(azimuth) + 180, -pose.elevation_deg, 0});
+  const Quaternion eye = world_from_body({pose.azimuth_deg + 180, -pose.elevation_deg, 0});
   const Rigid world_from_cam =
       Rigid{eye, centre + range_m * to_eye} * Rigid{cam_from_body().conjugate(), Vector3::Zero()};
   const projection::Sight sight{&lens, world_from_cam.inverse(), Homography::Identity()};
@@ -63,7 +59,7 @@ image::Rgb8 tile(const fleet::Aircraft& aircraft,
                                                 model::silhouette_points(aircraft.mesh)};
   const auto box = projection::exact_box(sight, silhouette, {}, 0).box;
   shade::Light light;
-  light.to_sun_in_world = shade::to_sun(degrees(azimuth) + 35, 45);
+  light.to_sun_in_world = unit_vector(pose.azimuth_deg + 35, 45);
   light.sun = {0.62f, 0.6f, 0.56f};
   light.sky = {0.28f, 0.34f, 0.42f};
   light.ground = {0.14f, 0.13f, 0.11f};

@@ -54,7 +54,7 @@ struct ClearSky {
     sight = {&lens, Rigid{world_from_cam, Vector3::Zero()}.inverse(), Homography::Identity()};
     light.sun_azimuth_deg = sun_azimuth_deg;
     light.sun_elevation_deg = sun_elevation_deg;
-    const Skies all = skies(shade::to_sun(sun_azimuth_deg, sun_elevation_deg));
+    const Skies all = skies(unit_vector(sun_azimuth_deg, sun_elevation_deg));
     picture = picture_of([&](int x, int y) {
       const auto ray = lens.ray_from_pixel({x + 0.5, y + 0.5});
       const auto seen = static_cast<float>(all.clear_seen(world_from_cam * ray->normalized()));

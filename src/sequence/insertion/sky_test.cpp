@@ -23,9 +23,9 @@ TEST(Sky, IlluminancesAreThoseOfTheTables) {
 
 // Moon and Spencer: two thirds at 30 degrees; over pi, 7/9 of the zenith on a level surface.
 TEST(Sky, AnOvercastSkyIsThatOfMoonAndSpencer) {
-  const Skies all = skies(shade::to_sun(0, 45));
-  EXPECT_NEAR(all.overcast_seen(shade::to_sun(0, 30)) * all.overcast_level, 2.0 / 3, 1e-12);
-  EXPECT_NEAR(all.overcast_seen(shade::to_sun(0, 90)) * all.overcast_level, 1, 1e-12);
+  const Skies all = skies(unit_vector(0, 45));
+  EXPECT_NEAR(all.overcast_seen(unit_vector(0, 30)) * all.overcast_level, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(all.overcast_seen(unit_vector(0, 90)) * all.overcast_level, 1, 1e-12);
   EXPECT_NEAR(all.overcast_level, 7.0 / 9, 1e-3);
   EXPECT_NEAR(all.overcast.irradiance_over_pi(kUp)[0], 1, 0.02);
   // On a wall: 0.396 of the level surface's (Moon and Spencer 1942), without the ground's share.
@@ -34,9 +34,9 @@ TEST(Sky, AnOvercastSkyIsThatOfMoonAndSpencer) {
 }
 
 TEST(Sky, AClearSkyIsBrightAboutTheSunAndAtTheHorizon) {
-  const Skies all = skies(shade::to_sun(90, 40));
+  const Skies all = skies(unit_vector(90, 40));
   const auto seen = [&](double azimuth_deg, double elevation_deg) {
-    return all.clear_seen(shade::to_sun(azimuth_deg, elevation_deg));
+    return all.clear_seen(unit_vector(azimuth_deg, elevation_deg));
   };
   EXPECT_NEAR(seen(0, 90) * all.clear_level, 1, 1e-12);
   EXPECT_GT(seen(120, 40), seen(180, 40));
@@ -47,7 +47,7 @@ TEST(Sky, AClearSkyIsBrightAboutTheSunAndAtTheHorizon) {
 }
 
 TEST(Sky, AGroundLightsWhatLooksDown) {
-  const Skies all = skies(shade::to_sun(0, 30));
+  const Skies all = skies(unit_vector(0, 30));
   EXPECT_NEAR(all.ground.irradiance_over_pi(kDown)[0], 1, 0.02);
   EXPECT_NEAR(all.ground.irradiance_over_pi(kUp)[0], 0, 0.02);
   EXPECT_NEAR(all.ground.irradiance_over_pi({1, 0, 0})[0], 0.5, 0.02);

@@ -233,7 +233,7 @@ std::vector<separation::AskedVolume> volumes_of(const scene::Truth& truth) {
 }
 
 Vector3 to_sun_in_world(const scene::Light& light) {
-  return shade::to_sun(light.sun_azimuth_deg, light.sun_elevation_deg);
+  return unit_vector(light.sun_azimuth_deg, light.sun_elevation_deg);
 }
 
 Shutter shutter_of(const scene::CameraModel& model) {

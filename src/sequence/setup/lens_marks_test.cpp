@@ -29,7 +29,7 @@ scene::LensMark glint(double along) {
 
 TEST(LensMarks, AGlintLiesOnTheLineThroughTheSunAndTheCentre) {
   // Sun 10 degrees to the right and 20 high: its pixel is right of and above the centre.
-  const Vector3 to_sun = shade::to_sun(10, 20);
+  const Vector3 to_sun = unit_vector(10, 20);
   const auto at_sun = spot_of(glint(1), level_sight(), to_sun, 0, 1);
   const auto beyond = spot_of(glint(-0.5), level_sight(), to_sun, 0, 1);
   ASSERT_TRUE(at_sun && beyond);
@@ -42,7 +42,7 @@ TEST(LensMarks, AGlintLiesOnTheLineThroughTheSunAndTheCentre) {
 }
 
 TEST(LensMarks, ASunBehindTheCameraHasNoGlint) {
-  EXPECT_FALSE(spot_of(glint(-0.5), level_sight(), shade::to_sun(180, 20), 0, 1));
+  EXPECT_FALSE(spot_of(glint(-0.5), level_sight(), unit_vector(180, 20), 0, 1));
 }
 
 TEST(LensMarks, AMarkIsThereFromItsBeginningToItsEnd) {
