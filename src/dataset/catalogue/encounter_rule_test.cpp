@@ -107,8 +107,9 @@ TEST_F(EncounterModel, OverALogTheyPassTheCameraAsItFliesFromTheFirstFrameOn) {
   const Expansion expansion(catalogue);
   for (std::int64_t i = 0; i < 5; ++i) {
     Item item = expansion.at(i);
-    place(item, catalogue, {"v.mp4", {}, 160, 120, 30, 1000, {18, {}}});
-    item.scene.camera.clip_start_s = 18;  // as render finds it in the video
+    scene::Camera camera = item.scene.camera;
+    camera.clip_start_s = 18;  // as render finds it in the video
+    place(item, catalogue, {"v.mp4", {}, 160, 120, 30, 1000, camera});
     const Closest closest = closest_of(item.scene, item.scene.intruders.at(0), 8);
     EXPECT_LE(closest.distance_m, 51) << i;
   }
