@@ -101,11 +101,16 @@ TEST(Ambient, AGroundThatIsNotSeenGivesBackItsShareOfSunAndSky) {
   const Ambient usual = sky.seen();
   sky.light.ground_albedo = 0.7;
   const Ambient snow = sky.seen();
+  image::Rgb albedo{};
   for (std::size_t c = 0; c < 3; ++c) {
     const float level = 0.5F * usual.sun[c] + usual.sky()[c];  // the sine of 30 degrees
-    EXPECT_NEAR(usual.ground[c], 0.1F * level, 1e-4F);
+    albedo[c] = usual.ground[c] / level;
     EXPECT_NEAR(snow.ground[c], 0.7F * level, 1e-4F);
   }
+  // A warm grey, where snow is white.
+  EXPECT_NEAR(0.2126F * albedo[0] + 0.7152F * albedo[1] + 0.0722F * albedo[2], 0.1F, 1e-3F);
+  EXPECT_NEAR(albedo[0] / albedo[1], 1.14F, 0.01F);
+  EXPECT_NEAR(albedo[2] / albedo[1], 0.78F, 0.01F);
 }
 
 // A sky of two even halves.
