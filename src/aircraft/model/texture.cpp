@@ -2,7 +2,6 @@
 #include "aircraft/model/texture.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "foundation/base/huge_pages.h"
@@ -78,8 +77,7 @@ Texture texture_from_picture(texture_file::Picture picture, bool repeat_u, bool 
 }
 
 float alpha_at(const Texture& texture, float u, float v) {
-  if (!std::isfinite(u) || !std::isfinite(v) || std::abs(u) > 1e6f || std::abs(v) > 1e6f) return 1;
-  return finest_alpha(texture, {u, v});
+  return is_sound({u, v}) ? finest_alpha(texture, {u, v}) : 1;
 }
 
 }  // namespace airtruth::model

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "aircraft/model/mesh.h"
@@ -35,14 +34,21 @@ inline int wrapped(int i, int size, bool repeat) {
   return repeat ? ((i % size) + size) % size : std::clamp(i, 0, size - 1);
 }
 
+// Texture coordinates beyond this number of repeats count as damaged. Textures have at most 2^14
+// texels a side, so an int holds their texels.
+inline constexpr float kFarthestRepeat = 1e5f;
+inline bool is_sound(const Eigen::Vector2f& uv) {
+  return uv.allFinite() && uv.cwiseAbs().maxCoeff() <= kFarthestRepeat;
+}
+
 // A place between two texels: the first of them, and the share of the second.
 struct TexelPlace {
   int first;
   float share;
 };
 
-// Textures have fewer than 2^14 texels a side, so that an int holds the number; std::floor is a
-// call of the library on machines that are only known to have SSE2.
+// Of sound coordinates. std::floor is a call of the library on machines that are only known to have
+// SSE2.
 inline TexelPlace texel_place(float place) {
   const auto towards_zero = static_cast<std::int64_t>(place);
   const std::int64_t below = towards_zero - (place < static_cast<float>(towards_zero) ? 1 : 0);

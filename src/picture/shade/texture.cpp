@@ -9,9 +9,6 @@
 namespace airtruth::shade {
 namespace {
 
-// Texture coordinates beyond this number of repeats count as damaged; an int holds their texels.
-constexpr float kFarthestRepeat = 1e5f;
-
 // Four channels at once.
 using Channels = Eigen::Array4f;
 
@@ -29,10 +26,6 @@ Channels coarser_at(const model::Texture& texture, std::size_t index, const Eige
   return model::bilinear<Channels>(texture, level.width, level.height, uv, [&](int i, int j) {
     return Eigen::Map<const Channels>(level.texels[index_in(level.width, i, j)].data());
   });
-}
-
-bool is_sound(const Eigen::Vector2f& uv) {
-  return uv.allFinite() && uv.cwiseAbs().maxCoeff() <= kFarthestRepeat;
 }
 
 }  // namespace
@@ -53,7 +46,7 @@ Eigen::Vector2f TriangleTexture::uv(float u, float v) const {
 Texel TriangleTexture::texel(float u, float v) const {
   if (texture_ == nullptr) return {1, 1, 1, 1};
   const Eigen::Vector2f at = uv(u, v);
-  if (!is_sound(at)) return {1, 1, 1, 1};
+  if (!model::is_sound(at)) return {1, 1, 1, 1};
   Texel result;
   Eigen::Map<Channels> channels(result.data());
   channels = level_ == 0 ? finest_at(*texture_, at) : coarser_at(*texture_, level_ - 1, at);
@@ -63,7 +56,7 @@ Texel TriangleTexture::texel(float u, float v) const {
 float TriangleTexture::alpha(float u, float v) const {
   if (texture_ == nullptr) return 1;
   const Eigen::Vector2f at = uv(u, v);
-  if (!is_sound(at)) return 1;
+  if (!model::is_sound(at)) return 1;
   return level_ == 0 ? model::finest_alpha(*texture_, at)
                      : coarser_at(*texture_, level_ - 1, at)[3];
 }
