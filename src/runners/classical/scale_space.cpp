@@ -7,8 +7,6 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "foundation/image/mats.h"
-
 namespace airtruth::classical {
 namespace {
 
@@ -241,8 +239,6 @@ double Level::relative_response_near(const cv::Point& sample, int radius) const 
       largest_there = std::max(largest_there, relative_response({sample.x + x, sample.y + y}));
   return largest_there;
 }
-
-cv::Mat luma_of(const image::Picture& picture) { return image::mat_of(picture.luma()); }
 
 std::vector<Level> scale_space(const image::Picture& picture, const FreeView& view) {
   std::vector<Level> levels;

@@ -95,9 +95,6 @@ struct Level {
   double relative_response_near(const cv::Point& sample, int radius) const;
 };
 
-// The luma of a picture, which it shares; CV_8U.
-cv::Mat luma_of(const image::Picture& picture);
-
 // The levels of a picture's luma: as many as needed for objects of kLargestPx, as far as its size
 // allows.
 inline constexpr int kLargestPx = 128;
