@@ -293,7 +293,7 @@ class Previewer {
     const auto camera = world().camera.at(0);
     image::Rgb8 plan = drawing::plan_view(lines,
                                           yaw_pitch_roll(camera->world_from_body).yaw_deg,
-                                          world().lens.horizontal_fov_deg(),
+                                          view_deg(world()),
                                           kSideWidthPx,
                                           plan_px);
     image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, height_px - plan_px);

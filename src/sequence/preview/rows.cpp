@@ -149,6 +149,14 @@ std::vector<std::string> approach_lines(const setup::World& world,
   return lines;
 }
 
+double view_deg(const setup::World& world) {
+  const lens::Lens& lens = world.lens;
+  const auto ray = [&](double x) { return lens.ray_from_pixel({x, lens.size().height / 2.0}); };
+  const auto left = ray(0.5), right = ray(lens.size().width - 0.5);
+  if (!left || !right) return 180;
+  return degrees(std::acos(std::clamp(left->normalized().dot(right->normalized()), -1.0, 1.0)));
+}
+
 std::vector<std::string> table_heading() {
   return {"intruder",
           "time s",

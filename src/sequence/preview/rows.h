@@ -53,6 +53,9 @@ std::vector<std::string> approach_lines(const setup::World& world,
                                         const std::set<std::size_t>& seen,
                                         double duration_s);
 
+// The horizontal view between the middles of the left and the right edge.
+double view_deg(const setup::World& world);
+
 std::vector<std::string> table_heading();
 std::vector<std::string> table_cells(const PreviewRow& row);
 

@@ -212,7 +212,7 @@ class Planner {
              {{"ned", own},
               {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
               {"attitude", stage_.attitude_words()}}},
-            {"horizontal_fov_deg", hundredths(stage_.world().lens.horizontal_fov_deg())},
+            {"horizontal_fov_deg", hundredths(preview::view_deg(stage_.world()))},
             {"sun",
              {{"azimuth_deg", stage_.scene().light.sun_azimuth_deg},
               {"elevation_deg", stage_.scene().light.sun_elevation_deg}}},
