@@ -226,7 +226,10 @@ Samples samples_of(Plane& plane) {
 
 Picture oriented(Picture picture, const Orientation& orientation) {
   const int turn_deg = orientation.clockwise_deg;
-  if (!orientation.mirrored && turn_deg == 0) return picture;
+  if (orientation.mirrored)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i)
+      samples_of(picture.planes[i]).rowwise().reverseInPlace();
+  if (turn_deg == 0) return picture;
   image::Colour colour = picture.colour;
   if (turn_deg % 180 != 0) {
     std::swap(picture.width, picture.height);
@@ -235,10 +238,8 @@ Picture oriented(Picture picture, const Orientation& orientation) {
   }
   Picture turned = image::make_picture(picture.width, picture.height, colour);
   for (std::size_t i = 0; i < static_cast<std::size_t>(picture.plane_count); ++i) {
-    Samples from = samples_of(picture.planes[i]);
+    const Samples from = samples_of(picture.planes[i]);
     Samples to = samples_of(turned.planes[i]);
-    if (orientation.mirrored) from.rowwise().reverseInPlace();
-    if (turn_deg == 0) to = from;
     if (turn_deg == 90) to = from.colwise().reverse().transpose();
     if (turn_deg == 180) to = from.reverse();
     if (turn_deg == 270) to = from.rowwise().reverse().transpose();
