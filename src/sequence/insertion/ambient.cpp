@@ -36,7 +36,7 @@ constexpr float kBrightestSun = 6.0f;
 // of pyranometers, 0.2 for fields and woods, includes the infrared, of which leaves reflect half.
 // Its colour, 1.14 : 1 : 0.78, is the median of the ground in nine frames of three onboard clips
 // over fields, woods and a coast, relative to the grey of their clouds.
-constexpr Rgb kGroundAlbedo = {0.112f, 0.099f, 0.077f};
+constexpr Rgb kGroundAlbedo = {0.1124f, 0.0986f, 0.0769f};
 
 // Mean linear light below which a picture is black: a third of the darkest code above black.
 constexpr float kBlack = 1e-4f;
