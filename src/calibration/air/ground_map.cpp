@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "camera/motion/corners.h"
+#include "foundation/image/layer.h"
 
 namespace airtruth::air {
 namespace {

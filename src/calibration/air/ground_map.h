@@ -10,7 +10,6 @@
 #include "calibration/air/ground_track.h"
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
-#include "foundation/image/layer.h"
 
 // Views of level ground, rectified to the ground plane and registered with one another. Lengths are
 // in heights: multiples of the camera's height above the ground.

@@ -64,7 +64,6 @@ void expect_found_again(const YawPitchRoll& truth) {
       << fit.attitude.yaw_deg << " " << fit.attitude.pitch_deg << " " << fit.attitude.roll_deg;
 }
 
-// Both are seen from below.
 TEST(Types, ToMatchAreInstalledAndOfTheClassThatIsAskedFor) {
   for (const bool helicopters : {false, true})
     for (const std::string& type : types_to_match(helicopters)) {
@@ -73,6 +72,7 @@ TEST(Types, ToMatchAreInstalledAndOfTheClassThatIsAskedFor) {
     }
 }
 
+// Both are seen from below.
 TEST(Pose, AnAircraftThatComesNearerNoseUpIsFoundAgainInItsPicture) {
   expect_found_again({-60, -12, 5});
 }

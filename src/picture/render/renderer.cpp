@@ -2,7 +2,6 @@
 #include "picture/render/renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <tbb/enumerable_thread_specific.h>

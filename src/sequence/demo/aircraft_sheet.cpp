@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/demo/aircraft_sheet.h"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "foundation/image/colour.h"

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
-#include "picture/render/renderer.h"
 
 namespace airtruth::insertion {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "picture/render/renderer.h"
+#include "foundation/geometry/transform.h"
 
 namespace airtruth::insertion {
 namespace {

@@ -14,7 +14,7 @@
 #include "encounter/placement/by_approach.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
-#include "picture/render/renderer.h"
+#include "foundation/geometry/transform.h"
 #include "picture/video/metadata.h"
 #include "picture/video/reader.h"
 #include "scene/flight_log/builder.h"

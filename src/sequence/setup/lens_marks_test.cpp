@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "camera/lens/lens.h"
-#include "picture/render/renderer.h"
+#include "foundation/geometry/transform.h"
 
 namespace airtruth::setup {
 namespace {
