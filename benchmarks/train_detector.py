@@ -37,6 +37,7 @@ CROP = 192          # px: side of the square that a training step sees; twice th
 MIN_SIGMA = 0.7     # cells: width of the peak of the smallest aircraft, so that a peak is wider than its sampling
 NEGATIVE_PX = 280   # px: side of the picture about a false alarm; a crop that is scaled by 0.7 fits into it
 MOST_PX = 128       # px: aircraft that are longer are left out of training
+LEAST_CONTRAST = 25  # code values: who labels real video does not see less (docs/proof.md, "Faint aircraft")
 MOST_WAITING = 256  # samples of a stream without an aircraft that wait to be used: 20 MB of crops of 280 px
 NO_BOXES = np.zeros((0, 4), np.float32)
 
@@ -112,6 +113,7 @@ class Frames:
                 self.add(frame.full_range_gray, *boxes_of([vars(intruder) for intruder in frame.intruders]))
 
     def add(self, picture, boxes, ignored=NO_BOXES):
+        boxes, ignored = without_faint(picture, boxes, ignored)
         self.pictures.append(picture)
         self.boxes.append(boxes)
         self.ignored.append(ignored)
@@ -149,7 +151,7 @@ class Streamed:
         boxes, ignored = boxes_of([vars(intruder) for intruder in frame.intruders])
         for some in (boxes, ignored):
             some[:, :2] -= sample.crop[:2]
-        return frame.full_range_gray, boxes, ignored
+        return frame.full_range_gray, *without_faint(frame.full_range_gray, boxes, ignored)
 
     def draw(self, with_aircraft, random):
         if not with_aircraft and self.waiting:
@@ -211,6 +213,23 @@ def boxes_of(intruders):
         else:
             boxes.append(box)
     return [np.array([b for b in some if b is not None], np.float32).reshape(-1, 4) for some in (boxes, ignored)]
+
+
+def contrast(picture, box):
+    """The largest difference in the box from the median of what surrounds it, in code values; infinite where nothing does."""
+    low, high = np.round(box[:2]).astype(int), np.round(box[:2] + box[2:]).astype(int)
+    rim = max(3, int(max(box[2:]) / 2))
+    (left, top), (right, bottom) = np.maximum(low - rim, 0), np.minimum(high + rim, picture.shape[::-1])
+    patch = picture[top:bottom, left:right].astype(np.float32)
+    inside = np.zeros(patch.shape, bool)
+    inside[max(low[1] - top, 0):max(high[1] - top, 0), max(low[0] - left, 0):max(high[0] - left, 0)] = True
+    return np.abs(patch[inside] - np.median(patch[~inside])).max() if inside.any() and not inside.all() else math.inf
+
+
+def without_faint(picture, boxes, ignored):
+    """(boxes, ignored): an aircraft that hardly stands out counts neither as aircraft nor as background."""
+    faint = np.array([contrast(picture, box) < LEAST_CONTRAST for box in boxes], bool)
+    return boxes[~faint], np.concatenate([ignored, boxes[faint]])
 
 
 def crop_of(frames, random):

@@ -52,6 +52,27 @@ class TrainDetector(unittest.TestCase):
             self.assertIn("holds no finished sequence", done.stderr)
             self.assertEqual(os.listdir(folder), [])
 
+    def test_a_faint_aircraft_counts_neither_way(self):
+        code = WITH_STAND_INS.replace('run_name="__main__")', 'run_name="script")').replace("runpy.run_path", "script = runpy.run_path") + """
+import numpy as np
+sky = np.full((100, 200), 100, np.uint8)
+sky[:, 120:] = 60  # a step in the background far from all aircraft but the last
+boxes = []
+for x, y, value in ((10, 10, 124), (40, 10, 126), (70, 10, 74), (10, 60, 76), (-3, 40, 126), (198, 96, 90)):
+    sky[max(y, 0):y + 4, max(x, 0):x + 6] = value
+    boxes.append((x, y, 6, 4))
+sky[11, 81] = 255  # beside an aircraft, and none of its own
+frames = script["Frames"]()
+frames.add(sky, np.array(boxes, np.float32), np.array([[1, 2, 3, 4]], np.float32))
+assert frames.boxes[0].tolist() == [[*boxes[k]] for k in (1, 2, 4, 5)], frames.boxes
+assert frames.ignored[0].tolist() == [[1, 2, 3, 4], [*boxes[0]], [*boxes[3]]], frames.ignored
+frames.add(sky[10:14, 10:16], np.array([[0, 0, 6, 4]], np.float32))  # nothing around it: it stays
+assert len(frames.boxes[1]) == 1 and len(frames.ignored[1]) == 0
+"""
+        done = subprocess.run([sys.executable, "-c", code, SCRIPT], capture_output=True, text=True, check=False,
+                              env={**os.environ, "PYTHONPATH": PACKAGES})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
 
 class Negatives(unittest.TestCase):
     def test_half_of_the_crops_without_an_aircraft_are_about_false_alarms(self):
