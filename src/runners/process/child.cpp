@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include <arpa/inet.h>
@@ -18,7 +19,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "foundation/base/descriptor.h"
 #include "foundation/base/error.h"
 
 extern char** environ;
@@ -33,11 +33,6 @@ constexpr std::chrono::seconds kGrace{2};                // between SIGTERM and 
   throw Error(std::string("cannot ") + what + ": " + std::strerror(errno));
 }
 
-void close_file(int& file) {
-  if (file >= 0) ::close(file);
-  file = -1;
-}
-
 struct Pipe {
   Descriptor read;
   Descriptor write;
@@ -49,10 +44,9 @@ struct Pipe {
   }
 };
 
-int take(Descriptor& end) {
-  const int file = end.release();
-  ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) | O_NONBLOCK);
-  return file;
+Descriptor unblocked(Descriptor& end) {
+  ::fcntl(end.get(), F_SETFL, ::fcntl(end.get(), F_GETFL) | O_NONBLOCK);
+  return std::move(end);
 }
 
 // A write to a process that is gone must be an error, not the end of ours.
@@ -143,20 +137,19 @@ Child::Child(const std::string& command,
   Pipe chatter;
   if (transport == Transport::kStandard) {
     process_ = spawn(command, to.read.get(), from.write.get(), chatter.write.get(), "");
-    to_ = take(to.write);
-    from_ = take(from.read);
+    to_ = unblocked(to.write);
+    from_ = unblocked(from.read);
   } else {
-    listening_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    listening_.reset(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     sockaddr_in place{};
     place.sin_family = AF_INET;
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof place;
     auto* address = reinterpret_cast<sockaddr*>(&place);
-    if (listening_ < 0 || ::bind(listening_, address, size) != 0 ||
-        ::getsockname(listening_, address, &size) != 0 || ::listen(listening_, 1) != 0) {
-      close_file(listening_);
+    const int file = listening_.get();
+    if (file < 0 || ::bind(file, address, size) != 0 || ::getsockname(file, address, &size) != 0 ||
+        ::listen(file, 1) != 0)
       fail_system("listen on the loopback device");
-    }
     // Its input is at its end from the start.
     to.write.reset();
     process_ = spawn(command,
@@ -165,7 +158,7 @@ Child::Child(const std::string& command,
                      chatter.write.get(),
                      fmt::format("TRAX_SOCKET={}", ntohs(place.sin_port)));
   }
-  chatter_ = take(chatter.read);
+  chatter_ = unblocked(chatter.read);
   unfinished_.emplace([group = process_] { ::kill(-group, SIGKILL); });
 }
 
@@ -182,15 +175,6 @@ Child::~Child() {
   int status = 0;
   while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }
-  close_all();
-}
-
-void Child::close_all() {
-  close_file(listening_);
-  if (to_ == from_) to_ = -1;
-  close_file(to_);
-  close_file(from_);
-  close_file(chatter_);
 }
 
 bool Child::ended() {
@@ -206,7 +190,7 @@ bool Child::ended() {
 std::string Child::ending() {
   const auto until = Clock::now() + std::chrono::milliseconds(500);
   while (!ended() && Clock::now() < until) ::usleep(5000);
-  if (chatter_ >= 0) drain(chatter_, false);
+  drain(chatter_);
   std::string how = "closed its output";
   if (status_)
     how = *status_ > 128 ? fmt::format("was ended by signal {}", *status_ - 128)
@@ -217,64 +201,60 @@ std::string Child::ending() {
   return last.empty() ? how : how + "; its last words: " + last;
 }
 
-void Child::fail(const std::string& what) { throw Failure(what); }
-
 void Child::keep(std::string_view text) {
   log_ += text.substr(0, kMaxLog - std::min(kMaxLog, log_.size()));
 }
 
-// Reads all that is there. False at the end.
-bool Child::drain(int& file, bool is_protocol) {
+// Reads all that is there, and closes the file at its end.
+void Child::drain(Descriptor& file) {
   std::array<char, 65536> bytes{};
   // Of one that never stops no more than this at a time, so that deadlines are looked at.
   for (int i = 0; i < 64; ++i) {
-    const ssize_t count = ::read(file, bytes.data(), bytes.size());
+    const ssize_t count = ::read(file.get(), bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
-    if (count == 0) return false;
+    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (count <= 0) return file.reset();
     const std::string_view text(bytes.data(), static_cast<std::size_t>(count));
-    if (is_protocol)
-      input_ += text;
-    else
+    if (&file == &chatter_) {
       keep(text);
-    if (is_protocol) take_lines();
+      continue;
+    }
+    input_ += text;
+    take_lines();
   }
-  return true;
 }
 
 // Chatter goes to the log as it comes, however long its line.
 void Child::take_lines() {
+  std::size_t taken = 0;
   const auto begins_message = [&] {
-    const std::string_view rest = std::string_view(input_).substr(parsed_);
+    const std::string_view rest = std::string_view(input_).substr(taken);
     return std::string_view(prefix_).starts_with(rest.substr(0, prefix_.size()));
   };
-  while (parsed_ < input_.size()) {
-    const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
+  while (taken < input_.size()) {
+    const std::size_t end = input_.find('\n', std::max(taken, searched_));
     searched_ = end == std::string::npos ? input_.size() : end;
     if (!skips_line_ && begins_message()) {
-      if (end == std::string::npos && input_.size() - parsed_ > kMaxBytes)
-        fail("sent a message of more than 64 MB");
+      if (end == std::string::npos && input_.size() - taken > kMaxBytes)
+        throw Failure("sent a message of more than 64 MB");
       break;
     }
     const std::size_t stop = end == std::string::npos ? input_.size() : end + 1;
-    keep(std::string_view(input_).substr(parsed_, stop - parsed_));
+    keep(std::string_view(input_).substr(taken, stop - taken));
     skips_line_ = end == std::string::npos;
-    parsed_ = stop;
+    taken = stop;
   }
-  if (parsed_ == input_.size() || parsed_ > (std::size_t{1} << 20)) {
-    input_.erase(0, parsed_);
-    searched_ -= std::min(searched_, parsed_);
-    parsed_ = 0;
-  }
+  input_.erase(0, taken);
+  searched_ -= std::min(searched_, taken);
 }
 
 std::optional<std::string> Child::line_from_input() {
   take_lines();
-  const std::size_t end = input_.find('\n', std::max(parsed_, searched_));
+  const std::size_t end = input_.find('\n', searched_);
   if (end == std::string::npos) return std::nullopt;
-  std::string line = input_.substr(parsed_, end - parsed_);
-  parsed_ = end + 1;
-  searched_ = parsed_;
+  std::string line = input_.substr(0, end);
+  input_.erase(0, end + 1);
+  searched_ = 0;
   return line;
 }
 
@@ -283,39 +263,39 @@ void Child::pump(Clock::time_point deadline, std::string_view* unsent) {
   if (stop_.stop_requested()) throw Interrupted();
   const auto left =
       std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-  if (left <= 0) fail("did not answer in time");
+  if (left <= 0) throw Failure("did not answer in time");
   const bool writes = unsent != nullptr && !unsent->empty();
   std::array<pollfd, 3> files = {
-      {{from_, POLLIN, 0}, {chatter_, POLLIN, 0}, {writes ? to_ : -1, POLLOUT, 0}}};
-  if (listening_ >= 0) files[0].fd = listening_;
+      {{listening_.is_open() ? listening_.get() : from_.get(), POLLIN, 0},
+       {chatter_.get(), POLLIN, 0},
+       {writes ? to_.get() : -1, POLLOUT, 0}}};
   const auto most = std::min<std::int64_t>(left, kBetweenLooks.count());
   if (::poll(files.data(), files.size(), static_cast<int>(most)) <= 0) return;
-  if (files[1].revents != 0 && !drain(chatter_, false)) close_file(chatter_);
-  if (listening_ >= 0) return;
-  if (files[0].revents != 0 && !drain(from_, true)) {
-    if (to_ == from_) to_ = -1;
-    close_file(from_);
-  }
-  if (writes && files[2].revents != 0 && to_ >= 0) {
+  if (files[1].revents != 0) drain(chatter_);
+  if (listening_.is_open()) return;
+  if (files[0].revents != 0) drain(from_);
+  if (files[2].revents != 0) {
     const NoPipeSignal guard;
     asked_at_ = Clock::now();
-    const ssize_t count = ::write(to_, unsent->data(), unsent->size());
+    const ssize_t count = ::write(to_.get(), unsent->data(), unsent->size());
     if (count > 0)
       unsent->remove_prefix(static_cast<std::size_t>(count));
     else if (errno != EAGAIN && errno != EINTR)
-      fail(ending());
+      throw Failure(ending());
   }
 }
 
 void Child::accept(Clock::time_point deadline) {
-  while (listening_ >= 0) {
-    const int connected = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (connected >= 0) {
-      close_file(listening_);
-      to_ = from_ = connected;
+  while (listening_.is_open()) {
+    Descriptor connected(
+        ::accept4(listening_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (connected.is_open()) {
+      listening_.reset();
+      to_.reset(::fcntl(connected.get(), F_DUPFD_CLOEXEC, 0));
+      from_ = std::move(connected);
       return;
     }
-    if (ended()) fail(ending());
+    if (ended()) throw Failure(ending());
     pump(deadline, nullptr);
   }
 }
@@ -323,7 +303,7 @@ void Child::accept(Clock::time_point deadline) {
 void Child::write(std::string_view bytes, Clock::time_point deadline) {
   accept(deadline);
   while (!bytes.empty()) {
-    if (to_ < 0) fail(ending());
+    if (!to_.is_open()) throw Failure(ending());
     pump(deadline, &bytes);
   }
 }
@@ -332,16 +312,13 @@ std::string Child::read(Clock::time_point deadline) {
   accept(deadline);
   while (true) {
     if (auto line = line_from_input()) return *line;
-    if (from_ < 0) fail(ending());
+    if (!from_.is_open()) throw Failure(ending());
     pump(deadline, nullptr);
   }
 }
 
 std::optional<std::string> Child::read_if_there() {
-  if (from_ >= 0 && !drain(from_, true)) {
-    if (to_ == from_) to_ = -1;
-    close_file(from_);
-  }
+  drain(from_);
   return line_from_input();
 }
 
@@ -349,8 +326,8 @@ void Child::wait(Clock::time_point deadline) {
   while (!ended() && Clock::now() < deadline) {
     // Nobody reads it any more.
     input_.clear();
-    parsed_ = searched_ = 0;
-    if (from_ >= 0 || chatter_ >= 0)
+    searched_ = 0;
+    if (from_.is_open() || chatter_.is_open())
       pump(std::min(deadline, Clock::now() + std::chrono::milliseconds(20)), nullptr);
     else
       ::usleep(2000);

@@ -12,6 +12,7 @@
 
 #include <sys/types.h>
 
+#include "foundation/base/descriptor.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth::process {
@@ -76,29 +77,25 @@ class Child {
  private:
   void accept(Clock::time_point deadline);
   void pump(Clock::time_point deadline, std::string_view* unsent);
-  bool drain(int& file, bool is_protocol);
+  void drain(Descriptor& file);
   void take_lines();
   std::optional<std::string> line_from_input();
   void keep(std::string_view text);
-  [[noreturn]] void fail(const std::string& what);
   std::string ending();
   bool ended();
-  void close_all();
 
   std::stop_token stop_;
   std::string prefix_;
   pid_t process_ = -1;
   std::optional<Unfinished> unfinished_;  // its process group is ended
   std::optional<int> status_;
-  int listening_ = -1;
-  int to_ = -1;
-  int from_ = -1;     // protocol
-  int chatter_ = -1;  // standard error; with a socket, standard output too
+  Descriptor listening_;
+  Descriptor to_;
+  Descriptor from_;     // protocol; with a socket, it and to_ are two descriptors of that
+  Descriptor chatter_;  // standard error; with a socket, standard output too
   std::string input_;
   // Number of bytes of input_ that were searched for a line's end.
   std::size_t searched_ = 0;
-  // Number of bytes of input_ whose lines were taken.
-  std::size_t parsed_ = 0;
   // True within a line that is no message and too long to hold.
   bool skips_line_ = false;
   Clock::time_point asked_at_;
