@@ -28,13 +28,6 @@ constexpr std::size_t kMostValues = std::size_t{1} << 28;  // of a tensor: 1 GiB
 
 }  // namespace
 
-Samples make_samples(int width, int height, int channels) {
-  Samples samples{width, height, channels, {}};
-  samples.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                        static_cast<std::size_t>(channels));
-  return samples;
-}
-
 std::string in_words(const std::vector<int>& shape) {
   return fmt::format("{}", fmt::join(shape, " x "));
 }
@@ -105,11 +98,13 @@ NetworkChild::NetworkChild(const NetworkJob& job, int threads, std::stop_token s
   answer(NetworkMessage::kLoaded, "cannot be loaded as an ONNX network");
 }
 
-std::vector<Tensor> NetworkChild::run(const Samples& samples) {
+std::vector<Tensor> NetworkChild::run(int width,
+                                      int height,
+                                      std::span<const std::uint8_t> samples) {
   sandbox::WireWriter out;
-  out.put(static_cast<std::int32_t>(samples.width));
-  out.put(static_cast<std::int32_t>(samples.height));
-  out.put_raw(samples.values.data(), samples.values.size());
+  out.put(static_cast<std::int32_t>(width));
+  out.put(static_cast<std::int32_t>(height));
+  out.put_raw(samples.data(), samples.size());
   const double left_s =
       kRunSeconds * (kFreeRuns + static_cast<double>(++runs_) / kRunsPerLimit) - spent_s_;
   if (!(left_s > 0))
@@ -118,15 +113,14 @@ std::vector<Tensor> NetworkChild::run(const Samples& samples) {
                             runs_ - 1,
                             kRunSeconds / kRunsPerLimit));
   const Stopwatch watch;
-  process_.set_deadline(kRunSeconds,
-                        fmt::format("gives no answer for an input of {} x {} px within {:g} s",
-                                    samples.width,
-                                    samples.height,
-                                    kRunSeconds));
+  process_.set_deadline(
+      kRunSeconds,
+      fmt::format(
+          "gives no answer for an input of {} x {} px within {:g} s", width, height, kRunSeconds));
   process_.send(NetworkMessage::kRun, out.take());
   const std::string bytes =
       answer(NetworkMessage::kOutputs,
-             fmt::format("cannot be run on an input of {} x {} px", samples.width, samples.height));
+             fmt::format("cannot be run on an input of {} x {} px", width, height));
   spent_s_ += watch.seconds();
   return tensors_from_bytes(bytes);
 }

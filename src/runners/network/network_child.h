@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -13,16 +14,6 @@
 // A network in a child process, airtruth-network-runner, which can only return numbers: OpenCV's
 // reader of ONNX files was not written for files of strangers (docs/decisions/0035).
 namespace airtruth::network {
-
-// Packed samples of 8 bits, row after row, the channels of a pixel beside one another.
-struct Samples {
-  int width = 0;
-  int height = 0;
-  int channels = 1;
-  std::vector<std::uint8_t> values;  // width * height * channels
-};
-
-Samples make_samples(int width, int height, int channels);  // zeros
 
 // An output of the network: the last dimension varies fastest.
 struct Tensor {
@@ -77,9 +68,9 @@ class NetworkChild {
   // text that goes on after the model's name, where the network cannot be loaded, and Interrupted.
   NetworkChild(const NetworkJob& job, int threads, std::stop_token stop);
 
-  // The outputs for one input. Throws Error likewise. After an Error the child may have ended: make
-  // another.
-  std::vector<Tensor> run(const Samples& samples);
+  // The outputs for one input: samples of 8 bits, row after row, the channels of a pixel beside one
+  // another. Throws Error likewise. After an Error the child may have ended: make another.
+  std::vector<Tensor> run(int width, int height, std::span<const std::uint8_t> samples);
 
  private:
   std::string answer(NetworkMessage wanted, const std::string& did_not);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <opencv2/core.hpp>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -29,22 +30,21 @@ NetworkJob job_of(const ModelDescription& description, std::string onnx) {
 }
 
 // A grey input of the size that the network will see.
-Samples trial_of(const NetworkInput& input) {
+cv::Mat trial_of(const NetworkInput& input) {
   const int multiple = input.multiple_px;
   const int side = (kTrialPx + multiple - 1) / multiple * multiple;
-  Samples samples = input.fit == NetworkInput::Fit::kFrame
-                        ? make_samples(side, side, input.channels())
-                        : make_samples(input.width, input.height, input.channels());
-  std::ranges::fill(samples.values, std::uint8_t{128});
-  return samples;
+  const cv::Size size = input.fit == NetworkInput::Fit::kFrame
+                            ? cv::Size(side, side)
+                            : cv::Size(input.width, input.height);
+  return {size, CV_8UC(input.channels()), cv::Scalar::all(128)};
 }
 
 // Whether a box touches a side of its tile on which the frame goes on: its object may be cut.
 bool is_cut(const Box& box, const Piece& tile, const image::Picture& picture) {
   const auto& [samples, place] = tile;
   return (place.x_px > 0 && box.x <= 0) || (place.y_px > 0 && box.y <= 0) ||
-         (place.x_px + samples.width < picture.width && box.right() >= samples.width) ||
-         (place.y_px + samples.height < picture.height && box.bottom() >= samples.height);
+         (place.x_px + samples.cols < picture.width && box.right() >= samples.cols) ||
+         (place.y_px + samples.rows < picture.height && box.bottom() >= samples.rows);
 }
 
 bool is_centred_in(const image::Picture& picture, const Box& box) {
@@ -81,8 +81,7 @@ class OnnxDetector : public detector::Detector {
         options_(options) {
     try {
       start();
-      const Samples trial = trial_of(description_.input);
-      decoded(child_->run(trial), description_, trial.width, trial.height);
+      answer_to(trial_of(description_.input));
     } catch (const Error& error) {
       throw Error(error.message(), {model_.string()});
     }
@@ -115,6 +114,11 @@ class OnnxDetector : public detector::Detector {
  private:
   void start() { child_ = std::make_unique<NetworkChild>(job_, options_.threads, options_.stop); }
 
+  std::vector<results::Detection> answer_to(const cv::Mat& samples) {
+    const auto outputs = child_->run(
+        samples.cols, samples.rows, {samples.data, samples.total() * samples.elemSize()});
+    return decoded(outputs, description_, samples.cols, samples.rows);
+  }
   bool is_letterbox() const { return description_.input.fit == NetworkInput::Fit::kLetterbox; }
 
   std::vector<results::Detection> found_in(const image::Picture& picture) {
@@ -122,8 +126,7 @@ class OnnxDetector : public detector::Detector {
     const std::vector<Piece> pieces = pieces_of(picture, description_.input);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const auto& [samples, placement] = pieces[i];
-      for (results::Detection& one :
-           decoded(child_->run(samples), description_, samples.width, samples.height)) {
+      for (results::Detection& one : answer_to(samples)) {
         const bool cut = !is_letterbox() && is_cut(one.box_px, pieces[i], picture);
         one.box_px = in_frame(one.box_px, placement);
         // The padding of a whole frame and of tiles repeats the frame's last samples: what has its

@@ -3,10 +3,11 @@
 
 #include <vector>
 
+#include <opencv2/core.hpp>
+
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 #include "runners/network/model_description.h"
-#include "runners/network/network_child.h"
 
 // A frame as the pieces that a network sees, each with its place in the frame.
 namespace airtruth::network {
@@ -19,13 +20,13 @@ struct Placement {
 };
 
 struct Piece {
-  Samples samples;
+  cv::Mat samples;  // of 8 bits, without gaps between rows
   Placement placement;
 };
 
 // The frame in the network's layout. Grey is luma in the full range 0..255; for a picture of R, G
 // and B it is Rec. 601's.
-Samples samples_of(const image::Picture& picture, NetworkInput::Layout layout);
+cv::Mat samples_of(const image::Picture& picture, NetworkInput::Layout layout);
 
 // The pieces of a frame, by NetworkInput::fit. Beyond the frame's right and lower edge its last
 // column and row are repeated; beside a letterbox the samples are 114, as YOLOv5 has them.

@@ -176,11 +176,11 @@ TEST_F(Networks, ALetterboxIsResizedAsItsDescriptionSays) {
   input.width = input.height = 32;
   const auto samples = [&](NetworkInput::Resize resize) {
     input.resize = resize;
-    return pieces_of(picture, input)[0].samples.values;
+    return pieces_of(picture, input)[0].samples;
   };
   // Columns 3 to 5 of the frame hold 255, 0, 0.
-  EXPECT_EQ(samples(NetworkInput::Resize::kArea)[1], 85);
-  EXPECT_EQ(samples(NetworkInput::Resize::kLinear)[1], 0);
+  EXPECT_EQ(samples(NetworkInput::Resize::kArea).at<std::uint8_t>(0, 1), 85);
+  EXPECT_EQ(samples(NetworkInput::Resize::kLinear).at<std::uint8_t>(0, 1), 0);
 }
 
 TEST_F(Networks, AFileThatIsNoNetworkIsOneLine) {
@@ -288,8 +288,8 @@ TEST(NetworkInput, GreyIsLumaInFullRange) {
   image::Picture picture = image::make_picture(4, 1, colour);
   const std::uint8_t coded[] = {16, 235, 126, 3};
   std::copy_n(coded, 4, picture.planes[0].row(0));
-  EXPECT_EQ(samples_of(picture, NetworkInput::Layout::kGrey).values,
-            (std::vector<std::uint8_t>{0, 255, 128, 0}));
+  const std::vector<std::uint8_t> samples = samples_of(picture, NetworkInput::Layout::kGrey);
+  EXPECT_EQ(samples, (std::vector<std::uint8_t>{0, 255, 128, 0}));
 }
 
 }  // namespace
