@@ -115,5 +115,14 @@ TEST(Assignment, RefusesWhatIsNoCost) {
   EXPECT_THROW(least_cost_assignment(matrix({{-kForbidden, 9}, {0, 1}})), std::invalid_argument);
 }
 
+TEST(GatedPairs, GroupsAreSolvedApart) {
+  // Rows 0 and 1 compete for column 0, row 1 may have column 1; row 2 is alone with column 3.
+  const auto columns = least_cost_pairs({{0, 0, 2}, {1, 0, 1}, {1, 1, 4}, {2, 3, 5}}, 4, 4, 10);
+  EXPECT_EQ(columns, (std::vector<std::optional<std::size_t>>{0, 1, 3, std::nullopt}));
+  // Where it is cheaper to remain alone, a row does.
+  EXPECT_EQ(least_cost_pairs({{0, 0, 2}, {1, 0, 1}, {1, 1, 4}}, 2, 2, 2.5),
+            (std::vector<std::optional<std::size_t>>{std::nullopt, 0}));
+}
+
 }  // namespace
 }  // namespace airtruth::matching

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "evaluation/matching/assignment.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
-#include "runners/association/gated_pairs.h"
 
 namespace airtruth::association {
 namespace {
@@ -138,7 +138,7 @@ void Associator::match(const std::vector<results::Detection>& detections,
                        std::vector<Seen>& seen,
                        bool declared,
                        bool confident) {
-  std::vector<GatedPair> pairs;
+  std::vector<matching::GatedPair> pairs;
   // The negative log likelihood of a miss: a detection within the gate is better than none, so
   // that as many tracks as possible have one.
   double alone = 0;
@@ -158,7 +158,7 @@ void Associator::match(const std::vector<results::Detection>& detections,
       alone = pairs.size() == 1 ? least : std::max(alone, least);
     }
   }
-  const auto chosen = least_cost_pairs(pairs, tracks_.size(), seen.size(), alone);
+  const auto chosen = matching::least_cost_pairs(pairs, tracks_.size(), seen.size(), alone);
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     if (!chosen[t]) continue;
     Seen& one = seen[*chosen[t]];

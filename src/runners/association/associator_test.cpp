@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
-#include "runners/association/gated_pairs.h"
 
 namespace airtruth::association {
 namespace {
@@ -302,15 +301,6 @@ TEST(Options, OutOfRangeIsAnError) {
   EXPECT_THROW(Associator({.declare_m = 4, .declare_n = 3}), Error);
   EXPECT_THROW(Associator({.declare_m = 0, .declare_n = 3}), Error);
   EXPECT_THROW(Associator({.confident_score = std::numeric_limits<double>::quiet_NaN()}), Error);
-}
-
-TEST(GatedPairs, GroupsAreSolvedApart) {
-  // Rows 0 and 1 compete for column 0, row 1 may have column 1; row 2 is alone with column 3.
-  const auto columns = least_cost_pairs({{0, 0, 2}, {1, 0, 1}, {1, 1, 4}, {2, 3, 5}}, 4, 4, 10);
-  EXPECT_EQ(columns, (std::vector<std::optional<std::size_t>>{0, 1, 3, std::nullopt}));
-  // Where it is cheaper to remain alone, a row does.
-  EXPECT_EQ(least_cost_pairs({{0, 0, 2}, {1, 0, 1}, {1, 1, 4}}, 2, 2, 2.5),
-            (std::vector<std::optional<std::size_t>>{std::nullopt, 0}));
 }
 
 }  // namespace
