@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "evaluation/detector_evaluation/film.h"
+#include "evaluation/report/run_options.h"
 #include "evaluation/scores/detector_score.h"
 
 // The page of an evaluation of detectors, and its plots for papers.
