@@ -51,7 +51,7 @@ void add_one_pass(const TruthClip& truth,
   for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
   if (lost) {
     const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
-    scored.loss = {frame.frame, frame.time_s, truth.range_m[*lost]};
+    scored.loss = {frame.frame, frame.time_s, truth.range_m(*lost)};
     if (!scored.loss->time_s && truth.clip.frame_rate_hz)
       scored.loss->time_s = static_cast<double>(frame.frame) / *truth.clip.frame_rate_hz;
   }
@@ -124,8 +124,8 @@ void break_down(const std::vector<TruthClip>& truths, ScoredTracker& tracker) {
     const TruthClip& truth = truths[sequence.truth];
     for (const measures::Outcome& outcome : sequence.outcomes) {
       all.push_back(outcome);
-      values["range_m"].push_back(truth.range_m[outcome.frame]);
-      values["size_px"].push_back(truth.size_px[outcome.frame]);
+      values["range_m"].push_back(truth.range_m(outcome.frame));
+      values["size_px"].push_back(truth.size_px(outcome.frame));
       values["contrast"].push_back(truth.contrast[outcome.frame]);
       by_background[truth.background].push_back(outcome);
       for (const auto& [key, edges] : statistics::kWeatherEdges) {

@@ -268,7 +268,8 @@ Json sequence_json(const Assessment& assessment, std::size_t index, std::size_t 
   Json boxes = Json::array();
   for (const std::size_t i : shown) {
     frame.push_back(truth.clip.frames[i].frame);
-    range.push_back(truth.range_m[i] ? Json(short_of(*truth.range_m[i])) : Json());
+    const std::optional<double> range_m = truth.range_m(i);
+    range.push_back(range_m ? Json(short_of(*range_m)) : Json());
     boxes.push_back(box_json(truth.box(i)));
   }
   Json trackers = Json::array();
@@ -319,9 +320,7 @@ void write_film(const Assessment& assessment, std::size_t index, const fs::path&
   const TruthClip& truth = assessment.truths[index];
   if (truth.stills.empty()) return;
   std::vector<drawing::NamedPicture> pictures;
-  const std::size_t count = std::min(kFilmPictures, truth.stills.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t at = count > 1 ? k * (truth.stills.size() - 1) / (count - 1) : 0;
+  for (const std::size_t at : report::spread_over(truth.stills.size(), kFilmPictures)) {
     const report::Still& still = truth.stills[at];
     std::vector<drawing::ColouredBox> boxes;
     if (const auto box = truth.box(still.index)) boxes.push_back({*box, kTruthOnPictures});

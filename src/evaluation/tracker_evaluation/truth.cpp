@@ -17,20 +17,6 @@ std::optional<lens::Lens> lens_of(const labelled::LabelledSet& set, const std::s
   return annotation::lens_of(replay::open_finished(set.folder(name)).truth.lens);
 }
 
-TruthClip truth_from(exchange::Clip clip) {
-  TruthClip truth;
-  for (const exchange::LabelledFrame& frame : clip.frames) {
-    const exchange::Label* label = frame.labels.empty() ? nullptr : &frame.labels.front();
-    truth.range_m.push_back(label != nullptr ? label->range_m : std::nullopt);
-    truth.size_px.push_back(label != nullptr
-                                ? std::optional(std::max(label->box_px.width, label->box_px.height))
-                                : std::nullopt);
-  }
-  truth.contrast.resize(clip.frames.size());
-  truth.clip = std::move(clip);
-  return truth;
-}
-
 PixelBox covered(const Box& box) {
   const PixelBox touched = pixels_of(box);
   return {touched.x, touched.y, std::max(1, touched.width), std::max(1, touched.height)};
@@ -45,10 +31,12 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& w
     const auto lens = lens_of(set, name);
     const labelled::ClipFacts facts = set.facts(name);
     for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name, boxes))) {
-      truths.push_back(truth_from(std::move(clip)));
-      truths.back().lens = lens;
-      truths.back().background = facts.background_name;
-      truths.back().weather = facts.weather;
+      TruthClip& truth = truths.emplace_back();
+      truth.contrast.resize(clip.frames.size());
+      truth.clip = std::move(clip);
+      truth.lens = lens;
+      truth.background = facts.background_name;
+      truth.weather = facts.weather;
     }
   }
   std::ranges::sort(

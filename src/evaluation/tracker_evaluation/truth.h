@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <stop_token>
@@ -27,15 +28,22 @@ struct TruthClip {
   std::map<std::string, double> weather;
   // Set for rendered sequences.
   std::optional<lens::Lens> lens;
-  // By frame of the clip; empty where the object is not visible or the value is unknown.
-  std::vector<std::optional<double>> range_m;
-  std::vector<std::optional<double>> size_px;  // longer side of the box, px
-  // Contrast in grey levels (show/drawing/thumbnails.h), filled in by add_film().
+  // Contrast in grey levels (show/drawing/thumbnails.h) by frame of the clip, filled in by
+  // add_film(). Empty, as all below, where the object is not visible or the value is unknown.
   std::vector<std::optional<double>> contrast;
   // Some frames, for the page.
   std::vector<report::Still> stills;
 
   std::optional<Box> box(std::size_t i) const { return results::box_of(clip.frames[i]); }
+  std::optional<double> range_m(std::size_t i) const {
+    const std::vector<exchange::Label>& labels = clip.frames[i].labels;
+    return labels.empty() ? std::nullopt : labels.front().range_m;
+  }
+  // The longer side of the box.
+  std::optional<double> size_px(std::size_t i) const {
+    const std::optional<Box> shown = box(i);
+    return shown ? std::optional(std::max(shown->width, shown->height)) : std::nullopt;
+  }
 };
 
 constexpr report::CutoutOptions kClose = {
