@@ -53,9 +53,8 @@ exchange::Clip clip() {
   return clip;
 }
 
-void check(const results::TrackerResults::Run& run) {
-  if (!run.seconds.empty() && run.seconds.size() != run.frames.size()) std::abort();
-  for (const evaluation::VotFrame& frame : run.frames)
+void check(const evaluation::Trajectory& run) {
+  for (const evaluation::VotFrame& frame : run)
     if (frame.box && !(frame.box->width > 0 && frame.box->height > 0 &&
                        std::isfinite(frame.box->x + frame.box->y + frame.box->area())))
       std::abort();
@@ -80,10 +79,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const Error&) {
     return 0;
   }
-  for (const auto* runs : {&results.one_pass, &results.restart, &results.multistart})
-    for (const results::TrackerResults::Run& run : *runs) check(run);
-  for (const auto* runs : {&results.one_pass, &results.restart})
-    for (const results::TrackerResults::Run& run : *runs)
-      if (run.frames.size() != truth.frames.size()) std::abort();
+  for (const evaluation::AnchorRun& run : results.multistart) check(run.frames);
+  std::vector<evaluation::Trajectory> whole = results.restart;
+  if (results.one_pass) {
+    if (results.one_pass->seconds.size() != results.one_pass->frames.size()) std::abort();
+    whole.push_back(results.one_pass->frames);
+  }
+  for (const evaluation::Trajectory& run : whole) {
+    check(run);
+    if (run.size() != truth.frames.size()) std::abort();
+  }
   return 0;
 }

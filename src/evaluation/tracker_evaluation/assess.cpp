@@ -31,18 +31,13 @@ constexpr std::size_t kMinStillsOfOne = 4;
 const std::vector<double> kSizeEdges_px = {0, 5, 10, 15, 20, 30, 40, 60, 80, 120, 200, 400};
 const std::vector<double> kContrastEdges = {0, 4, 8, 12, 16, 24, 32, 48, 64, 96};
 
-std::vector<FramePair> pairs_of(const TruthClip& truth, const results::TrackerResults::Run& run) {
-  std::vector<FramePair> pairs;
-  for (std::size_t i = 0; i < run.frames.size(); ++i)
-    pairs.push_back({truth.box(i), run.frames[i].box, run.seconds.empty() ? 0 : run.seconds[i]});
-  return pairs;
-}
-
 void add_one_pass(const TruthClip& truth,
-                  const results::TrackerResults::Run& run,
+                  const results::TrackerResults::OnePass& run,
                   bool until_loss,
                   ScoredSequence& scored) {
-  std::vector<FramePair> pairs = pairs_of(truth, run);
+  std::vector<FramePair> pairs;
+  for (std::size_t i = 0; i < run.frames.size(); ++i)
+    pairs.push_back({truth.box(i), run.frames[i].box, run.seconds[i]});
   const auto lost = evaluation::first_loss(pairs);
   if (until_loss && lost)
     for (std::size_t i = *lost; i < pairs.size(); ++i) pairs[i].seconds = 0;
@@ -55,29 +50,6 @@ void add_one_pass(const TruthClip& truth,
     if (!scored.loss->time_s && truth.clip.frame_rate_hz)
       scored.loss->time_s = static_cast<double>(frame.frame) / *truth.clip.frame_rate_hz;
   }
-}
-
-evaluation::RestartRuns restart_runs(const TruthClip& truth,
-                                     const results::TrackerResults& results) {
-  evaluation::RestartRuns runs{results::vot_truth(truth.clip), {}};
-  for (const results::TrackerResults::Run& run : results.restart) runs.runs.push_back(run.frames);
-  return runs;
-}
-
-evaluation::MultiStartRuns multistart_runs(const TruthClip& truth,
-                                           const results::TrackerResults& results) {
-  evaluation::MultiStartRuns runs{results::vot_truth(truth.clip), {}};
-  const std::int64_t length = std::ssize(truth.clip.frames);
-  for (const results::TrackerResults::Run& run : results.multistart) {
-    const std::int64_t anchor = run.anchor;
-    // An anchor in the exact middle is equally far from both ends; it runs forward, as in
-    // anchors_of().
-    const bool goes_forward = std::ssize(run.frames) == length - anchor;
-    const bool goes_backward = std::ssize(run.frames) == anchor + 1;
-    runs.runs.push_back(
-        {anchor, goes_backward && (!goes_forward || anchor >= (length + 1) / 2), run.frames});
-  }
-  return runs;
 }
 
 // Reads the results of a folder for each truth. Throws Error where there are none. Warns of results
@@ -184,14 +156,13 @@ ScoredTracker scored_tracker(const Assessment& about,
     ScoredSequence scored;
     scored.truth = i;
     scored.name = truth.clip.name;
-    if (!results.one_pass.empty())
-      add_one_pass(truth, results.one_pass.front(), about.until_loss, scored);
+    if (results.one_pass) add_one_pass(truth, *results.one_pass, about.until_loss, scored);
     if (!results.restart.empty()) {
-      restarts.push_back(restart_runs(truth, results));
+      restarts.push_back({results::vot_truth(truth.clip), results.restart});
       scored.restart = evaluation::restart_score({&restarts.back(), 1}, about.eao_range);
     }
     if (!results.multistart.empty()) {
-      multistarts.push_back(multistart_runs(truth, results));
+      multistarts.push_back({results::vot_truth(truth.clip), results.multistart});
       scored.multistart = evaluation::multistart_score({&multistarts.back(), 1}, about.eao_range);
     }
     tracker.sequences.push_back(std::move(scored));

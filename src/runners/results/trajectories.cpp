@@ -44,10 +44,11 @@ Trajectory read_trajectory(const fs::path& file, int origin_px) {
   return trajectory;
 }
 
-// Empty where there is no time; 0 for a blank line, which VOT's toolkit writes for a frame without
-// a time. Of several columns (GOT-10k's repetitions) the first is read.
+// 0 where there is no file, and for a blank line, which VOT's toolkit writes for a frame without a
+// time. Of several columns (GOT-10k's repetitions) the first is read.
 std::vector<double> read_times(const fs::path& file, std::size_t frames) {
-  if (!fs::exists(file)) return {};
+  std::vector<double> seconds(frames, 0);
+  if (!fs::exists(file)) return seconds;
   const std::vector<exchange::Line> filled = exchange::lines_of(file);
   const std::string text = read_file(file);
   const auto ends = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -55,7 +56,6 @@ std::vector<double> read_times(const fs::path& file, std::size_t frames) {
   const bool has_blanks = filled.size() != frames;
   if (has_blanks && lines != frames)
     throw Error(fmt::format("has {} lines; its results have {}", lines, frames), {file.string()});
-  std::vector<double> seconds(frames, 0);
   for (std::size_t i = 0; i < filled.size(); ++i) {
     const std::vector<double> numbers = exchange::numbers_of(filled[i], file);
     const std::size_t at = has_blanks ? static_cast<std::size_t>(filled[i].number - 1) : i;
@@ -135,13 +135,12 @@ void expect_begun(const Trajectory& trajectory, const fs::path& file) {
     throw Error("does not begin with 1; expected a run of VOT", {file.string(), 1});
 }
 
-TrackerResults::Run one_pass_run(const fs::path& file, const exchange::Clip& clip, int origin_px) {
-  TrackerResults::Run run;
-  run.frames = is_mot(file) ? read_mot(file, clip) : read_trajectory(file, origin_px);
+Trajectory one_pass_run(const fs::path& file, const exchange::Clip& clip, int origin_px) {
+  Trajectory run = is_mot(file) ? read_mot(file, clip) : read_trajectory(file, origin_px);
   // VOT's unsupervised runs mark their start.
-  for (VotFrame& frame : run.frames)
+  for (VotFrame& frame : run)
     if (frame.mark != Mark::kAnswer) frame = {Mark::kAnswer, {}};
-  expect_length(run.frames, clip, file);
+  expect_length(run, clip, file);
   return run;
 }
 
@@ -177,13 +176,15 @@ void add_vot_runs(const fs::path& folder,
   for (const fs::path& file : vot_files(folder)) {
     const auto number = number_of(file, clip.name);
     if (!number) continue;
-    TrackerResults::Run run{read_trajectory(file, origin_px), {}, *number};
-    run.seconds =
-        read_times(file.parent_path() / (file.stem().string() + "_time.value"), run.frames.size());
-    expect_begun(run.frames, file);
+    Trajectory run = read_trajectory(file, origin_px);
+    // No measure has the times of these runs; they are checked alone.
+    read_times(times_file(file, Protocol::kRestart), run.size());
+    expect_begun(run, file);
     if (is_anchor_name(file, clip.name)) {
-      const std::int64_t lines = std::ssize(run.frames);
-      if (lines != length - *number && lines != *number + 1)
+      const std::int64_t lines = std::ssize(run);
+      const bool goes_forward = lines == length - *number;
+      const bool goes_backward = lines == *number + 1;
+      if (!goes_forward && !goes_backward)
         throw Error(fmt::format("has {} lines; from frame {} {} has {} to its end and {} to its "
                                 "beginning",
                                 lines,
@@ -192,9 +193,12 @@ void add_vot_runs(const fs::path& folder,
                                 length - *number,
                                 *number + 1),
                     {file.string()});
-      results.multistart.push_back(std::move(run));
+      // An anchor in the exact middle is equally far from both ends; it runs forward, as in
+      // anchors_of().
+      const bool is_backward = goes_backward && (!goes_forward || *number >= (length + 1) / 2);
+      results.multistart.push_back({*number, is_backward, std::move(run)});
     } else {
-      expect_length(run.frames, clip, file);
+      expect_length(run, clip, file);
       results.restart.push_back(std::move(run));
     }
   }
@@ -250,14 +254,11 @@ TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, 
   TrackerResults results;
   const fs::path own = folder / (clip.name + ".txt");
   const fs::path got10k = folder / clip.name / (clip.name + "_001.txt");
-  if (fs::exists(own)) {
-    results.one_pass.push_back(one_pass_run(own, clip, origin_px));
-    results.one_pass.back().seconds =
-        read_times(times_file(own, Protocol::kOnePass), clip.frames.size());
-  } else if (fs::exists(got10k)) {
-    results.one_pass.push_back(one_pass_run(got10k, clip, origin_px));
-    results.one_pass.back().seconds =
-        read_times(got10k.parent_path() / (clip.name + "_time.txt"), clip.frames.size());
+  for (const fs::path& file : {own, got10k}) {
+    if (results.one_pass || !fs::exists(file)) continue;
+    const fs::path times = file.parent_path() / (clip.name + "_time.txt");
+    results.one_pass = TrackerResults::OnePass{one_pass_run(file, clip, origin_px),
+                                               read_times(times, clip.frames.size())};
   }
   for (const char* place : kVotPlaces)
     add_vot_runs(folder / place / clip.name, clip, origin_px, results);

@@ -49,15 +49,14 @@ std::string text_of(const std::vector<double>& seconds);  // to the nanosecond
 
 // The results of one sequence in a folder.
 struct TrackerResults {
-  struct Run {
+  struct OnePass {
     evaluation::Trajectory frames;
-    std::vector<double> seconds;  // empty where no times exist
-    std::int64_t anchor = 0;      // of a multistart run
+    std::vector<double> seconds;  // of each frame; 0 where no time exists
   };
-  std::vector<Run> one_pass;  // at most one
-  std::vector<Run> restart;
-  std::vector<Run> multistart;
-  bool empty() const { return one_pass.empty() && restart.empty() && multistart.empty(); }
+  std::optional<OnePass> one_pass;
+  std::vector<evaluation::Trajectory> restart;
+  std::vector<evaluation::AnchorRun> multistart;
+  bool empty() const { return !one_pass && restart.empty() && multistart.empty(); }
 };
 
 // `origin_px` is the coordinate that the results give to the first pixel, 0 or 1 (always 1 for

@@ -85,27 +85,34 @@ TEST(Times, KeepTheNanosecond) {
   folder.file("a.txt", "1,2,3,4\n1,2,3,4\n1,2,3,4\n1,2,3,4\n1,2,3,4\n1,2,3,4\n");
   // With the six decimals of older results, and with nine.
   folder.file("a_time.txt", "0.000001\n0.000001\n0.000000\n0.000001234\n0.5\n2\n");
-  EXPECT_THAT(read_results(folder.path(), clip(), 0).one_pass.at(0).seconds,
+  EXPECT_THAT(read_results(folder.path(), clip(), 0).one_pass->seconds,
               ElementsAre(1e-6, 1e-6, 0, 1.234e-6, 0.5, 2));
 }
 
 // VOT's toolkit writes an empty line for a frame without a time.
 TEST(Times, BlankLinesAreFramesWithoutATime) {
   const ResultsFolder folder;
-  folder.file("baseline/a/a_001.txt", kText);
-  const std::string times = "baseline/a/a_001_time.value";
+  folder.file("a.txt", kText);
+  const std::string times = "a_time.txt";
   folder.file(times, "0.5\n\n0.25\n\n\n\n");
-  EXPECT_THAT(read_results(folder.path(), clip(), 0).restart.at(0).seconds,
+  EXPECT_THAT(read_results(folder.path(), clip(), 0).one_pass->seconds,
               ElementsAre(0.5, 0, 0.25, 0, 0, 0));
   folder.file(times, "\n\n\n\n\n0.125");
-  EXPECT_THAT(read_results(folder.path(), clip(), 0).restart.at(0).seconds,
+  EXPECT_THAT(read_results(folder.path(), clip(), 0).one_pass->seconds,
               ElementsAre(0, 0, 0, 0, 0, 0.125));
   // Six times among blank lines belong to the six frames.
   folder.file(times, "1\n2\n3\n\n4\n5\n6\n\n");
-  EXPECT_THAT(read_results(folder.path(), clip(), 0).restart.at(0).seconds,
+  EXPECT_THAT(read_results(folder.path(), clip(), 0).one_pass->seconds,
               ElementsAre(1, 2, 3, 4, 5, 6));
   folder.file(times, "1\n\n");
   EXPECT_THAT(fault_of(folder), HasSubstr("has 2 lines; its results have 6"));
+  // Those of VOT's runs are checked.
+  const ResultsFolder vot;
+  vot.file("baseline/a/a_001.txt", kText);
+  vot.file("baseline/a/a_001_time.value", "0.5\n\n0.25\n\n\n\n");
+  EXPECT_EQ(fault_of(vot), "");
+  vot.file("baseline/a/a_001_time.value", "1\n\n");
+  EXPECT_THAT(fault_of(vot), HasSubstr("a_001_time.value: has 2 lines; its results have 6"));
 }
 
 void expect_the_six(const Trajectory& run) {
@@ -124,18 +131,17 @@ void expect_the_six(const Trajectory& run) {
 TEST(VotRuns, AreReadAsTextAndAsBinary) {
   const ResultsFolder text;
   text.file("baseline/a/a_001.txt", kText);
-  expect_the_six(read_results(text.path(), clip(), 0).restart.at(0).frames);
+  expect_the_six(read_results(text.path(), clip(), 0).restart.at(0));
   const ResultsFolder binary;
   binary.file("baseline/a/a_001.bin", bytes_from_hex(kBinaryHex));
   binary.file("baseline/a/a_001_time.value", "0.5\n\n\n\n\n\n");
   const TrackerResults found = read_results(binary.path(), clip(), 0);
-  expect_the_six(found.restart.at(0).frames);
-  EXPECT_EQ(found.restart.at(0).seconds.at(0), 0.5);
+  expect_the_six(found.restart.at(0));
   EXPECT_THAT(tracked_sequences_in(binary.path()), ElementsAre("a"));
   // Of a run in both forms the toolkit reads the text.
   binary.file("baseline/a/a_001.txt", "1\n0\n0\n0\n0\n0\n");
   EXPECT_EQ(read_results(binary.path(), clip(), 0).restart.size(), 1u);
-  EXPECT_FALSE(read_results(binary.path(), clip(), 0).restart.at(0).frames[1].box);
+  EXPECT_FALSE(read_results(binary.path(), clip(), 0).restart.at(0)[1].box);
   // From an anchor: the same six, backward from frame 5.
   const ResultsFolder anchored;
   anchored.file("multistart/a/a_00000005.bin", bytes_from_hex(kBinaryHex));
@@ -146,7 +152,7 @@ TEST(VotRuns, ANanIsTheMarkZeroAndNoAreaIsAnAnswer) {
   const ResultsFolder folder;
   const std::string lines = "1\nnan,nan,nan,nan\n1,2,0,4\n1,2,nan,4\n1,2,-3,4\n1,1,nan,2,3,3\n";
   folder.file("restart/a/a_001.txt", lines);
-  const Trajectory run = read_results(folder.path(), clip(), 0).restart.at(0).frames;
+  const Trajectory run = read_results(folder.path(), clip(), 0).restart.at(0);
   std::vector<Mark> marks;
   for (const evaluation::VotFrame& frame : run) {
     marks.push_back(frame.mark);
@@ -162,7 +168,7 @@ TEST(VotRuns, ANanIsTheMarkZeroAndNoAreaIsAnAnswer) {
   // In one pass there are no marks: all of these are frames without an answer.
   folder.file("a.txt", lines);
   const TrackerResults one_pass = read_results(folder.path(), clip(), 0);
-  for (const evaluation::VotFrame& frame : one_pass.one_pass.at(0).frames)
+  for (const evaluation::VotFrame& frame : one_pass.one_pass->frames)
     EXPECT_EQ(frame.mark, Mark::kAnswer);
 }
 
