@@ -181,6 +181,9 @@ void add_vot_runs(const fs::path& folder,
     read_times(times_file(file, Protocol::kRestart), run.size());
     expect_begun(run, file);
     if (is_anchor_name(file, clip.name)) {
+      if (*number >= length)
+        throw Error(fmt::format("begins at frame {}; {} has {} frames", *number, clip.name, length),
+                    {file.string()});
       const std::int64_t lines = std::ssize(run);
       const bool goes_forward = lines == length - *number;
       const bool goes_backward = lines == *number + 1;

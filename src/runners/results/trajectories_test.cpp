@@ -173,6 +173,9 @@ TEST(VotRuns, ANanIsTheMarkZeroAndNoAreaIsAnAnswer) {
 }
 
 TEST(VotRuns, ThatAreNoneSaySo) {
+  const ResultsFolder beyond;
+  beyond.file("multistart/a/a_00000006.txt", "1\n0\n0\n0\n0\n0\n0\n");
+  EXPECT_THAT(fault_of(beyond), HasSubstr("begins at frame 6; a has 6 frames"));
   const std::string sound = bytes_from_hex(kBinaryHex);
   for (std::size_t length = 0; length < sound.size(); ++length) {
     const ResultsFolder folder;
