@@ -33,13 +33,12 @@ std::optional<double> angle_mrad(const lens::Lens& lens, const Box& a, const Box
 namespace airtruth::evaluation {
 
 double overlap(const Box& a, const Box& b) {
-  const double width = std::min(a.right(), b.right()) - std::max(a.x, b.x);
-  const double height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
-  if (!(width > 0) || !(height > 0)) return 0;
+  const auto common = intersection(a, b);
+  if (!common) return 0;
   // By rounding, x + width - x differs from width. Equal boxes are therefore handled apart, and the
   // quotient is bounded to 1.
   if (a == b) return 1;
-  const double shared = width * height;
+  const double shared = common->area();
   return std::min(1.0, shared / (a.area() + b.area() - shared));
 }
 

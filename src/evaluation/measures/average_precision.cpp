@@ -43,11 +43,7 @@ std::optional<double> likeness(const ScoredBox& detection,
                                                                         : std::nullopt;
   }
   double overlap = evaluation::overlap(d, t);
-  if (truth.is_region && overlap > 0) {
-    const double width = std::min(d.right(), t.right()) - std::max(d.x, t.x);
-    const double height = std::min(d.bottom(), t.bottom()) - std::max(d.y, t.y);
-    overlap = width * height / d.area();
-  }
+  if (truth.is_region && overlap > 0) overlap = intersection(d, t)->area() / d.area();
   return overlap >= std::min(options.threshold, 1 - 1e-10) ? std::optional(overlap) : std::nullopt;
 }
 

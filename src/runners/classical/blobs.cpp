@@ -218,10 +218,8 @@ std::optional<Blob> blob_at(const std::vector<Level>& levels,
 }
 
 bool is_same_object(const Box& a, const Box& b) {
-  const double width = std::min(a.right(), b.right()) - std::max(a.x, b.x);
-  const double height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
-  if (width <= 0 || height <= 0) return false;
-  return width * height >= 0.5 * std::min(a.area(), b.area());
+  const auto common = intersection(a, b);
+  return common && common->area() >= 0.5 * std::min(a.area(), b.area());
 }
 
 std::vector<Blob> blobs_of(const std::vector<Level>& levels, const BlobOptions& options) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
 
+#include "evaluation/matching/boxes.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "runners/network/model_description.h"
@@ -47,26 +48,17 @@ bool is_cut(const Box& box, const Piece& tile, const image::Picture& picture) {
          (place.y_px + samples.rows < picture.height && box.bottom() >= samples.rows);
 }
 
-bool is_centred_in(const image::Picture& picture, const Box& box) {
-  const double x = box.x + box.width / 2;
-  const double y = box.y + box.height / 2;
-  return x >= 0 && y >= 0 && x < picture.width && y < picture.height;
-}
-
 // Boxes end at the picture's edges; those that have nothing in it are left out.
-void cut_to(const image::Picture& picture, std::vector<results::Detection>& detections) {
+std::vector<results::Detection> cut_to(const Box& frame,
+                                       std::vector<results::Detection> detections) {
+  std::vector<results::Detection> kept;
   for (results::Detection& one : detections) {
-    Box& box = one.box_px;
-    const double right = std::min<double>(picture.width, box.right());
-    const double bottom = std::min<double>(picture.height, box.bottom());
-    box.x = std::max(0.0, box.x);
-    box.y = std::max(0.0, box.y);
-    box.width = right - box.x;
-    box.height = bottom - box.y;
+    const auto inside = intersection(one.box_px, frame);
+    if (!inside) continue;
+    one.box_px = *inside;
+    kept.push_back(std::move(one));
   }
-  std::erase_if(detections, [](const results::Detection& d) {
-    return d.box_px.width <= 0 || d.box_px.height <= 0;
-  });
+  return kept;
 }
 
 class OnnxDetector : public detector::Detector {
@@ -122,6 +114,7 @@ class OnnxDetector : public detector::Detector {
   bool is_letterbox() const { return description_.input.fit == NetworkInput::Fit::kLetterbox; }
 
   std::vector<results::Detection> found_in(const image::Picture& picture) {
+    const Box frame{0, 0, double(picture.width), double(picture.height)};
     std::vector<PieceDetection> all;
     const std::vector<Piece> pieces = pieces_of(picture, description_.input);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -131,14 +124,13 @@ class OnnxDetector : public detector::Detector {
         one.box_px = in_frame(one.box_px, placement);
         // The padding of a whole frame and of tiles repeats the frame's last samples: what has its
         // centre there is no part of the frame.
-        if (!is_letterbox() && !is_centred_in(picture, one.box_px)) continue;
+        if (!is_letterbox() && !matching::centre_is_in(one.box_px, frame)) continue;
         all.push_back({std::move(one), static_cast<int>(i), cut});
       }
     }
     std::vector<results::Detection> found =
         without_duplicates(std::move(all), description_.nms_iou);
-    if (is_letterbox()) cut_to(picture, found);
-    return found;
+    return is_letterbox() ? cut_to(frame, std::move(found)) : found;
   }
 
   std::filesystem::path model_;

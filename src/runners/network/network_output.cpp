@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 
 namespace airtruth::network {
 namespace {
@@ -243,10 +244,9 @@ bool duplicates(const PieceDetection& a, const PieceDetection& b, double nms_iou
   if (a.detection.category != b.detection.category) return false;
   const Box& first = a.detection.box_px;
   const Box& second = b.detection.box_px;
-  const double width = std::min(first.right(), second.right()) - std::max(first.x, second.x);
-  const double height = std::min(first.bottom(), second.bottom()) - std::max(first.y, second.y);
-  if (width <= 0 || height <= 0) return false;
-  const double shared = width * height;
+  const auto common = intersection(first, second);
+  if (!common) return false;
+  const double shared = common->area();
   if (shared > nms_iou * (first.area() + second.area() - shared)) return true;
   return a.piece != b.piece && (first.area() < second.area() ? is_centred_in(first, second)
                                                              : is_centred_in(second, first));
