@@ -20,25 +20,6 @@ struct Value {
   double value = 0;
 };
 
-// The k-th smallest size, from 0, of values that are sorted by size and that each count as often as
-// their sequence is drawn: a walk along them, from one k to a larger one.
-class Walk {
- public:
-  Walk(std::span<const Value> by_size, std::span<const double> counts)
-      : by_size_(by_size), counts_(counts) {}
-  double to(double k) {
-    while (at_ < by_size_.size() && passed_ + counts_[by_size_[at_].sequence] <= k)
-      passed_ += counts_[by_size_[at_++].sequence];
-    return std::abs(by_size_[std::min(at_, by_size_.size() - 1)].value);
-  }
-
- private:
-  std::span<const Value> by_size_;
-  std::span<const double> counts_;
-  std::size_t at_ = 0;
-  double passed_ = 0;
-};
-
 // The spread of values that each count as often as their sequence is drawn.
 Spread spread_of(std::span<const Value> by_size, std::span<const double> counts) {
   Spread spread;
@@ -58,12 +39,11 @@ Spread spread_of(std::span<const Value> by_size, std::span<const double> counts)
   for (const auto& [sequence, value] : by_size)
     about_mean += counts[sequence] * (value - spread.mean) * (value - spread.mean);
   spread.deviation = spread.count > 1 ? std::sqrt(about_mean / (n - 1)) : 0;
-  // Interpolates between the two nearest (Hyndman and Fan 1996, type 7).
-  const double at = 0.95 * (n - 1);
-  const double below = std::floor(at);
-  Walk walk(by_size, counts);
-  const double lower = walk.to(below);
-  spread.within_95 = lower + (at - below) * (walk.to(std::min(below + 1, n - 1)) - lower);
+  std::vector<double> sizes;
+  sizes.reserve(static_cast<std::size_t>(spread.count));
+  for (const auto& [sequence, value] : by_size)
+    sizes.insert(sizes.end(), static_cast<std::size_t>(counts[sequence]), std::abs(value));
+  spread.within_95 = statistics::quantile(sizes, 0.95);
   return spread;
 }
 

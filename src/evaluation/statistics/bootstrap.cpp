@@ -29,17 +29,17 @@ std::span<const double> ClusterDraws::next() {
   return counts_;
 }
 
+// Interpolates between the two nearest (Hyndman and Fan 1996, type 7).
+double quantile(const std::vector<double>& values, double share) {
+  const double position = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (position - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
 evaluation::Interval percentile_interval(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  // Interpolates between the two nearest (Hyndman and Fan 1996, type 7).
-  const auto at = [&](double share) {
-    const double position = share * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(position);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] +
-           (position - static_cast<double>(below)) * (values[above] - values[below]);
-  };
-  return {at(0.025), at(0.975)};
+  return {quantile(values, 0.025), quantile(values, 0.975)};
 }
 
 }  // namespace airtruth::statistics

@@ -30,6 +30,8 @@ class ClusterDraws {
   std::vector<double> counts_;
 };
 
+// Of values that are sorted and not empty.
+double quantile(const std::vector<double>& values, double share);
 // From the 2.5 % to the 97.5 % quantile; `values` is not empty.
 evaluation::Interval percentile_interval(std::vector<double> values);
 
