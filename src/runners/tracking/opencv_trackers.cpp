@@ -75,30 +75,13 @@ class Window {
   Box window_;
 };
 
-// cv::Tracker takes whole pixels.
-bool init(cv::Tracker& tracker, const cv::Mat& frame, const Box& box) {
-  tracker.init(frame,
-               cv::Rect(static_cast<int>(box.x),
-                        static_cast<int>(box.y),
-                        static_cast<int>(box.width),
-                        static_cast<int>(box.height)));
-  return true;
-}
-bool update(cv::Tracker& tracker, const cv::Mat& frame, cv::Rect& found) {
-  return tracker.update(frame, found);
-}
-bool init(cv::legacy::Tracker& tracker, const cv::Mat& frame, const Box& box) {
-  return opencv_plugin::functions().init(
-      tracker, frame, cv::Rect2d(box.x, box.y, box.width, box.height));
-}
-bool update(cv::legacy::Tracker& tracker, const cv::Mat& frame, cv::Rect2d& found) {
-  return opencv_plugin::functions().update(tracker, frame, found);
-}
-
-// A tracker of OpenCV's present interface or of its legacy one, with the rectangles that it takes.
-// Made anew for each start: a second init() of the same KCF writes past its buffers.
-template <typename Library, typename Rectangle>
+// A tracker of OpenCV's present interface, which takes whole pixels, or of its legacy one. Made
+// anew for each start: a second init() of the same KCF writes past its buffers.
+template <typename Library>
 class OpenCvTracker : public Tracker {
+  static constexpr bool kIsLegacy = std::is_same_v<Library, cv::legacy::Tracker>;
+  using Rectangle = std::conditional_t<kIsLegacy, cv::Rect2d, cv::Rect>;
+
  public:
   OpenCvTracker(std::function<cv::Ptr<Library>()> make, std::uint64_t seed, double least_px)
       : make_(std::move(make)), seed_(seed), least_px_(least_px) {}
@@ -111,13 +94,16 @@ class OpenCvTracker : public Tracker {
     tracker_ = make_();
     // Boosting cuts a box between pixels in two ways and reads past its features: whole pixels for
     // what has a least size, as the present interface has them for all.
-    constexpr bool kIsLegacy = std::is_same_v<Library, cv::legacy::Tracker>;
     const bool has_least = least_px_ > 0;
     window_ = Window(kIsLegacy && has_least ? whole(box) : box, least_px_, frame_);
-    const Box& window = window_.window();
+    const Box start = kIsLegacy && !has_least ? window_.window() : whole(window_.window());
+    const Rectangle rectangle = cv::Rect2d(start.x, start.y, start.width, start.height);
+    broken_ = false;
     try {
-      broken_ =
-          !tracking::init(*tracker_, frame_, kIsLegacy && !has_least ? window : whole(window));
+      if constexpr (kIsLegacy)
+        broken_ = !opencv_plugin::functions().init(*tracker_, frame_, rectangle);
+      else
+        tracker_->init(frame_, rectangle);
     } catch (const cv::Exception&) {
       broken_ = true;
     }
@@ -127,7 +113,10 @@ class OpenCvTracker : public Tracker {
     Rectangle found;
     bool is_found = false;
     try {
-      is_found = tracking::update(*tracker_, frame_, found);
+      if constexpr (kIsLegacy)
+        is_found = opencv_plugin::functions().update(*tracker_, frame_, found);
+      else
+        is_found = tracker_->update(frame_, found);
     } catch (const cv::Exception&) {  // for boxes at the border and for boxes of a few pixels
     }
     const Box b = window_.object_in(
@@ -205,10 +194,10 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   if (!name.starts_with("opencv-")) return nullptr;
   const opencv_plugin::Functions& opencv = opencv_plugin::functions();
   const auto modern = [&](auto make, double least_px = 0) {
-    return std::make_unique<OpenCvTracker<cv::Tracker, cv::Rect>>(make, state, least_px);
+    return std::make_unique<OpenCvTracker<cv::Tracker>>(make, state, least_px);
   };
   const auto old = [&](auto make, double least_px = 0) {
-    return std::make_unique<OpenCvTracker<cv::legacy::Tracker, cv::Rect2d>>(make, state, least_px);
+    return std::make_unique<OpenCvTracker<cv::legacy::Tracker>>(make, state, least_px);
   };
   const auto with_own_rand = [&](std::unique_ptr<Tracker> tracker) {
     return std::make_unique<WithOwnRand>(std::move(tracker), seed);  // 1 is rand()'s own
