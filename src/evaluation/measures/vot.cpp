@@ -75,13 +75,13 @@ struct Curve {
   std::vector<double> sum;
   std::vector<double> active;
 
-  void add(std::size_t j, double value, double weight) {
+  void add(std::size_t j, double value) {
     if (j >= sum.size()) {
       sum.resize(j + 1, 0);
       active.resize(j + 1, 0);
     }
-    sum[j] += value * weight;
-    active[j] += weight;
+    sum[j] += value;
+    active[j] += 1;
   }
   std::vector<double> mean() const {
     std::vector<double> curve(sum.size(), 0);
@@ -133,7 +133,7 @@ std::vector<double> curve_of(const std::vector<Fragment>& fragments) {
     for (std::size_t j = 0; j < end; ++j) {
       const double here = j < fragment.overlaps.size() ? fragment.overlaps[j] : 0;
       if (j > 0) sum += here;
-      curve.add(j, j > 0 ? sum / static_cast<double>(j) : here, 1);
+      curve.add(j, j > 0 ? sum / static_cast<double>(j) : here);
     }
   }
   return curve.mean();
@@ -256,9 +256,9 @@ RunFrames add_runs(const MultiStartRuns& sequence,
     for (std::size_t j = 1; j < high; ++j) {
       if (j < overlaps.size()) {
         if (j < progress) sum += overlaps[j];
-        curve.add(j, sum / static_cast<double>(j), 1);
+        curve.add(j, sum / static_cast<double>(j));
       } else if (failed) {
-        curve.add(j, sum / static_cast<double>(std::max<std::size_t>(1, j - 1)), 1);
+        curve.add(j, sum / static_cast<double>(std::max<std::size_t>(1, j - 1)));
       }
     }
   }
@@ -321,12 +321,7 @@ namespace {
 // whose width follows the rule of Silverman (1986), 1.06 sigma n^(-1/5), and is at least 1 frame.
 std::vector<double> density_of(std::span<const std::int64_t> lengths) {
   const double n = static_cast<double>(lengths.size());
-  const double mean =
-      std::accumulate(lengths.begin(),
-                      lengths.end(),
-                      0.0,
-                      [](double sum, std::int64_t l) { return sum + static_cast<double>(l); }) /
-      n;
+  const double mean = std::accumulate(lengths.begin(), lengths.end(), 0.0) / n;
   double variance = 0;
   std::int64_t longest = 0;
   for (const std::int64_t l : lengths) {
