@@ -5,6 +5,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
@@ -76,8 +79,14 @@ class Follower {
   }
 
   bool is_broken() const { return !tracker_; }
-  // Duration of the last call of the tracker; 0 where it failed.
-  double seconds() const { return seconds_; }
+  // Takes a frame down, with the duration of the call of the tracker for it; 0 without one, and
+  // where it failed.
+  void add(Mark mark, const std::optional<Box>& box) {
+    frames_.push_back({mark, box});
+    times_s_.push_back(std::exchange(seconds_, 0));
+  }
+  const Trajectory& frames() const { return frames_; }
+  const std::vector<double>& times_s() const { return times_s_; }
   // The last failure; empty where there was none.
   const std::string& fault() const { return fault_; }
   std::string log() const { return log_ + (tracker_ ? tracker_->log() : ""); }
@@ -103,22 +112,13 @@ class Follower {
   std::string command_;
   tracking::TrackerOptions options_;
   std::unique_ptr<tracking::Tracker> tracker_;
-  double seconds_ = 0;
+  double seconds_ = 0;  // of the last call, until its frame is taken down
+  Trajectory frames_;
+  std::vector<double> times_s_;
   std::string fault_;
   std::string log_;
   std::int64_t answers_ = 0;
   double spent_s_ = 0;
-};
-
-// A run's frames and times as they come.
-struct Record {
-  Trajectory frames;
-  std::vector<double> seconds;
-
-  void add(Mark mark, const std::optional<Box>& box, double took) {
-    frames.push_back({mark, box});
-    seconds.push_back(took);
-  }
 };
 
 class TrackerRun {
@@ -166,7 +166,6 @@ class TrackerRun {
         results::trajectory_file(summary_.folder, results::Protocol::kOnePass, name, 0);
     video::NumberedFrames frames(video, options_.warn);
     Follower follower(command_, options_, options_.seed);
-    Record record;
     const image::Picture* picture = frames.at(first_frame);
     check(picture != nullptr, "the reader refuses a first frame past the end");
     const std::int64_t total = frames.count_estimate();
@@ -177,14 +176,14 @@ class TrackerRun {
       return summary_;
     }
     follower.begin(*picture, init);
-    record.add(Mark::kAnswer, init, follower.seconds());
+    follower.add(Mark::kAnswer, init);
     for (std::int64_t i = first_frame + 1; (picture = frames.at(i)) != nullptr; ++i) {
       if (options_.stop.stop_requested()) throw Interrupted();
       const auto box = follower.next(*picture);
-      record.add(Mark::kAnswer, box, follower.seconds());
+      follower.add(Mark::kAnswer, box);
       if (options_.progress) options_.progress(i - first_frame, std::max(i, total) - first_frame);
     }
-    write(file, results::Protocol::kOnePass, name, record, follower);
+    write(file, results::Protocol::kOnePass, name, follower);
     return summary_;
   }
 
@@ -234,7 +233,6 @@ class TrackerRun {
   void write(const fs::path& file,
              results::Protocol protocol,
              const std::string& name,
-             const Record& record,
              const Follower& follower) {
     fs::create_directories(file.parent_path());
     if (const std::string log = follower.log(); !log.empty()) {
@@ -246,8 +244,9 @@ class TrackerRun {
     files.writes(times, true).writes(file, true);
     files.begin();
     files.write(times,
-                [&](const fs::path& at) { write_file(at, results::text_of(record.seconds)); });
-    files.write(file, [&](const fs::path& at) { write_file(at, results::text_of(record.frames)); });
+                [&](const fs::path& at) { write_file(at, results::text_of(follower.times_s())); });
+    files.write(file,
+                [&](const fs::path& at) { write_file(at, results::text_of(follower.frames())); });
     files.commit();
     const std::lock_guard lock(mutex_);
     ++summary_.made;
@@ -296,7 +295,6 @@ class TrackerRun {
         results::trajectory_file(summary_.folder, protocol, clip.name, anchor.frame);
     if (is_there(file)) return;
     Follower follower(command_, options_, options_.seed);
-    Record record;
     const std::int64_t way = anchor.is_backward ? -1 : 1;
     for (std::int64_t i = anchor.frame; i >= 0 && i < std::ssize(clip.frames); i += way) {
       const auto at = static_cast<std::size_t>(i);
@@ -304,15 +302,15 @@ class TrackerRun {
         const Box box = *results::box_of(clip.frames[at]);
         follower.begin(picture_of(frames, clip, at), box);
         const bool marks = protocol == results::Protocol::kMultiStart;
-        record.add(marks ? Mark::kBegun : Mark::kAnswer, box, follower.seconds());
+        follower.add(marks ? Mark::kBegun : Mark::kAnswer, box);
       } else if (follower.is_broken()) {
-        record.add(Mark::kAnswer, {}, 0);
+        follower.add(Mark::kAnswer, {});
       } else {
         const auto box = follower.next(picture_of(frames, clip, at));
-        record.add(Mark::kAnswer, box, follower.seconds());
+        follower.add(Mark::kAnswer, box);
       }
     }
-    write(file, protocol, clip.name, record, follower);
+    write(file, protocol, clip.name, follower);
   }
 
   void follow_with_restarts(const exchange::Clip& clip,
@@ -323,7 +321,6 @@ class TrackerRun {
     if (is_there(file)) return;
     Follower follower(
         command_, options_, options_.seed + static_cast<std::uint64_t>(repetition) - 1);
-    Record record;
     int crashes = 0;
     bool is_begun = false;
     std::int64_t skip = 0;
@@ -331,12 +328,12 @@ class TrackerRun {
       const auto truth = results::box_of(clip.frames[i]);
       if (!is_begun && (skip > 0 || !truth)) {
         skip -= skip > 0 ? 1 : 0;
-        record.add(Mark::kUnknown, {}, 0);
+        follower.add(Mark::kUnknown, {});
         continue;
       }
       if (!is_begun) {
         is_begun = crashes < kMaxCrashes && follower.begin(picture_of(frames, clip, i), *truth);
-        record.add(is_begun ? Mark::kBegun : Mark::kFailed, {}, follower.seconds());
+        follower.add(is_begun ? Mark::kBegun : Mark::kFailed, {});
         crashes += is_begun ? 0 : 1;
         if (!is_begun) skip = kSkip - 1;
         continue;
@@ -347,12 +344,11 @@ class TrackerRun {
       const bool failed =
           follower.is_broken() ||
           (truth && evaluation::frame_overlap(answer, *truth, clip.width, clip.height) <= 0);
-      record.add(
-          failed ? Mark::kFailed : Mark::kAnswer, failed ? std::nullopt : box, follower.seconds());
+      follower.add(failed ? Mark::kFailed : Mark::kAnswer, failed ? std::nullopt : box);
       is_begun = !failed;
       if (failed) skip = kSkip - 1;
     }
-    write(file, results::Protocol::kRestart, clip.name, record, follower);
+    write(file, results::Protocol::kRestart, clip.name, follower);
   }
 
   const TrackOptions& options_;
