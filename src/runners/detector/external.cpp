@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/detector/external.h"
-
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
+#include "runners/detector/detector.h"
 #include "runners/detector/protocol.h"
 #include "runners/process/child.h"
 #include "runners/process/memory_place.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/detector/external.h"
-
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +10,7 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "runners/detector/detector.h"
 #include "runners/detector/protocol.h"
 #include "support/process_end.h"
 

@@ -12,7 +12,7 @@
 #include "foundation/base/names.h"
 #include "foundation/lazy_library/places.h"
 #include "runners/classical/classical.h"
-#include "runners/detector/external.h"
+#include "runners/detector/detector.h"
 #include "runners/network/model_description.h"
 #include "runners/network/network_detector.h"
 #include "runners/results/results_folder.h"
