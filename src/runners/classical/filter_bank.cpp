@@ -46,18 +46,12 @@ cv::Mat fitted(const cv::Mat& values, const cv::Size& size) {
   return result;
 }
 
-// The larger of every 2 x 2 samples.
-cv::Mat pooled(const cv::Mat& responses, const cv::Size& size) {
-  const cv::Mat samples = fitted(responses, {2 * size.width, 2 * size.height});
-  cv::Mat result(size, CV_8U);
-  for (int y = 0; y < size.height; ++y) {
-    const std::uint8_t* upper = samples.ptr<std::uint8_t>(2 * y);
-    const std::uint8_t* lower = samples.ptr<std::uint8_t>(2 * y + 1);
-    std::uint8_t* out = result.ptr<std::uint8_t>(y);
-    for (int x = 0; x < size.width; ++x)
-      out[x] = std::max(std::max(upper[2 * x], upper[2 * x + 1]),
-                        std::max(lower[2 * x], lower[2 * x + 1]));
-  }
+// The largest of every `factor` x `factor` samples, for a grid of that size.
+cv::Mat largest_of(const cv::Mat& samples, int factor, const cv::Size& size) {
+  cv::Mat largest, result;
+  // Of a sample and those after it along both directions, at every factor-th sample.
+  cv::dilate(samples, largest, cv::Mat::ones(factor, factor, CV_8U), {0, 0});
+  cv::resize(fitted(largest, size * factor), result, size, 0, 0, cv::INTER_NEAREST);
   return result;
 }
 
@@ -92,7 +86,7 @@ Measurement measurement_of(const std::vector<Level>& levels, const cv::Size& cel
     cv::max(enlarged, here, coarse);
   }
   Measurement measurement;
-  measurement.response = pooled(relative_responses(levels.front()), cells);
+  measurement.response = largest_of(relative_responses(levels.front()), 2, cells);
   if (!coarse.empty()) {
     cv::max(measurement.response, fitted(coarse, cells), measurement.response);
   }
@@ -102,15 +96,9 @@ Measurement measurement_of(const std::vector<Level>& levels, const cv::Size& cel
 
 Measurement coarser(const Measurement& measurement, int factor, const cv::Size& cells) {
   Measurement result;
-  // The extreme of `factor` neighbours along both directions, at every factor-th cell.
-  cv::Mat largest;
-  cv::dilate(measurement.response,
-             largest,
-             cv::Mat::ones(factor, factor, CV_8U),
-             {0, 0});  // the cell and those after it
-  const cv::Size used(cells.width * factor, cells.height * factor);
-  cv::resize(fitted(largest, used), result.response, cells, 0, 0, cv::INTER_NEAREST);
-  cv::resize(fitted(measurement.clutter, used), result.clutter, cells, 0, 0, cv::INTER_NEAREST);
+  result.response = largest_of(measurement.response, factor, cells);
+  cv::resize(
+      fitted(measurement.clutter, cells * factor), result.clutter, cells, 0, 0, cv::INTER_NEAREST);
   return result;
 }
 
