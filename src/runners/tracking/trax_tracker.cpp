@@ -28,17 +28,9 @@ constexpr int kNewest = 4;  // version of the protocol
 
 // "path;memory", also with commas.
 std::vector<std::string> list_of(std::string_view text) {
-  std::vector<std::string> items;
-  std::string item;
-  for (const char c : text) {
-    if (c == ';' || c == ',') {
-      items.push_back(std::move(item));
-      item.clear();
-    } else if (c != ' ') {
-      item += c;
-    }
-  }
-  items.push_back(std::move(item));
+  std::string with_semicolons(text);
+  std::ranges::replace(with_semicolons, ',', ';');
+  std::vector<std::string> items = cells_of(with_semicolons, ';');
   std::erase(items, "");
   return items;
 }
