@@ -10,6 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
 #include "foundation/geometry/whole_pixels.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::appearance {
 namespace {
@@ -68,10 +69,9 @@ cv::Mat luma_of(const image::Picture& picture, const PixelBox& area) {
   check(area.x >= 0 && area.y >= 0 && area.right() <= picture.width &&
             area.bottom() <= picture.height,
         "an area of luma lies within its picture");
-  cv::Mat grey(area.height, area.width, CV_32F);
-  for (int y = 0; y < area.height; ++y)
-    for (int x = 0; x < area.width; ++x)
-      grey.at<float>(y, x) = picture.luma().row(area.y + y)[area.x + x];
+  cv::Mat grey;
+  const cv::Rect part(area.x, area.y, area.width, area.height);
+  image::mat_of(picture.luma())(part).convertTo(grey, CV_32F);
   return grey;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "labels/annotation/evision.h"
 #include "labels/projection/exact_box.h"
 #include "picture/render/renderer.h"
@@ -49,14 +49,12 @@ std::vector<Position> read_positions(const fs::path& file) {
   std::getline(text, line);
   for (int row = 2; std::getline(text, line); ++row) {
     std::array<double, 7> cell{};
-    const char* at = line.data();
-    const char* end = at + line.size();
+    const std::vector<std::string> texts = cells_of(line);
     for (std::size_t i = 0; i < cell.size(); ++i) {
-      const auto [next, fault] = std::from_chars(at, end, cell[i]);
-      const bool closed = i + 1 == cell.size() || (next != end && *next == ',');
-      if (fault != std::errc() || !closed)
+      const auto number = i < texts.size() ? number_from_text<double>(texts[i]) : std::nullopt;
+      if (!number)
         throw Error("'" + line + "'; expected frame and six coordinates", {file.string(), row});
-      at = next + 1;
+      cell[i] = *number;
     }
     const Position p{
         static_cast<int>(cell[0]), {cell[1], cell[2], cell[3]}, {cell[4], cell[5], cell[6]}};
