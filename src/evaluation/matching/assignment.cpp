@@ -14,121 +14,63 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-// Rows are at most as many as columns. Each row in turn gets a column by the shortest path of
-// reduced costs from the row to a free column.
-class Solver {
- public:
-  explicit Solver(const Eigen::MatrixXd& cost)
-      : cost_(cost),
-        rows_(static_cast<std::size_t>(cost.rows())),
-        columns_(static_cast<std::size_t>(cost.cols())),
-        row_dual_(rows_, 0.0),
-        column_dual_(columns_, 0.0),
-        column_of_row_(rows_, kNone),
-        row_of_column_(columns_, kNone),
-        path_cost_(columns_),
-        path_row_(columns_, kNone),
-        remaining_(columns_) {}
-
-  std::vector<std::size_t> solve() {
-    for (std::size_t row = 0; row < rows_; ++row) {
-      const Path path = shortest_path(row);
-      update_duals(row, path.cost);
-      augment(row, path.free_column);
-    }
-    return column_of_row_;
-  }
-
- private:
-  struct Path {
-    std::size_t free_column;
-    double cost;
-  };
-
-  double cost(std::size_t row, std::size_t column) const {
-    return cost_(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
-  }
-
-  // Dijkstra's search over columns. The order of remaining_ and the preference for a free column
-  // decide among equal costs; the header promises scipy's choice.
-  Path shortest_path(std::size_t row) {
-    row_reached_.assign(rows_, false);
-    column_reached_.assign(columns_, false);
-    path_cost_.assign(columns_, kInfinity);
-    for (std::size_t k = 0; k < columns_; ++k) remaining_[k] = columns_ - 1 - k;
-    std::size_t left = columns_;
+// Returns the column of each row; rows are at most as many as columns. Each row in turn gets a
+// column by the shortest path of reduced costs from the row to a free column.
+std::vector<std::size_t> solved(const Eigen::MatrixXd& cost) {
+  const auto rows = static_cast<std::size_t>(cost.rows());
+  const auto columns = static_cast<std::size_t>(cost.cols());
+  std::vector<double> row_dual(rows), column_dual(columns), path_cost(columns);
+  std::vector<std::size_t> column_of_row(rows, kNone), row_of_column(columns, kNone);
+  std::vector<std::size_t> path_row(columns, kNone), remaining(columns), reached;
+  for (std::size_t first_row = 0; first_row < rows; ++first_row) {
+    // Dijkstra's search over columns. The order of `remaining` and the preference for a free column
+    // decide among equal costs; the header promises scipy's choice.
+    path_cost.assign(columns, kInfinity);
+    remaining.resize(columns);
+    for (std::size_t k = 0; k < columns; ++k) remaining[k] = columns - 1 - k;
+    reached.clear();
     double reached_cost = 0;
-    while (true) {
-      row_reached_[row] = true;
-      const std::size_t nearest = relax(row, reached_cost, left);
-      const std::size_t column = remaining_[nearest];
-      reached_cost = path_cost_[column];
-      if (reached_cost == kInfinity) {
+    for (std::size_t row = first_row; row != kNone; row = row_of_column[reached.back()]) {
+      // The cheapest path to every remaining column by way of the row, and the nearest of them.
+      std::size_t nearest = 0;
+      double lowest = kInfinity;
+      for (std::size_t k = 0; k < remaining.size(); ++k) {
+        const std::size_t column = remaining[k];
+        const double through =
+            reached_cost + cost(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) -
+            row_dual[row] - column_dual[column];
+        if (through < path_cost[column]) {
+          path_cost[column] = through;
+          path_row[column] = row;
+        }
+        if (path_cost[column] < lowest ||
+            (path_cost[column] == lowest && row_of_column[column] == kNone)) {
+          lowest = path_cost[column];
+          nearest = k;
+        }
+      }
+      reached.push_back(remaining[nearest]);
+      reached_cost = path_cost[reached.back()];
+      if (reached_cost == kInfinity)
         throw std::invalid_argument("assignment: the forbidden pairs leave no assignment");
-      }
-      column_reached_[column] = true;
-      remaining_[nearest] = remaining_[--left];
-      if (row_of_column_[column] == kNone) return {column, reached_cost};
-      row = row_of_column_[column];
+      remaining[nearest] = remaining.back();
+      remaining.pop_back();
+    }
+    row_dual[first_row] += reached_cost;
+    for (const std::size_t column : reached) {
+      const double saved = reached_cost - path_cost[column];
+      column_dual[column] -= saved;
+      if (row_of_column[column] != kNone) row_dual[row_of_column[column]] += saved;
+    }
+    // The rows along the path change to its columns.
+    std::size_t column = reached.back();
+    for (std::size_t row = kNone; row != first_row;) {
+      row = row_of_column[column] = path_row[column];
+      std::swap(column_of_row[row], column);
     }
   }
-
-  // Updates the cheapest path to every remaining column by way of `row`. Returns the place in
-  // remaining_ of the nearest one.
-  std::size_t relax(std::size_t row, double reached_cost, std::size_t left) {
-    std::size_t nearest = 0;
-    double lowest = kInfinity;
-    for (std::size_t k = 0; k < left; ++k) {
-      const std::size_t column = remaining_[k];
-      const double through =
-          reached_cost + cost(row, column) - row_dual_[row] - column_dual_[column];
-      if (through < path_cost_[column]) {
-        path_cost_[column] = through;
-        path_row_[column] = row;
-      }
-      if (path_cost_[column] < lowest ||
-          (path_cost_[column] == lowest && row_of_column_[column] == kNone)) {
-        lowest = path_cost_[column];
-        nearest = k;
-      }
-    }
-    return nearest;
-  }
-
-  void update_duals(std::size_t first_row, double path_cost) {
-    row_dual_[first_row] += path_cost;
-    for (std::size_t row = 0; row < rows_; ++row) {
-      if (row_reached_[row] && row != first_row) {
-        row_dual_[row] += path_cost - path_cost_[column_of_row_[row]];
-      }
-    }
-    for (std::size_t column = 0; column < columns_; ++column) {
-      if (column_reached_[column]) column_dual_[column] -= path_cost - path_cost_[column];
-    }
-  }
-
-  void augment(std::size_t first_row, std::size_t column) {
-    std::size_t row = kNone;
-    while (row != first_row) {
-      row = path_row_[column];
-      row_of_column_[column] = row;
-      std::swap(column_of_row_[row], column);
-    }
-  }
-
-  const Eigen::MatrixXd& cost_;
-  std::size_t rows_;
-  std::size_t columns_;
-  std::vector<double> row_dual_;
-  std::vector<double> column_dual_;
-  std::vector<std::size_t> column_of_row_;
-  std::vector<std::size_t> row_of_column_;
-  std::vector<double> path_cost_;
-  std::vector<std::size_t> path_row_;
-  std::vector<std::size_t> remaining_;
-  std::vector<bool> row_reached_;
-  std::vector<bool> column_reached_;
-};
+  return column_of_row;
+}
 
 }  // namespace
 
@@ -139,12 +81,11 @@ std::vector<std::optional<std::size_t>> least_cost_assignment(const Eigen::Matri
   }
   std::vector<std::optional<std::size_t>> column_of_row(static_cast<std::size_t>(cost.rows()));
   if (cost.rows() <= cost.cols()) {
-    const std::vector<std::size_t> columns = Solver(cost).solve();
+    const std::vector<std::size_t> columns = solved(cost);
     for (std::size_t row = 0; row < columns.size(); ++row) column_of_row[row] = columns[row];
     return column_of_row;
   }
-  const Eigen::MatrixXd transposed = cost.transpose();
-  const std::vector<std::size_t> rows = Solver(transposed).solve();
+  const std::vector<std::size_t> rows = solved(cost.transpose());
   for (std::size_t column = 0; column < rows.size(); ++column) column_of_row[rows[column]] = column;
   return column_of_row;
 }
