@@ -51,76 +51,62 @@ bool is_outside(double area_px, const AreaRange& areas) {
   return area_px < areas.low_px || area_px > areas.high_px;
 }
 
-// The matching of cocoeval.py's evaluateImg.
-class ImageMatcher {
- public:
-  ImageMatcher(const ScoredImage& image, const PrecisionOptions& options)
-      : image_(image), options_(options) {
-    for (const LabelledBox& truth : image.truths)
-      ignored_.push_back(truth.is_region || truth.is_ignored ||
+// The indices of that many, stably sorted by a key.
+std::vector<std::size_t> sorted(std::size_t count, auto order, auto key) {
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  std::ranges::stable_sort(indices, order, key);
+  return indices;
+}
+
+// The matching of cocoeval.py's evaluateImg: adds what counts of an image to its sequence.
+void add_image(const ScoredImage& image,
+               const PrecisionOptions& options,
+               std::size_t sequence,
+               Ranking& ranking) {
+  std::vector<char> is_ignored;
+  for (const LabelledBox& truth : image.truths)
+    is_ignored.push_back(truth.is_region || truth.is_ignored ||
                          is_outside(truth.area_px.value_or(truth.box_px.area()), options.areas));
-    order_.resize(image.truths.size());
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return ignored_[i] != 0; });
-    is_taken_.resize(image.truths.size());
-  }
-
-  std::int64_t counting() const { return std::count(ignored_.begin(), ignored_.end(), false); }
-
-  // Calls add(score, is_true) for each detection that counts, by falling score.
-  template <typename Add>
-  void match(Add add) {
-    std::vector<std::size_t> by_score(image_.detections.size());
-    std::iota(by_score.begin(), by_score.end(), std::size_t{0});
-    std::ranges::stable_sort(
-        by_score, std::greater(), [&](std::size_t i) { return image_.detections[i].score; });
-    const auto most = static_cast<std::size_t>(std::max(0, options_.max_detections));
-    if (by_score.size() > most) by_score.resize(most);
-    for (const std::size_t d : by_score) {
-      const ScoredBox& detection = image_.detections[d];
-      const auto truth = best_of(detection);
-      if (truth) is_taken_[*truth] = true;
-      const bool is_ignored =
-          truth ? ignored_[*truth] != 0 : is_outside(detection.box_px.area(), options_.areas);
-      if (!is_ignored) add(detection.score, truth.has_value());
-    }
-  }
-
- private:
-  std::optional<std::size_t> best_of(const ScoredBox& detection) const {
+  ranking.truths[sequence] += std::count(is_ignored.begin(), is_ignored.end(), false);
+  const std::vector<std::size_t> order =
+      sorted(image.truths.size(), std::less(), [&](std::size_t i) { return is_ignored[i] != 0; });
+  std::vector<char> is_taken(image.truths.size());
+  const auto best_of = [&](const ScoredBox& detection) {
     std::optional<std::size_t> best;
     double best_likeness = 0;
-    for (const std::size_t t : order_) {
-      if (is_taken_[t] && !image_.truths[t].is_region) continue;
+    for (const std::size_t t : order) {
+      if (is_taken[t] && !image.truths[t].is_region) continue;
       // Truths that count come first: once one is found, those to ignore are not looked at.
-      if (best && !ignored_[*best] && ignored_[t]) break;
-      const auto found = likeness(detection, image_.truths[t], options_);
+      if (best && !is_ignored[*best] && is_ignored[t]) break;
+      const auto found = likeness(detection, image.truths[t], options);
       if (!found || (best && *found < best_likeness)) continue;
       best_likeness = *found;
       best = t;
     }
     return best;
+  };
+  std::vector<std::size_t> by_score =
+      sorted(image.detections.size(), std::greater(), [&](std::size_t i) {
+        return image.detections[i].score;
+      });
+  const auto most = static_cast<std::size_t>(std::max(0, options.max_detections));
+  if (by_score.size() > most) by_score.resize(most);
+  for (const std::size_t d : by_score) {
+    const ScoredBox& detection = image.detections[d];
+    const auto truth = best_of(detection);
+    if (truth) is_taken[*truth] = true;
+    if (truth ? is_ignored[*truth] != 0 : is_outside(detection.box_px.area(), options.areas))
+      continue;
+    ranking.detections.push_back({detection.score, sequence, truth.has_value()});
   }
-
-  const ScoredImage& image_;
-  const PrecisionOptions& options_;
-  std::vector<char> ignored_;
-  std::vector<char> is_taken_;
-  std::vector<std::size_t> order_;
-};
+}
 
 Ranking ranking_of(std::span<const ImageList> sequences, const PrecisionOptions& options) {
   Ranking ranking;
-  for (std::size_t s = 0; s < sequences.size(); ++s) {
-    std::int64_t& truths = ranking.truths.emplace_back();
-    for (const ScoredImage& image : sequences[s]) {
-      ImageMatcher matcher(image, options);
-      truths += matcher.counting();
-      matcher.match([&](double score, bool is_true) {
-        ranking.detections.push_back({score, s, is_true});
-      });
-    }
-  }
+  ranking.truths.resize(sequences.size());
+  for (std::size_t s = 0; s < sequences.size(); ++s)
+    for (const ScoredImage& image : sequences[s]) add_image(image, options, s, ranking);
   std::ranges::stable_sort(ranking.detections, std::greater(), &Ranked::score);
   return ranking;
 }
