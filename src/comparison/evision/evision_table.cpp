@@ -160,68 +160,30 @@ bool touches_border(const PixelBox& box) {
          box.bottom() > kHeight - kNear;
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
+EvisionOffsets offsets_of(const PixelBox& ours, const PixelBox& published) {
+  const double width = published.width, height = published.height;
+  const double width_off = std::abs(ours.width - published.width);
+  const double height_off = std::abs(ours.height - published.height);
+  const Pixel centre_off = centre_of(as_box(ours)) - centre_of(as_box(published));
+  return {width,
+          height,
+          width_off,
+          height_off,
+          width_off / width,
+          height_off / height,
+          std::hypot(centre_off.x(), centre_off.y())};
+}
+
+double quantile(const std::vector<EvisionOffsets>& compared,
+                double EvisionOffsets::*of,
+                double share) {
+  if (compared.empty()) return 0;
+  std::vector<double> values;
+  for (const EvisionOffsets& one : compared) values.push_back(one.*of);
   const auto k = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
   return values[k];
 }
-
-// What is gathered over a sequence's frames.
-class Comparison {
- public:
-  explicit Comparison(int spread_px) : spread_px_(spread_px) {}
-
-  // The box as published files would have it; empty where the intruder is not in the picture.
-  std::optional<PixelBox> add(const Model& model, const Frame& frame) {
-    ++row_.frames;
-    row_.published_boxes += is_box(frame.published) ? 1 : 0;
-    const std::optional<Box> outline = outline_box(model, frame);
-    auto ours = outline ? keyed_box(model, frame, *outline) : std::nullopt;
-    const bool centre_in_view =
-        outline && is_in_picture(outline->x + outline->width / 2, outline->y + outline->height / 2);
-    if (!ours && centre_in_view) ++row_.without_box_ours;
-    const bool whole = ours && !touches_border(*ours);
-    if (whole && !is_box(frame.published)) ++row_.without_box_published;
-    if (ours) ours = wider(*ours, frame.number == 1 ? 0 : spread_px_);
-    if (whole && is_box(frame.published) && !touches_border(frame.published))
-      compare(*ours, frame.published);
-    return ours;
-  }
-
-  EvisionRow row(const std::string& name) const {
-    EvisionRow row = row_;
-    row.sequence = name;
-    row.compared = static_cast<int>(width_.size());
-    row.published_width_px = quantile(width_, 0.5);
-    row.published_height_px = quantile(height_, 0.5);
-    row.width_off_px = quantile(width_off_px_, 0.5);
-    row.height_off_px = quantile(height_off_px_, 0.5);
-    row.width_off = quantile(width_off_, 0.5);
-    row.height_off = quantile(height_off_, 0.5);
-    row.centre_off_px = quantile(centre_off_, 0.5);
-    row.centre_off_p95_px = quantile(centre_off_, 0.95);
-    return row;
-  }
-
- private:
-  void compare(const PixelBox& ours, const PixelBox& published) {
-    width_.push_back(published.width);
-    height_.push_back(published.height);
-    width_off_px_.push_back(std::abs(ours.width - published.width));
-    height_off_px_.push_back(std::abs(ours.height - published.height));
-    width_off_.push_back(width_off_px_.back() / published.width);
-    height_off_.push_back(height_off_px_.back() / published.height);
-    centre_off_.push_back(
-        std::hypot(ours.x + ours.width / 2.0 - published.x - published.width / 2.0,
-                   ours.y + ours.height / 2.0 - published.y - published.height / 2.0));
-  }
-
-  int spread_px_;
-  EvisionRow row_;
-  std::vector<double> width_, height_, width_off_px_, height_off_px_, width_off_, height_off_,
-      centre_off_;
-};
 
 Sequence read_sequence(const fs::path& groundtruth,
                        const fs::path& positions_file,
@@ -272,13 +234,37 @@ void recover_motion(std::vector<Sequence>& sequences) {
 }
 
 EvisionRow compare(const Sequence& sequence, const EvisionOptions& options) {
-  Comparison comparison(options.spread_px);
+  EvisionRow row;
+  row.sequence = sequence.name;
+  std::vector<EvisionOffsets> compared;
   for (const Frame& frame : sequence.frames) {
     if (options.stop.stop_requested()) throw Interrupted();
-    const auto ours = comparison.add(*sequence.model, frame);
+    ++row.frames;
+    row.published_boxes += is_box(frame.published) ? 1 : 0;
+    const std::optional<Box> outline = outline_box(*sequence.model, frame);
+    // The box as published files would have it; empty where the intruder is not in the picture.
+    auto ours = outline ? keyed_box(*sequence.model, frame, *outline) : std::nullopt;
+    const bool centre_in_view =
+        outline && is_in_picture(outline->x + outline->width / 2, outline->y + outline->height / 2);
+    if (!ours && centre_in_view) ++row.without_box_ours;
+    const bool whole = ours && !touches_border(*ours);
+    if (whole && !is_box(frame.published)) ++row.without_box_published;
+    if (ours) ours = wider(*ours, frame.number == 1 ? 0 : options.spread_px);
+    if (whole && is_box(frame.published) && !touches_border(frame.published))
+      compared.push_back(offsets_of(*ours, frame.published));
     if (options.each) options.each({sequence.name, frame.number, ours, frame.published});
   }
-  return comparison.row(sequence.name);
+  row.compared = static_cast<int>(compared.size());
+  for (double EvisionOffsets::*of : {&EvisionOffsets::published_width_px,
+                                     &EvisionOffsets::published_height_px,
+                                     &EvisionOffsets::width_off_px,
+                                     &EvisionOffsets::height_off_px,
+                                     &EvisionOffsets::width_off,
+                                     &EvisionOffsets::height_off,
+                                     &EvisionOffsets::centre_off_px})
+    row.*of = quantile(compared, of, 0.5);
+  row.centre_off_p95_px = quantile(compared, &EvisionOffsets::centre_off_px, 0.95);
+  return row;
 }
 
 std::vector<fs::path> groundtruth_files(const fs::path& folder) {

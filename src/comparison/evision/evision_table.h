@@ -48,7 +48,18 @@ struct EvisionOptions {
   std::stop_token stop;
 };
 
-struct EvisionRow {
+// Of a frame that has both boxes; of a sequence, the medians over its compared frames.
+struct EvisionOffsets {
+  double published_width_px = 0;
+  double published_height_px = 0;
+  double width_off_px = 0;  // of |ours - published|
+  double height_off_px = 0;
+  double width_off = 0;  // of |ours - published| / published
+  double height_off = 0;
+  double centre_off_px = 0;  // distance of the centres
+};
+
+struct EvisionRow : EvisionOffsets {
   std::string sequence;
   int frames = 0;  // frames with a defined intruder position
   // Number of these frames with a published box that is not empty.
@@ -59,13 +70,6 @@ struct EvisionRow {
   int without_box_published = 0;
   // Frames in which the centre of its outline is in the picture and this program's box is empty.
   int without_box_ours = 0;
-  double published_width_px = 0;  // medians over the compared frames
-  double published_height_px = 0;
-  double width_off_px = 0;  // of |ours - published|
-  double height_off_px = 0;
-  double width_off = 0;  // of |ours - published| / published
-  double height_off = 0;
-  double centre_off_px = 0;  // distance of the centres
   double centre_off_p95_px = 0;
 
   // Within 2 px or 10 % in the median.
