@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/tracking/am3.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,11 +14,29 @@
 #include "foundation/image/mats.h"
 #include "runners/tracking/classifier.h"
 #include "runners/tracking/luma_window.h"
+#include "runners/tracking/tracker.h"
 
+// AM3, re-implemented from the public record: adaptive tracking by multiple-instance learning with
+// weighted instances, several classifiers that vote and several resolutions (Fu et al., "Real-time
+// Adaptive Multi-Classifier Multi-Resolution Visual Tracking Framework for Unmanned Aerial
+// Vehicles", RED-UAS 2013, abstract; the tracker of the E-Vision paper's section IV). Its authors'
+// code is not public. Details that the record leaves open are chosen here and marked, and this
+// implementation does not claim to reproduce their numbers.
+//
+// A classifier is a sum of Gaussian log-ratios of Haar-like box sums (Babenko, Yang and Belongie
+// 2011, "Robust object tracking with online multiple instance learning", eq. 5 to 8). With
+// `weighted` it learns as in Zhang and Song 2013, "Real-time visual tracking via online weighted
+// multiple instance learning", eq. 8 to 14: instances of the positive bag have the weight
+// exp(-distance), and weak classifiers are chosen by the first-order expansion of the bag
+// likelihood. Without `weighted` it chooses greedily by Babenko's noisy-OR.
+//
+// The following choices are this implementation's own; docs/evaluation.md has their measured
+// effect: how levels and voters are combined; that the windows elsewhere with the highest scores
+// are learned as negatives (`hard`); that the positive bag shrinks with the object.
 namespace airtruth::tracking {
 namespace {
 
-// The record leaves these constants open: they are choices (am3.h).
+// The record leaves these constants open: they are choices.
 
 // Smallest side of the object at the coarsest level, in that level's pixels.
 constexpr int kMinSidePx = 6;

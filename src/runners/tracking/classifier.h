@@ -6,10 +6,34 @@
 #include <vector>
 
 #include "foundation/base/seed.h"
-#include "runners/tracking/am3.h"
 #include "runners/tracking/luma_window.h"
 
 namespace airtruth::tracking {
+
+struct Am3Options {
+  std::uint64_t seed = 1;
+  // In pixels of full resolution.
+  int search_radius_px = 40;
+  int levels = 3;  // upper bound; small objects use fewer
+  int voters = 3;  // number of classifiers at each level
+  // Number of weak classifiers that learn.
+  int pool = 250;
+  // Number of these that are selected to decide.
+  int selected = 20;
+  // Weight of the previous value when a Gaussian is updated.
+  double memory = 0.93;
+  // Windows nearer to the object than this distance, and than this share of the object's shorter
+  // side, are positives.
+  double positive_radius_px = 4;
+  double positive_share = 0.25;
+  // Gap between the positives and the nearest negatives, after the first frame.
+  double gap_px = 2;
+  int negatives = 50;
+  // Number of further negatives: the windows that looked most like the object.
+  int hard = 50;
+  bool weighted = true;
+  bool follows_scale = false;  // false: the box keeps its first size
+};
 
 // Top-left corner of a window at one level of a pyramid, in that level's pixels.
 struct Place {
@@ -20,7 +44,7 @@ struct Place {
 
 // A boosted classifier for windows of one size at one level. It has a pool of Haar-like features,
 // each with a Gaussian for the object and one for the surroundings, and a selection of a few of
-// them (am3.h has the sources).
+// them (am3.cpp has the sources).
 class Classifier {
  public:
   Classifier(const Am3Options& options, int level, int width, int height, Random random);

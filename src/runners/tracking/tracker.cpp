@@ -8,7 +8,6 @@
 #include "foundation/base/text.h"
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
-#include "runners/tracking/am3.h"
 #include "runners/tracking/trax_tracker.h"
 
 namespace airtruth::tracking {

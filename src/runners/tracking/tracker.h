@@ -65,6 +65,10 @@ struct TrackerOptions : process::Limits {
 // for any other name, and process::Failure where a command cannot be run or does not send TraX's
 // hello message.
 std::unique_ptr<Tracker> make_tracker(std::string_view name, const TrackerOptions& options);
+// Makes "am3"; "am3s", which follows the scale by optical flow and whose classifiers start anew
+// whenever the scale has changed by half; and the trackers of Babenko et al. ("mil") and of Zhang
+// and Song ("wmil"), one classifier at one resolution. Returns nullptr for any other name.
+std::unique_ptr<Tracker> make_am3(std::string_view name, std::uint64_t seed);
 // One of OpenCV's alone, which need no model file; nullptr for any other name. Each tracker gets
 // newly seeded random numbers.
 std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_t seed);

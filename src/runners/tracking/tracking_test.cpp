@@ -8,7 +8,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
-#include "runners/tracking/am3.h"
 #include "runners/tracking/luma_window.h"
 #include "runners/tracking/tracker.h"
 
