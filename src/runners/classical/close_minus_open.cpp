@@ -50,7 +50,7 @@ class CloseMinusOpen : public ClassicalDetector {
   // that of this frame (at most 1): what the noise made, and what stays in place on the lens while
   // the camera turns, is not there in the other frames.
   double persistence(const Blob& blob, const Level& level) const {
-    const double here = level.relative_response_near(blob.sample, 0);
+    const double here = level.relative_response(blob.sample);
     double sum = 1;
     int count = 1;
     Quaternion before_from_this = Quaternion::Identity();
@@ -64,7 +64,8 @@ class CloseMinusOpen : public ClassicalDetector {
       const Level& other = before.levels[blob.level];
       const cv::Point sample = other.sample_at(*there);
       if (!cv::Rect({}, other.picture.size()).contains(sample)) break;
-      sum += std::min(1.0, other.relative_response_near(sample, radius) / std::max(here, 1e-9));
+      const double response = other.relative_response(other.strongest_near(sample, radius));
+      sum += std::min(1.0, response / std::max(here, 1e-9));
       ++count;
     }
     return sum / count;

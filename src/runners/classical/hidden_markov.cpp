@@ -43,31 +43,15 @@ bool holds(const Box& box, const Pixel& pixel, double margin_px) {
          pixel.x() < box.right() + margin_px && pixel.y() < box.bottom() + margin_px;
 }
 
-// The strongest response of a level near a pixel.
-cv::Point strongest_near(const Level& level, const Pixel& pixel, double within_px) {
-  const cv::Point centre = level.sample_at(pixel);
-  const int radius = std::max(1, static_cast<int>(std::lround(within_px / level.step)));
-  cv::Point best = centre;
-  double most = -1;
-  for (int dy = -radius; dy <= radius; ++dy)
-    for (int dx = -radius; dx <= radius; ++dx) {
-      const cv::Point sample = centre + cv::Point(dx, dy);
-      const double response = level.relative_response(sample);
-      if (response > most) {
-        most = response;
-        best = sample;
-      }
-    }
-  return best;
-}
-
 // The object at a pixel, as its strongest blob of any level has it; empty where it is too faint to
 // bound.
 std::optional<Box> box_at(const std::vector<Level>& levels, const Pixel& pixel, double within_px) {
   std::optional<Blob> best;
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    const cv::Point sample = strongest_near(levels[i], pixel, within_px);
-    if (levels[i].relative_response(sample) < kLeastResponse) continue;
+    const Level& level = levels[i];
+    const int radius = std::max(1, static_cast<int>(std::lround(within_px / level.step)));
+    const cv::Point sample = level.strongest_near(level.sample_at(pixel), radius);
+    if (level.relative_response(sample) < kLeastResponse) continue;
     const auto blob = blob_at(levels, i, sample);
     if (!blob || !holds(blob->box_px, pixel, within_px + 1)) continue;
     if (!best || blob->contrast_to_noise > best->contrast_to_noise) best = blob;

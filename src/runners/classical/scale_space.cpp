@@ -232,12 +232,19 @@ double Level::relative_response(const cv::Point& sample) const {
   return response.at<short>(sample) / at_block(typical, sample);
 }
 
-double Level::relative_response_near(const cv::Point& sample, int radius) const {
-  double largest_there = 0;
-  for (int y = -radius; y <= radius; ++y)
-    for (int x = -radius; x <= radius; ++x)
-      largest_there = std::max(largest_there, relative_response({sample.x + x, sample.y + y}));
-  return largest_there;
+cv::Point Level::strongest_near(const cv::Point& centre, int radius) const {
+  cv::Point best = centre;
+  double most = -1;
+  for (int dy = -radius; dy <= radius; ++dy)
+    for (int dx = -radius; dx <= radius; ++dx) {
+      const cv::Point sample = centre + cv::Point(dx, dy);
+      const double here = relative_response(sample);
+      if (here > most) {
+        most = here;
+        best = sample;
+      }
+    }
+  return best;
 }
 
 std::vector<Level> scale_space(const image::Picture& picture, const FreeView& view) {
