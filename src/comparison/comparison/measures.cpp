@@ -104,10 +104,6 @@ std::string shown(double value, double spread) {
   return std::isnan(value) ? "-" : fmt::format("{:.3g} +- {:.2g}", value, spread);
 }
 
-nlohmann::json number(double value) {
-  return std::isnan(value) ? nlohmann::json(nullptr) : nlohmann::json(value);
-}
-
 }  // namespace
 
 std::vector<Pair> pairs_of(const std::vector<Compared>& all) {
@@ -182,11 +178,12 @@ std::string json_of(const Comparison& c, const fs::path& real) {
                            {"elevation_deg", c.sun->elevation_deg},
                            {"correlation", c.sun->correlation},
                            {"difference_codes", c.sun->difference_codes}};
+  // A NaN is written as null.
   for (const Pair& p : c.pairs)
     json["measures"].push_back({{"name", p.name},
-                                {"real", number(p.real)},
+                                {"real", p.real},
                                 {"real_spread", p.real_spread},
-                                {"inserted", number(p.made)},
+                                {"inserted", p.made},
                                 {"inserted_spread", p.made_spread}});
   json["colour_distance"] = c.colour_distance;
   json["colour_distance_within_real"] = c.colour_distance_within;

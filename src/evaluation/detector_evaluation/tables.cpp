@@ -112,7 +112,7 @@ Json json_of(const scores::DetectionBin& bin) {
   Json json = Json::object();
   if (bin.place.name.empty()) {
     json["from"] = bin.place.from;
-    json["to"] = report::json_of_bound(bin.place.to);
+    json["to"] = bin.place.to;  // of the last one: infinity, which is written as null
   } else {
     json["name"] = bin.place.name;
   }

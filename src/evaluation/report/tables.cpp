@@ -50,8 +50,6 @@ Json json_of(const std::optional<evaluation::Interval>& interval) {
   return interval ? Json{interval->low, interval->high} : Json();
 }
 
-Json json_of_bound(double bound) { return std::isfinite(bound) ? Json(bound) : Json(); }
-
 std::string csv_of(std::string_view columns, const std::vector<Json>& rows, const char* number) {
   std::string text;
   for (const Column& column : columns_of(columns)) text += (text.empty() ? "" : ",") + column.name;

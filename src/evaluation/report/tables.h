@@ -21,8 +21,6 @@ using Json = nlohmann::ordered_json;
 
 // [low, high], or null.
 Json json_of(const std::optional<evaluation::Interval>& interval);
-// The upper end of a bin; null for the last one, which has none.
-Json json_of_bound(double bound);
 
 // A table as RFC 4180 has it, whose cells are values of its rows: what a row does not have, null
 // and a number that is not finite are empty. `columns` are their headings, each with the place of

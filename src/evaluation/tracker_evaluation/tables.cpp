@@ -65,7 +65,8 @@ Json breakdown_of(const ScoredTracker& tracker) {
   for (const auto& [key, bins] : tracker.bins) {
     Json list = Json::array();
     for (const Bin& bin : bins) {
-      Json one = {{"from", bin.from}, {"to", report::json_of_bound(bin.to)}};
+      // The last one's end is infinity, which is written as null.
+      Json one = {{"from", bin.from}, {"to", bin.to}};
       one.update(json_of(bin));
       list.push_back(one);
     }
