@@ -34,6 +34,8 @@ std::vector<Outcome> outcomes(std::span<const evaluation::FramePair> frames,
 
 // Mean values of the outcomes in one bin; errors are those of the frames that have one.
 struct Bin {
+  // Of a bin by name, whose ends are unused.
+  std::string name;
   // Inclusive.
   double from = 0;
   // Exclusive; infinite for the last bin.

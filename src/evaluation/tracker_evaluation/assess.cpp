@@ -114,8 +114,11 @@ void break_down(const std::vector<TruthClip>& truths, ScoredTracker& tracker) {
   for (const auto& [key, edges] : statistics::kWeatherEdges)
     if (auto bins = measures::breakdown(all, values[key], edges); !bins.empty())
       tracker.bins[key] = std::move(bins);
-  for (const auto& [name, outcomes] : by_background)
-    tracker.backgrounds[name] = measures::mean_of(outcomes);
+  std::vector<measures::Bin>& backgrounds = tracker.bins[kBackground];
+  for (const auto& [name, outcomes] : by_background) {
+    backgrounds.push_back(measures::mean_of(outcomes));
+    backgrounds.back().name = name;
+  }
 }
 
 void summarise(const std::vector<TruthClip>& truths, ScoredTracker& tracker) {

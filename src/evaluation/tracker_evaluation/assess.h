@@ -36,6 +36,8 @@ struct ScoredSequence {
   std::optional<evaluation::MultiStart> multistart;
 };
 
+constexpr const char* kBackground = "background";
+
 struct ScoredTracker {
   std::string name;
   std::vector<ScoredSequence> sequences;
@@ -47,10 +49,9 @@ struct ScoredTracker {
   std::optional<double> angle_mrad;
   // Number of sequences in which the tracker lost its object.
   std::int64_t lost = 0;
-  // `bins` has the keys "range_m", "size_px" and "contrast", and of the weather those that the set
-  // states; `backgrounds` has the backgrounds' names.
+  // The keys are "range_m", "size_px" and "contrast", those of the weather that the set states, and
+  // kBackground, whose bins have the backgrounds' names.
   std::map<std::string, std::vector<measures::Bin>> bins;
-  std::map<std::string, measures::Bin> backgrounds;
   std::optional<evaluation::Restart> restart;
   std::optional<evaluation::MultiStart> multistart;
 };

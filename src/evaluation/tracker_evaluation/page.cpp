@@ -78,47 +78,29 @@ Plot eao_plot(const Assessment& assessment) {
   return plot;
 }
 
-Plot bins_plot(const Assessment& assessment, const std::string& key, const std::string& x) {
-  // By the lower bound; of trackers that differ in their frames, the one with the most.
-  std::map<double, measures::Bin> names;
+Plot bins_plot(const Assessment& assessment,
+               const std::string& key,
+               const std::string& x,
+               plot::Mark mark = plot::Mark::kLineAndPoints) {
+  const auto place_of = [](const measures::Bin& bin) { return std::pair(bin.from, bin.name); };
+  // Of trackers that differ in their frames, the one with the most.
+  std::map<std::pair<double, std::string>, measures::Bin> places;
   for (const ScoredTracker& tracker : assessment.trackers)
     if (const auto found = tracker.bins.find(key); found != tracker.bins.end())
       for (const measures::Bin& bin : found->second)
-        if (measures::Bin& most = names[bin.from]; bin.frames > most.frames) most = bin;
+        if (measures::Bin& most = places[place_of(bin)]; bin.frames > most.frames) most = bin;
   Plot plot{.x = {.label = x + " (frames)"}, .y = {.label = "mean overlap", .min = 0}};
-  for (const auto& [from, bin] : names)
+  for (const auto& [place, bin] : places)
     plot.x.names.push_back(
-        report::counted_place(plot::name_of_bin(from, bin.to), static_cast<double>(bin.frames)));
+        report::counted_place(key == kBackground ? bin.name : plot::name_of_bin(bin.from, bin.to),
+                              static_cast<double>(bin.frames)));
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
     const auto found = assessment.trackers[k].bins.find(key);
     if (found == assessment.trackers[k].bins.end() || found->second.empty()) continue;
-    Series series{.name = assessment.trackers[k].name,
-                  .mark = plot::Mark::kLineAndPoints,
-                  .style = plot::style_of(k)};
+    Series series{.name = assessment.trackers[k].name, .mark = mark, .style = plot::style_of(k)};
     for (const measures::Bin& bin : found->second) {
-      series.x.push_back(static_cast<double>(std::distance(names.begin(), names.find(bin.from))));
-      series.y.push_back(bin.overlap);
-    }
-    plot.series.push_back(std::move(series));
-  }
-  return plot;
-}
-
-Plot background_plot(const Assessment& assessment) {
-  std::map<std::string, std::int64_t> names;
-  for (const ScoredTracker& tracker : assessment.trackers)
-    for (const auto& [name, bin] : tracker.backgrounds)
-      names[name] = std::max(names[name], bin.frames);
-  Plot plot{.x = {.label = "background (frames)"}, .y = {.label = "mean overlap", .min = 0}};
-  for (const auto& [name, frames] : names)
-    plot.x.names.push_back(report::counted_place(name, static_cast<double>(frames)));
-  for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
-    const auto& backgrounds = assessment.trackers[k].backgrounds;
-    if (backgrounds.empty()) continue;
-    Series series{
-        .name = assessment.trackers[k].name, .mark = plot::Mark::kBars, .style = plot::style_of(k)};
-    for (const auto& [name, bin] : backgrounds) {
-      series.x.push_back(static_cast<double>(std::distance(names.begin(), names.find(name))));
+      series.x.push_back(
+          static_cast<double>(std::distance(places.begin(), places.find(place_of(bin)))));
       series.y.push_back(bin.overlap);
     }
     plot.series.push_back(std::move(series));
@@ -157,7 +139,7 @@ std::vector<report::NamedPlot> evaluation_plots(const Assessment& assessment) {
       {"range_m", bins_plot(assessment, "range_m", "range, m")},
       {"size_px", bins_plot(assessment, "size_px", "box size (longer side), px")},
       {"contrast", bins_plot(assessment, "contrast", "contrast, levels of 255")},
-      {"background", background_plot(assessment)}};
+      {kBackground, bins_plot(assessment, kBackground, kBackground, plot::Mark::kBars)}};
   for (const auto& [key, edges] : statistics::kWeatherEdges)
     plots.push_back({key, bins_plot(assessment, key, key)});
   return report::with_data(std::move(plots));

@@ -63,6 +63,7 @@ Json json_of(const FirstLoss& loss) {
 Json breakdown_of(const ScoredTracker& tracker) {
   Json json = Json::object();
   for (const auto& [key, bins] : tracker.bins) {
+    if (key == kBackground) continue;
     Json list = Json::array();
     for (const Bin& bin : bins) {
       // The last one's end is infinity, which is written as null.
@@ -73,8 +74,8 @@ Json breakdown_of(const ScoredTracker& tracker) {
     json[key] = list;
   }
   Json backgrounds = Json::object();
-  for (const auto& [name, bin] : tracker.backgrounds) backgrounds[name] = json_of(bin);
-  json["background"] = backgrounds;
+  for (const Bin& bin : tracker.bins.at(kBackground)) backgrounds[bin.name] = json_of(bin);
+  json[kBackground] = backgrounds;
   return json;
 }
 
