@@ -217,12 +217,59 @@ const airtruth = (() => {
     if (event.key.toLowerCase() === 'f' && pointed && !isTyped) pointed();
   });
 
+  // The picture that the page holds under an id, decoded; null without one.
+  const loaded = (id) => new Promise((done) => {
+    const holder = document.getElementById(id);
+    if (!holder) { done(null); return; }
+    const image = new Image();
+    image.onload = () => done(image);
+    image.onerror = () => done(null);
+    image.src = `data:image/jpeg;base64,${holder.textContent}`;
+  });
+  // Draws a box of the frame, which the canvas shows from (x, y) on.
+  const outline = (context, { x, y, scale }, [left, top, width, height], colour, thickness, dashes) => {
+    context.setLineDash(dashes);
+    context.strokeStyle = colour;
+    context.lineWidth = thickness;
+    context.strokeRect((left - x) * scale - 1, (top - y) * scale - 1, width * scale + 2, height * scale + 2);
+  };
+
+  // Lets a button play picture after picture, none before the one before it is drawn: go(index) draws one, next() is the index of the
+  // next one, undefined after the last. Returns what stops it.
+  const playable = (button, { go, next, pause_ms }) => {
+    let playing = 0; // which call of play() goes on
+    const stop = () => {
+      playing += 1;
+      button.textContent = 'Play';
+    };
+    const play = async () => {
+      playing += 1;
+      const mine = playing;
+      button.textContent = 'Pause';
+      if (next() === undefined) await go(0);
+      while (mine === playing && next() !== undefined)
+        await Promise.all([go(next()), new Promise((done) => setTimeout(done, pause_ms))]);
+      if (mine === playing) stop();
+    };
+    button.addEventListener('click', () => (button.textContent === 'Play' ? play() : stop()));
+    return stop;
+  };
+
+  // Adds values to a choice, each once and sorted.
+  const choices = (id, values) => {
+    for (const value of [...new Set(values)].sort()) {
+      const option = element('option', value);
+      option.value = value;
+      document.getElementById(id).append(option);
+    }
+  };
+
   // What both players of sequences begin with: the list of sequences, a box for each of `shown` that hides it, the buttons and the slider.
   //   sequences, wordsOf(one)   the list and what it says of each; each gets its index
   //   shown, hidden, redraw()   what can be hidden, the set of hidden indices, and what draws anew after a change of it
   //   show(index), current()    shows a sequence; the one that is shown
-  //   go(index), play(), stop() the slider and the button
-  const beginPlayer = ({ sequences, wordsOf, shown, hidden, redraw, show, current, go, play, stop }) => {
+  //   go(index), stop()         the slider
+  const beginPlayer = ({ sequences, wordsOf, shown, hidden, redraw, show, current, go, stop }) => {
     const byId = (id) => document.getElementById(id);
     sequences.forEach((one, index) => {
       one.index = index;
@@ -247,19 +294,22 @@ const airtruth = (() => {
     byId('previous').addEventListener('click', step(-1));
     byId('next').addEventListener('click', step(1));
     byId('frame').addEventListener('input', () => { stop(); go(Number(byId('frame').value)); });
-    byId('play').addEventListener('click', () => (byId('play').textContent === 'Play' ? play() : stop()));
     byId('play').parentNode.append(fullScreen(byId('play').closest('.player')));
   };
 
   return {
     beginPlayer,
     byId: (id) => document.getElementById(id),
+    choices,
     ink,
     dotOf,
     drawPlot,
     element,
     fit,
     fullScreen,
+    loaded,
+    outline,
+    playable,
     sortable,
     least: (values) => (values.length ? values.reduce((a, b) => Math.min(a, b)) : null),
     most: (values) => (values.length ? values.reduce((a, b) => Math.max(a, b)) : null),

@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, counted, drawPlot, element, number, sortable } = airtruth;
+  const { byId, choices, counted, drawPlot, element, loaded, number, sortable } = airtruth;
   const { detectors } = data;
 
   const dotOf = ({ style }) => airtruth.dotOf(style);
@@ -105,23 +105,19 @@
     const figure = element('figure');
     const canvas = element('canvas');
     canvas.width = canvas.height = 160;
-    const holder = byId(blob);
-    if (holder && entry.cutout) {
-      const image = new Image();
-      image.onload = () => {
-        const context = canvas.getContext('2d');
-        context.drawImage(image, 0, 0, 160, 160);
-        const [left, top, px] = entry.cutout;
-        const scale = 160 / px;
-        const [x, y, width, height] = entry.box_px;
-        for (const [paint, thickness] of [['#000000', 3.5], [colour, 1.5]]) {
-          context.strokeStyle = paint;
-          context.lineWidth = thickness;
-          context.strokeRect((x - left) * scale - 3, (y - top) * scale - 3, width * scale + 6, height * scale + 6);
-        }
-      };
-      image.src = `data:image/jpeg;base64,${holder.textContent}`;
-    }
+    loaded(blob).then((image) => {
+      if (!image || !entry.cutout) return;
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0, 160, 160);
+      const [left, top, px] = entry.cutout;
+      const scale = 160 / px;
+      const [x, y, width, height] = entry.box_px;
+      for (const [paint, thickness] of [['#000000', 3.5], [colour, 1.5]]) {
+        context.strokeStyle = paint;
+        context.lineWidth = thickness;
+        context.strokeRect((x - left) * scale - 3, (y - top) * scale - 3, width * scale + 6, height * scale + 6);
+      }
+    });
     const button = element('button', words[0]);
     button.type = 'button';
     button.addEventListener('click', () => player.showFrame(entry.sequence, entry.frame));
@@ -155,12 +151,7 @@
       option.value = k;
       byId('gallery-detector').append(option);
     });
-    const kinds = new Set(detectors.flatMap((d) => d.strongest_false_alarms.map((alarm) => alarm.what)));
-    for (const kind of [...kinds].sort()) {
-      const option = element('option', kind);
-      option.value = kind;
-      byId('gallery-what').append(option);
-    }
+    choices('gallery-what', detectors.flatMap((d) => d.strongest_false_alarms.map((alarm) => alarm.what)));
     byId('gallery-choice').addEventListener('input', drawGalleries);
     if (detectors.length) drawGalleries();
   };

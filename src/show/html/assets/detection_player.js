@@ -3,23 +3,16 @@
 // Plays the sequences of an evaluation of detectors: pictures that the page holds, with truth, detections and
 // tracks, and a strip over all frames.
 airtruth.detectionPlayer = (data, dotOf) => {
-  const { byId, counted, element, ink, number } = airtruth;
+  const { byId, counted, element, ink, loaded, number, outline } = airtruth;
   const { detectors } = data;
   const hidden = new Set();
   let sequence = null;
   let at = 0; // index into the sequence's stills
-  let playing = 0; // which call of play() goes on
   let asked = 0;
 
   const shown = () => sequence.detectors.filter((one) => !hidden.has(one.detector));
   const isStrong = (detector, score) => detectors[detector].point !== null && score >= detectors[detector].point.score;
 
-  const rectangle = (context, view, [x, y, width, height], colour, thickness, dashes) => {
-    context.setLineDash(dashes);
-    context.strokeStyle = colour;
-    context.lineWidth = thickness;
-    context.strokeRect((x - view.x) * view.scale - 1, (y - view.y) * view.scale - 1, width * view.scale + 2, height * view.scale + 2);
-  };
   const cross = (context, view, [x, y, width, height]) => {
     const [left, top, right, bottom] = [x - view.x, y - view.y, x + width - view.x, y + height - view.y].map((v) => v * view.scale);
     context.setLineDash([]);
@@ -31,11 +24,11 @@ airtruth.detectionPlayer = (data, dotOf) => {
     context.stroke();
   };
   const drawTruth = (context, view, still) => {
-    for (const box of still.ignored) rectangle(context, view, box, '#9aa7b4', 1.5, [2, 3]);
+    for (const box of still.ignored) outline(context, view, box, '#9aa7b4', 1.5, [2, 3]);
     for (const object of still.objects) {
       const isAircraft = object.class === 'aircraft' && object.counts;
-      rectangle(context, view, object.box, '#000000', 4.5, []);
-      rectangle(context, view, object.box, isAircraft ? '#ffffff' : '#9aa7b4', 2, isAircraft ? [] : [2, 3]);
+      outline(context, view, object.box, '#000000', 4.5, []);
+      outline(context, view, object.box, isAircraft ? '#ffffff' : '#9aa7b4', 2, isAircraft ? [] : [2, 3]);
     }
   };
   // Where a track was in the pictures before this one, as far as it was drawn in them.
@@ -63,7 +56,7 @@ airtruth.detectionPlayer = (data, dotOf) => {
       for (const [box, score, track, fate] of one.drawn[at]) {
         const strong = isStrong(one.detector, score);
         if (!strong && !byId('weak').checked) continue;
-        rectangle(context, view, box, colour, 1.8, strong ? [] : [5, 4]);
+        outline(context, view, box, colour, 1.8, strong ? [] : [5, 4]);
         if (fate === 'false alarm' && strong) cross(context, view, box);
         if (track === null) continue;
         drawTrail(context, view, one, track);
@@ -80,17 +73,6 @@ airtruth.detectionPlayer = (data, dotOf) => {
     context.drawImage(image, 0, 0, canvas.width, canvas.height);
     drawTruth(context, view, still);
     drawDetections(context, view);
-  };
-
-  const loaded = (id) => {
-    const holder = byId(id);
-    if (!holder) return Promise.resolve(null);
-    return new Promise((done) => {
-      const image = new Image();
-      image.onload = () => done(image);
-      image.onerror = () => done(null);
-      image.src = `data:image/jpeg;base64,${holder.textContent}`;
-    });
   };
 
   const captionOf = (still) => {
@@ -190,19 +172,7 @@ airtruth.detectionPlayer = (data, dotOf) => {
     at = Math.max(0, Math.min(sequence.stills.length - 1, index));
     return drawFrame();
   };
-  const stop = () => {
-    playing += 1;
-    byId('play').textContent = 'Play';
-  };
-  const play = async () => {
-    playing += 1;
-    const mine = playing;
-    byId('play').textContent = 'Pause';
-    if (at >= sequence.stills.length - 1) await go(0);
-    while (mine === playing && at < sequence.stills.length - 1)
-      await Promise.all([go(at + 1), new Promise((done) => setTimeout(done, 120))]);
-    if (mine === playing) stop();
-  };
+  const stop = airtruth.playable(byId('play'), { go, next: () => (at + 1 < sequence.stills.length ? at + 1 : undefined), pause_ms: 120 });
 
   const factsOf = () => {
     const parts = [`over ${sequence.background}, ${counted(sequence.frame.length, 'frame')} of ${sequence.width} × ${sequence.height}`];
@@ -262,7 +232,7 @@ airtruth.detectionPlayer = (data, dotOf) => {
 
   const begin = () => {
     airtruth.beginPlayer({
-      sequences: data.sequences, wordsOf, shown: detectors, hidden, redraw: drawFrame, show, current: () => sequence, go, play, stop,
+      sequences: data.sequences, wordsOf, shown: detectors, hidden, redraw: drawFrame, show, current: () => sequence, go, stop,
     });
     byId('weak').addEventListener('change', drawFrame);
     byId('strip').addEventListener('click', (event) => {

@@ -2,7 +2,7 @@
 'use strict';
 // What a data set's page shows and filters by of encounters (docs/formats/output.md).
 airtruth.encounters = (() => {
-  const { byId, counted, element, least, most, number, line, ink } = airtruth;
+  const { byId, choices, counted, element, least, most, number, line, ink } = airtruth;
 
   const sides = [['ahead_m', 'ahead', 'behind'], ['right_m', 'right', 'left'], ['above_m', 'above', 'below']];
   // "60 m right, 15 m above"
@@ -150,7 +150,7 @@ airtruth.encounters = (() => {
   const matches = (sequence) => !isFiltered() || sequence.encounters.some(fits);
 
   // Fills the choices, or takes what is of encounters off the page.
-  const begin = (sequences, choices) => {
+  const begin = (sequences) => {
     const all = sequences.flatMap((sequence) => sequence.encounters);
     if (!all.length) {
       byId('of-encounters').remove();

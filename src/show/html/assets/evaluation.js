@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, counted, dotOf, drawPlot, element, ink, most, number, sortable, line, axis } = airtruth;
+  const { byId, counted, dotOf, drawPlot, element, ink, loaded, most, number, sortable, line, axis } = airtruth;
   const trackers = data.trackers;
   for (const tracker of trackers) Object.assign(tracker, { colour: tracker.style.colour, dash: tracker.style.dash });
   const scored = trackers.filter((tracker) => tracker.overall);
@@ -122,7 +122,6 @@
     let sequence = null;
     let at = 0; // index into the sequence's series
     let charts = [];
-    let playing = 0; // which call of play() goes on
     let asked = 0;
 
     const cursor = {
@@ -178,33 +177,15 @@
     const nearestStill = (index) =>
       sequence.stills.reduce((best, still) => (Math.abs(still.at - index) < Math.abs(best.at - index) ? still : best), sequence.stills[0]);
 
-    const outline = (context, box, x, y, scale, colour, width, dashes) => {
-      if (!box) return;
-      context.setLineDash(dashes);
-      context.strokeStyle = colour;
-      context.lineWidth = width;
-      context.strokeRect((box[0] - x) * scale - 1, (box[1] - y) * scale - 1, box[2] * scale + 2, box[3] * scale + 2);
-    };
     const drawPicture = (canvas, image, still, x, y, px) => {
       const context = canvas.getContext('2d');
       context.clearRect(0, 0, canvas.width, canvas.height);
       if (!image) return;
       context.drawImage(image, 0, 0, canvas.width, canvas.height);
-      const scale = canvas.width / px;
-      outline(context, sequence.truth[still.at], x, y, scale, '#000000', 4.5, []);
-      outline(context, sequence.truth[still.at], x, y, scale, '#ffffff', 2, []);
-      for (const one of shownTrackers())
-        outline(context, one.boxes[still.at], x, y, scale, trackerOf(one).colour, 1.8, trackerOf(one).dash);
-    };
-    const loaded = (id) => {
-      const holder = byId(id);
-      if (!holder) return Promise.resolve(null);
-      return new Promise((done) => {
-        const image = new Image();
-        image.onload = () => done(image);
-        image.onerror = () => done(null);
-        image.src = `data:image/jpeg;base64,${holder.textContent}`;
-      });
+      const outline = (box, ...style) => { if (box) airtruth.outline(context, { x, y, scale: canvas.width / px }, box, ...style); };
+      outline(sequence.truth[still.at], '#000000', 4.5, []);
+      outline(sequence.truth[still.at], '#ffffff', 2, []);
+      for (const one of shownTrackers()) outline(one.boxes[still.at], trackerOf(one).colour, 1.8, trackerOf(one).dash);
     };
 
     const captionOf = (index) => {
@@ -237,22 +218,7 @@
       at = sequence.stills.length ? nearestStill(inside).at : inside;
       return drawFrame();
     };
-    const stop = () => {
-      playing += 1;
-      byId('play').textContent = 'Play';
-    };
-    // Picture after picture, none before the one before it is drawn.
-    const play = async () => {
-      playing += 1;
-      const mine = playing;
-      byId('play').textContent = 'Pause';
-      const last = sequence.stills.length ? sequence.stills[sequence.stills.length - 1].at : 0;
-      if (at >= last) await go(0);
-      while (mine === playing && at < last) {
-        await Promise.all([go(sequence.stills.find((still) => still.at > at).at), new Promise((done) => setTimeout(done, 100))]);
-      }
-      if (mine === playing) stop();
-    };
+    const stop = airtruth.playable(byId('play'), { go, next: () => sequence.stills.find((still) => still.at > at)?.at, pause_ms: 100 });
 
     const drawTable = () => {
       const table = byId('losses');
@@ -298,7 +264,7 @@
       const redraw = () => { drawSeries(); drawFrame(); };
       airtruth.beginPlayer({
         sequences: data.sequences, wordsOf: (one) => (one.trackers.length ? one.name : `${one.name} (no results)`),
-        shown: trackers, hidden, redraw, show, current: () => sequence, go, play, stop,
+        shown: trackers, hidden, redraw, show, current: () => sequence, go, stop,
       });
       for (const id of ['x', 'y', 'error']) {
         byId(id).addEventListener('pointermove', seek);

@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, counted, drawPlot, element, least, most, number, line, axis, legend } = airtruth;
+  const { byId, choices, counted, drawPlot, element, least, loaded, most, number, line, axis, legend } = airtruth;
   const { encounters } = airtruth;
   const { colours } = data;
 
@@ -153,10 +153,6 @@
     });
   };
 
-  const picture = (id) => {
-    const holder = byId(id);
-    return holder ? `data:image/jpeg;base64,${holder.textContent}` : null;
-  };
   const address = (path) => path.split('/').map(encodeURIComponent).join('/');
 
   // Plays the frames that the page holds, each with its number and boxes; and, where the browser knows its
@@ -184,7 +180,6 @@
     zoom.setAttribute('role', 'img');
     zoom.setAttribute('aria-label', `The intruder of ${sequence.name}, enlarged`);
     let at = sequence.poster;
-    let playing = 0;
     let asked = 0;
 
     // The part of the frame from (left, top) on, `px` wide, with its boxes; without an image nothing.
@@ -201,13 +196,6 @@
           context.strokeRect((x - left) * scale - 2, (y - top) * scale - 2, width * scale + 4, height * scale + 4);
         }
     };
-    const loaded = (id) => new Promise((done) => {
-      const source = picture(id);
-      const image = new Image();
-      image.onerror = () => done(null);
-      image.onload = () => done(image);
-      if (source) image.src = source; else done(null);
-    });
     // Pictures, boxes, caption and slider change together, once the pictures are decoded.
     const show = async (index) => {
       at = index;
@@ -221,21 +209,10 @@
       caption.textContent = `frame ${still.frame}` + (still.boxes.length ? '' : ', no intruder is seen');
       slider.value = index;
     };
-    const stop = () => {
-      playing += 1;
-      button.textContent = 'Play';
-    };
-    const play = async () => {
-      playing += 1;
-      const mine = playing;
-      button.textContent = 'Pause';
-      const pause = Math.max(40, Math.min(400, (1000 * sequence.seconds) / Math.max(1, sequence.stills.length)));
-      if (at >= sequence.stills.length - 1) await show(0);
-      while (mine === playing && at < sequence.stills.length - 1)
-        await Promise.all([show(at + 1), new Promise((done) => setTimeout(done, pause))]);
-      if (mine === playing) stop();
-    };
-    button.addEventListener('click', () => (button.textContent === 'Play' ? play() : stop()));
+    const stop = airtruth.playable(button, {
+      go: show, next: () => (at + 1 < sequence.stills.length ? at + 1 : undefined),
+      pause_ms: Math.max(40, Math.min(400, (1000 * sequence.seconds) / Math.max(1, sequence.stills.length))),
+    });
     slider.addEventListener('input', () => { stop(); show(Number(slider.value)); });
 
     const addFile = () => {
@@ -314,10 +291,10 @@
     card.draw = () => {
       player.begin();
       if (table) airtruth.fit(table.firstChild);
-      const strip = picture(`loop-${sequence.index}`);
+      const strip = byId(`loop-${sequence.index}`);
       if (strip) {
         const side = sequence.loop_side;
-        loop.style.backgroundImage = `url(${strip})`;
+        loop.style.backgroundImage = `url(data:image/jpeg;base64,${strip.textContent})`;
         if (sequence.loop_frames > 1)
           loop.animate(
             [{ backgroundPosition: '0 0' }, { backgroundPosition: `${-side * sequence.loop_frames}px 0` }],
@@ -381,18 +358,10 @@
     byId('count').textContent = `${number(shown.length)} of ${number(cards.length)}`;
   };
 
-  const choices = (id, values) => {
-    for (const value of [...new Set(values)].sort()) {
-      const option = element('option', value);
-      option.value = value;
-      byId(id).append(option);
-    }
-  };
-
   drawOverview();
   choices('aircraft', data.sequences.flatMap((s) => s.aircraft));
   choices('background', data.sequences.map((s) => s.background));
-  encounters.begin(data.sequences, choices);
+  encounters.begin(data.sequences);
   choices('weather', weatherKeys);
   choices('sort', weatherKeys);
   if (!weatherKeys.length) byId('of-weather').remove();
