@@ -44,18 +44,8 @@ image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side) {
 
 image::Rgb8 square(const image::Picture& picture, double left, double top, double px, int side) {
   const int size = whole_pixels(px);
-  const int x = whole_pixels(left);
-  const int y = whole_pixels(top);
-  image::Rgb8 square = image::make_rgb8(size, size);
-  const auto inside = intersection({x, y, size, size}, {0, 0, picture.width, picture.height});
-  if (inside) {
-    const image::Rgb8 part =
-        image::rgb8_from_picture(picture, inside->x, inside->y, inside->width, inside->height);
-    for (int row = 0; row < inside->height; ++row)
-      std::memcpy(square.at(inside->x - x, inside->y - y + row),
-                  part.at(0, row),
-                  3 * static_cast<std::size_t>(inside->width));
-  }
+  const image::Rgb8 square =
+      image::rgb8_from_picture(picture, whole_pixels(left), whole_pixels(top), size, size);
   return resized(square, side, side, size > side ? cv::INTER_AREA : cv::INTER_CUBIC);
 }
 
