@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
-import {type Flyer, isSame, momentsOf, numberOf, roomOf, tableOf, trackOf} from '../model/flyers';
-import {clamp, nedAt, round} from '../model/geometry';
-import {attribute, renewed, s} from './part';
+import {type Flyer, momentsOf, numberOf, roomOf, tableOf} from '../model/flyers';
+import {type Point, clamp, nedAt, round} from '../model/geometry';
+import {arrow, attribute, renewed, s} from './part';
 import {type Drag, SideView, niceStep} from './side_view';
 
 // Around the plot, where text is 16 px: left, right, top and bottom.
@@ -22,7 +22,7 @@ export class HeightView extends SideView {
   private bottom = MARGINS[3];
 
   constructor() {
-    super('Height over time', 'Height over time');
+    super('Height over time', 'Height over time', 'its time');
   }
 
   protected draw(plan: Plan, clip: Clip, flyers: Flyer[], own: Ned|null, width: number, height: number): void {
@@ -36,7 +36,7 @@ export class HeightView extends SideView {
                 []),
       s('polyline', {class: 'own', points: this.points(plan, plan.own.ned)}),
       s('line', {class: 'cursor', x1: x, x2: x, y1: this.top, y2: height - this.bottom}),
-      ...flyers.flatMap((flyer) => this.flyer(flyer, plan, clip)),
+      ...flyers.flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
     ]);
   }
 
@@ -52,6 +52,10 @@ export class HeightView extends SideView {
   private y(height_m: number): number {
     return this.top +
         ((this.high_m - height_m) / (this.high_m - this.low_m)) * (this.svg.clientHeight - this.top - this.bottom);
+  }
+
+  protected at(ned: Ned, time_s: number): Point {
+    return [this.x(time_s), this.y(-ned[2])];
   }
 
   private timeAt(event: PointerEvent): number {
@@ -73,15 +77,6 @@ export class HeightView extends SideView {
     const [low, high] = [Math.min(...own, ...others), Math.max(...own, ...others)];
     const room = Math.max(LEAST_M, high - low) * 0.15;
     [this.low_m, this.high_m] = [Math.min(low, high - LEAST_M) - room, Math.max(high, low + LEAST_M) + room];
-  }
-
-  private points(plan: Plan, ned: (Ned|null)[], above_m = 0): string {
-    const rate_hz = this.now.clip!.rate_hz;
-    return plan.frames
-        .flatMap(
-            (frame, k) =>
-                (ned[k] ? [`${round(this.x(frame / rate_hz), 1)},${round(this.y(-ned[k]![2] + above_m), 1)}`] : []))
-        .join(' ');
   }
 
   private axes(clip: Clip, width: number, height: number): SVGGElement {
@@ -118,29 +113,15 @@ export class HeightView extends SideView {
   }
 
   private volume(plan: Plan, vertical_m: number, name: string): SVGGElement {
+    const edge = (above_m: number) => this.points(plan, plan.own.ned.map(([n, e, d]): Ned => [n, e, d - above_m]));
     return s(
         'g', {class: 'volume'},
         ...[1, -1].map(
-            (sign) =>
-                s('polyline', {points: this.points(plan, plan.own.ned, sign * vertical_m)},
-                  s('title', {}, `${name}: ${round(vertical_m, 0)} m`))));
+            (sign) => s(
+                'polyline', {points: edge(sign * vertical_m)}, s('title', {}, `${name}: ${round(vertical_m, 0)} m`))));
   }
 
-  private flyer(flyer: Flyer, plan: Plan, clip: Clip): SVGElement[] {
-    const track = trackOf(plan, flyer.path);
-    if (!track) return [];
-    const group = this.group(flyer, this.points(plan, track.ned));
-    const now = nedAt(plan, track.ned, this.now.frame);
-    if (now)
-      group.append(
-          s('circle',
-            {class: 'place', cx: this.x(this.now.frame / clip.rate_hz), cy: this.y(-now[2]), r: 4.5 * this.px}));
-    if (isSame(flyer.path, this.now.selected))
-      group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
-    return [group];
-  }
-
-  private approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
+  protected approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
     if (!track.cpa || track.cpa.time_s < 0 || track.cpa.time_s > this.end_s) return [];
     const own = nedAt(plan, plan.own.ned, track.cpa.time_s * clip.rate_hz);
     if (!own) return [];
@@ -151,14 +132,6 @@ export class HeightView extends SideView {
       s('line', {class: 'miss', x1: x, x2: x, y1: oy, y2: y}),
       this.diamond(flyer, x, y, label, (event) => this.key(event, flyer)),
     ];
-  }
-
-  private moments(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
-    return momentsOf(flyer, clip).flatMap((moment, index) => {
-      const place = nedAt(plan, track.ned, moment.frame);
-      if (!place) return [];
-      return [this.square(index, moment.time_s, this.x(moment.time_s), this.y(-place[2]), 'its time')];
-    });
   }
 
   protected down(event: PointerEvent): void {
@@ -190,19 +163,12 @@ export class HeightView extends SideView {
   }
 
   private key(event: KeyboardEvent, flyer: Flyer): void {
-    const keys: Record<string, [string, number]> = {
-      ArrowLeft: ['cpa_time_s', -0.1],
-      ArrowRight: ['cpa_time_s', 0.1],
-      ArrowUp: ['cpa_above_m', 1],
-      ArrowDown: ['cpa_above_m', -1]
-    };
-    const one = keys[event.key];
-    if (!one || event.ctrlKey) return;
-    event.preventDefault();
-    event.stopPropagation();
-    const value = numberOf(tableOf(flyer.table.encounter)[one[0]]) ?? 0;
+    const by = arrow(event);
+    if (!by) return;
+    const [key, step] = by[0] ? ['cpa_time_s', 0.1 * by[0]] : ['cpa_above_m', by[1]];
+    const value = numberOf(tableOf(flyer.table.encounter)[key]) ?? 0;
     this.studio.edit(
-        [{set: [...flyer.path, 'encounter', one[0]], to: round(value + one[1] * (event.shiftKey ? 10 : 1), 2)}],
+        [{set: [...flyer.path, 'encounter', key], to: round(value + step * (event.shiftKey ? 10 : 1), 2)}],
         'approach-keys');
   }
 }

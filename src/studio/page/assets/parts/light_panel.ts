@@ -4,7 +4,7 @@ import {numberOf, tableOf} from '../model/flyers';
 import {type Point, clamp, degrees, radians, round, turned} from '../model/geometry';
 import type {Member} from '../model/store';
 import {NumberField, Slider, tick} from './fields';
-import {Part, attribute, h, s} from './part';
+import {Part, arrow, attribute, h, s} from './part';
 
 const RADIUS = 90;
 const SUN: [string, number, number, number][] =
@@ -205,15 +205,11 @@ export class LightPanel extends Part {
   }
 
   private key(event: KeyboardEvent): void {
-    const by: Record<string, Point> = {ArrowLeft: [-5, 0], ArrowRight: [5, 0], ArrowUp: [0, 5], ArrowDown: [0, -5]};
-    if (!by[event.key] || event.ctrlKey) return;
-    event.preventDefault();
-    event.stopPropagation();
+    const by = arrow(event);
+    if (!by) return;
     const light = tableOf(this.now.state?.scene.light);
     const [azimuth, elevation] = SUN.map(([key, usual]) => numberOf(light[key]) ?? usual);
-    this.setSun(
-        [turned(azimuth + by[event.key][0]), clamp(elevation + by[event.key][1], -90, 90)], 'sun-keys',
-        event.timeStamp);
+    this.setSun([turned(azimuth + 5 * by[0]), clamp(elevation + 5 * by[1], -90, 90)], 'sun-keys', event.timeStamp);
   }
 
   private setSun([azimuth, elevation]: Point, merge: string, moved_ms: number): void {

@@ -86,6 +86,17 @@ export function s<Name extends keyof SVGElementTagNameMap>(
   return element;
 }
 
+// Where an arrow key points, to the right and up, for an element that takes it from the page; null for any other key.
+export function arrow(event: KeyboardEvent): [number, number]|null {
+  const arrows:
+      Record<string, [number, number]> = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+  const by = arrows[event.key];
+  if (!by || event.ctrlKey) return null;
+  event.preventDefault();
+  event.stopPropagation();
+  return by;
+}
+
 // Sets what differs, so that nothing is laid out anew without need.
 export function attribute(element: Element, name: string, value: string|number): void {
   const text = String(value);

@@ -2,7 +2,7 @@
 import type {BoxPx, Change, Clip, Ned, Plan, Track} from '../model/contract';
 import {type Flyer, acrossOf, flyerAt, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, withCourse, writtenRange, writtenWidth} from '../model/flyers';
 import {type Point, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
-import {renewed, s, wordsWidth} from './part';
+import {arrow, renewed, s, wordsWidth} from './part';
 import {type Drag, SideView, niceStep} from './side_view';
 
 const MARGIN_PX = 26;
@@ -28,7 +28,7 @@ export class PlanView extends SideView {
   private taken: BoxPx[] = [];  // by handles, marks and labels
 
   constructor() {
-    super('From above', 'Plan view, own course up');
+    super('From above', 'Plan view, own course up', 'its range');
   }
 
   protected draw(plan: Plan, clip: Clip, flyers: Flyer[], own: Ned|null, width: number, height: number): void {
@@ -38,7 +38,7 @@ export class PlanView extends SideView {
     renewed(this.svg, [
       this.grid(width, height),
       ...(own ? [this.fieldOfView(plan, own), ...this.volumes(plan, own)] : []),
-      s('polyline', {class: 'own', points: this.points(plan.own.ned)}),
+      s('polyline', {class: 'own', points: this.points(plan, plan.own.ned)}),
       ...flyers.flatMap((flyer) => this.flyer(flyer, plan, clip, own)),
       ...(own ? [this.ownMark(plan, clip, own)] : []),
     ]);
@@ -63,7 +63,7 @@ export class PlanView extends SideView {
     }));
   }
 
-  private take(x: number, y: number, r: number): void {
+  protected override take(x: number, y: number, r: number): void {
     this.taken.push([x - r, y - r, 2 * r, 2 * r]);
   }
 
@@ -78,7 +78,7 @@ export class PlanView extends SideView {
     return {right: de * c - dn * si, ahead: dn * c + de * si};
   }
 
-  private at(ned: Ned): Point {
+  protected at(ned: Ned): Point {
     return this.screen(this.ground(ned));
   }
 
@@ -113,12 +113,6 @@ export class PlanView extends SideView {
     this.middle = {right: (left + right) / 2, ahead: (low + high) / 2};
     const room = [Math.max(40, width - 2 * MARGIN_PX * this.px), Math.max(40, height - 2 * MARGIN_PX * this.px)];
     this.scale = Math.min(room[0] / Math.max(LEAST_M, right - left), room[1] / Math.max(LEAST_M, high - low));
-  }
-
-  private points(ned: (Ned|null)[]): string {
-    return ned.filter((one): one is Ned => one !== null)
-        .map((one) => this.at(one).map((v) => round(v, 1)).join())
-        .join(' ');
   }
 
   // Lines at whole steps of metres, and how long a step is.
@@ -173,23 +167,17 @@ export class PlanView extends SideView {
         s('path', {d: 'M0,-9L6,7L0,3L-6,7Z'}, s('title', {}, 'The own aircraft')));
   }
 
-  private flyer(flyer: Flyer, plan: Plan, clip: Clip, own: Ned|null): SVGElement[] {
-    const track = trackOf(plan, flyer.path);
-    if (!track) return [];
+  protected override place([x, y]: Point, flyer: Flyer, own: Ned|null): SVGElement[] {
+    if (!own) return [];
+    const [ox, oy] = this.at(own);
+    this.take(x, y, 5 * this.px);
+    const [mark] = super.place([x, y], flyer, own);
+    mark.append(s('title', {}, flyer.id));
     const isSelected = isSame(flyer.path, this.now.selected);
-    const group = this.group(flyer, this.points(track.ned));
-    const now = nedAt(plan, track.ned, this.now.frame);
-    if (now && own) {
-      const [[x, y], [ox, oy]] = [this.at(now), this.at(own)];
-      if (isSelected) group.append(s('line', {class: 'sight', x1: ox, y1: oy, x2: x, y2: y}));
-      this.take(x, y, 5 * this.px);
-      group.append(s('circle', {class: 'place', cx: x, cy: y, r: 4.5 * this.px}, s('title', {}, flyer.id)));
-    }
-    if (isSelected) group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
-    return [group];
+    return isSelected ? [s('line', {class: 'sight', x1: ox, y1: oy, x2: x, y2: y}), mark] : [mark];
   }
 
-  private approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
+  protected approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
     const cpa = approachOf(plan, track, clip);
     if (!cpa) return [];
     const [[x, y], [ox, oy]] = [this.at(cpa.place), this.at(cpa.own)];
@@ -233,16 +221,6 @@ export class PlanView extends SideView {
     const ahead = far * (across[1] * Math.cos(turn) - across[0] * Math.sin(turn));
     const [x, y] = this.at(own);
     return s('line', {class: 'across', x1: x - right, y1: y + ahead, x2: x + right, y2: y - ahead});
-  }
-
-  private moments(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
-    return momentsOf(flyer, clip).flatMap((moment, index) => {
-      const place = nedAt(plan, track.ned, moment.frame);
-      if (!place) return [];
-      const [x, y] = this.at(place);
-      this.take(x, y, 6 * this.px);
-      return [this.square(index, moment.time_s, x, y, 'its range')];
-    });
   }
 
   protected down(event: PointerEvent): void {
@@ -294,12 +272,10 @@ export class PlanView extends SideView {
   }
 
   private key(event: KeyboardEvent, flyer: Flyer, kind: 'approach'|'course'): void {
-    const sign = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[event.key];
     const {plan, clip} = this.now;
-    if (!sign || !plan || !clip || event.ctrlKey) return;
-    event.preventDefault();
-    event.stopPropagation();
-    const step = sign * (event.shiftKey ? 10 : 1);
+    const by = plan && clip && arrow(event);
+    if (!by) return;
+    const step = (by[0] + by[1]) * (event.shiftKey ? 10 : 1);
     const encounter = tableOf(flyer.table.encounter);
     if (kind === 'course') {
       this.studio.edit(withCourse(flyer, plan, clip, turned(statedCourse(flyer) + step)), 'course-keys');

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Change, Clip, Ned, Plan} from '../model/contract';
-import {type Flyer, flyerAt, flyersOf, isSame} from '../model/flyers';
-import {nedAt, round} from '../model/geometry';
+import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
+import {type Flyer, flyerAt, flyersOf, isSame, momentsOf, trackOf} from '../model/flyers';
+import {type Point, nedAt, round} from '../model/geometry';
 import type {Member} from '../model/store';
 import {Part, attribute, h, s, ui} from './part';
 
@@ -19,7 +19,8 @@ export abstract class SideView extends Part {
   protected drag: Drag|null = null;
   protected px = 1;  // ui()
 
-  constructor(private heading: string, label: string) {
+  // `forMoments`: what a moment is dragged for, "its time".
+  constructor(private heading: string, label: string, private forMoments: string) {
     super();
     this.svg.setAttribute('aria-label', label);
   }
@@ -46,6 +47,44 @@ export abstract class SideView extends Part {
 
   // `own`: where the own aircraft is in the frame shown.
   protected abstract draw(plan: Plan, clip: Clip, flyers: Flyer[], own: Ned|null, width: number, height: number): void;
+  // Where a place is in the view at a time.
+  protected abstract at(ned: Ned, time_s: number): Point;
+  // The closest approach of the selected flyer.
+  protected abstract approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[];
+  // No label stands on what is taken.
+  protected take(_x: number, _y: number, _r: number): void {}
+
+  protected points(plan: Plan, ned: (Ned|null)[]): string {
+    const rate_hz = this.now.clip!.rate_hz;
+    const at = (place: Ned, frame: number) => this.at(place, frame / rate_hz).map((v) => round(v, 1)).join();
+    return plan.frames.flatMap((frame, k) => (ned[k] ? [at(ned[k]!, frame)] : [])).join(' ');
+  }
+
+  // The path of a flyer with its place in the frame shown, and the handles of the selected one.
+  protected flyer(flyer: Flyer, plan: Plan, clip: Clip, own: Ned|null): SVGElement[] {
+    const track = trackOf(plan, flyer.path);
+    if (!track) return [];
+    const group = this.group(flyer, this.points(plan, track.ned));
+    const now = nedAt(plan, track.ned, this.now.frame);
+    if (now) group.append(...this.place(this.at(now, this.now.frame / clip.rate_hz), flyer, own));
+    if (isSame(flyer.path, this.now.selected))
+      group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
+    return [group];
+  }
+
+  protected place([cx, cy]: Point, _flyer: Flyer, _own: Ned|null): SVGElement[] {
+    return [s('circle', {class: 'place', cx, cy, r: 4.5 * this.px})];
+  }
+
+  private moments(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
+    return momentsOf(flyer, clip).flatMap(({frame, time_s}, index) => {
+      const place = nedAt(plan, track.ned, frame);
+      if (!place) return [];
+      const [x, y] = this.at(place, time_s);
+      this.take(x, y, 6 * this.px);
+      return [this.square(index, time_s, x, y)];
+    });
+  }
 
   // The flyer under the pointer, which becomes the selected one, and the handle of it.
   protected pressed(event: PointerEvent):
@@ -80,7 +119,7 @@ export abstract class SideView extends Part {
   }
 
   // The line of a flyer through points.
-  protected group(flyer: Flyer, points: string): SVGGElement {
+  private group(flyer: Flyer, points: string): SVGGElement {
     return s(
         'g', {
           class: `flyer colour-${flyer.colour}${isSame(flyer.path, this.now.selected) ? ' selected' : ''}`,
@@ -107,8 +146,8 @@ export abstract class SideView extends Part {
         s('title', {}, label));
   }
 
-  // The handle of a moment. `what` it is dragged for: "its time".
-  protected square(index: number, time_s: number, x: number, y: number, what: string): SVGRectElement {
+  // The handle of a moment.
+  private square(index: number, time_s: number, x: number, y: number): SVGRectElement {
     return s(
         'rect', {
           class: `moment grab${this.now.moment === index ? ' chosen' : ''}`,
@@ -119,7 +158,7 @@ export abstract class SideView extends Part {
           'data-drag': 'moment',
           'data-index': index
         },
-        s('title', {}, `${round(time_s, 2)} s: drag for ${what}`));
+        s('title', {}, `${round(time_s, 2)} s: drag for ${this.forMoments}`));
   }
 }
 
