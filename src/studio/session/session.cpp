@@ -28,7 +28,6 @@
 #include "studio/session/answers.h"
 #include "studio/session/gallery.h"
 #include "studio/session/jpeg.h"
-#include "studio/session/measure.h"
 #include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
 #include "studio/session/stage.h"

@@ -23,6 +23,17 @@ constexpr std::int64_t kLightFrames = 240;
 constexpr std::int64_t kFollowed = 8;
 constexpr std::size_t kMostLights = 64;
 
+// The text of a scene that has the background alone, and what `take` puts into it: the same for two
+// scenes exactly where all of that is.
+template <typename Take>
+std::string key_of(const scene::Scene& scene, const Take& take) {
+  scene::Scene part;
+  part.seed = scene.seed;
+  part.background = scene.background;
+  take(part);
+  return scene::toml_from_scene(part);
+}
+
 std::string attitude_key_of(const scene::Scene& scene) {
   return key_of(scene, [&](scene::Scene& part) {
     part.lens = scene.lens;
@@ -41,6 +52,28 @@ std::string light_key_of(const scene::Scene& scene) {
 }
 
 }  // namespace
+
+std::string motion_key(const scene::Scene& scene) {
+  return key_of(scene, [&](scene::Scene& part) {
+    part.lens = scene.lens;
+    part.motion = scene.motion;
+    // Whether there is a shutter.
+    part.camera_model.exposure_s = scene.camera_model.exposure_s;
+    part.camera_model.readout_s = scene.camera_model.readout_s;
+    part.camera_model.angle_deg = scene.camera_model.angle_deg;
+  });
+}
+
+std::string calibration_key(const scene::Scene& scene) {
+  return key_of(scene, [&](scene::Scene& part) {
+    part.lens = scene.lens;
+    // Of the camera's place the height alone counts.
+    part.camera.position_ned_m = {0, 0, scene.camera.position_ned_m.z()};
+    part.camera.path_file = scene.camera.path_file;
+    part.camera.log = scene.camera.log;
+    part.camera_model.gamma = scene.camera_model.gamma;
+  });
+}
 
 Stage::Stage(pipeline::Options options) : options_(std::move(options)) {
   options_.is_preview = true;

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,25 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/motion_source.h"
 #include "studio/session/clip.h"
-#include "studio/session/measure.h"
 
 // A scene set up to be looked at, again and again while it changes. What a change does not touch
 // stays open: the clip with its decoded frames, the camera's motion, the calibration, the
 // aircraft's models. It never makes a pass over the clip: what that would measure it is told.
 // Of one thread.
 namespace airtruth::session {
+
+// What can be measured only in a pass over the clip.
+struct Measured {
+  // The motion of every frame, and the motion_key() of its scene.
+  std::shared_ptr<const setup::MotionSource> motion;
+  std::string motion_key;
+  // The calibration_key() of the calibrations that are in the cache.
+  std::set<std::string> calibrated;
+};
+
+// Text that is the same for two scenes exactly where the measurement is.
+std::string motion_key(const scene::Scene& scene);
+std::string calibration_key(const scene::Scene& scene);
 
 class Stage {
  public:
