@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 
 #include "studio/session/session.h"
 
@@ -26,6 +27,12 @@
 // No part of a request names a file. Messages, headers, connections and what waits to be sent are
 // bounded.
 namespace airtruth::server {
+
+// 128 bits of the kernel's randomness as 32 hexadecimal digits. Throws Error where it has none.
+std::string new_token();
+
+// Takes the same time wherever the texts differ.
+bool is_same(std::string_view a, std::string_view b);
 
 struct Options {
   std::uint16_t port = 0;  // 0: any that is free

@@ -20,7 +20,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "studio/server/token.h"
 #include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
