@@ -18,7 +18,7 @@
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "picture/video/still.h"
-#include "show/drawing/boxed.h"
+#include "show/drawing/thumbnails.h"
 #include "show/drawing/tiles.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"

@@ -11,9 +11,9 @@
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
-#include "show/drawing/boxed.h"
 #include "show/drawing/pictures.h"
 #include "show/drawing/placing.h"
+#include "show/drawing/thumbnails.h"
 
 namespace airtruth::drawing {
 namespace {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "foundation/geometry/box.h"
@@ -21,6 +24,16 @@ image::Rgb8 square(const image::Picture& picture, double x, double y, double px,
 
 // Pictures of one size, side by side.
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);
+
+struct ColouredBox {
+  Box box;
+  std::array<std::uint8_t, 3> rgb{};
+};
+
+// The picture of a JPEG with boxes drawn on it. Each box has a dark rim, and later boxes are drawn
+// over earlier ones. `scale`: pixels of the JPEG for each pixel of the boxes. Error where the bytes
+// are not a JPEG.
+image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<ColouredBox>& boxes);
 
 // The contrast of a box's luma to its surroundings, in levels: the root mean square difference from
 // the median of a ring that is as wide as the box's shorter side (at least 4 px).
