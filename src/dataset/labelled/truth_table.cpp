@@ -2,6 +2,7 @@
 #include "dataset/labelled/truth_table.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -92,32 +93,28 @@ std::string text_of(const std::vector<pipeline::NamedInterval>& violations) {
 }
 
 Row row_of(const pipeline::EncounterRecord& record) {
-  using passage::Approach;
+  using passage::Approach, passage::Offset, pipeline::FirstSeen;
   Row row;
-  const auto of = [](const auto& known, auto value) {
-    return known ? std::optional<double>(value(*known)) : std::nullopt;
+  const auto add = [&](const char* name, const auto& known, auto value) {
+    row.add(name, known ? std::optional<double>(std::invoke(value, *known)) : std::nullopt);
   };
-  const auto closest = [&](const char* name, auto value) {
-    row.add(std::string("closest_approach_") + name, of(record.closest, value));
-  };
-  closest("time_s", [](const Approach& a) { return a.time_s; });
-  closest("distance_m", [](const Approach& a) { return a.distance_m; });
-  closest("horizontal_m", [](const Approach& a) { return a.horizontal_m; });
-  closest("ahead_m", [](const Approach& a) { return a.offset.ahead_m; });
-  closest("right_m", [](const Approach& a) { return a.offset.right_m; });
-  closest("above_m", [](const Approach& a) { return a.offset.above_m; });
+  add("closest_approach_time_s", record.closest, &Approach::time_s);
+  add("closest_approach_distance_m", record.closest, &Approach::distance_m);
+  add("closest_approach_horizontal_m", record.closest, &Approach::horizontal_m);
+  const auto offset = record.closest ? std::optional(record.closest->offset) : std::nullopt;
+  add("closest_approach_ahead_m", offset, &Offset::ahead_m);
+  add("closest_approach_right_m", offset, &Offset::right_m);
+  add("closest_approach_above_m", offset, &Offset::above_m);
   row.add("meeting", enum_name(record.meeting, ""));
   row.add("vertical_motion", enum_name(record.vertical_motion, ""));
   row.add("horizon", enum_name(record.horizon, ""));
-  const auto seen = [&](const char* name, auto value) {
-    row.add(std::string("first_seen_") + name, of(record.first_seen, value));
-  };
-  using pipeline::FirstSeen;
-  seen("frame", [](const FirstSeen& s) { return double(s.frame); });
-  seen("time_s", [](const FirstSeen& s) { return s.time_s; });
-  seen("range_m", [](const FirstSeen& s) { return s.range_m; });
-  seen("width_px", [](const FirstSeen& s) { return s.exact_box_px.width; });
-  seen("height_px", [](const FirstSeen& s) { return s.exact_box_px.height; });
+  add("first_seen_frame", record.first_seen, &FirstSeen::frame);
+  add("first_seen_time_s", record.first_seen, &FirstSeen::time_s);
+  add("first_seen_range_m", record.first_seen, &FirstSeen::range_m);
+  const auto box =
+      record.first_seen ? std::optional(record.first_seen->exact_box_px) : std::nullopt;
+  add("first_seen_width_px", box, &Box::width);
+  add("first_seen_height_px", box, &Box::height);
   row.add("first_seen_to_closest_approach_s",
           record.first_seen && record.closest
               ? std::optional(record.closest->time_s - record.first_seen->time_s)

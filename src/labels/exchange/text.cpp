@@ -127,8 +127,6 @@ std::vector<fs::path> files_with(const fs::path& folder, std::string_view extens
   return found;
 }
 
-void sort_frames(Clip& clip) { std::ranges::stable_sort(clip.frames, {}, &LabelledFrame::frame); }
-
 std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
                                                     const ReadOptions& options) {
   if (!options.size_of_picture) return std::nullopt;

@@ -63,9 +63,6 @@ std::pair<std::string, std::optional<std::int64_t>> name_and_number(const std::s
 std::vector<fs::path> entries(const fs::path& folder);
 std::vector<fs::path> files_with(const fs::path& folder, std::string_view extension);
 
-// Sorts by frame number; by name, 10 would come before 2.
-void sort_frames(Clip& clip);
-
 // Width and height of the first picture in a folder; empty where there is no picture, or no
 // function that reads its size (ReadOptions::size_of_picture).
 std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,

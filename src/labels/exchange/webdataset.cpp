@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -118,7 +119,7 @@ Clips read_webdataset(const Reading& in) {
   if (by_name.empty()) throw Error("holds no " + what, {in.source.string()});
   Clips clips;
   for (auto& [name, clip] : by_name) {
-    sort_frames(clip);
+    std::ranges::stable_sort(clip.frames, {}, &LabelledFrame::frame);
     for (std::size_t i = 1; i < clip.frames.size(); ++i)
       if (clip.frames[i].frame == clip.frames[i - 1].frame)
         throw Error(fmt::format("holds frame {} of {} twice", clip.frames[i].frame, name),
