@@ -11,7 +11,7 @@
 #include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/aircraft_sheet.h"
-#include "show/drawing/tiles.h"
+#include "show/drawing/pictures.h"
 
 namespace airtruth::cli {
 namespace {
@@ -66,8 +66,7 @@ void draw_sheet(const std::string& filter,
     if (context.stop.stop_requested()) throw Interrupted();
     tiles.push_back({type_of(name), demo::aircraft_tile(fleet::load_aircraft(name, load, {}))});
   }
-  video::write_still(
-      out, drawing::tiled(fmt::format("{} types", names.size()), std::move(tiles), kColumns));
+  video::write_still(out, drawing::tiled(fmt::format("{} types", names.size()), tiles, kColumns));
   console.result(fmt::format("{}: one aircraft of each of {} types", out, names.size()));
 }
 

@@ -18,8 +18,8 @@
 #include "foundation/base/files.h"
 #include "foundation/geometry/box.h"
 #include "picture/video/still.h"
+#include "show/drawing/pictures.h"
 #include "show/drawing/thumbnails.h"
-#include "show/drawing/tiles.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
 #include "show/plot/plot_json.h"
@@ -316,7 +316,7 @@ void write_film(const Assessment& assessment, std::size_t index, const fs::path&
                         drawing::boxed(still.whole, scale, boxes)});
   }
   video::write_still(folder / ("frames-" + truth.clip.name + ".png"),
-                     drawing::tiled(truth.clip.name, std::move(pictures), kFilmColumns));
+                     drawing::tiled(truth.clip.name, pictures, kFilmColumns));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "labels/projection/exact_box.h"
 #include "picture/composite/matte.h"
 #include "picture/render/renderer.h"
-#include "show/drawing/tiles.h"
+#include "show/drawing/pictures.h"
 
 namespace airtruth::demo {
 namespace {
@@ -85,7 +85,7 @@ image::Rgb8 aircraft_sheet(const fleet::Aircraft& aircraft) {
   const shade::Model model(aircraft.mesh);
   std::vector<drawing::NamedPicture> tiles;
   for (const Pose& pose : poses) tiles.push_back({pose.name, tile(aircraft, model, pose)});
-  return drawing::tiled(aircraft.name, std::move(tiles), 3);
+  return drawing::tiled(aircraft.name, tiles, 3);
 }
 
 image::Rgb8 aircraft_tile(const fleet::Aircraft& aircraft) {

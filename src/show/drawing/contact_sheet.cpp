@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
+#include "foundation/base/error.h"
 #include "foundation/image/colour.h"
 #include "foundation/image/mats.h"
 #include "show/drawing/draw.h"
@@ -32,6 +33,9 @@ constexpr int kCaptionPx = 22;
 // Gap between insets, and size of their text.
 constexpr int kInsetGapPx = 6;
 constexpr double kTileTextPx = 12;
+// Gap between tiles, and height of the title above them.
+constexpr int kTileGapPx = 10;
+constexpr int kSheetHeaderPx = 56;
 
 // The square around an intruder that fills a close-up, in frame pixels.
 PixelBox around(const PixelBox& box) {
@@ -196,7 +200,38 @@ Layout layout_of(int count) {
   return {kColumns, count - count % kColumns};
 }
 
+// Places of `count` tiles of one size under a title, at least one row of them; draw(i, place) fills
+// each.
+template <typename Draw>
+image::Rgb8 tiles_under(
+    const std::string& title, cv::Size tile, int count, int columns, const Draw& draw) {
+  const int rows = std::max(1, (count + columns - 1) / columns);
+  image::Rgb8 paper = dark_paper(kTileGapPx + columns * (tile.width + kTileGapPx),
+                                 kSheetHeaderPx + rows * (tile.height + kTileGapPx));
+  cv::Mat canvas = view(paper);
+  text(canvas, fitted(title, 20, canvas.cols - 2 * kTileGapPx), kTileGapPx, 36, 20, kWhite);
+  for (int i = 0; i < count; ++i) {
+    const cv::Point corner(kTileGapPx + i % columns * (tile.width + kTileGapPx),
+                           kSheetHeaderPx + i / columns * (tile.height + kTileGapPx));
+    cv::Mat place = canvas(cv::Rect(corner, tile));
+    draw(static_cast<std::size_t>(i), place);
+  }
+  return paper;
+}
+
 }  // namespace
+
+image::Rgb8 tiled(const std::string& title,
+                  const std::vector<NamedPicture>& pictures,
+                  int columns) {
+  check(!pictures.empty() && columns > 0, "there is something to tile");
+  const cv::Size size(pictures[0].picture.width, pictures[0].picture.height);
+  const auto count = static_cast<int>(pictures.size());
+  return tiles_under(title, size, count, columns, [&](std::size_t i, cv::Mat& place) {
+    view(pictures[i].picture).copyTo(place);
+    text(place, fitted(pictures[i].name, 12, size.width - 20), 10, size.height - 12, 12, kWhite);
+  });
+}
 
 ContactSheet::ContactSheet(std::string title, std::int64_t frame_count_estimate, std::size_t tiles)
     : title_(std::move(title)), tiles_(tiles) {
@@ -216,30 +251,16 @@ void ContactSheet::add(const image::Picture& picture, const annotation::Frame& t
 }
 
 image::Rgb8 ContactSheet::sheet() const {
-  // Gap between tiles, and height of the title above them.
-  constexpr int kGapPx = 10;
-  constexpr int kHeaderPx = 56;
   const Layout layout = layout_of(static_cast<int>(chosen_.size()));
-  const int tile_height = chosen_.empty() ? 120 : chosen_[0].picture.height;
-  const int rows = std::max(1, layout.tiles / layout.columns);
-  image::Rgb8 paper = dark_paper(kGapPx + layout.columns * (kTileWidthPx + kGapPx),
-                                 kHeaderPx + rows * (tile_height + kGapPx));
+  const cv::Size tile(kTileWidthPx, chosen_.empty() ? 120 : chosen_[0].picture.height);
+  const auto last = static_cast<std::size_t>(std::max(2, layout.tiles) - 1);
+  image::Rgb8 paper =
+      tiles_under(title_, tile, layout.tiles, layout.columns, [&](std::size_t i, cv::Mat& place) {
+        // Spread evenly over all chosen frames, including the first and the last.
+        view(chosen_[i * (chosen_.size() - 1) / last].picture).copyTo(place);
+      });
   cv::Mat canvas = view(paper);
-  text(canvas, fitted(title_, 20, canvas.cols - 2 * kGapPx), kGapPx, 36, 20, kWhite);
-  for (int i = 0; i < layout.tiles; ++i) {
-    // The tiles are spread evenly over all chosen frames, including the first and the last.
-    const std::size_t from = layout.tiles == 1
-                                 ? 0
-                                 : static_cast<std::size_t>(i) * (chosen_.size() - 1) /
-                                       static_cast<std::size_t>(layout.tiles - 1);
-    const image::Rgb8& tile = chosen_[from].picture;
-    const cv::Mat source(tile.height, tile.width, CV_8UC3, tile.samples.get());
-    source.copyTo(canvas(cv::Rect(kGapPx + i % layout.columns * (kTileWidthPx + kGapPx),
-                                  kHeaderPx + i / layout.columns * (tile_height + kGapPx),
-                                  tile.width,
-                                  tile.height)));
-  }
-  if (chosen_.empty()) text(canvas, "no frames", kGapPx, kHeaderPx + 40, 16, kGrey);
+  if (chosen_.empty()) text(canvas, "no frames", kTileGapPx, kSheetHeaderPx + 40, 16, kGrey);
   return paper;
 }
 

@@ -41,7 +41,7 @@ Corners corners_of(const Box& box, double scale) {
 
 }  // namespace
 
-cv::Mat view(image::Rgb8& picture) {
+cv::Mat view(const image::Rgb8& picture) {
   return {picture.height, picture.width, CV_8UC3, picture.samples.get()};
 }
 
@@ -62,9 +62,8 @@ image::Rgb8 from_mat(const cv::Mat& rgb) {
 }
 
 image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int interpolation) {
-  const cv::Mat source(picture.height, picture.width, CV_8UC3, picture.samples.get());
   cv::Mat target;
-  cv::resize(source, target, cv::Size(width, height), 0, 0, interpolation);
+  cv::resize(view(picture), target, cv::Size(width, height), 0, 0, interpolation);
   return from_mat(target);
 }
 

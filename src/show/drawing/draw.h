@@ -28,8 +28,9 @@ cv::Scalar intruder_colour(std::size_t index);
 // A picture of kDarkPaper alone.
 image::Rgb8 dark_paper(int width, int height);
 
-// Shares the samples with the picture.
-cv::Mat view(image::Rgb8& picture);
+// Shares the samples with the picture. OpenCV has no matrix of constant samples: nothing may write
+// to those of a constant picture.
+cv::Mat view(const image::Rgb8& picture);
 // Copies the samples.
 image::Rgb8 from_mat(const cv::Mat& rgb);
 image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int interpolation);

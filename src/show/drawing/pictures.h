@@ -9,8 +9,8 @@
 #include "foundation/image/picture.h"
 #include "labels/annotation/truth.h"
 
-// Pictures for people: the contact sheet, the overlay, and the enlarged view of a part of one
-// frame.
+// Pictures for people: the contact sheet and other tiles, the overlay, and the enlarged view of a
+// part of one frame.
 namespace airtruth::drawing {
 
 // The contact sheet preview.jpg: up to twelve frames, each with its visible intruders enlarged in a
@@ -35,6 +35,15 @@ class ContactSheet {
   std::int64_t every_ = 1;
   std::vector<Tile> chosen_;
 };
+
+struct NamedPicture {
+  std::string name;
+  image::Rgb8 picture;
+};
+
+// Arranges pictures of one size in `columns` columns under a title, each with its name in its lower
+// left corner.
+image::Rgb8 tiled(const std::string& title, const std::vector<NamedPicture>& pictures, int columns);
 
 // Draws boxes, id and range into a copy of a picture, in the style of the E-Vision paper's Figure
 // 12. An intruder's box is the covered one (else the visible one), drawn one pixel outside the
