@@ -9,14 +9,6 @@ Bearing bearing_of(const Vector3& in_cam) {
           degrees(std::atan2(-in_cam.y(), std::hypot(in_cam.x(), in_cam.z())))};
 }
 
-Vector3 direction_of(const Bearing& bearing) {
-  const double azimuth = radians(bearing.azimuth_deg);
-  const double elevation = radians(bearing.elevation_deg);
-  return {std::cos(elevation) * std::sin(azimuth),
-          -std::sin(elevation),
-          std::cos(elevation) * std::cos(azimuth)};
-}
-
 std::optional<Bearing> seen_bearing(const Sight& sight,
                                     const Vector3& p_in_world,
                                     const Vector3& velocity_in_world_mps) {

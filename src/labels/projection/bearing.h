@@ -16,8 +16,6 @@ struct Bearing {
 };
 
 Bearing bearing_of(const Vector3& in_cam);
-// The unit vector of that direction: bearing_of(direction_of(b)) equals b.
-Vector3 direction_of(const Bearing& bearing);
 
 // The bearing of a point in the camera as it was when it exposed that point: the ray, through the
 // lens alone, of the pixel where the point is drawn. Where motion is a rotation, the bearing

@@ -16,6 +16,10 @@ Sight cam_looking_north(const lens::Lens& lens) {
   return {&lens, Rigid{cam_from_body(), Vector3::Zero()}, Homography::Identity()};
 }
 
+Vector3 direction_of(const Bearing& bearing) {
+  return cam_from_body() * unit_vector(bearing.azimuth_deg, bearing.elevation_deg);
+}
+
 // Computed by hand from 3-4-5 triangles.
 TEST(Bearing, IsRightAndUpFromTheAxis) {
   const Bearing right = bearing_of({3, 0, 4});

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/files.h"
-#include "labels/projection/bearing.h"
+#include "foundation/geometry/transform.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
 #include "sequence/setup/from_scene.h"
@@ -52,9 +52,9 @@ TEST(BearingOnARealClip, AgreesWithThePixelAndNotWithTheNominalBoresight) {
       const annotation::Intruder& one = frame.intruders[0];
       if (!one.centroid_px || one.cut_by_frame > 0) continue;
       ASSERT_TRUE(one.azimuth_deg && one.nominal_azimuth_deg);
-      const Vector3 seen = projection::direction_of({*one.azimuth_deg, *one.elevation_deg});
+      const Vector3 seen = cam_from_body() * unit_vector(*one.azimuth_deg, *one.elevation_deg);
       const Vector3 nominal =
-          projection::direction_of({*one.nominal_azimuth_deg, *one.nominal_elevation_deg});
+          cam_from_body() * unit_vector(*one.nominal_azimuth_deg, *one.nominal_elevation_deg);
       seen_px.push_back((*lens.pixel_from_cam(seen) - *one.centroid_px).norm());
       const auto ray = lens.ray_from_pixel(*one.centroid_px);
       nominal_deg.push_back(degrees(std::acos(std::clamp(ray->dot(nominal), -1.0, 1.0))));

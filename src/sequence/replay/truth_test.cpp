@@ -165,7 +165,7 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
       moved_deg = std::max(moved_deg, std::abs(*one.azimuth_deg - *one.nominal_azimuth_deg));
       // Through the lens alone the bearing is the pixel where the intruder is.
       const auto pixel =
-          lens.pixel_from_cam(projection::direction_of({*one.azimuth_deg, *one.elevation_deg}));
+          lens.pixel_from_cam(cam_from_body() * unit_vector(*one.azimuth_deg, *one.elevation_deg));
       ASSERT_TRUE(pixel);
       const Box& exact = *one.exact_box_px;
       EXPECT_LT(std::abs(pixel->x() - (exact.x + exact.width / 2)), 0.5 * exact.width);

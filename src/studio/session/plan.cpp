@@ -436,13 +436,11 @@ Json directions_over(const Stage& stage, std::int64_t frame) {
   for (int elevation = -90 + step; elevation < 90; elevation += step) {
     if (std::abs(elevation - axis_deg) > reach_deg) continue;
     for (int azimuth = 0; azimuth < 360; azimuth += step) {
-      const double a = radians(azimuth);
-      const double e = radians(elevation);
-      const Vector3 direction(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), -std::sin(e));
+      const Vector3 direction = unit_vector(azimuth, elevation);
       if (direction.dot(axis) < least) continue;
       const auto pixel =
           projection::pixel_from_world(*sight, world_from_cam.translation + kFarAwayM * direction);
-      if (pixel && setup::meets_frame({pixel->x(), pixel->y(), 0, 0}, sight->lens->size()))
+      if (pixel && is_in(*pixel, *sight->lens))
         marks.push_back({azimuth, elevation, rounded(pixel->x(), 0.1), rounded(pixel->y(), 0.1)});
     }
   }
