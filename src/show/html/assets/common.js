@@ -14,6 +14,8 @@ const airtruth = (() => {
     if (name) made.className = name;
     return made;
   };
+  const number = (value, digits = 0) =>
+    (value === null || value === undefined ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits }));
   // The colour of truth alone.
   const ink = dark ? '#ffffff' : '#000000';
 
@@ -152,6 +154,18 @@ const airtruth = (() => {
     return dot;
   };
 
+  // Says which one it is: the mark of its style, and its name.
+  const named = (parent, { name, style }) => {
+    parent.append(dotOf(style), document.createTextNode(name));
+  };
+
+  // Empties a table and gives it a heading; returns its body.
+  const headed = (table, headings) => {
+    table.replaceChildren();
+    table.createTHead().insertRow().append(...headings.map((text) => element('th', text)));
+    return table.createTBody();
+  };
+
   // A table that is wider than its place becomes a list: a block for each row, with the heading beside each value.
   const fitted = new WeakSet();
   const fit = (table) => {
@@ -169,9 +183,12 @@ const airtruth = (() => {
     new ResizeObserver(() => { if (place.clientWidth !== width) { width = place.clientWidth; setTimeout(change); } }).observe(place);
   };
 
-  // A table that a click on a heading sorts. A column has a name, what rows are sorted by (`of`), and `up` where it begins ascending;
-  // fill(cell, row, column, k) writes a cell of column k.
-  const sortable = (table, rows, columns, firstSort, fill) => {
+  // A table of what has a name and a style, which the first column shows, that a click on a heading sorts. A column has a name, what rows
+  // are sorted by (`of`), and `up` where it begins ascending; a cell is draw(cell, row), text(row), or `of` with so many `digits`.
+  const fill = (cell, row, { of, draw, text, digits }) => {
+    if (draw) draw(cell, row); else cell.textContent = text ? text(row) : number(of(row), digits);
+  };
+  const sortable = (table, rows, columns, firstSort) => {
     let by = firstSort;
     let up = false;
     const draw = () => {
@@ -194,7 +211,7 @@ const airtruth = (() => {
       const body = table.createTBody();
       for (const row of sorted) {
         const line = body.insertRow();
-        columns.forEach((column, k) => fill(line.insertCell(), row, column, k));
+        columns.forEach((column, k) => (k === 0 ? named(line.insertCell(), row) : fill(line.insertCell(), row, column)));
       }
       fit(table);
     };
@@ -277,7 +294,7 @@ const airtruth = (() => {
       option.value = index;
       byId('sequence').append(option);
     });
-    shown.forEach(({ name, style }, k) => {
+    shown.forEach((one, k) => {
       const label = element('label');
       const box = element('input');
       box.type = 'checkbox';
@@ -286,7 +303,8 @@ const airtruth = (() => {
         if (box.checked) hidden.delete(k); else hidden.add(k);
         redraw();
       });
-      label.append(box, dotOf(style), document.createTextNode(name));
+      label.append(box);
+      named(label, one);
       byId('shown').append(label);
     });
     byId('sequence').addEventListener('change', () => show(Number(byId('sequence').value)));
@@ -302,11 +320,11 @@ const airtruth = (() => {
     byId: (id) => document.getElementById(id),
     choices,
     ink,
-    dotOf,
     drawPlot,
     element,
     fit,
     fullScreen,
+    headed,
     loaded,
     outline,
     playable,
@@ -314,8 +332,8 @@ const airtruth = (() => {
     least: (values) => (values.length ? values.reduce((a, b) => Math.min(a, b)) : null),
     most: (values) => (values.length ? values.reduce((a, b) => Math.max(a, b)) : null),
     counted: (count, one, more = `${one}s`) => `${count.toLocaleString('en')} ${count === 1 ? one : more}`,
-    number: (value, digits = 0) =>
-      value === null || value === undefined ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits }),
+    named,
+    number,
     line: (label, points, colour, more = {}) =>
       ({ label: shortened(label, 28), data: points, borderColor: colour, backgroundColor: colour, borderWidth: 1.5, pointRadius: 0, showLine: true, ...more }),
     axis: (text, more = {}) => ({ type: 'linear', title: { display: true, text }, ...more }),

@@ -5,8 +5,6 @@
   const { byId, choices, counted, drawPlot, element, loaded, number, sortable } = airtruth;
   const { detectors } = data;
 
-  const dotOf = ({ style }) => airtruth.dotOf(style);
-
   // Of a path of keys; null where a step is missing.
   const at = (object, path) => path.split('.').reduce((value, key) => (value === null || value === undefined ? null : value[key] ?? null), object);
   const withBounds = (value, bounds, digits) =>
@@ -14,11 +12,6 @@
   const shareText = (share) => (share ? withBounds(share.share, share.interval_95, 3) : '–');
   const meanText = (mean, digits) => (mean ? withBounds(mean.mean, mean.interval_95, digits) : '–');
 
-  // A cell of a table whose first column names a detector.
-  const fill = (cell, row, column, k) => {
-    if (k === 0) cell.append(dotOf(row), document.createTextNode(row.name));
-    else cell.textContent = column.text ? column.text(row) : number(column.of(row), column.digits);
-  };
   const name = { name: 'detector', of: (d) => d.name, up: true };
   const plain = (title, path, digits, up) => ({ name: title, of: (d) => at(d, path), digits, up });
 
@@ -40,7 +33,7 @@
       plain('EDR (300 m)', 'aot.edr.rate', 3), plain('AFDR', 'aot.afdr.rate', 3), plain('FPPI', 'aot.fppi', 4, true), plain('HFAR', 'aot.hfar', 1, true),
       plain('fps, median', 'frames_per_second_median', 1),
     ];
-    sortable(byId('ranking'), detectors, columns.filter((c, k) => k === 0 || detectors.some((d) => c.of(d) !== null)), 2, fill);
+    sortable(byId('ranking'), detectors, columns.filter((c, k) => k === 0 || detectors.some((d) => c.of(d) !== null)), 2);
     byId('how').textContent = 'Brackets: 95 % intervals over sequences. PD: share of aircraft in frames that are found; the operating point is ' +
       'the stated score, or the least with the false alarms asked for. EDR, AFDR, FPPI, HFAR: of Amazon\'s Airborne Object Tracking challenge. ' +
       (data.is_weighted ? 'Weighted: each sequence counts with its encounter\'s weight, so that the share is that of the encounter model. ' : '') +
@@ -67,7 +60,7 @@
         { name: `${word}before closest approach, s`, of: of('to_closest_approach_s.mean'), text: (d) => meanText(of('to_closest_approach_s')(d), 1) },
         { name: `${word}in time`, of: of('in_time.share'), text: (d) => shareText(of('in_time')(d)) });
     }
-    sortable(byId('tracks'), with_tracks, columns.filter((c, k) => k === 0 || with_tracks.some((d) => c.of(d) !== null)), 1, fill);
+    sortable(byId('tracks'), with_tracks, columns.filter((c, k) => k === 0 || with_tracks.some((d) => c.of(d) !== null)), 1);
     byId('tracks-how').textContent = 'Declared: from a frame on in which a track is on the aircraft and is kept.' +
       (data.manoeuvre_s === null ? '' : ` In time: ${number(data.manoeuvre_s, 1)} s before ${data.volume} is violated.`);
   };
@@ -83,7 +76,7 @@
       ['azimuth rate', 'azimuth_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps], ['elevation rate', 'elevation_rate_mradps', 'mrad/s', model.sc228_rate_deviation_mradps]])
       columns.push(
         bounded(`${title}, ${unit} (model ${limit})`, `bearing.${key}.deviation`, 2, true), bounded('mean', `bearing.${key}.mean`, 2));
-    sortable(byId('bearing'), known, columns.filter((c, k) => k === 0 || known.some((d) => c.of(d) !== null)), 1, fill);
+    sortable(byId('bearing'), known, columns.filter((c, k) => k === 0 || known.some((d) => c.of(d) !== null)), 1);
   };
 
   // The plots are described by the program (evaluation/detector_evaluation/plots.h). They have no legends: the
@@ -98,7 +91,7 @@
     if (!byId('by').children.length) { byId('by-heading').remove(); byId('by').remove(); }
   };
 
-  const player = airtruth.detectionPlayer(data, dotOf);
+  const player = airtruth.detectionPlayer(data);
 
   // A picture with its box, and words; leads to the frame in the player.
   const exhibit = (entry, blob, colour, words) => {

@@ -2,8 +2,8 @@
 'use strict';
 // Plays the sequences of an evaluation of detectors: pictures that the page holds, with truth, detections and
 // tracks, and a strip over all frames.
-airtruth.detectionPlayer = (data, dotOf) => {
-  const { byId, counted, element, ink, loaded, number, outline } = airtruth;
+airtruth.detectionPlayer = (data) => {
+  const { byId, counted, element, headed, ink, loaded, named, number, outline } = airtruth;
   const { detectors } = data;
   const hidden = new Set();
   let sequence = null;
@@ -93,22 +93,18 @@ airtruth.detectionPlayer = (data, dotOf) => {
   // The detections of the picture, the strongest first.
   const mostRows = 8;
   const drawTable = () => {
-    const table = byId('boxes');
-    table.replaceChildren();
-    table.createTHead().insertRow().append(...['detector', 'score', 'track', 'fate'].map((text) => element('th', text)));
-    const body = table.createTBody();
+    const body = headed(byId('boxes'), ['detector', 'score', 'track', 'fate']);
     for (const one of shown()) {
       const listed = (one.drawn[at] || []).filter(([, score]) => isStrong(one.detector, score) || byId('weak').checked);
       for (const [, score, track, fate, what] of listed.slice(0, mostRows)) {
         const row = body.insertRow();
-        const name = row.insertCell();
-        name.append(dotOf(detectors[one.detector]), document.createTextNode(detectors[one.detector].name));
+        named(row.insertCell(), detectors[one.detector]);
         const said = fate === 'found' || what === '' ? fate : `${fate}: ${what}`;
         for (const text of [number(score, 3), track === null ? '–' : String(track), said]) row.append(element('td', text));
       }
       if (listed.length > mostRows) body.insertRow().append(element('td', `and ${listed.length - mostRows} more`));
     }
-    airtruth.fit(table);
+    airtruth.fit(byId('boxes'));
   };
 
   const rowHeight = 18;

@@ -2,7 +2,7 @@
 'use strict';
 // What a data set's page shows and filters by of encounters (docs/formats/output.md).
 airtruth.encounters = (() => {
-  const { byId, choices, counted, element, least, most, number, line, ink } = airtruth;
+  const { byId, choices, counted, element, headed, least, most, named, number, line, ink } = airtruth;
 
   const sides = [['ahead_m', 'ahead', 'behind'], ['right_m', 'right', 'left'], ['above_m', 'above', 'below']];
   // "60 m right, 15 m above"
@@ -47,15 +47,11 @@ airtruth.encounters = (() => {
     if (!sequence.encounters.length) return null;
     const place = element('div', undefined, 'wide');
     const table = element('table', undefined, 'encounters');
-    table.createTHead().insertRow().append(
-      ...['intruder', 'meeting', 'climb', 'closest approach', 'first seen', 'horizon', 'violations'].map((text) => element('th', text)));
-    const body = table.createTBody();
+    const body = headed(table, ['intruder', 'meeting', 'climb', 'closest approach', 'first seen', 'horizon', 'violations']);
     for (const encounter of sequence.encounters) {
       const row = body.insertRow();
-      const id = row.insertCell();
-      const dot = element('span', '', 'dot');
-      dot.style.background = colours[Math.max(0, sequence.ids.indexOf(encounter.id)) % colours.length];
-      id.append(dot, document.createTextNode(encounter.id));
+      const colour = colours[Math.max(0, sequence.ids.indexOf(encounter.id)) % colours.length];
+      named(row.insertCell(), { name: encounter.id, style: { colour, dash: [] } });
       for (const text of [
         encounter.meeting || '–', encounter.vertical_motion || '–', closestText(encounter.closest_approach, sequence.seconds),
         firstText(encounter.first_seen), horizonText(encounter), encounter.violations.map(violationText).join(', ') || 'none'])

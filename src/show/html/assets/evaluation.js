@@ -2,16 +2,10 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, counted, dotOf, drawPlot, element, ink, loaded, most, number, sortable, line, axis } = airtruth;
+  const { byId, counted, drawPlot, element, headed, ink, loaded, most, named, number, sortable, line, axis } = airtruth;
   const trackers = data.trackers;
   for (const tracker of trackers) Object.assign(tracker, { colour: tracker.style.colour, dash: tracker.style.dash });
   const scored = trackers.filter((tracker) => tracker.overall);
-
-  const dotted = (tracker) => {
-    const cell = element('td');
-    cell.append(dotOf(tracker), document.createTextNode(tracker.name));
-    return cell;
-  };
 
   // A bar over the interval and a mark at the mean, of `top`.
   const interval = (mean, bounds, top) => {
@@ -27,13 +21,6 @@
     }
     bar.append(mark);
     return bar;
-  };
-
-  // A cell of a table whose first column names a tracker.
-  const fill = (cell, row, column, k) => {
-    if (k === 0) cell.append(dotOf(row), document.createTextNode(row.name));
-    else if (column.draw) column.draw(cell, row);
-    else cell.textContent = number(column.of(row), column.digits);
   };
 
   const bracket = (name, digits) => (cell, row) => {
@@ -61,7 +48,7 @@
       plain('sequences_lost', 'lost', 0, true),
       plain('frames_per_second_median', 'fps, median', 1),
       plain('frames_per_second', 'fps, mean', 1),
-    ], 2, fill);
+    ], 2);
     const vot = trackers.filter((t) => t.restart || t.multistart);
     if (!vot.length) return;
     byId('vot-place').hidden = false;
@@ -75,7 +62,7 @@
       { name: 'multi-start: accuracy', of: of('multistart', 'accuracy'), digits: 3 },
       { name: 'robustness', of: of('multistart', 'robustness'), digits: 3 },
       { name: `EAO [${data.eao_range}]`, of: of('multistart', 'eao'), digits: 3 },
-    ], vot.some((t) => t.restart) ? 4 : 7, fill);
+    ], vot.some((t) => t.restart) ? 4 : 7);
   };
 
   const none = { display: false };
@@ -93,13 +80,10 @@
 
   const drawPairs = () => {
     if (!data.comparisons.length) { byId('pairs-place').hidden = true; return; }
-    const table = byId('pairs');
-    const head = table.createTHead().insertRow();
-    head.append(element('th', ''), ...scored.map((t) => element('th', t.name)));
-    const body = table.createTBody();
+    const body = headed(byId('pairs'), ['', ...scored.map((t) => t.name)]);
     for (const a of scored) {
       const row = body.insertRow();
-      row.append(dotted(a));
+      named(row.insertCell(), a);
       for (const b of scored) {
         const cell = row.insertCell();
         const found = data.comparisons.find((c) => (c.a === a.name && c.b === b.name) || (c.a === b.name && c.b === a.name));
@@ -221,20 +205,16 @@
     const stop = airtruth.playable(byId('play'), { go, next: () => sequence.stills.find((still) => still.at > at)?.at, pause_ms: 100 });
 
     const drawTable = () => {
-      const table = byId('losses');
-      table.replaceChildren();
-      const head = table.createTHead().insertRow();
-      head.append(...['tracker', 'AUC', 'P@20', 'mrad', 'first loss'].map((text) => element('th', text)));
-      const body = table.createTBody();
+      const body = headed(byId('losses'), ['tracker', 'AUC', 'P@20', 'mrad', 'first loss']);
       for (const one of sequence.trackers) {
         const row = body.insertRow();
-        row.append(dotted(trackerOf(one)));
+        named(row.insertCell(), trackerOf(one));
         const lost = one.first_loss
           ? `frame ${one.first_loss.frame}${one.first_loss.range_m === null ? '' : `, ${number(one.first_loss.range_m)} m`}`
           : 'never';
         for (const text of [number(one.auc, 3), number(one.precision_20px, 3), number(one.angle_mrad, 1), lost]) row.append(element('td', text));
       }
-      airtruth.fit(table);
+      airtruth.fit(byId('losses'));
     };
 
     const show = (index) => {
