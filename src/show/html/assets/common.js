@@ -14,8 +14,15 @@ const airtruth = (() => {
     if (name) made.className = name;
     return made;
   };
+  const byId = (id) => document.getElementById(id);
   const number = (value, digits = 0) =>
     (value === null || value === undefined ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits }));
+  const button = (text, act) => {
+    const made = element('button', text);
+    made.type = 'button';
+    made.addEventListener('click', act);
+    return made;
+  };
   // The colour of truth alone.
   const ink = dark ? '#ffffff' : '#000000';
 
@@ -195,11 +202,9 @@ const airtruth = (() => {
       table.replaceChildren();
       const head = table.createTHead().insertRow();
       columns.forEach((column, k) => {
+        const sort = () => { up = k === by ? !up : Boolean(column.up); by = k; draw(); };
         const cell = element('th');
-        const button = element('button', column.name + (k === by ? (up ? ' ▲' : ' ▼') : ''));
-        button.type = 'button';
-        button.addEventListener('click', () => { up = k === by ? !up : Boolean(column.up); by = k; draw(); });
-        cell.append(button);
+        cell.append(button(column.name + (k === by ? (up ? ' ▲' : ' ▼') : ''), sort));
         head.append(cell);
       });
       const key = columns[by].of;
@@ -221,13 +226,10 @@ const airtruth = (() => {
   // A button that shows `player` on the whole screen; the key F does so for the player that the pointer is over.
   let pointed = null;
   const fullScreen = (player) => {
-    const button = element('button', 'Full screen (F)');
-    button.type = 'button';
     const toggle = () => (document.fullscreenElement ? document.exitFullscreen() : player.requestFullscreen().catch(() => {}));
-    button.addEventListener('click', toggle);
     player.addEventListener('pointerenter', () => { pointed = toggle; });
     player.addEventListener('pointerleave', () => { if (pointed === toggle) pointed = null; });
-    return button;
+    return button('Full screen (F)', toggle);
   };
   document.addEventListener('keydown', (event) => {
     const isTyped = event.ctrlKey || event.metaKey || event.altKey || event.target.matches('select, input:not([type=range]):not([type=checkbox])');
@@ -236,19 +238,19 @@ const airtruth = (() => {
 
   // The picture that the page holds under an id, decoded; null without one.
   const loaded = (id) => new Promise((done) => {
-    const holder = document.getElementById(id);
+    const holder = byId(id);
     if (!holder) { done(null); return; }
     const image = new Image();
     image.onload = () => done(image);
     image.onerror = () => done(null);
     image.src = `data:image/jpeg;base64,${holder.textContent}`;
   });
-  // Draws a box of the frame, which the canvas shows from (x, y) on.
-  const outline = (context, { x, y, scale }, [left, top, width, height], colour, thickness, dashes) => {
+  // Draws a box of the frame, which the canvas shows from (x, y) on, `margin` pixels of the canvas outside of it.
+  const outline = (context, { x, y, scale }, [left, top, width, height], colour, thickness, dashes, margin = 1) => {
     context.setLineDash(dashes);
     context.strokeStyle = colour;
     context.lineWidth = thickness;
-    context.strokeRect((left - x) * scale - 1, (top - y) * scale - 1, width * scale + 2, height * scale + 2);
+    context.strokeRect((left - x) * scale - margin, (top - y) * scale - margin, width * scale + 2 * margin, height * scale + 2 * margin);
   };
 
   // Lets a button play picture after picture, none before the one before it is drawn: go(index) draws one, next() is the index of the
@@ -272,13 +274,14 @@ const airtruth = (() => {
     return stop;
   };
 
+  const addChoice = (id, value, text) => {
+    const option = element('option', text);
+    option.value = value;
+    byId(id).append(option);
+  };
   // Adds values to a choice, each once and sorted.
   const choices = (id, values) => {
-    for (const value of [...new Set(values)].sort()) {
-      const option = element('option', value);
-      option.value = value;
-      document.getElementById(id).append(option);
-    }
+    for (const value of [...new Set(values)].sort()) addChoice(id, value, value);
   };
 
   // What both players of sequences begin with: the list of sequences, a box for each of `shown` that hides it, the buttons and the slider.
@@ -287,12 +290,9 @@ const airtruth = (() => {
   //   show(index), current()    shows a sequence; the one that is shown
   //   go(index), stop()         the slider
   const beginPlayer = ({ sequences, wordsOf, shown, hidden, redraw, show, current, go, stop }) => {
-    const byId = (id) => document.getElementById(id);
     sequences.forEach((one, index) => {
       one.index = index;
-      const option = element('option', wordsOf(one));
-      option.value = index;
-      byId('sequence').append(option);
+      addChoice('sequence', index, wordsOf(one));
     });
     shown.forEach((one, k) => {
       const label = element('label');
@@ -316,8 +316,10 @@ const airtruth = (() => {
   };
 
   return {
+    addChoice,
     beginPlayer,
-    byId: (id) => document.getElementById(id),
+    button,
+    byId,
     choices,
     ink,
     drawPlot,

@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, choices, counted, drawPlot, element, loaded, number, sortable } = airtruth;
+  const { addChoice, button, byId, choices, counted, drawPlot, element, loaded, number, outline, sortable } = airtruth;
   const { detectors } = data;
 
   // Of a path of keys; null where a step is missing.
@@ -103,19 +103,11 @@
       const context = canvas.getContext('2d');
       context.drawImage(image, 0, 0, 160, 160);
       const [left, top, px] = entry.cutout;
-      const scale = 160 / px;
-      const [x, y, width, height] = entry.box_px;
-      for (const [paint, thickness] of [['#000000', 3.5], [colour, 1.5]]) {
-        context.strokeStyle = paint;
-        context.lineWidth = thickness;
-        context.strokeRect((x - left) * scale - 3, (y - top) * scale - 3, width * scale + 6, height * scale + 6);
-      }
+      for (const [paint, thickness] of [['#000000', 3.5], [colour, 1.5]])
+        outline(context, { x: left, y: top, scale: 160 / px }, entry.box_px, paint, thickness, [], 3);
     });
-    const button = element('button', words[0]);
-    button.type = 'button';
-    button.addEventListener('click', () => player.showFrame(entry.sequence, entry.frame));
     const caption = element('figcaption');
-    caption.append(button, ...words.slice(1).map((text) => element('div', text)));
+    caption.append(button(words[0], () => player.showFrame(entry.sequence, entry.frame)), ...words.slice(1).map((text) => element('div', text)));
     figure.append(canvas, caption);
     return figure;
   };
@@ -139,11 +131,7 @@
     byId('misses').replaceChildren(...detector.misses.map((miss, i) => exhibit(miss, `miss-${k}-${i}`, '#ffffff', missWords(miss))));
   };
   const beginGalleries = () => {
-    detectors.forEach((detector, k) => {
-      const option = element('option', detector.name);
-      option.value = k;
-      byId('gallery-detector').append(option);
-    });
+    detectors.forEach((detector, k) => addChoice('gallery-detector', k, detector.name));
     choices('gallery-what', detectors.flatMap((d) => d.strongest_false_alarms.map((alarm) => alarm.what)));
     byId('gallery-choice').addEventListener('input', drawGalleries);
     if (detectors.length) drawGalleries();

@@ -2,7 +2,7 @@
 'use strict';
 (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
-  const { byId, choices, counted, drawPlot, element, least, loaded, most, number, line, axis, legend } = airtruth;
+  const { byId, choices, counted, drawPlot, element, least, loaded, most, number, outline, line, axis, legend } = airtruth;
   const { encounters } = airtruth;
   const { colours } = data;
 
@@ -76,6 +76,8 @@
     });
   };
 
+  const scatter = (canvas, datasets, scales) => new Chart(canvas, { type: 'scatter', data: { datasets }, options: { plugins: { legend }, scales } });
+
   // From above, one scale for both axes, with the camera's view at the first frame and the closest approaches.
   const planView = (canvas, sequence) => {
     const camera = sequence.camera;
@@ -107,18 +109,8 @@
     const aspect = Math.max(0.4, (canvas.parentNode.clientWidth - 60) / (canvas.parentNode.clientHeight - 80));
     const tall = Math.max((north - south) * 1.15, ((east - west) * 1.15) / aspect, 20);
     const wide = tall * aspect;
-    const middle = { x: (west + east) / 2, y: (south + north) / 2 };
-    return new Chart(canvas, {
-      type: 'scatter',
-      data: { datasets: sets },
-      options: {
-        plugins: { legend },
-        scales: {
-          x: axis(plan.x, { min: middle.x - wide / 2, max: middle.x + wide / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
-          y: axis(plan.y, { min: middle.y - tall / 2, max: middle.y + tall / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } }),
-        },
-      },
-    });
+    const about = (middle, length) => ({ min: middle - length / 2, max: middle + length / 2, ticks: { maxTicksLimit: 7, callback: (v) => number(v) } });
+    return scatter(canvas, sets, { x: axis(plan.x, about((west + east) / 2, wide)), y: axis(plan.y, about((south + north) / 2, tall)) });
   };
 
   const profile = (canvas, sequence) => {
@@ -129,11 +121,8 @@
     // Of a motion that is a rotation alone there is no shift.
     const hasShift = camera.shift_px.some((shift) => shift);
     if (hasShift) sets.push(line('camera shift, px', camera.frame.map((x, i) => ({ x, y: camera.shift_px[i] })), '#B8B000', { yAxisID: 'shift', borderWidth: 1 }));
-    return new Chart(canvas, {
-      type: 'scatter',
-      data: { datasets: sets },
-      options: { plugins: { legend }, scales: { x: axis('frame'), y: axis('height, m'), ...(hasShift ? { shift: axis('shift, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } : {}) } },
-    });
+    const shift = hasShift ? { shift: axis('shift, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } : {};
+    return scatter(canvas, sets, { x: axis('frame'), y: axis('height, m'), ...shift });
   };
 
   const sizes = (canvas, sequence) => {
@@ -146,11 +135,8 @@
       sets.push(line('width, px', intruder.frame.map((x, i) => ({ x, y: intruder.width_px[i] })), colour, { yAxisID: 'px', borderDash: [4, 3] }));
       sets.push(line('height, px', intruder.frame.map((x, i) => ({ x, y: intruder.height_px[i] })), colour, { yAxisID: 'px', borderDash: [2, 3] }));
     });
-    return new Chart(canvas, {
-      type: 'scatter',
-      data: { datasets: sets },
-      options: { plugins: { legend }, scales: { x: axis('frame', range), ...encounters.axisOf(sequence, range), y: axis('range, m', { beginAtZero: true }), px: axis('box, px', { position: 'right', beginAtZero: true, grid: { display: false } }) } },
-    });
+    const px = axis('box, px', { position: 'right', beginAtZero: true, grid: { display: false } });
+    return scatter(canvas, sets, { x: axis('frame', range), ...encounters.axisOf(sequence, range), y: axis('range, m', { beginAtZero: true }), px });
   };
 
   const address = (path) => path.split('/').map(encodeURIComponent).join('/');
@@ -188,13 +174,9 @@
       context.clearRect(0, 0, on.width, on.height);
       if (!image) return;
       context.drawImage(image, 0, 0, on.width, on.height);
-      const scale = on.width / px;
-      for (const [intruder, x, y, width, height] of boxes)
-        for (const [colour, thickness] of [['#000000', 3.5], [colours[intruder % colours.length], 1.8]]) {
-          context.strokeStyle = colour;
-          context.lineWidth = thickness;
-          context.strokeRect((x - left) * scale - 2, (y - top) * scale - 2, width * scale + 4, height * scale + 4);
-        }
+      for (const [intruder, ...box] of boxes)
+        for (const [colour, thickness] of [['#000000', 3.5], [colours[intruder % colours.length], 1.8]])
+          outline(context, { x: left, y: top, scale: on.width / px }, box, colour, thickness, [], 2);
     };
     // Pictures, boxes, caption and slider change together, once the pictures are decoded.
     const show = async (index) => {
@@ -216,10 +198,7 @@
     slider.addEventListener('input', () => { stop(); show(Number(slider.value)); });
 
     const addFile = () => {
-      const open = element('button', 'Play the file');
-      open.type = 'button';
-      controls.append(open);
-      open.addEventListener('click', () => {
+      const open = airtruth.button('Play the file', () => {
         stop();
         const video = element('video');
         video.controls = true;
@@ -237,6 +216,7 @@
         caption.textContent = 'the video file, every frame; without boxes';
         video.play().catch(() => {});
       });
+      controls.append(open);
     };
     const begin = () => {
       if (!sequence.stills.length) { place.replaceChildren(element('p', 'no pictures', 'note')); return; }
