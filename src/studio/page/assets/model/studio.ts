@@ -286,9 +286,8 @@ export class Studio {
   private took(state: State): void {
     const {selected, notices} = this.store.now;
     // What was refused before is past.
-    const isPast = (kind: string) => kind === 'error';
-    if (notices.some((notice) => isPast(notice.kind)))
-      this.store.put({notices: notices.filter((notice) => !isPast(notice.kind))});
+    const rest = notices.filter((notice) => notice.kind !== 'error');
+    if (rest.length < notices.length) this.store.put({notices: rest});
     this.store.put(
         {state, ...(selected && !flyerAt(state, selected) && this.edits.isIdle ? {selected: null, moment: null} : {})});
     this.openIfOther(state);
@@ -340,22 +339,16 @@ export class Studio {
     this.wholes += 1;
     try {
       await this.edits.whenIdle();
-      return await this.ask(what);
-    } finally {
-      this.wholes -= 1;
-    }
-  }
-
-  private async ask(what: 'undo'|'redo'|'save'|'reload'|'keep'): Promise<boolean> {
-    const {state: before} = this.store.now;
-    if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
-    try {
+      const {state: before} = this.store.now;
+      if ((what === 'undo' && !before?.undo) || (what === 'redo' && !before?.redo)) return false;
       const {state} = await this.connection.request<{state: Told}>(what);
       this.took(this.known(state));
       return true;
     } catch (error) {
       this.failed(error);
       return false;
+    } finally {
+      this.wholes -= 1;
     }
   }
 

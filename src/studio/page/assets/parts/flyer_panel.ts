@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Json, Table} from '../model/contract';
-import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
+import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, frameOf, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
 import {round, speedOf, velocityAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import type {Studio} from '../model/studio';
@@ -119,7 +119,7 @@ export class FlyerPanel extends Part {
 
   private shape(flyer: Flyer, moments: Moment[]): void {
     this.fields = [];
-    this.rows = moments.map((_, k) => new MomentRow(this, this.studio, k));
+    this.rows = moments.map((_, k) => new MomentRow(this.studio, k));
     const path = flyer.path;
     const isNatural = flyer.kind === 'bird' || flyer.kind === 'multirotor' || flyer.kind === 'balloon';
     const keys = isNatural ? FLOCK.filter(({key}) => flyer.kind === 'bird' || key[0] === 'size_m') : [];
@@ -191,34 +191,6 @@ export class FlyerPanel extends Part {
     else
       this.studio.store.say('info', 'This path cannot be stated so: it is not in the clip.');
   }
-
-  // A moment's size, in the other words.
-  sizeIn(index: number, key: 'range_m'|'width_px'): void {
-    const {flyer} = this.studio;
-    const moment = this.studio.moment(index);
-    const handle = flyer && trackOf(this.now.plan, flyer.path)?.handles[index];
-    const known = handle?.[key];
-    if (!moment || !known) return;
-    const other = key === 'range_m' ? 'width_px' : 'range_m';
-    this.studio.edit([
-      {remove: [...moment.path, other]},
-      {set: [...moment.path, key], to: key === 'range_m' ? writtenRange(known) : writtenWidth(known)}
-    ]);
-  }
-
-  frameTime(time_s: number): number {
-    const {clip} = this.now;
-    return clip ? timeOf(Math.round(time_s * clip.rate_hz), clip) : time_s;
-  }
-
-  showTime(time_s: number): void {
-    if (this.now.clip) this.studio.show(Math.round(time_s * this.now.clip.rate_hz));
-  }
-
-  removeRow(index: number): void {
-    this.studio.store.put({moment: index});
-    this.studio.removeMoment();
-  }
 }
 
 // Where what is ahead is stated, what is right of it follows.
@@ -237,7 +209,7 @@ class MomentRow {
   private size: NumberField;
   private unit = choiceField(
       'Size of the moment in', [['range_m', 'm'], ['width_px', 'px']],
-      (key) => this.panel.sizeIn(this.index, key as 'range_m'));
+      (key) => this.sizeIn(key as 'range_m' | 'width_px'));
 
   static head(): HTMLElement {
     return h(
@@ -245,10 +217,10 @@ class MomentRow {
         ...['time, s', 'x, px', 'y, px', 'range or width', ''].map((name) => h('span', {role: 'columnheader'}, name)));
   }
 
-  constructor(private panel: FlyerPanel, private studio: Studio, private index: number) {
+  constructor(private studio: Studio, private index: number) {
     const field = (label: string, unit: string, step: number, taken: (value: number) => void) =>
         new NumberField({label: `${label} of moment ${index + 1}`, unit, step, isLabelHidden: true, taken});
-    this.time = field('Time', 's', 0.1, (value) => this.setTime(this.panel.frameTime(value)));
+    this.time = field('Time', 's', 0.1, (value) => this.setTime(value));
     this.x = field('X', 'px', 0.1, (value) => this.setPixel(0, value));
     this.y = field('Y', 'px', 0.1, (value) => this.setPixel(1, value));
     this.size = field('Size', '', 0.1, (value) => this.set(this.unit.select.value, value));
@@ -259,7 +231,10 @@ class MomentRow {
           class: 'small',
           'aria-label': `Remove moment ${index + 1}`,
           title: 'Remove this moment (Delete)',
-          onclick: () => this.panel.removeRow(index)
+          onclick: () => {
+            this.studio.store.put({moment: index});
+            this.studio.removeMoment();
+          }
         },
           '×');
     const size = h('span', {class: 'size'}, this.size.element, this.unit.select);
@@ -280,10 +255,26 @@ class MomentRow {
     this.size.show(moment.width_px ?? moment.range_m);
   }
 
-  // The picture goes with it.
+  // That of the nearest frame, to which the picture goes with it.
   private setTime(time_s: number): void {
-    this.set('time_s', time_s);
-    this.panel.showTime(time_s);
+    const {clip} = this.studio.store.now;
+    if (!clip) return;
+    const frame = frameOf(time_s, clip);
+    this.set('time_s', timeOf(frame, clip));
+    this.studio.show(frame);
+  }
+
+  // In the other words.
+  private sizeIn(key: 'range_m'|'width_px'): void {
+    const {flyer} = this.studio;
+    const moment = this.studio.moment(this.index);
+    const known = flyer && trackOf(this.studio.store.now.plan, flyer.path)?.handles[this.index]?.[key];
+    if (!moment || !known) return;
+    const other = key === 'range_m' ? 'width_px' : 'range_m';
+    this.studio.edit([
+      {remove: [...moment.path, other]},
+      {set: [...moment.path, key], to: key === 'range_m' ? writtenRange(known) : writtenWidth(known)}
+    ]);
   }
 
   // From outside the row; within it a time that was just entered is the one to be shown.

@@ -4,7 +4,7 @@ import {type Flyer, type Moment, flyersOf, isSame, momentsOf, nearer, trackOf, w
 import {type Point, clamp, degrees, freePlace, mix, round} from '../model/geometry';
 import type {Studio} from '../model/studio';
 import {distance} from './overlay_layer';
-import {Keyed, attribute, s, text, wordsWidth} from './part';
+import {Keyed, arrow, attribute, s, text, wordsWidth} from './part';
 
 const HANDLE_PX = 8;
 const RIM_PX = 11;  // from the panel's edge, of a handle that is drawn there
@@ -218,14 +218,12 @@ export class PathLayer {
   }
 
   private key(event: KeyboardEvent, index: number): void {
-    const step = event.shiftKey ? 10 : 1;
-    const moves: Record<string, Point> =
-        {ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step]};
     const {draft} = this.studio.store.now;
     const {flyer} = this.studio;
     const moment = this.studio.moment(index);
     if (!flyer || !moment || event.ctrlKey || event.altKey || event.metaKey) return;
-    const by = moves[event.key];
+    const step = event.shiftKey ? 10 : 1;
+    const by = arrow(event);
     if (by) {
       if (event.timeStamp - this.wheelMerge.at > PAUSE_MS) this.wheelMerge.name = this.studio.merge('keys');
       this.wheelMerge.at = event.timeStamp;
@@ -233,7 +231,7 @@ export class PathLayer {
       this.studio.show(moment.frame);
       this.moveTo(
           {moment, flyer, offset: [0, 0], merge: this.wheelMerge.name, last: from, isMoved: false},
-          [from[0] + by[0], from[1] + by[1]], event.timeStamp);
+          [from[0] + step * by[0], from[1] - step * by[1]], event.timeStamp);
     } else if (event.key === '+' || event.key === '=') {
       this.size(index, 1.05, event.timeStamp);
     } else if (event.key === '-') {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx} from '../model/contract';
-import {STATED, TO_MOMENTS, flyerAt, frameOf} from '../model/flyers';
+import {STATED, TO_MOMENTS, flyerAt} from '../model/flyers';
 import {type Point, clamp} from '../model/geometry';
 import type {Look, Member} from '../model/store';
 import {OverlayLayer} from './overlay_layer';
@@ -207,7 +207,7 @@ export class PictureView extends Part {
   }
 
   private doubleClick(event: MouseEvent): void {
-    const {clip, state, selected, frame} = this.now;
+    const {clip, state, selected} = this.now;
     if (!clip || !state || this.paths.isHandle(event.target)) return;
     const pixel = this.pixelAt(event);
     const onPath = this.paths.pathOf(event.target);
@@ -215,6 +215,6 @@ export class PictureView extends Part {
     if (onPath || selected)
       this.studio.addMoment(onPath ? null : pixel);
     else
-      this.studio.store.put({dialog: 'gallery', addsAt: pixel, frame: frameOf(frame / clip.rate_hz, clip)});
+      this.studio.store.put({dialog: 'gallery', addsAt: pixel});
   }
 }

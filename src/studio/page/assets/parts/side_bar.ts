@@ -6,7 +6,7 @@ import {LightPanel} from './light_panel';
 import {Part, attribute, h} from './part';
 import {TextPanel} from './text_panel';
 
-const TABS: [Tab, string][] = [['flyers', 'Flyers'], ['light', 'Light'], ['camera', 'Camera'], ['text', 'Text']];
+export const TABS: [Tab, string][] = [['flyers', 'Flyers'], ['light', 'Light'], ['camera', 'Camera'], ['text', 'Text']];
 
 // The panels beside the picture, one at a time.
 export class SideBar extends Part {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {isSame} from '../model/flyers';
-import type {Member, Tab} from '../model/store';
+import type {Member} from '../model/store';
 import {restored} from './fields';
 import {headedBy} from './flyer_list';
 import {Gallery} from './gallery';
@@ -11,11 +11,9 @@ import {Part, h} from './part';
 import {PictureView} from './picture_view';
 import {PlanView} from './plan_view';
 import {RenderDialog} from './render_dialog';
-import {SideBar} from './side_bar';
+import {SideBar, TABS} from './side_bar';
 import {TimeBar} from './time_bar';
 import {ToolBar} from './tool_bar';
-
-const TABS: Tab[] = ['flyers', 'light', 'camera', 'text'];
 
 // The whole page, and the keys that work anywhere on it.
 export class StudioPage extends Part {
@@ -89,7 +87,7 @@ export class StudioPage extends Part {
     const step = event.shiftKey ? 10 : 1;
     const put = (values: Parameters<typeof studio.store.put>[0]) => studio.store.put(values);
     const isRange = isField(event.target) && !event.target.closest('.strip');
-    const tabs = Object.fromEntries(TABS.map((tab, k) => [String(k + 1), () => put({tab})]));
+    const tabs = Object.fromEntries(TABS.map(([tab], k) => [String(k + 1), () => put({tab})]));
     const arrows: Record<string, () => void> = isRange ? {} : {
       ArrowLeft: () => studio.show(now.frame - step),
       ArrowRight: () => studio.show(now.frame + step),
