@@ -142,8 +142,4 @@ export class Keyed<Item, Of extends Element> {
       before = element;
     }
   }
-
-  get(key: string): Of|undefined {
-    return this.elements.get(key);
-  }
 }
