@@ -296,7 +296,7 @@ def test_near_miss(airtruth, browser, root):
         type_into(browser, name, value)
         browser.key("Enter")
     browser.run("(() => { const side = document.querySelector('.near-miss select'); side.value = 'left'; side.dispatchEvent(new Event('change')); })()")
-    browser.wait(f"{STORE}.state.motion === 'measured'", 120)
+    browser.wait(f"{STORE}.plan?.complete", 120)
     expect("what was typed stays", browser.run("[...document.querySelectorAll('.near-miss input')].map((e) => e.value).slice(0, 2)"), ["80", "10"])
     browser.click_on(".near-miss button")
     browser.wait(f"{STORE}.state.scene.intruder[0].encounter")

@@ -49,11 +49,8 @@ Json values_of(const camera_file::Calibration& found) {
         spread.push_back(one.sigma);
       }
     }
-    values.push_back({{"key", key.name},
-                      {"value", value},
-                      {"error", spread},
-                      {"missing", quantity.missing},
-                      {"note", quantity.note}});
+    values.push_back(
+        {{"key", key.name}, {"value", value}, {"error", spread}, {"missing", quantity.missing}});
   }
   return values;
 }

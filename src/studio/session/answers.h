@@ -24,8 +24,8 @@ double rounded(double value, double step);
 // A picture: 4 bytes with the length of its header, little end first; the header; the JPEG.
 std::string framed(const nlohmann::ordered_json& header, const std::string& jpeg);
 
-// [{"key", "value", "error", "missing", "note"}] of each quantity of a camera file; value and error
-// are null where it was not measured.
+// [{"key", "value", "error", "missing"}] of each quantity of a camera file; value and error are
+// null where it was not measured.
 nlohmann::ordered_json values_of(const camera_file::Calibration& found);
 
 // [[frame, [{"id", "box"}]]] of what is visible in a rendered video, by its truth.jsonl.

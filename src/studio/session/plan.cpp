@@ -213,9 +213,6 @@ class Planner {
               {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
               {"attitude", stage_.attitude_words()}}},
             {"horizontal_fov_deg", hundredths(preview::view_deg(stage_.world()))},
-            {"sun",
-             {{"azimuth_deg", stage_.scene().light.sun_azimuth_deg},
-              {"elevation_deg", stage_.scene().light.sun_elevation_deg}}},
             {"tracks", tracks},
             {"horizon", horizon},
             {"volumes", volumes()},
@@ -261,15 +258,11 @@ class Planner {
       checks.push_back(approach);
     return {{"table", table},
             {"id", party.name},
-            {"aircraft", actor.aircraft},
-            {"class", actor.object_class},
-            {"count", party.actors.size()},
             {"points", points},
             {"ned", positions},
             {"handles", handles(table, place)},
             {"cpa", cpa_of(closest)},
             {"approach", approach},
-            {"violations", violations(actor)},
             {"checks", checks}};
   }
 
@@ -312,15 +305,10 @@ class Planner {
           static_cast<std::int64_t>(std::llround(seen[i].time_s * stage_.clip_rate_hz()));
       const setup::Moment moment =
           setup::moment_at(alone, frame, stage_.time_s(frame), stage_.shake_at(frame));
-      Json path = table;
-      path.push_back("seen");
-      path.push_back(i);
       const auto& state = moment.states.front();
       const auto& box = moment.boxes.front().box;
       result.push_back(
-          {{"path", path},
-           {"frame", frame},
-           {"time_s", seen[i].time_s},
+          {{"frame", frame},
            {"pixel", {seen[i].pixel.x(), seen[i].pixel.y()}},
            {"range_m",
             state ? Json(hundredths(
@@ -334,24 +322,12 @@ class Planner {
     return result;
   }
 
-  Json violations(const setup::Actor& actor) const {
-    Json result = Json::array();
-    for (const auto& [name, volume] : stage_.world().volumes)
-      for (const separation::Interval& time :
-           passage::violations(volume, stage_.world().camera, actor.path, 0, stage_.duration_s()))
-        result.push_back({{"volume", name},
-                          {"begin_s", rounded(time.begin_s, 1e-3)},
-                          {"end_s", rounded(time.end_s, 1e-3)}});
-    return result;
-  }
-
   Json volumes() const {
     Json result = Json::array();
     for (const auto& [name, volume] : stage_.world().volumes)
       result.push_back({{"name", name},
                         {"horizontal_m", volume.horizontal_m},
-                        {"vertical_m", volume.vertical_m},
-                        {"tau_s", volume.tau_s}});
+                        {"vertical_m", volume.vertical_m}});
     return result;
   }
 

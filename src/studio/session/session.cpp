@@ -192,15 +192,8 @@ class Session::Impl {
     snapshot_ = std::move(next);
   }
 
-  Json state() const {
-    Json state = document_->state();
-    const std::lock_guard lock(mutex_);
-    state["motion"] = motion_state_;
-    state["camera"] = camera_state_;
-    return state;
-  }
   void tell(const Json& event) { ways_.send_all(text_of(event)); }
-  void tell_state() { tell({{"event", "state"}, {"state", state()}}); }
+  void tell_state() { tell({{"event", "state"}, {"state", document_->state()}}); }
 
   void answer(Client client, Request request) {
     switch (request.act) {
@@ -247,7 +240,7 @@ class Session::Impl {
       const std::string line = fault_of([&] { facts = clip_facts(); });
       ways_.post([this, client, id, facts, line]() mutable {
         if (!line.empty()) return ways_.send(client, error(id, line));
-        facts["state"] = state();
+        facts["state"] = document_->state();
         ways_.send(client, ok(id, facts));
       });
     });
@@ -258,7 +251,7 @@ class Session::Impl {
     const std::int64_t before = document_->revision();
     act();
     if (document_->revision() != before) publish();
-    ways_.send(client, ok(id, {{"state", state()}}));
+    ways_.send(client, ok(id, {{"state", document_->state()}}));
     tell_state();
   }
 
@@ -295,17 +288,15 @@ class Session::Impl {
       return {{"file", document_file_}, {"clip", nullptr}, {"out", options_.out.string()}};
     Clip& clip = stage_.clip(shot->background);
     const video::StreamInfo& info = clip.info();
-    Json result = {{"file", document_file_},
-                   {"out", options_.out.string()},
-                   {"clip",
-                    {{"video", shot->background.video.filename().string()},
-                     {"width", info.width},
-                     {"height", info.height},
-                     {"frames", clip.frame_count()},
-                     {"rate_hz", clip.rate_hz()},
-                     {"first_frame", shot->background.first_frame},
-                     {"duration_s", static_cast<double>(clip.frame_count()) / clip.rate_hz()}}}};
-    return result;
+    return {{"file", document_file_},
+            {"out", options_.out.string()},
+            {"clip",
+             {{"video", shot->background.video.filename().string()},
+              {"width", info.width},
+              {"height", info.height},
+              {"frames", clip.frame_count()},
+              {"rate_hz", clip.rate_hz()},
+              {"first_frame", shot->background.first_frame}}}};
   }
 
   // Sets the present scene up. Returns why it cannot be; "": it is.
@@ -421,22 +412,20 @@ class Session::Impl {
     const std::string key = motion_key(scene);
     if (key == motion_wanted_) return;
     motion_wanted_ = key;
-    set_state(motion_state_, "measuring");
     begin_job(motion_job_, [this, scene, key](const std::stop_token& stop) {
       std::shared_ptr<const setup::MotionSource> motion;
       pipeline::Options options = for_job(stop, "motion");
       options.threads = 1;
-      const std::string problem = fault_of([&] {
+      fault_of([&] {
         motion =
             std::make_shared<const setup::MotionSource>(pipeline::motion_ahead(scene, options));
       });
       if (stop.stop_requested()) return;
-      worker_.add(Urgency::kFrame, [this, key, motion, problem] {
+      worker_.add(Urgency::kFrame, [this, key, motion] {
         if (motion) {
           measured_.motion = motion;
           measured_.motion_key = key;
         }
-        set_state(motion_state_, motion ? "measured" : problem);
         finish("motion");
       });
     });
@@ -450,28 +439,18 @@ class Session::Impl {
     if (key == camera_wanted_) return;
     camera_wanted_ = key;
     camera_job_.request_stop();
-    if (key.empty()) return set_state(camera_state_, "stated");
-    if (measured_.calibrated.count(key) > 0) return set_state(camera_state_, "measured");
-    set_state(camera_state_, "measuring");
+    if (key.empty() || measured_.calibrated.count(key) > 0) return;
     begin_job(camera_job_, [this, scene, key](const std::stop_token& stop) {
       const std::string problem =
           fault_of([&] { pipeline::calibration_of(scene, for_job(stop, "calibrate")); });
       if (stop.stop_requested()) return;
       worker_.add(Urgency::kFrame, [this, key, problem] {
         if (problem.empty()) measured_.calibrated.insert(key);
-        set_state(camera_state_, problem.empty() ? "measured" : problem);
         finish("calibrate");
       });
     });
   }
 
-  void set_state(std::string& state, const std::string& word) {
-    {
-      const std::lock_guard lock(mutex_);
-      state = word;
-    }
-    ways_.post([this] { tell_state(); });
-  }
   void finish(const std::string& what) {
     ways_.post([this, what] { tell({{"event", "measured"}, {"of", what}}); });
   }
@@ -533,7 +512,6 @@ class Session::Impl {
       ways_.post([this, film] { rendered_ = film; });
       return Json{{"folder", summary.folder.string()},
                   {"video", film.filename().string()},
-                  {"frames", summary.frames},
                   {"boxes", boxes}};
     });
   }
@@ -552,8 +530,6 @@ class Session::Impl {
   bool is_asked_ = false;
   mutable std::mutex mutex_;
   std::shared_ptr<const Snapshot> snapshot_;
-  std::string motion_state_ = "measuring";
-  std::string camera_state_ = "stated";
   // Of the worker's thread.
   Stage stage_;
   Measured measured_;

@@ -23,7 +23,6 @@ export interface Clip {
   frames: number;
   rate_hz: number;
   first_frame: number;
-  duration_s: number;
 }
 
 export interface State {
@@ -44,7 +43,6 @@ export interface Told extends Omit<State, 'scene'> {
 }
 
 export interface Handle {
-  path: Path;
   frame: number;
   pixel: [number, number];
   range_m: number|null;
@@ -81,7 +79,6 @@ export interface Track {
   cpa: Approach|null;
   checks: string[];
   approach: string;  // the command line's words
-  violations: {volume: string; begin_s: number; end_s: number}[];
 }
 
 export interface Volume {

@@ -26,7 +26,6 @@ const CLIP: Clip = {
   frames: 150,
   rate_hz: 30,
   first_frame: 0,
-  duration_s: 5
 };
 const flyer = (table: Table, key = 'intruder'): Flyer => flyersOf({[key]: [table]})[0];
 const track = (pixel: (frame: number) => [number, number], frames = 150): Track => ({
@@ -36,7 +35,6 @@ const track = (pixel: (frame: number) => [number, number], frames = 150): Track 
   cpa: null,
   checks: [],
   approach: '',
-  violations: [],
   ned: [],
   points: Array.from({length: frames}, (_, k) => [k, ...pixel(k), 500, 40, true]),
 });
