@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studio/messages/request.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -19,7 +18,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kMostChanges = 200;
 constexpr std::int64_t kMostFrames = 100'000'000;
-constexpr int kMostPx = 65536;
 constexpr std::int64_t kMostTables = 1'000'000;
 constexpr std::size_t kMostWord = 200;
 
@@ -57,16 +55,9 @@ void take_frame(Request& request, const JsonObject& message) {
   request.aircraft = message.maybe_truth("aircraft").value_or(true);
   request.scale = message.maybe_number("scale").value_or(1);
   if (!(request.scale >= 0.05 && request.scale <= 1)) message.fail("scale", "0.05 to 1");
-  if (!message.has("crop")) return;
-  if (message.value("crop").is_string()) {
-    if (message.text("crop") != "change") message.fail("crop", "[x, y, w, h], \"change\" or null");
-    request.crops_to_change = true;
-    return;
-  }
-  const std::vector<double> box = message.numbers("crop", 4);
-  if (!std::ranges::all_of(box, [](double v) { return v >= 0 && v <= kMostPx; }))
-    message.fail("crop", fmt::format("numbers from 0 to {}", kMostPx));
-  request.crop = pixels_of({box[0], box[1], box[2], box[3]});
+  request.crops_to_change = message.has("crop");
+  if (request.crops_to_change && message.value("crop") != "change")
+    message.fail("crop", "\"change\" or null");
 }
 
 NearMiss near_miss_in(const JsonObject& message) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "foundation/base/names.h"
-#include "foundation/geometry/box.h"
 #include "studio/document/change.h"
 
 namespace airtruth::messages {
@@ -68,7 +67,6 @@ struct Request {
   // frame
   std::int64_t frame = 0;
   bool aircraft = true;
-  std::optional<PixelBox> crop;
   // The part of the picture that changed since the page's last picture of that frame.
   bool crops_to_change = false;
   double scale = 1;

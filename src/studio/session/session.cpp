@@ -85,11 +85,6 @@ PixelBox even(PixelBox box, int width, int height) {
           std::max(2, std::min(height, box.bottom()) - y)};
 }
 
-PixelBox within(const PixelBox& box, const PixelBox& whole) {
-  return intersection(box, whole)
-      .value_or(PixelBox{0, 0, std::min(2, whole.width), std::min(2, whole.height)});
-}
-
 // Begins something long that runs beside the pictures, behind them in its claim on the processor.
 // What `job` runs ends first. `work` does not throw.
 template <typename Work>
@@ -393,9 +388,8 @@ class Session::Impl {
     if (made && !made->moment.spots.empty()) drawn = whole;
     Shown& shown = shown_[client];
     const Shown before = std::exchange(shown, {request.frame, drawn});
-    if (request.crop) return even(within(*request.crop, whole), whole.width, whole.height);
     if (!request.crops_to_change || before.frame != request.frame) return whole;
-    if (!drawn && !before.drawn) return within({}, whole);
+    if (!drawn && !before.drawn) return even({}, whole.width, whole.height);
     const PixelBox box = !drawn          ? *before.drawn
                          : !before.drawn ? *drawn
                                          : bounds(*drawn, *before.drawn);
