@@ -38,12 +38,10 @@ Json group_of(const std::string& type, const std::vector<std::string>& liveries)
   const fleet::PublishedSize* size = fleet::published_size(liveries.front());
   const bool is_known = size != nullptr && size->is_known();
   return {{"name", type},
-          {"kind", "aircraft"},
           {"type", size != nullptr ? size->type : ""},
           {"class", class_of(liveries.front())},
           {"length_m", is_known ? Json(size->length_m) : Json()},
           {"span_m", is_known ? Json(size->span_m) : Json()},
-          {"picture", liveries.front()},
           {"liveries", liveries}};
 }
 
@@ -64,16 +62,6 @@ Json Gallery::groups(const std::string& word) {
     types.back().second.push_back(entry.name);
   }
   Json groups = Json::array();
-  for (const scene::DistractorKind kind : kKinds)
-    if (contains_ignoring_case(enum_name(kind), word))
-      groups.push_back({{"name", enum_name(kind)},
-                        {"kind", enum_name(kind)},
-                        {"type", enum_name(kind)},
-                        {"class", ""},
-                        {"length_m", nullptr},
-                        {"span_m", nullptr},
-                        {"picture", enum_name(kind)},
-                        {"liveries", Json::array()}});
   for (const auto& [type, all] : types) {
     const fleet::PublishedSize* size = fleet::published_size(all.front());
     const bool is_whole = contains_ignoring_case(type, word) ||

@@ -11,13 +11,12 @@
 
 namespace airtruth::session {
 
-// What can be put into a scene, with pictures. Of one thread.
+// The aircraft that can be put into a scene, with pictures. Of one thread.
 class Gallery {
  public:
-  // {"groups": [{"name", "kind", "type", "class", "length_m", "span_m", "picture", "liveries":
-  // [...]}]}: the types whose name, published type or class of flight limits contains the word;
-  // letter case does not matter.
-  // Birds, multirotors and balloons are groups of their own, without liveries.
+  // {"groups": [{"name", "type", "class", "length_m", "span_m", "liveries": [...]}]}: the types
+  // whose name, published type or class of flight limits contains the word; letter case does not
+  // matter.
   nlohmann::ordered_json groups(const std::string& word);
 
   // A picture of 150 x 150 px as JPEG. `name`: a livery, or a kind of distractor. Empty where the

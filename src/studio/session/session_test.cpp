@@ -299,7 +299,7 @@ TEST_F(OfASession, TheGalleryHasTypesWithTheirLiveries) {
   EXPECT_EQ(groups[0]["name"], "738");
   EXPECT_NEAR(groups[0]["span_m"].get<double>(), 34, 2);
   EXPECT_GT(groups[0]["liveries"].size(), 5u);
-  EXPECT_EQ(ask("aircraft", {{"search", "BIRD"}})["ok"]["groups"][0]["kind"], "bird");
+  EXPECT_FALSE(ask("aircraft", {{"search", "RYANAIR"}})["ok"]["groups"].empty());
   EXPECT_TRUE(ask("aircraft", {{"search", "zzzz"}})["ok"]["groups"].empty());
   std::map<std::string, bool> has;
   for (const char* name : {"738/738-Ryanair", "bird", "../../etc/passwd", ""})

@@ -100,13 +100,11 @@ export interface Plan {
 
 export interface AircraftGroup {
   name: string;
-  kind: 'aircraft'|'bird'|'multirotor'|'balloon';
   type: string;  // published
   length_m: number|null;
   span_m: number|null;
-  class: string;    // of its flight limits: "airliner"
-  picture: string;  // a name for /aircraft.jpg
-  liveries: string[];
+  class: string;       // of its flight limits: "airliner"
+  liveries: string[];  // at least one, each a name for /aircraft.jpg
 }
 
 export interface MeasuredValue {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {AircraftGroup, Clip, MeasuredValue, Path, PictureHeader, Plan, Rendered, State} from './contract';
+import type {Clip, MeasuredValue, Path, PictureHeader, Plan, Rendered, State} from './contract';
 
 // A line for the user; what is said twice is shown once.
 export interface Notice {
@@ -46,7 +46,6 @@ const beginning = {
   busy: null as 'render' | 'calibrate' | null,
   measured: null as MeasuredValue[] | null,
   film: null as Rendered | null,
-  groups: null as AircraftGroup[] | null,
   // view settings
   frame: 0,
   playing: false,

@@ -84,11 +84,10 @@ export class Gallery extends DialogPart {
   private async search(): Promise<void> {
     const asked = ++this.asked;
     try {
-      const all = await this.studio.search(this.input.value.trim());
+      const groups = await this.studio.search(this.input.value.trim());
       if (asked !== this.asked) return;
-      const groups = all.filter((group) => group.kind === 'aircraft');
       this.count.textContent = `${groups.length} ${groups.length === 1 ? 'type' : 'types'}, ${
-          groups.reduce((sum, group) => sum + Math.max(1, group.liveries.length), 0)} liveries`;
+          groups.reduce((sum, group) => sum + group.liveries.length, 0)} liveries`;
       this.cards.replaceChildren(...groups.map((group) => this.card(group)));
       this.cards.scrollTop = 0;
     } catch (error) {
@@ -97,9 +96,8 @@ export class Gallery extends DialogPart {
   }
 
   private card(group: AircraftGroup): HTMLElement {
-    const names = group.liveries.length ? group.liveries : [group.name];
     const addressOf = (name: string) => `/aircraft.jpg?token=${token}&name=${encodeURIComponent(name)}`;
-    const picture = h('img', {alt: '', loading: 'lazy', width: 150, height: 150, src: addressOf(group.picture)});
+    const picture = h('img', {alt: '', loading: 'lazy', width: 150, height: 150, src: addressOf(group.liveries[0])});
     const livery: HTMLSelectElement =
         h('select', {
           'aria-label': `Livery of ${group.name}`,
@@ -107,7 +105,7 @@ export class Gallery extends DialogPart {
             picture.src = addressOf(livery.value);
           }
         },
-          ...names.map((name) => h('option', {value: name}, shortName(name))));
+          ...group.liveries.map((name) => h('option', {value: name}, shortName(name))));
     const choose = () => this.chosen({kind: 'aircraft', aircraft: livery.value, length_m: group.length_m ?? 12});
     const words = [group.class, sizeOf(group)].filter(Boolean).join(', ');
     return h(
@@ -118,7 +116,7 @@ export class Gallery extends DialogPart {
           'aria-label': `${this.now.replaces ? 'Use' : 'Add'} ${group.type || group.name}`
         },
           picture, h('strong', {}, group.type || group.name), h('span', {class: 'hint'}, words)),
-        names.length > 1 ? livery : null);
+        group.liveries.length > 1 ? livery : null);
   }
 
   private chosen(choice: Choice): void {
