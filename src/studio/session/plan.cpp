@@ -205,8 +205,7 @@ class Planner {
     Json tracks = Json::array();
     const std::vector<std::string> approaches = approach_words();
     for (std::size_t i = 0; i < parties_.size(); ++i) tracks.push_back(track(i, approaches[i]));
-    return {{"revision", stage_.revision()},
-            {"complete", stage_.is_complete()},
+    return {{"complete", stage_.is_complete()},
             {"frames", frames},
             {"own",
              {{"ned", own},

@@ -50,7 +50,6 @@ class Stage {
   // Opens the scene's clip alone.
   Clip& clip(const scene::Background& background);
 
-  std::int64_t revision() const { return revision_; }
   // Of set().
   const setup::World& world() const { return maker_->resolved().world; }
   const scene::Scene& scene() const { return maker_->resolved().scene; }

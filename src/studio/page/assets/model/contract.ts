@@ -88,7 +88,6 @@ export interface Volume {
 }
 
 export interface Plan {
-  revision: number;
   frames: number[];
   own: {ned: Ned[]; heading_deg: number; attitude: string};
   horizontal_fov_deg: number;
