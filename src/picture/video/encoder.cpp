@@ -79,24 +79,6 @@ void fill_frame(AVFrame& frame, const Picture& picture) {
   copy_planes(picture, frame);
 }
 
-}  // namespace
-
-Colour stored_colour(const Colour& colour, Format format, const std::filesystem::path& path) {
-  Colour stored = colour;
-  if (format == Format::kMkv || format == Format::kPng) return stored;
-  if (colour.matrix == Matrix::kRgb)
-    stored = {Chroma::k444, Matrix::kBt709, Range::kFull, image::Siting::kCenter};
-  if (format == Format::kAvi) {
-    // JPEG supports no other range.
-    stored.range = Range::kFull;
-    if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
-  }
-  if (stored.chroma == Chroma::k440)
-    throw Error("mp4 and avi cannot hold 4:4:0; expected output.video = \"mkv\" or \"png\"",
-                {path.string()});
-  return stored;
-}
-
 // H.264 halves chroma in whole samples. libx264 also refuses such a size, but leaks memory when it
 // does.
 void check_size(const StreamInfo& info,
@@ -120,6 +102,7 @@ AVPixelFormat pixel_format(const Colour& colour, Format format) {
   return planar_format(colour.chroma, format == Format::kAvi);
 }
 
+// Copies the picture, converted to the colour `stored`, to the buffers of a frame.
 void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored, Format format) {
   const Colour& colour = picture.colour;
   const bool is_rgb = colour.matrix == Matrix::kRgb;
@@ -130,8 +113,6 @@ void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored,
   else  // through packed sRGB, as the format cannot store the picture's own colour
     fill_frame(frame, image::picture_from_rgb8(image::rgb8_from_picture(picture), stored));
 }
-
-namespace {
 
 using BufferPtr = std::unique_ptr<AVBufferRef, Free<av_buffer_unref>>;
 
@@ -292,6 +273,23 @@ FramePtr on_device(const AVCodecContext& encoder, const AVFrame& frame) {
 }
 
 }  // namespace
+
+Colour stored_colour(const StreamInfo& info, Format format, const std::filesystem::path& path) {
+  Colour stored = info.colour;
+  if (format == Format::kMkv || format == Format::kPng) return stored;
+  if (stored.matrix == Matrix::kRgb)
+    stored = {Chroma::k444, Matrix::kBt709, Range::kFull, image::Siting::kCenter};
+  if (format == Format::kAvi) {
+    // JPEG supports no other range.
+    stored.range = Range::kFull;
+    if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
+  }
+  if (stored.chroma == Chroma::k440)
+    throw Error("mp4 and avi cannot hold 4:4:0; expected output.video = \"mkv\" or \"png\"",
+                {path.string()});
+  check_size(info, stored.chroma, format, path);
+  return stored;
+}
 
 CodecPtr open_encoder(const EncoderInput& input,
                       const WriterOptions& options,

@@ -10,24 +10,11 @@
 // The encoder of an output format, and pictures in the form in which it takes them.
 namespace airtruth::video {
 
-// The colour that a format stores for a picture of this colour. Throws Error where it stores none.
-image::Colour stored_colour(const image::Colour& colour,
+// The colour that a format stores for the video's pictures. Throws Error where it can hold none of
+// their colour and size.
+image::Colour stored_colour(const StreamInfo& info,
                             Format format,
                             const std::filesystem::path& path);
-
-// Throws Error where a format cannot hold a picture of this size with this chroma.
-void check_size(const StreamInfo& info,
-                image::Chroma chroma,
-                Format format,
-                const std::filesystem::path& path);
-
-AVPixelFormat pixel_format(const image::Colour& stored, Format format);
-
-// Copies the picture, converted to the colour `stored`, to the buffers of a frame.
-void fill_frame_as(AVFrame& frame,
-                   const image::Picture& picture,
-                   const image::Colour& stored,
-                   Format format);
 
 // What an encoder must know of the video.
 struct EncoderInput {

@@ -116,8 +116,7 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   state_->part = part_path(path);
   state_->info = info;
   state_->options = options;
-  state_->stored = stored_colour(info.colour, options.format, path);
-  check_size(info, state_->stored.chroma, options.format, path);
+  state_->stored = stored_colour(info, options.format, path);
   state_->unfinished.emplace(Unfinished::path(state_->part));
   try {
     if (options.format == Format::kPng) {
