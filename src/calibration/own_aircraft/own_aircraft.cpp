@@ -9,8 +9,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/own_aircraft/aircraft_region.h"
-#include "calibration/own_aircraft/kept_frames.h"
+#include "camera/motion/estimator.h"
+#include "camera/motion/motion.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
+#include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 
 namespace airtruth::own_aircraft {
@@ -18,11 +21,22 @@ namespace {
 
 // Long side of the reduced picture on which the method works, px: it bounds the time of GrabCut.
 constexpr int kWorkingLongSidePx = 640;
+// Number of frames that are kept of a clip, spread over it: at least half as many, at most twice as
+// many, since the length of a clip is an estimate. It bounds memory: a kept frame takes 1 MB at the
+// working size.
+constexpr int kKeptFrames = 48;
 // Least numbers of kept frames, and of pairs of them between which the world moves.
 constexpr std::size_t kMinKeptFrames = 6;
 constexpr int kMinPairs = 3;
 // A clip shows none of its own aircraft if less than the picture divided by this is certain.
 constexpr int kPictureOverCertain = 1000;
+
+// Standard deviation of the blur of kept frames, working pixels: it suppresses noise and the
+// aliasing that the reduction leaves.
+constexpr double kBlurPx = 0.8;
+// GrabCut compares channels of one scale, 0 to 255. These factors bring the standard deviation over
+// time, a few code values, and the difference of colours to that scale.
+constexpr double kSpreadGain = 5, kColourGain = 0.7, kColourOffset = 128;
 
 // Distances between the frames of a pair, in kept frames: slow and fast motion are both covered.
 constexpr std::array<std::size_t, 3> kPairDistances{1, 3, 7};
@@ -48,6 +62,31 @@ constexpr float kCertainAircraft = 1.8F, kCertainWorld = 1.3F, kProbableAircraft
 // Share of the noise by which a probable pixel differs.
 constexpr float kProbableNoise = 0.3F;
 
+struct KeptFrame {
+  // Luma at the working size, slightly blurred, float.
+  cv::Mat grey;
+  // In pixels of the full-size picture.
+  Homography from_reference = Homography::Identity();
+};
+
+// Sums over the kept frames at full size.
+struct FrameSums {
+  cv::Mat rgb, squares;  // float; squares of grey
+  int count = 0;
+
+  void add(const cv::Mat& frame);
+  // Standard deviation of grey over time, code values.
+  cv::Mat spread() const;
+  // The picture for GrabCut. Its channels are the mean grey, the standard deviation of grey over
+  // time, and the difference between blue and red.
+  cv::Mat features() const;
+};
+
+struct KeptFrames {
+  std::vector<KeptFrame> frames;
+  FrameSums sums;
+};
+
 // What pairs of frames say about each pixel, at the working size; differences are in code values.
 struct Stillness {
   // Mean difference between the frames of a pair at the same place.
@@ -59,6 +98,51 @@ struct Stillness {
   // The number of pairs between which the world moved far enough.
   int pairs = 0;
 };
+
+cv::Mat reduced_grey(const cv::Mat& rgb, double scale) {
+  cv::Mat small, grey;
+  cv::resize(rgb, small, {}, scale, scale, cv::INTER_AREA);
+  cv::cvtColor(small, grey, cv::COLOR_RGB2GRAY);
+  grey.convertTo(grey, CV_32F);
+  cv::GaussianBlur(grey, grey, {}, kBlurPx);
+  return grey;
+}
+
+void FrameSums::add(const cv::Mat& frame) {
+  cv::Mat value, grey;
+  frame.convertTo(value, CV_32FC3);
+  cv::cvtColor(value, grey, cv::COLOR_RGB2GRAY);
+  if (count++ == 0) {
+    rgb = value;
+    squares = grey.mul(grey);
+  } else {
+    rgb += value;
+    squares += grey.mul(grey);
+  }
+}
+
+cv::Mat FrameSums::spread() const {
+  cv::Mat grey, result;
+  cv::cvtColor(rgb / double(count), grey, cv::COLOR_RGB2GRAY);
+  result = squares / double(count) - grey.mul(grey);
+  cv::max(result, 0, result);
+  cv::sqrt(result, result);
+  return result;
+}
+
+cv::Mat FrameSums::features() const {
+  const cv::Mat mean = rgb / double(count);
+  cv::Mat grey, planes[3];
+  cv::cvtColor(mean, grey, cv::COLOR_RGB2GRAY);
+  cv::split(mean, planes);
+  cv::Mat spread = this->spread();
+  spread *= kSpreadGain;
+  const cv::Mat colour = (planes[2] - planes[0]) * kColourGain + kColourOffset;
+  cv::Mat result;
+  cv::merge(std::vector<cv::Mat>{grey, spread, colour}, result);
+  result.convertTo(result, CV_8UC3);
+  return result;
+}
 
 // The homography between two kept frames at the working size, in OpenCV's pixels with integer
 // centres.
@@ -175,11 +259,28 @@ void check_motion(const Stillness& pairs, double scale, const fs::path& video) {
         {video.string()});
 }
 
-KeptFrames enough_frames(const fs::path& video,
-                         video::Reader& reader,
-                         const MaskOptions& options,
-                         double scale) {
-  KeptFrames kept = keep_frames(reader, options, scale);
+// Reads the video to its end and keeps every n-th frame, reduced by `scale`, with the motion of the
+// world. Throws Interrupted if options.stop asks for it, and Error if too few frames are kept.
+KeptFrames keep_frames(const fs::path& video,
+                       video::Reader& reader,
+                       const MaskOptions& options,
+                       double scale) {
+  const video::StreamInfo& info = reader.info();
+  motion::Estimator estimator(info.width, info.height);
+  const std::int64_t every = std::max<std::int64_t>(1, info.frame_count_estimate / kKeptFrames);
+  KeptFrames kept;
+  while (const auto frame = reader.next()) {
+    if (options.stop.stop_requested()) throw Interrupted();
+    const auto motion = estimator.next(frame->picture, frame->time_s, frame->damaged);
+    if (options.progress) options.progress(frame->index + 1, info.frame_count_estimate);
+    if (frame->index % every != 0 || frame->damaged ||
+        kept.frames.size() >= std::size_t{2 * kKeptFrames})
+      continue;
+    image::Rgb8 rgb = image::rgb8_from_picture(frame->picture);
+    const cv::Mat whole(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
+    kept.sums.add(whole);
+    kept.frames.push_back({reduced_grey(whole, scale), motion.frame_from_reference});
+  }
   if (kept.frames.size() < kMinKeptFrames)
     throw Error("is too short to separate the own aircraft from the world; expected " +
                     std::to_string(kMinKeptFrames) + " frames or more",
@@ -194,7 +295,7 @@ image::Mask find_own_aircraft(const fs::path& video, const MaskOptions& options)
   const cv::Size size(reader.info().width, reader.info().height);
   const double scale =
       std::min(1.0, double(kWorkingLongSidePx) / std::max(size.width, size.height));
-  const auto [frames, sums] = enough_frames(video, reader, options, scale);
+  const auto [frames, sums] = keep_frames(video, reader, options, scale);
   const Stillness pairs = stillness_of(frames, scale);
   check_motion(pairs, scale, video);
   cv::Mat labels = labels_by_stillness(pairs);
