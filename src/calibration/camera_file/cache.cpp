@@ -93,8 +93,7 @@ Calibration calibrate_once(const fs::path& video,
                            const Options& options,
                            const disk_cache::Cache& cache,
                            const CacheKey& key) {
-  check(options.first_frame == 0 && !options.frame_count && options.heading_deg == 0,
-        "the whole clip is calibrated, from its first frame's heading");
+  check(options.heading_deg == 0, "a clip is calibrated from its first frame's heading");
   if (!cache.keeps() || key.video_sha256.empty()) return calibrate(video, options);
   if (auto found = cached(cache, key)) return std::move(*found);
   const auto lock = cache.lock(key.entry(), options.stop);

@@ -29,11 +29,10 @@ struct CacheKey {
 std::optional<Calibration> cached(const disk_cache::Cache& cache, const CacheKey& key);
 void store(const disk_cache::Cache& cache, const CacheKey& key, const Calibration& calibration);
 
-// Returns the calibration of the whole clip, from the cache if it is there; otherwise measures it
-// and stores it. If several threads or processes ask for the same calibration at once, one of them
-// measures and the others wait for its result. `options` must agree with `key`, and its first frame
-// and its heading must be 0. Throws as calibrate() does, and Interrupted when options.stop is
-// requested.
+// Returns the calibration of the clip, from the cache if it is there; otherwise measures it and
+// stores it. If several threads or processes ask for the same calibration at once, one of them
+// measures and the others wait for its result. `options` must agree with `key`, and its heading
+// must be 0. Throws as calibrate() does, and Interrupted when options.stop is requested.
 Calibration calibrate_once(const fs::path& video,
                            const Options& options,
                            const disk_cache::Cache& cache,

@@ -47,16 +47,6 @@ constexpr std::int64_t kMinFrames = 8;
 // Field of view that is assumed for finding the horizon when no lens is given.
 constexpr double kAssumedFovDeg = 60;
 
-// A single decoder thread: with several, the decoder exports the quantisers of a frame while
-// another thread still fills them in, and the codec's step changes from run to run.
-video::ReaderOptions reader_options(const Options& options) {
-  return {.first_frame = options.first_frame,
-          .frame_count = options.frame_count,
-          .threads = 1,
-          .with_quantiser = true,
-          .with_cuts = true};
-}
-
 // The visibility beyond which the international visibility code calls the air exceptionally clear
 // (extinction.h).
 constexpr double kClearKm = air::kVisibilityClassesKm.back();
@@ -106,7 +96,9 @@ class Session {
  public:
   Session(const fs::path& video, const Options& options)
       : options_(options),
-        reader_(video, reader_options(options), options.warn),
+        // A single decoder thread: with several, the decoder exports the quantisers of a frame
+        // while another thread still fills them in, and the codec's step changes from run to run.
+        reader_(video, {.threads = 1, .with_quantiser = true, .with_cuts = true}, options.warn),
         noise_(options.own_aircraft, options.tone),
         edges_(options.own_aircraft, options.tone),
         blur_(options.own_aircraft),
@@ -121,8 +113,7 @@ class Session {
       result_.lens = lens_words(*options.lens);
       turning_.emplace(*options.lens, motion::Options{}, options.own_aircraft);
     }
-    total_ = options.frame_count.value_or(
-        std::max<std::int64_t>(0, info.frame_count_estimate - options.first_frame));
+    total_ = std::max<std::int64_t>(0, info.frame_count_estimate);
     every_ = std::max<std::int64_t>(2, total_ / kSampledFrames);
   }
 

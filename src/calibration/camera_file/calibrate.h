@@ -32,9 +32,6 @@ struct Options {
   double heading_deg = 0;
   // The camera's tone curve. It is an input because one clip does not determine it.
   image::ToneCurve tone;
-  // The frames to measure: `frame_count` of them from `first_frame` on; if empty, all.
-  std::int64_t first_frame = 0;
-  std::optional<std::int64_t> frame_count;
   Warn warn;
   std::stop_token stop;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
