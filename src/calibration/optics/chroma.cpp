@@ -98,8 +98,8 @@ std::vector<Sample> samples_across(const image::Plane& plane,
 }
 
 // Fits the two levels, the place and the width of a Gaussian step by Gauss-Newton; the levels are
-// eliminated by variable projection (Golub and Pereyra 1973).
-std::optional<ChromaStep> fitted(const std::vector<Sample>& samples) {
+// eliminated by variable projection (Golub and Pereyra 1973). Returns the variance.
+std::optional<double> fitted(const std::vector<Sample>& samples) {
   // Bounds of the iteration: rounds; the change of place, px, and of the logarithm of the width in
   // one round, and the change that ends it; the distance of the step from the edge of luma, px.
   constexpr int kMaxRounds = 20;
@@ -119,28 +119,23 @@ std::optional<ChromaStep> fitted(const std::vector<Sample>& samples) {
     }
     Eigen::Matrix4d square = slopes.transpose() * slopes;
     square.diagonal().array() += 1e-9 * square.trace();
-    const Eigen::Matrix4d inverse = square.inverse();
-    const Eigen::Vector4d x = inverse * (slopes.transpose() * values);
+    const Eigen::Vector4d x = square.inverse() * (slopes.transpose() * values);
     if (std::abs(x[1]) < kMinHeightCodes / 2) return std::nullopt;
     const double shift = std::clamp(x[2] / x[1], -kMaxChange, kMaxChange);
     const double wider = std::clamp(x[3] / x[1], -kMaxChange, kMaxChange);
     place += shift, log_width += wider;
     if (std::abs(place) > kMaxPlacePx || log_width > std::log(kMaxStepWidthPx)) return std::nullopt;
-    if (std::abs(shift) + std::abs(wider) > kMinChange) continue;
-    const double left = (values - slopes * x).squaredNorm() / double(count - 4);
-    const double error = std::sqrt(left * inverse(3, 3)) / std::abs(x[1]);
-    const double variance = std::exp(2 * log_width);
-    return ChromaStep{variance, 2 * variance * error};
+    if (std::abs(shift) + std::abs(wider) <= kMinChange) return std::exp(2 * log_width);
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-std::vector<ChromaStep> chroma_steps(const image::Picture& picture, const EdgeLine& line) {
-  std::vector<ChromaStep> steps;
+std::vector<double> chroma_variances(const image::Picture& picture, const EdgeLine& line) {
+  std::vector<double> variances;
   const image::Colour& colour = picture.colour;
-  if (picture.plane_count == 1 || colour.matrix == image::Matrix::kRgb) return steps;
+  if (picture.plane_count == 1 || colour.matrix == image::Matrix::kRgb) return variances;
   const Grid across =
       grid_of(image::log2_chroma_width(colour.chroma), colour.siting != image::Siting::kCenter);
   const Grid down =
@@ -153,13 +148,11 @@ std::vector<ChromaStep> chroma_steps(const image::Picture& picture, const EdgeLi
     if (height < kMinHeightCodes ||
         std::max(low->deviation, high->deviation) > kMaxLevelDeviation * height)
       continue;
-    if (auto step = fitted(samples)) {
-      step->variance_px2 -= line.nx * line.nx * across.variance_px2 +
-                            line.ny * line.ny * down.variance_px2 + 2 * kPixelVariance;
-      steps.push_back(*step);
-    }
+    if (const auto variance = fitted(samples))
+      variances.push_back(*variance - (line.nx * line.nx * across.variance_px2 +
+                                       line.ny * line.ny * down.variance_px2 + 2 * kPixelVariance));
   }
-  return steps;
+  return variances;
 }
 
 Measured<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
@@ -174,8 +167,7 @@ Measured<Estimate> chroma_spread(const std::vector<LumaAndChroma>& edges,
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const double luma_px = fits[e].spread_px;
     if (luma_px > kMaxLumaSpreadRatio * response.point_spread_px.value) continue;
-    for (const ChromaStep& step : *edges[e].chroma)
-      beyond.push_back(step.variance_px2 - luma_px * luma_px);
+    for (const double variance : *edges[e].chroma) beyond.push_back(variance - luma_px * luma_px);
   }
   if (beyond.size() < kMinSteps)
     return NotMeasured{

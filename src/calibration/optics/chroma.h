@@ -14,23 +14,15 @@
 // edges that luma crosses within 2 px are 6 to 9 px wide in Cb and Cr.
 namespace airtruth::optics {
 
-// The fitted step of Cb or of Cr across an edge.
-struct ChromaStep {
-  // Variance of the Gaussian that fits the step best, minus the variance that the sampling grids
-  // add, in squared luma pixels.
-  double variance_px2 = 0;
-  // Standard error of the variance.
-  double error_px2 = 0;
-};
-
-// The steps of Cb and Cr across the edge that are clean enough to fit: at most two. Empty for a
-// picture without chroma.
-std::vector<ChromaStep> chroma_steps(const image::Picture& picture, const EdgeLine& line);
+// Of the steps of Cb and Cr across the edge that are clean enough to fit, at most two: the variance
+// of the Gaussian that fits the step best, minus the variance that the sampling grids add, in
+// squared luma pixels. Empty for a picture without chroma.
+std::vector<double> chroma_variances(const image::Picture& picture, const EdgeLine& line);
 
 // An edge with a step of luma and steps of chroma. Both pointers refer to the caller's data.
 struct LumaAndChroma {
   const StepEdge* luma = nullptr;
-  const std::vector<ChromaStep>* chroma = nullptr;
+  const std::vector<double>* chroma = nullptr;  // chroma_variances()
 };
 
 // The extra spread of chroma beyond luma, a standard deviation in luma pixels: the square root of

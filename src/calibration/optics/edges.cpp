@@ -91,7 +91,7 @@ void EdgeMeter::add(const image::Picture& frame,
                     : frame_from_before ? moved_across(edge.line, *frame_from_before)
                                         : std::numeric_limits<double>::quiet_NaN();
     if (is_known(edge)) continue;
-    edge.chroma = chroma_steps(frame, edge.line);
+    edge.chroma = chroma_variances(frame, edge.line);
     with_chroma += edge.chroma.empty() ? 0 : 1;
     edges_.push_back(std::move(edge));
     ++count;

@@ -56,7 +56,7 @@ class EdgeMeter {
     double moved_px = 0;   // motion across the edge since the previous frame; NaN: not known
     bool is_long = false;
     StepEdge step;
-    std::vector<ChromaStep> chroma;
+    std::vector<double> chroma;  // chroma_variances()
   };
   // The edge of a step, without its motion and chroma. `dark`, `unit`: luma of black, and of white
   // above black, code values.

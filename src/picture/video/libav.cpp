@@ -119,8 +119,7 @@ FramePtr in_format(const AVFrame& frame, AVPixelFormat format) {
   return result;
 }
 
-image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed) {
-  *guessed = false;
+image::Matrix matrix_of(AVColorSpace space, int height) {
   switch (space) {
     case AVCOL_SPC_RGB:
       return image::Matrix::kRgb;
@@ -134,10 +133,8 @@ image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed) {
     case AVCOL_SPC_BT2020_CL:
       return image::Matrix::kBt2020;
     default:
-      break;
+      return height < 720 ? image::Matrix::kBt601 : image::Matrix::kBt709;
   }
-  *guessed = true;
-  return height < 720 ? image::Matrix::kBt601 : image::Matrix::kBt709;
 }
 
 AVColorSpace space_of(image::Matrix matrix) {

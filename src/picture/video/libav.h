@@ -89,7 +89,8 @@ AVPixelFormat plain_kin(AVPixelFormat format);
 // Converts a frame to that format (libswscale, no dithering). Alpha is dropped.
 FramePtr in_format(const AVFrame& frame, AVPixelFormat format);
 
-image::Matrix matrix_of(AVColorSpace space, int height, bool* guessed);
+// By the picture's height where `space` is untagged.
+image::Matrix matrix_of(AVColorSpace space, int height);
 AVColorSpace space_of(image::Matrix matrix);
 
 // The samples of a decoded frame as a Picture of that colour, which must fit the layout.

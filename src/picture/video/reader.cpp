@@ -234,12 +234,10 @@ void Reader::State::describe(const AVFrame& first) {
                    path.string() + ": has " + std::to_string(8 + layout.shift) +
                        " bits a sample; they are rounded to 8");
   coded_colour.chroma = layout.chroma;
-  coded_colour.matrix = layout.rgb
-                            ? image::Matrix::kRgb
-                            : matrix_of(first.colorspace, first.height, &info.matrix_guessed);
+  coded_colour.matrix =
+      layout.rgb ? image::Matrix::kRgb : matrix_of(first.colorspace, first.height);
   if (!layout.rgb && coded_colour.matrix == image::Matrix::kRgb)
     coded_colour.matrix = image::Matrix::kBt601;
-  info.range_guessed = first.color_range == AVCOL_RANGE_UNSPECIFIED && !layout.rgb;
   const bool full = layout.full_range || first.color_range == AVCOL_RANGE_JPEG;
   coded_colour.range = full ? image::Range::kFull : image::Range::kLimited;
   coded_colour.siting = siting_of(first.chroma_location);

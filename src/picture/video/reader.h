@@ -49,12 +49,10 @@ struct Rational {
 struct StreamInfo {
   int width = 0;
   int height = 0;
+  // Where the matrix is untagged, BT.601 is assumed below 720 lines, else BT.709 (the common rule
+  // of players). Where the range is untagged, limited is assumed, or full for JPEG kinds (yuvj*)
+  // and RGB.
   image::Colour colour;
-  // True where the matrix is untagged: BT.601 is assumed below 720 lines, else BT.709 (the common
-  // rule of players).
-  bool matrix_guessed = false;
-  // True where the range is untagged: limited is assumed, or full for JPEG kinds (yuvj*) and RGB.
-  bool range_guessed = false;
   // AVColorPrimaries and AVColorTransferCharacteristic as tagged; 2: unspecified.
   int primaries_tag = 2;
   int transfer_tag = 2;

@@ -198,7 +198,6 @@ TEST_F(Video, TagsComeThrough) {
       "range=pc:colorspace=bt709:color_primaries=bt709:color_trc=bt709 -c:v libx264 -colorspace "
       "bt709 -color_primaries bt709 -color_trc bt709 -color_range pc tagged.mp4");
   Reader reader(folder_ / "tagged.mp4");
-  EXPECT_FALSE(reader.info().matrix_guessed);
   EXPECT_EQ(reader.info().colour.matrix, image::Matrix::kBt709);
   EXPECT_EQ(reader.info().colour.range, image::Range::kFull);
   Writer writer(folder_ / "out.mp4", reader.info(), {});

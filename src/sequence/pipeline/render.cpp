@@ -298,7 +298,6 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   warn_of_run(tally, resolved.scene, resolved.world, *resolved.background, options.warn);
   Summary summary{tally};
   summary.stages = times_of(clocks);
-  summary.motion_from_cache = resolved.motion->is_from_cache();
   summary.notes = resolved.notes;
   outputs->finish(resolved.scene,
                   input_files(scene, resolved.world, resolved.video_sha256, *resolved.inputs),

@@ -50,7 +50,6 @@ struct Summary : FrameCounts {
   // Wall time of the frames in seconds, without opening the inputs and loading the aircraft.
   double seconds = 0;
   StageTimes stages;
-  bool motion_from_cache = false;
   // As those of the resolved scene (sequence/pipeline/resolved_scene.h).
   std::vector<std::string> notes;
 };

@@ -146,10 +146,7 @@ MotionSource::MotionSource(const MotionInputs& inputs)
   if (lens_) key_.lens = words_of(*lens_);
   key_.options = options_;
   if (!cache_.keeps()) return;
-  if (auto found = motion::cached(cache_, key_)) {
-    from_cache_ = true;
-    set_pass(std::move(*found));
-  }
+  if (auto found = motion::cached(cache_, key_)) set_pass(std::move(*found));
 }
 
 MotionSource::MotionSource(const MotionInputs& inputs, const MotionPass& pass)
@@ -159,7 +156,7 @@ MotionSource::MotionSource(const MotionInputs& inputs, const MotionPass& pass)
 
 std::optional<MotionSource> MotionSource::from_cache(const MotionInputs& inputs) {
   MotionSource source(inputs);
-  if (!source.from_cache_) return std::nullopt;
+  if (!source.ready_) return std::nullopt;
   return source;
 }
 

@@ -79,7 +79,6 @@ class MotionSource {
   Measured nearest(double time_s) const;
   // Stores what next() has measured for the next run, after the last frame. A pass stores its own.
   void store();
-  bool is_from_cache() const { return from_cache_; }
   // The motion of every frame; empty where it is not known ahead.
   const std::vector<motion::FrameMotion>& all() const& { return all_; }
   std::vector<motion::FrameMotion> all() && { return std::move(all_); }
@@ -105,7 +104,6 @@ class MotionSource {
   std::optional<lens::Lens> lens_;  // of the model rotation
   bool smoothed_ = false;
   bool ready_ = false;  // all_ holds every frame
-  bool from_cache_ = false;
   disk_cache::Cache cache_;
   motion::Options options_;
   motion::CacheKey key_;
