@@ -2,20 +2,54 @@
 #include "picture/shade/outer_sides.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "aircraft/fleet/fleet.h"
-#include "picture/shade/cube_test_mesh.h"
+#include "aircraft/model/mesh.h"
 #include "picture/shade/model_impl.h"
 #include "picture/shade/trace.h"
 
 namespace airtruth::shade {
 namespace {
+
+// Adds a triangle with vertices of its own to the first part.
+void add_triangle(model::Mesh& mesh, const std::array<Eigen::Vector3f, 3>& corners) {
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  mesh.positions.insert(mesh.positions.end(), corners.begin(), corners.end());
+  mesh.normals.resize(mesh.positions.size(), Eigen::Vector3f(1, 0, 0));
+  mesh.uvs.resize(mesh.positions.size(), Eigen::Vector2f(0, 0));
+  mesh.parts[0].triangles.push_back({{base, base + 1, base + 2}, 0});
+}
+
+// A cube about the origin, with sides of 2 m; each side has two triangles, whose normals point
+// outwards. Each triangle has vertices of its own, as in meshes with hard edges.
+model::Mesh cube() {
+  model::Mesh mesh;
+  mesh.materials.emplace_back();
+  mesh.parts.push_back({.name = "cube"});
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float side : {-1.0F, 1.0F}) {
+      const auto at = [&](float u, float v) {
+        Eigen::Vector3f p;
+        p[axis] = side;
+        p[(axis + 1) % 3] = u;
+        p[(axis + 2) % 3] = side * v;
+        return p;
+      };
+      add_triangle(mesh, {at(-1, -1), at(1, -1), at(1, 1)});
+      add_triangle(mesh, {at(-1, -1), at(1, 1), at(-1, 1)});
+    }
+  return mesh;
+}
+
+void turn(model::Triangle& triangle) { std::swap(triangle.vertex[0], triangle.vertex[1]); }
 
 using Signs = std::vector<std::int8_t>;
 
