@@ -43,7 +43,7 @@ void hand_over(const focal_length::LensEstimator::Result& found,
                lens::ImageSize size,
                const EstimateArguments& arguments,
                Console& console) {
-  const lens::Lens lens = focal_length::undistorted(found.fisheye, found.focal_px, size);
+  const lens::Lens lens = lens::undistorted(found.fisheye, found.focal_px, size);
   console.result(words_of(found) + "\nfor a scene:\n" + lens::scene_table(lens));
   if (!found.is_certain && !arguments.out.empty() && !arguments.uncertain)
     throw Error("is not written: " + why + "; --uncertain writes the estimate all the same",

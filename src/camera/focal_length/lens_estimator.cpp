@@ -15,13 +15,6 @@
 
 namespace airtruth::focal_length {
 
-lens::Lens undistorted(bool fisheye, double focal_px, const lens::ImageSize& size) {
-  const Pixel focal(focal_px, focal_px);
-  const Pixel centre(size.width / 2.0, size.height / 2.0);
-  if (fisheye) return lens::Lens(lens::Fisheye{focal, centre, {0, 0, 0, 0}}, size);
-  return lens::Lens(lens::Pinhole{focal, centre}, size);
-}
-
 namespace {
 
 // The limits below are chosen by judgement, but for kMaxMisfitRatio (docs/lenses.md).
@@ -99,7 +92,7 @@ std::vector<Profile> profiles_of(const std::vector<Pair>& pairs,
                                  const lens::ImageSize& size) {
   std::vector<Profile> profiles(pairs.size());
   for (std::size_t k = 0; k < kTried; ++k) {
-    const lens::Lens lens = undistorted(fisheye, focal_at(double(k), size), size);
+    const lens::Lens lens = lens::undistorted(fisheye, focal_at(double(k), size), size);
     for (std::size_t i = 0; i < pairs.size(); ++i) profiles[i][k] = miss_of(pairs[i], lens);
   }
   return profiles;

@@ -11,9 +11,6 @@
 
 namespace airtruth::focal_length {
 
-// A lens of this focal length about the picture's middle, without distortion.
-lens::Lens undistorted(bool fisheye, double focal_px, const lens::ImageSize& size);
-
 // The beginning of the note in a calibration that holds such an estimate.
 constexpr const char* kEstimatedNote = "estimated by airtruth lens estimate";
 

@@ -214,22 +214,6 @@ Lens read_calibration(const std::filesystem::path& path) {
 
 namespace {
 
-struct Numbers {
-  Pixel focal_px;
-  Pixel principal_point_px;
-  std::vector<double> distortion;
-};
-
-Numbers numbers_of(const Lens& lens) {
-  return std::visit(
-      [](const auto& model) {
-        Numbers numbers{model.focal_px, model.principal_point_px, {}};
-        if constexpr (requires { model.distortion; }) numbers.distortion = model.distortion;
-        return numbers;
-      },
-      lens.model());
-}
-
 // Writes 1 as "1.0", because YAML and TOML distinguish whole numbers from other numbers.
 std::string text_of(double value) {
   const std::string text = fmt::format("{}", value);

@@ -108,32 +108,43 @@ double angle_between_pixels(const Lens& lens, const Pixel& a, const Pixel& b, co
   return degrees(angle_to(a) + angle_to(b));
 }
 
-Pixel centre_of(const Lens& lens) {
-  return std::visit([](const auto& model) { return model.principal_point_px; }, lens.model());
-}
-
 }  // namespace
 
 double Lens::horizontal_fov_deg() const {
-  const Pixel c = centre_of(*this);
+  const Pixel c = numbers_of(*this).principal_point_px;
   return angle_between_pixels(*this, {0, c.y()}, {double(size_.width), c.y()}, c);
 }
 
 double Lens::vertical_fov_deg() const {
-  const Pixel c = centre_of(*this);
+  const Pixel c = numbers_of(*this).principal_point_px;
   return angle_between_pixels(*this, {c.x(), 0}, {c.x(), double(size_.height)}, c);
+}
+
+Numbers numbers_of(const Lens& lens) {
+  return std::visit(
+      [](const auto& model) {
+        Numbers numbers{model.focal_px, model.principal_point_px, {}};
+        if constexpr (requires { model.distortion; }) numbers.distortion = model.distortion;
+        return numbers;
+      },
+      lens.model());
+}
+
+Lens undistorted(bool fisheye, double focal_px, ImageSize size) {
+  const Pixel focal(focal_px, focal_px);
+  const Pixel centre(size.width / 2.0, size.height / 2.0);
+  if (fisheye) return Lens(Fisheye{focal, centre, {0, 0, 0, 0}}, size);
+  return Lens(Pinhole{focal, centre}, size);
 }
 
 Lens pinhole_from_vertical_fov(double vertical_fov_deg, ImageSize size) {
   check_fov(vertical_fov_deg, 180, "pinhole", false);
-  const double focal = 0.5 * size.height / std::tan(radians(vertical_fov_deg) / 2);
-  return Lens(Pinhole{{focal, focal}, {size.width / 2.0, size.height / 2.0}}, size);
+  return undistorted(false, 0.5 * size.height / std::tan(radians(vertical_fov_deg) / 2), size);
 }
 
 Lens fisheye_from_vertical_fov(double vertical_fov_deg, ImageSize size) {
   check_fov(vertical_fov_deg, 360, "fisheye", true);
-  const double focal = 0.5 * size.height / (radians(vertical_fov_deg) / 2);
-  return Lens(Fisheye{{focal, focal}, {size.width / 2.0, size.height / 2.0}, {0, 0, 0, 0}}, size);
+  return undistorted(true, 0.5 * size.height / (radians(vertical_fov_deg) / 2), size);
 }
 
 }  // namespace airtruth::lens

@@ -105,12 +105,24 @@ class Lens {
   double max_radius_ = 0;
 };
 
-// A pinhole with square pixels whose axis passes through the centre of the image. Throws Error
-// unless 0 < fov < 180 degrees.
+// What every model has; a pinhole's distortion is empty.
+struct Numbers {
+  Pixel focal_px;
+  Pixel principal_point_px;
+  std::vector<double> distortion;
+};
+Numbers numbers_of(const Lens& lens);
+
+// A pinhole, or an equidistant fisheye (all distortion coefficients are 0), with square pixels,
+// whose axis passes through the centre of the image.
+Lens undistorted(bool fisheye, double focal_px, ImageSize size);
+
+// The undistorted pinhole with this vertical field of view. Throws Error unless 0 < fov < 180
+// degrees.
 Lens pinhole_from_vertical_fov(double vertical_fov_deg, ImageSize size);
 
-// An equidistant fisheye (all distortion coefficients are 0) with this vertical field of view.
-// Throws Error unless 0 < fov <= 360 degrees.
+// The undistorted fisheye with this vertical field of view. Throws Error unless 0 < fov <= 360
+// degrees.
 Lens fisheye_from_vertical_fov(double vertical_fov_deg, ImageSize size);
 
 }  // namespace airtruth::lens

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "labels/annotation/lens_facts.h"
 
-#include <variant>
-
 #include "camera/lens/lens.h"
 
 namespace airtruth::annotation {
@@ -12,13 +10,10 @@ LensFacts facts_of(const lens::Lens& lens) {
   facts.model = lens.name();
   facts.width = lens.size().width;
   facts.height = lens.size().height;
-  std::visit(
-      [&](const auto& model) {
-        facts.focal_px = {model.focal_px.x(), model.focal_px.y()};
-        facts.principal_point_px = {model.principal_point_px.x(), model.principal_point_px.y()};
-        if constexpr (requires { model.distortion; }) facts.distortion = model.distortion;
-      },
-      lens.model());
+  const lens::Numbers numbers = lens::numbers_of(lens);
+  facts.focal_px = {numbers.focal_px.x(), numbers.focal_px.y()};
+  facts.principal_point_px = {numbers.principal_point_px.x(), numbers.principal_point_px.y()};
+  facts.distortion = numbers.distortion;
   return facts;
 }
 

@@ -29,8 +29,6 @@ std::optional<double> plausible(std::optional<double> mm) {
 
 double half_diagonal_px(lens::ImageSize size) { return 0.5 * std::hypot(size.width, size.height); }
 
-Pixel middle_of(lens::ImageSize size) { return {size.width / 2.0, size.height / 2.0}; }
-
 }  // namespace
 
 std::optional<double> equivalent_mm_in_subtitles(std::string_view text) {
@@ -63,12 +61,11 @@ std::optional<double> equivalent_mm_in_tags(const std::map<std::string, std::str
 
 lens::Lens pinhole_from_equivalent(double equivalent_mm, lens::ImageSize size) {
   const double focal_px = equivalent_mm / kFilmDiagonalMm * 2 * half_diagonal_px(size);
-  return {lens::Pinhole{{focal_px, focal_px}, middle_of(size)}, size};
+  return lens::undistorted(false, focal_px, size);
 }
 
 lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size) {
-  const double focal_px = half_diagonal_px(size) / radians(view_deg / 2);
-  return {lens::Fisheye{{focal_px, focal_px}, middle_of(size), {0, 0, 0, 0}}, size};
+  return lens::undistorted(true, half_diagonal_px(size) / radians(view_deg / 2), size);
 }
 
 }  // namespace airtruth::new_scene

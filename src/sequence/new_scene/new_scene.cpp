@@ -116,7 +116,7 @@ LensWords guessed_lens(lens::ImageSize size,
   const bool is_possible =
       usual.focal_px() >= within->low_px && usual.focal_px() <= within->high_px;
   const double focal_px = is_possible ? usual.focal_px() : within->focal_px;
-  return in_words(focal_length::undistorted(within->fisheye, focal_px, size), origin);
+  return in_words(lens::undistorted(within->fisheye, focal_px, size), origin);
 }
 
 LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) {
@@ -136,7 +136,7 @@ LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) 
   std::string why;
   const auto found = estimator.result(why);
   if (!found || !found->is_certain) return guessed_lens(size, why, found);
-  return in_words(focal_length::undistorted(found->fisheye, found->focal_px, size),
+  return in_words(lens::undistorted(found->fisheye, found->focal_px, size),
                   fmt::format("estimated from the video: a focal length of {:.0f} px, {:.0f} to "
                               "{:.0f} px at 95 % (airtruth lens estimate); a calibration is better",
                               found->focal_px,
