@@ -32,6 +32,14 @@ struct FreeOutput {
 }  // namespace
 
 struct Writer::State {
+  // An unfinished video leaves nothing behind.
+  ~State() {
+    if (!unfinished || finished) return;
+    output.reset();
+    std::error_code ignored;
+    fs::remove_all(part, ignored);
+  }
+
   fs::path path;
   fs::path part;
   StreamInfo info;
@@ -118,31 +126,19 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   state_->options = options;
   state_->stored = stored_colour(info, options.format, path);
   state_->unfinished.emplace(Unfinished::path(state_->part));
-  try {
-    if (options.format == Format::kPng) {
-      std::error_code failed;
-      if (fs::exists(path) && !(fs::is_directory(path) && fs::is_empty(path)))
-        state_->fail("exists already; expected the name of a new folder for the images");
-      fs::remove_all(state_->part, failed);
-      fs::create_directories(state_->part, failed);
-      if (failed) state_->fail("cannot create: " + failed.message());
-    } else {
-      state_->open();
-    }
-  } catch (...) {
-    std::error_code ignored;
-    state_->output.reset();
-    fs::remove_all(state_->part, ignored);
-    throw;
+  if (options.format != Format::kPng) {
+    state_->open();
+    return;
   }
+  std::error_code failed;
+  if (fs::exists(path) && !(fs::is_directory(path) && fs::is_empty(path)))
+    state_->fail("exists already; expected the name of a new folder for the images");
+  fs::remove_all(state_->part, failed);
+  fs::create_directories(state_->part, failed);
+  if (failed) state_->fail("cannot create: " + failed.message());
 }
 
-Writer::~Writer() {
-  if (!state_ || state_->finished) return;
-  state_->output.reset();
-  std::error_code ignored;
-  fs::remove_all(state_->part, ignored);
-}
+Writer::~Writer() = default;
 Writer::Writer(Writer&&) noexcept = default;
 Writer& Writer::operator=(Writer&&) noexcept = default;
 
