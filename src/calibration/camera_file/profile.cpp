@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "calibration/camera_file/profile_table.h"
 #include "foundation/base/median.h"
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
@@ -37,7 +36,7 @@ constexpr double kOwnShare = 0.95;
 constexpr double kMaxDifferenceInErrors = 3;
 
 std::vector<CameraProfile> read_library(std::string_view text) {
-  // The line before each profile of the table (profile_table.h).
+  // The line before each profile of the table (profile_table()).
   constexpr std::string_view kHead = "profile,";
   std::vector<CameraProfile> profiles;
   while (text.starts_with(kHead)) {

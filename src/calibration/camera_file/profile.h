@@ -4,6 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <airtruth/calibration.h>
@@ -38,6 +39,10 @@ struct CameraProfile : airtruth::CameraProfile {
   // The profile in words: "the profile gopro-karma", "the median over 3 cameras".
   std::string words() const;
 };
+
+// The text of all data/camera-profiles/*.csv, embedded when the program is built. A line
+// "profile,NAME" precedes the text of each file.
+std::string_view profile_table();
 
 // All profiles of the library, in the order of profile_table().
 std::span<const CameraProfile> camera_profiles();
