@@ -25,9 +25,6 @@ struct Instance {
 };
 
 struct Options {
-  // Number of multisamples for each pixel.
-  int samples = 4;
-  float anisotropy = 16;
   // Index of the EGL device; empty: the first GPU if there is one, else llvmpipe.
   std::optional<int> gpu;
   // True: llvmpipe (--gpu none).

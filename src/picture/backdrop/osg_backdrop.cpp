@@ -24,6 +24,8 @@ namespace {
 
 // Distance of the near plane, in metres; nearer parts are cut off.
 constexpr double kNearestM = 0.05;
+// Number of multisamples for each pixel of the virtual image.
+constexpr int kSamples = 4;
 // Side of the tile that render_alpha draws at once, in pixels: it bounds the memory of the target.
 constexpr int kTilePx = 1024;
 
@@ -167,18 +169,96 @@ class FrameBuffer {
 // The scene graph with its context.
 class OsgBackdrop final : public Backdrop {
  public:
-  OsgBackdrop(int width, int height, const Options& options);
-  ~OsgBackdrop() override;
+  OsgBackdrop(int width, int height, const Options& options)
+      : width_(width), height_(height), egl_(options.gpu, options.software) {
+    // Suppresses all messages.
+    osg::setNotifyLevel(osg::ALWAYS);
+    const EglContext::Current current(egl_);
+    device_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    viewer_ = new osgViewer::Viewer;
+    viewer_->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    window_ = viewer_->setUpViewerAsEmbeddedInWindow(0, 0, width, height);
+    viewer_->setLightingMode(osg::View::NO_LIGHT);
+    viewer_->getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    viewer_->getCamera()->setCullingMode(
+        // Culling would drop small aircraft.
+        osg::CullSettings::NO_CULLING);
+    viewer_->getCamera()->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    root_->setStateSet(shading_.state());
+    viewer_->setSceneData(root_);
+    viewer_->realize();
+    gl_ = osg::GLExtensions::Get(window_->getState()->getContextID(), true);
+  }
+
+  ~OsgBackdrop() override {
+    const EglContext::Current current(egl_);
+    green_.reset();
+    tile_.reset();
+    aircraft_.clear();
+    viewer_ = nullptr;
+    window_ = nullptr;
+  }
 
   image::Rgb8 render(const lens::Pinhole& lens,
                      const Rigid& cam_from_world,
                      const shade::Light& light,
-                     const std::vector<Instance>& instances) override;
+                     const std::vector<Instance>& instances) override {
+    const PinholeView view{lens, cam_from_world};
+    const EglContext::Current current(egl_);
+    shading_.set_encoding(Encoding::kSrgb);
+    stage(view, light, instances);
+    if (!green_) green_ = std::make_unique<FrameBuffer>(*gl_, width_, height_, GL_RGBA8, kSamples);
+    const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
+    draw(*green_, view, frame, {0, 1, 0, 1});
+    const std::size_t row_bytes = 3 * static_cast<std::size_t>(width_);
+    std::vector<std::uint8_t> upside_down(row_bytes * static_cast<std::size_t>(height_));
+    green_->read(GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
+    image::Rgb8 result = image::make_rgb8(width_, height_);
+    for (int y = 0; y < height_; ++y)
+      std::memcpy(result.at(0, y),
+                  upside_down.data() + row_bytes * static_cast<std::size_t>(height_ - 1 - y),
+                  row_bytes);
+    return result;
+  }
+
   std::vector<std::array<float, 4>> render_alpha(const lens::Pinhole& lens,
                                                  const Rigid& cam_from_world,
                                                  const shade::Light& light,
                                                  const std::vector<Instance>& instances,
-                                                 int supersampling) override;
+                                                 int supersampling) override {
+    check(supersampling >= 1 && supersampling <= kTilePx, "supersampling is 1 to 1024");
+    const PinholeView view{lens, cam_from_world};
+    const EglContext::Current current(egl_);
+    shading_.set_encoding(Encoding::kLinear);
+    const std::vector<Box> boxes = stage(view, light, instances);
+    // Side of a tile, in pixels of the frame.
+    const int tile_px = kTilePx / supersampling;
+    const int size = tile_px * supersampling;
+    if (!tile_ || tile_->width() != size)
+      tile_ = std::make_unique<FrameBuffer>(*gl_, size, size, GL_RGBA32F_ARB, 1);
+    std::vector<std::array<float, 4>> result(pixels_in(width_, height_));
+    std::vector<std::array<float, 4>> samples(pixels_in(size, size));
+    for (int y0 = 0; y0 < height_; y0 += tile_px) {
+      for (int x0 = 0; x0 < width_; x0 += tile_px) {
+        const Box in_frame{static_cast<double>(x0),
+                           static_cast<double>(y0),
+                           static_cast<double>(tile_px),
+                           static_cast<double>(tile_px)};
+        if (std::none_of(
+                boxes.begin(), boxes.end(), [&](const Box& box) { return overlap(box, in_frame); }))
+          continue;
+        draw(*tile_, view, in_frame, {0, 0, 0, 0});
+        tile_->read(GL_RGBA, GL_FLOAT, samples.data());
+        for (int y = y0; y < std::min(y0 + tile_px, height_); ++y) {
+          for (int x = x0; x < std::min(x0 + tile_px, width_); ++x)
+            result[index_in(width_, x, y)] =
+                block_mean(samples, size, x - x0, y - y0, supersampling);
+        }
+      }
+    }
+    return result;
+  }
+
   std::string device_name() const override { return device_; }
 
  private:
@@ -187,19 +267,60 @@ class OsgBackdrop final : public Backdrop {
     std::vector<std::unique_ptr<OsgMesh>> instances;
   };
 
+  OsgMesh& instance_of(const model::Mesh& mesh, std::size_t nth) {
+    const auto [place, is_new] = aircraft_.try_emplace(&mesh);
+    OnDevice& on_device = place->second;
+    if (is_new) on_device.textures = osg_textures(mesh);
+    while (on_device.instances.size() <= nth)
+      on_device.instances.push_back(std::make_unique<OsgMesh>(mesh, on_device.textures));
+    return *on_device.instances[nth];
+  }
+
   // Puts the instances into the scene graph. Returns the boxes of the frame that they can touch.
   std::vector<Box> stage(const PinholeView& view,
                          const shade::Light& light,
-                         const std::vector<Instance>& instances);
+                         const std::vector<Instance>& instances) {
+    root_->removeChildren(0, root_->getNumChildren());
+    shading_.set_light(light, view.cam_from_world);
+    std::vector<Box> boxes;
+    std::map<const model::Mesh*, std::size_t> used;
+    near_m_ = 1e9;
+    far_m_ = 0;
+    const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
+    for (const Instance& instance : instances) {
+      check(instance.mesh != nullptr, "an instance has a mesh");
+      OsgMesh& mesh = instance_of(*instance.mesh, used[instance.mesh]++);
+      const Vector3& centre_in_world = instance.world_from_body.translation;
+      const auto box = box_of_sphere(view, centre_in_world, mesh.radius_m(), frame);
+      if (!box || !overlap(*box, frame)) continue;
+      boxes.push_back(*box);
+      mesh.place(instance, view.cam_from_world);
+      root_->addChild(mesh.node());
+      const double distance_m = (view.cam_from_world * centre_in_world).z();
+      near_m_ = std::min(near_m_, distance_m - mesh.radius_m() - 0.01);
+      far_m_ = std::max(far_m_, distance_m + mesh.radius_m() + 0.01);
+    }
+    near_m_ = std::max(near_m_, kNearestM);
+    far_m_ = std::max(far_m_, near_m_ + 1);
+    return boxes;
+  }
+
   void draw(FrameBuffer& target,
             const PinholeView& view,
             const Box& in_frame,
-            const osg::Vec4& clear_colour);
-  OsgMesh& instance_of(const model::Mesh& mesh, std::size_t nth);
+            const osg::Vec4& clear_colour) {
+    osg::Camera& camera = *viewer_->getCamera();
+    camera.setClearColor(clear_colour);
+    camera.setViewport(0, 0, target.width(), target.height());
+    camera.setViewMatrix(eye_from_world(view.cam_from_world));
+    camera.setProjectionMatrix(projection(view.lens, {in_frame, near_m_, far_m_}));
+    window_->setDefaultFboId(target.id());
+    gl_->glBindFramebuffer(GL_FRAMEBUFFER_EXT, target.id());
+    viewer_->frame(0);
+  }
 
   int width_;
   int height_;
-  Options options_;
   EglContext egl_;
   std::string device_;
   osg::ref_ptr<osg::Group> root_ = new osg::Group;
@@ -215,147 +336,6 @@ class OsgBackdrop final : public Backdrop {
   // The target of render_alpha().
   std::unique_ptr<FrameBuffer> tile_;
 };
-
-OsgBackdrop::OsgBackdrop(int width, int height, const Options& options)
-    : width_(width), height_(height), options_(options), egl_(options.gpu, options.software) {
-  // Suppresses all messages.
-  osg::setNotifyLevel(osg::ALWAYS);
-  const EglContext::Current current(egl_);
-  device_ = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  viewer_ = new osgViewer::Viewer;
-  viewer_->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-  window_ = viewer_->setUpViewerAsEmbeddedInWindow(0, 0, width, height);
-  viewer_->setLightingMode(osg::View::NO_LIGHT);
-  viewer_->getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-  viewer_->getCamera()->setCullingMode(
-      // Culling would drop small aircraft.
-      osg::CullSettings::NO_CULLING);
-  viewer_->getCamera()->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  root_->setStateSet(shading_.state());
-  viewer_->setSceneData(root_);
-  viewer_->realize();
-  gl_ = osg::GLExtensions::Get(window_->getState()->getContextID(), true);
-}
-
-OsgBackdrop::~OsgBackdrop() {
-  const EglContext::Current current(egl_);
-  green_.reset();
-  tile_.reset();
-  aircraft_.clear();
-  viewer_ = nullptr;
-  window_ = nullptr;
-}
-
-OsgMesh& OsgBackdrop::instance_of(const model::Mesh& mesh, std::size_t nth) {
-  const auto [place, is_new] = aircraft_.try_emplace(&mesh);
-  OnDevice& on_device = place->second;
-  if (is_new) on_device.textures = osg_textures(mesh, options_.anisotropy);
-  while (on_device.instances.size() <= nth)
-    on_device.instances.push_back(std::make_unique<OsgMesh>(mesh, on_device.textures));
-  return *on_device.instances[nth];
-}
-
-std::vector<Box> OsgBackdrop::stage(const PinholeView& view,
-                                    const shade::Light& light,
-                                    const std::vector<Instance>& instances) {
-  root_->removeChildren(0, root_->getNumChildren());
-  shading_.set_light(light, view.cam_from_world);
-  std::vector<Box> boxes;
-  std::map<const model::Mesh*, std::size_t> used;
-  near_m_ = 1e9;
-  far_m_ = 0;
-  const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
-  for (const Instance& instance : instances) {
-    check(instance.mesh != nullptr, "an instance has a mesh");
-    OsgMesh& mesh = instance_of(*instance.mesh, used[instance.mesh]++);
-    const Vector3& centre_in_world = instance.world_from_body.translation;
-    const auto box = box_of_sphere(view, centre_in_world, mesh.radius_m(), frame);
-    if (!box || !overlap(*box, frame)) continue;
-    boxes.push_back(*box);
-    mesh.place(instance, view.cam_from_world);
-    root_->addChild(mesh.node());
-    const double distance_m = (view.cam_from_world * centre_in_world).z();
-    near_m_ = std::min(near_m_, distance_m - mesh.radius_m() - 0.01);
-    far_m_ = std::max(far_m_, distance_m + mesh.radius_m() + 0.01);
-  }
-  near_m_ = std::max(near_m_, kNearestM);
-  far_m_ = std::max(far_m_, near_m_ + 1);
-  return boxes;
-}
-
-void OsgBackdrop::draw(FrameBuffer& target,
-                       const PinholeView& view,
-                       const Box& in_frame,
-                       const osg::Vec4& clear_colour) {
-  osg::Camera& camera = *viewer_->getCamera();
-  camera.setClearColor(clear_colour);
-  camera.setViewport(0, 0, target.width(), target.height());
-  camera.setViewMatrix(eye_from_world(view.cam_from_world));
-  camera.setProjectionMatrix(projection(view.lens, {in_frame, near_m_, far_m_}));
-  window_->setDefaultFboId(target.id());
-  gl_->glBindFramebuffer(GL_FRAMEBUFFER_EXT, target.id());
-  viewer_->frame(0);
-}
-
-image::Rgb8 OsgBackdrop::render(const lens::Pinhole& lens,
-                                const Rigid& cam_from_world,
-                                const shade::Light& light,
-                                const std::vector<Instance>& instances) {
-  const PinholeView view{lens, cam_from_world};
-  const EglContext::Current current(egl_);
-  shading_.set_encoding(Encoding::kSrgb);
-  stage(view, light, instances);
-  if (!green_)
-    green_ = std::make_unique<FrameBuffer>(*gl_, width_, height_, GL_RGBA8, options_.samples);
-  const Box frame{0, 0, static_cast<double>(width_), static_cast<double>(height_)};
-  draw(*green_, view, frame, {0, 1, 0, 1});
-  const std::size_t row_bytes = 3 * static_cast<std::size_t>(width_);
-  std::vector<std::uint8_t> upside_down(row_bytes * static_cast<std::size_t>(height_));
-  green_->read(GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
-  image::Rgb8 result = image::make_rgb8(width_, height_);
-  for (int y = 0; y < height_; ++y)
-    std::memcpy(result.at(0, y),
-                upside_down.data() + row_bytes * static_cast<std::size_t>(height_ - 1 - y),
-                row_bytes);
-  return result;
-}
-
-std::vector<std::array<float, 4>> OsgBackdrop::render_alpha(const lens::Pinhole& lens,
-                                                            const Rigid& cam_from_world,
-                                                            const shade::Light& light,
-                                                            const std::vector<Instance>& instances,
-                                                            int supersampling) {
-  check(supersampling >= 1 && supersampling <= kTilePx, "supersampling is 1 to 1024");
-  const PinholeView view{lens, cam_from_world};
-  const EglContext::Current current(egl_);
-  shading_.set_encoding(Encoding::kLinear);
-  const std::vector<Box> boxes = stage(view, light, instances);
-  // Side of a tile, in pixels of the frame.
-  const int tile_px = kTilePx / supersampling;
-  const int size = tile_px * supersampling;
-  if (!tile_ || tile_->width() != size)
-    tile_ = std::make_unique<FrameBuffer>(*gl_, size, size, GL_RGBA32F_ARB, 1);
-  std::vector<std::array<float, 4>> result(pixels_in(width_, height_));
-  std::vector<std::array<float, 4>> samples(pixels_in(size, size));
-  for (int y0 = 0; y0 < height_; y0 += tile_px) {
-    for (int x0 = 0; x0 < width_; x0 += tile_px) {
-      const Box in_frame{static_cast<double>(x0),
-                         static_cast<double>(y0),
-                         static_cast<double>(tile_px),
-                         static_cast<double>(tile_px)};
-      if (std::none_of(
-              boxes.begin(), boxes.end(), [&](const Box& box) { return overlap(box, in_frame); }))
-        continue;
-      draw(*tile_, view, in_frame, {0, 0, 0, 0});
-      tile_->read(GL_RGBA, GL_FLOAT, samples.data());
-      for (int y = y0; y < std::min(y0 + tile_px, height_); ++y) {
-        for (int x = x0; x < std::min(x0 + tile_px, width_); ++x)
-          result[index_in(width_, x, y)] = block_mean(samples, size, x - x0, y - y0, supersampling);
-      }
-    }
-  }
-  return result;
-}
 
 }  // namespace
 

@@ -14,7 +14,8 @@
 namespace airtruth::backdrop {
 namespace {
 
-osg::ref_ptr<osg::Texture2D> osg_texture(const model::Texture& texture, float anisotropy) {
+osg::ref_ptr<osg::Texture2D> osg_texture(const model::Texture& texture) {
+  constexpr float kAnisotropy = 16;
   const texture_file::Picture& finest = texture.finest;
   osg::ref_ptr<osg::Image> image = new osg::Image;
   image->allocateImage(finest.width, finest.height, 1, GL_RGBA, GL_FLOAT);
@@ -30,7 +31,7 @@ osg::ref_ptr<osg::Texture2D> osg_texture(const model::Texture& texture, float an
   result->setUnRefImageDataAfterApply(true);
   result->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR_MIPMAP_LINEAR);
   result->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
-  result->setMaxAnisotropy(anisotropy);
+  result->setMaxAnisotropy(kAnisotropy);
   result->setWrap(osg::Texture::WRAP_S,
                   texture.repeat_u ? osg::Texture::REPEAT : osg::Texture::CLAMP_TO_EDGE);
   result->setWrap(osg::Texture::WRAP_T,
@@ -113,10 +114,10 @@ double radius(const model::Mesh& mesh) {
 
 }  // namespace
 
-std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const model::Mesh& mesh, float anisotropy) {
+std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const model::Mesh& mesh) {
   std::vector<osg::ref_ptr<osg::Texture2D>> textures;
   for (const model::SharedTexture& texture : mesh.textures)
-    textures.push_back(osg_texture(*texture, anisotropy));
+    textures.push_back(osg_texture(*texture));
   return textures;
 }
 

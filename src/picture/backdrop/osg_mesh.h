@@ -13,7 +13,7 @@
 namespace airtruth::backdrop {
 
 // The textures of one mesh, which all its instances share.
-std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const model::Mesh& mesh, float anisotropy);
+std::vector<osg::ref_ptr<osg::Texture2D>> osg_textures(const model::Mesh& mesh);
 
 // One aircraft in the scene graph: a transform for the body and one below it for each part.
 class OsgMesh {
