@@ -156,85 +156,80 @@ struct Channel {
   // The cost of each extinction that is tried.
   std::vector<double> cost;
 
-  System system(double per_height) const;
-  void weigh(double per_height);
+  System system(double per_height) const {
+    System result;
+    result.squares.resize(static_cast<std::size_t>(squares.back().square) + 1);
+    result.aa(kMixed, kMixed) = 1 / (kMixedPrior * kMixedPrior);
+    for (std::size_t s = 0; s < kSectors; ++s)
+      result.expect(static_cast<int>(s), sky[s], sky_trust[s]);
+    result.expect(kMean, mean_light, kMeanPrior);
+    for (const Row& r : squares) result.add_square(r, std::exp(-per_height * r.range));
+    result.eliminate_own_light();
+    for (const Row& r : far) result.add_far(r, std::exp(-per_height * r.range), mean_light);
+    return result;
+  }
+
+  void weigh(double per_height) {
+    const std::vector<double> own_light = system(per_height).own_light();
+    std::vector<int> views(own_light.size(), 0);
+    for (const Row& r : squares) ++views[static_cast<std::size_t>(r.square)];
+    double sum = 0, total = 0;
+    for (Row& r : squares) {
+      const auto square = static_cast<std::size_t>(r.square);
+      const double own = std::clamp(own_light[square], 0.01, 1.0);
+      const double error = std::hypot(kMinSquareError, kSquareError * own);
+      const double share = std::min(1.0, kIndependentViews / views[square]);
+      r.weight = kIndependentShare * share / (error * error);
+      r.contrast = own;
+      sum += share * own, total += share;
+    }
+    mean_light = sum / total;
+    for (Row& r : squares) r.contrast -= mean_light;
+  }
+
   // The number of the extinction with the least cost, under the weights of the rows.
-  int least_cost(double altitude_m) const;
+  int least_cost(double altitude_m) const {
+    std::map<int, double> known;
+    const auto cost_at = [&](int i) {
+      const auto [found, is_new] = known.try_emplace(i, 0.0);
+      if (is_new) found->second = system(tried(i) * altitude_m * 1e-3).cost();
+      return found->second;
+    };
+    int best = 0;
+    for (int i = 0; i < kTried; i += kCoarseTried)
+      if (cost_at(i) < cost_at(best)) best = i;
+    for (int step = kCoarseTried / 2; step > 0; step /= 2) {
+      const int middle = best;
+      for (const int i : {std::max(0, middle - step), std::min(kTried - 1, middle + step)})
+        if (cost_at(i) < cost_at(best)) best = i;
+    }
+    return best;
+  }
+
   // Computes the cost of every extinction, with the weights that belong to the best one. A cost
   // that exceeds the least one by more than kMaxExcessCost is a lower bound.
-  void try_all(double altitude_m);
-};
-
-System Channel::system(double per_height) const {
-  System result;
-  result.squares.resize(static_cast<std::size_t>(squares.back().square) + 1);
-  result.aa(kMixed, kMixed) = 1 / (kMixedPrior * kMixedPrior);
-  for (std::size_t s = 0; s < kSectors; ++s)
-    result.expect(static_cast<int>(s), sky[s], sky_trust[s]);
-  result.expect(kMean, mean_light, kMeanPrior);
-  for (const Row& r : squares) result.add_square(r, std::exp(-per_height * r.range));
-  result.eliminate_own_light();
-  for (const Row& r : far) result.add_far(r, std::exp(-per_height * r.range), mean_light);
-  return result;
-}
-
-void Channel::weigh(double per_height) {
-  const std::vector<double> own_light = system(per_height).own_light();
-  std::vector<int> views(own_light.size(), 0);
-  for (const Row& r : squares) ++views[static_cast<std::size_t>(r.square)];
-  double sum = 0, total = 0;
-  for (Row& r : squares) {
-    const auto square = static_cast<std::size_t>(r.square);
-    const double own = std::clamp(own_light[square], 0.01, 1.0);
-    const double error = std::hypot(kMinSquareError, kSquareError * own);
-    const double share = std::min(1.0, kIndependentViews / views[square]);
-    r.weight = kIndependentShare * share / (error * error);
-    r.contrast = own;
-    sum += share * own, total += share;
-  }
-  mean_light = sum / total;
-  for (Row& r : squares) r.contrast -= mean_light;
-}
-
-int Channel::least_cost(double altitude_m) const {
-  std::map<int, double> known;
-  const auto cost_at = [&](int i) {
-    const auto [found, is_new] = known.try_emplace(i, 0.0);
-    if (is_new) found->second = system(tried(i) * altitude_m * 1e-3).cost();
-    return found->second;
-  };
-  int best = 0;
-  for (int i = 0; i < kTried; i += kCoarseTried)
-    if (cost_at(i) < cost_at(best)) best = i;
-  for (int step = kCoarseTried / 2; step > 0; step /= 2) {
-    const int middle = best;
-    for (const int i : {std::max(0, middle - step), std::min(kTried - 1, middle + step)})
-      if (cost_at(i) < cost_at(best)) best = i;
-  }
-  return best;
-}
-
-void Channel::try_all(double altitude_m) {
-  const auto per_height = [&](int i) { return tried(i) * altitude_m * 1e-3; };
-  double start_per_km = 0.1;
-  for (int round = 0; round < 2; ++round) {
+  void try_all(double altitude_m) {
+    const auto per_height = [&](int i) { return tried(i) * altitude_m * 1e-3; };
+    double start_per_km = 0.1;
+    for (int round = 0; round < 2; ++round) {
+      weigh(start_per_km * altitude_m * 1e-3);
+      start_per_km = tried(least_cost(altitude_m));
+    }
     weigh(start_per_km * altitude_m * 1e-3);
-    start_per_km = tried(least_cost(altitude_m));
-  }
-  weigh(start_per_km * altitude_m * 1e-3);
-  const int best = least_cost(altitude_m);
-  cost.assign(kTried, 0);
-  cost[static_cast<std::size_t>(best)] = system(per_height(best)).cost();
-  // Away from the best one, up to the excess beyond which a cost has no weight.
-  for (const int way : {-1, 1}) {
-    double last = cost[static_cast<std::size_t>(best)];
-    const double most = last + kMaxExcessCost;
-    for (int i = best + way; i >= 0 && i < kTried; i += way) {
-      if (last < most) last = system(per_height(i)).cost();
-      cost[static_cast<std::size_t>(i)] = last;
+    const int best = least_cost(altitude_m);
+    cost.assign(kTried, 0);
+    cost[static_cast<std::size_t>(best)] = system(per_height(best)).cost();
+    // Away from the best one, up to the excess beyond which a cost has no weight.
+    for (const int way : {-1, 1}) {
+      double last = cost[static_cast<std::size_t>(best)];
+      const double most = last + kMaxExcessCost;
+      for (int i = best + way; i >= 0 && i < kTried; i += way) {
+        if (last < most) last = system(per_height(i)).cost();
+        cost[static_cast<std::size_t>(i)] = last;
+      }
     }
   }
-}
+};
 
 // One hypothesis of the extinctions of all channels, with its cost.
 struct Guess {

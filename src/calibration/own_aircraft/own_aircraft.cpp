@@ -74,12 +74,44 @@ struct FrameSums {
   cv::Mat rgb, squares;  // float; squares of grey
   int count = 0;
 
-  void add(const cv::Mat& frame);
+  void add(const cv::Mat& frame) {
+    cv::Mat value, grey;
+    frame.convertTo(value, CV_32FC3);
+    cv::cvtColor(value, grey, cv::COLOR_RGB2GRAY);
+    if (count++ == 0) {
+      rgb = value;
+      squares = grey.mul(grey);
+    } else {
+      rgb += value;
+      squares += grey.mul(grey);
+    }
+  }
+
   // Standard deviation of grey over time, code values.
-  cv::Mat spread() const;
+  cv::Mat spread() const {
+    cv::Mat grey, result;
+    cv::cvtColor(rgb / double(count), grey, cv::COLOR_RGB2GRAY);
+    result = squares / double(count) - grey.mul(grey);
+    cv::max(result, 0, result);
+    cv::sqrt(result, result);
+    return result;
+  }
+
   // The picture for GrabCut. Its channels are the mean grey, the standard deviation of grey over
   // time, and the difference between blue and red.
-  cv::Mat features() const;
+  cv::Mat features() const {
+    const cv::Mat mean = rgb / double(count);
+    cv::Mat grey, planes[3];
+    cv::cvtColor(mean, grey, cv::COLOR_RGB2GRAY);
+    cv::split(mean, planes);
+    cv::Mat spread = this->spread();
+    spread *= kSpreadGain;
+    const cv::Mat colour = (planes[2] - planes[0]) * kColourGain + kColourOffset;
+    cv::Mat result;
+    cv::merge(std::vector<cv::Mat>{grey, spread, colour}, result);
+    result.convertTo(result, CV_8UC3);
+    return result;
+  }
 };
 
 struct KeptFrames {
@@ -106,42 +138,6 @@ cv::Mat reduced_grey(const cv::Mat& rgb, double scale) {
   grey.convertTo(grey, CV_32F);
   cv::GaussianBlur(grey, grey, {}, kBlurPx);
   return grey;
-}
-
-void FrameSums::add(const cv::Mat& frame) {
-  cv::Mat value, grey;
-  frame.convertTo(value, CV_32FC3);
-  cv::cvtColor(value, grey, cv::COLOR_RGB2GRAY);
-  if (count++ == 0) {
-    rgb = value;
-    squares = grey.mul(grey);
-  } else {
-    rgb += value;
-    squares += grey.mul(grey);
-  }
-}
-
-cv::Mat FrameSums::spread() const {
-  cv::Mat grey, result;
-  cv::cvtColor(rgb / double(count), grey, cv::COLOR_RGB2GRAY);
-  result = squares / double(count) - grey.mul(grey);
-  cv::max(result, 0, result);
-  cv::sqrt(result, result);
-  return result;
-}
-
-cv::Mat FrameSums::features() const {
-  const cv::Mat mean = rgb / double(count);
-  cv::Mat grey, planes[3];
-  cv::cvtColor(mean, grey, cv::COLOR_RGB2GRAY);
-  cv::split(mean, planes);
-  cv::Mat spread = this->spread();
-  spread *= kSpreadGain;
-  const cv::Mat colour = (planes[2] - planes[0]) * kColourGain + kColourOffset;
-  cv::Mat result;
-  cv::merge(std::vector<cv::Mat>{grey, spread, colour}, result);
-  result.convertTo(result, CV_8UC3);
-  return result;
 }
 
 // The homography between two kept frames at the working size, in OpenCV's pixels with integer

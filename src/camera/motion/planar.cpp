@@ -136,12 +136,73 @@ Homography ours_from_cv(const Homography& h) {
 class Planar : public Follower {
  public:
   explicit Planar(const cv::Mat& allowed) : allowed_(allowed) {}
-  FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override;
+
+  FrameMotion next(const cv::Mat& grey, bool damaged, bool begins_shot) override {
+    Pyramid now = pyramid_of(grey);
+    if (previous_.empty()) {
+      previous_ = std::move(now);
+      make_key(spread_corners(grey, allowed_));
+      return {};
+    }
+    // The samples of a damaged frame are unreliable. The next intact frame is linked to the last
+    // one.
+    if (damaged) return bridged(State::kBridged);
+    const std::size_t before = tracks_.now.size();
+    const Tracks tracks = followed(previous_, now, allowed_, tracks_);
+    const auto fit = fit_model(tracks, grey.size());
+    if (fit && is_followed(begins_shot, fit->inliers, before)) {
+      const FrameMotion motion = measured(*fit, tracks, grey);
+      previous_ = std::move(now);
+      return motion;
+    }
+    ++bridged_in_row_;
+    const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_);
+    const CornerLoss loss =
+        corner_loss(fresh.size(), before, tracks.now.size(), bridged_in_row_, begins_shot);
+    if (loss.starts_anew) {
+      // Tracking starts anew from this frame; the position of the last linked frame is kept.
+      previous_ = std::move(now);
+      make_key(fresh);
+      bridged_in_row_ = 0;
+    }
+    return bridged(loss.is_cut ? State::kCut : State::kBridged);
+  }
 
  private:
-  void make_key(const std::vector<cv::Point2f>& corners);
-  FrameMotion bridged(State state) const;
-  FrameMotion measured(const ModelFit& fit, const Tracks& tracks, const cv::Mat& grey);
+  void make_key(const std::vector<cv::Point2f>& corners) {
+    tracks_ = {corners, corners};
+    key_count_ = corners.size();
+    key_from_first_ = now_from_first_;
+  }
+
+  FrameMotion bridged(State state) const {
+    FrameMotion motion;
+    motion.frame_from_reference = ours_from_cv(now_from_first_);  // the state says that it is held
+    motion.state = state;
+    return motion;
+  }
+
+  FrameMotion measured(const ModelFit& fit, const Tracks& tracks, const cv::Mat& grey) {
+    // h33 passes through 0 where the camera turns away from the first frame. The determinant does
+    // not.
+    const Homography composed = fit.frame_from_key * key_from_first_;
+    now_from_first_ = composed / std::cbrt(composed.determinant());
+    FrameMotion motion;
+    motion.frame_from_reference = ours_from_cv(now_from_first_);
+    motion.inliers = fit.inliers;
+    motion.rms_px = fit.rms_px;
+    motion.state = State::kMeasured;
+    bridged_in_row_ = 0;
+    // Outliers are dropped: a corner that does not follow the far plane now will not follow it
+    // later.
+    tracks_ = {};
+    for (std::size_t i = 0; i < tracks.begun.size(); ++i)
+      if (fit.is_inlier[i])
+        tracks_.begun.push_back(tracks.begun[i]), tracks_.now.push_back(tracks.now[i]);
+    if (static_cast<double>(tracks_.begun.size()) < kMinKeptShare * static_cast<double>(key_count_))
+      make_key(spread_corners(grey, allowed_));
+    return motion;
+  }
 
   cv::Mat allowed_;
   // The corners of the key frame in the latest frame, and its map from the first frame (OpenCV's
@@ -153,70 +214,6 @@ class Planar : public Follower {
   Pyramid previous_;
   int bridged_in_row_ = 0;
 };
-
-void Planar::make_key(const std::vector<cv::Point2f>& corners) {
-  tracks_ = {corners, corners};
-  key_count_ = corners.size();
-  key_from_first_ = now_from_first_;
-}
-
-FrameMotion Planar::bridged(State state) const {
-  FrameMotion motion;
-  motion.frame_from_reference = ours_from_cv(now_from_first_);  // the state says that it is held
-  motion.state = state;
-  return motion;
-}
-
-FrameMotion Planar::measured(const ModelFit& fit, const Tracks& tracks, const cv::Mat& grey) {
-  // h33 passes through 0 where the camera turns away from the first frame. The determinant does
-  // not.
-  const Homography composed = fit.frame_from_key * key_from_first_;
-  now_from_first_ = composed / std::cbrt(composed.determinant());
-  FrameMotion motion;
-  motion.frame_from_reference = ours_from_cv(now_from_first_);
-  motion.inliers = fit.inliers;
-  motion.rms_px = fit.rms_px;
-  motion.state = State::kMeasured;
-  bridged_in_row_ = 0;
-  // Outliers are dropped: a corner that does not follow the far plane now will not follow it later.
-  tracks_ = {};
-  for (std::size_t i = 0; i < tracks.begun.size(); ++i)
-    if (fit.is_inlier[i])
-      tracks_.begun.push_back(tracks.begun[i]), tracks_.now.push_back(tracks.now[i]);
-  if (static_cast<double>(tracks_.begun.size()) < kMinKeptShare * static_cast<double>(key_count_))
-    make_key(spread_corners(grey, allowed_));
-  return motion;
-}
-
-FrameMotion Planar::next(const cv::Mat& grey, bool damaged, bool begins_shot) {
-  Pyramid now = pyramid_of(grey);
-  if (previous_.empty()) {
-    previous_ = std::move(now);
-    make_key(spread_corners(grey, allowed_));
-    return {};
-  }
-  // The samples of a damaged frame are unreliable. The next intact frame is linked to the last one.
-  if (damaged) return bridged(State::kBridged);
-  const std::size_t before = tracks_.now.size();
-  const Tracks tracks = followed(previous_, now, allowed_, tracks_);
-  const auto fit = fit_model(tracks, grey.size());
-  if (fit && is_followed(begins_shot, fit->inliers, before)) {
-    const FrameMotion motion = measured(*fit, tracks, grey);
-    previous_ = std::move(now);
-    return motion;
-  }
-  ++bridged_in_row_;
-  const std::vector<cv::Point2f> fresh = spread_corners(grey, allowed_);
-  const CornerLoss loss =
-      corner_loss(fresh.size(), before, tracks.now.size(), bridged_in_row_, begins_shot);
-  if (loss.starts_anew) {
-    // Tracking starts anew from this frame; the position of the last linked frame is kept.
-    previous_ = std::move(now);
-    make_key(fresh);
-    bridged_in_row_ = 0;
-  }
-  return bridged(loss.is_cut ? State::kCut : State::kBridged);
-}
 
 }  // namespace
 

@@ -33,18 +33,80 @@ const AVCodec* decoder_by_id() {
 // An encoder and its decoder for pictures of one size and layout.
 class Loop {
  public:
-  Loop(int width, int height, Chroma chroma, int quantiser);
+  Loop(int width, int height, Chroma chroma, int quantiser) {
+    const AVCodec* encoder = encoder_by_name();
+    encoder_.reset(avcodec_alloc_context3(encoder));
+    encoder_->width = width;
+    encoder_->height = height;
+    encoder_->pix_fmt = planar_format(chroma);
+    encoder_->time_base = {1, 25};
+    encoder_->thread_count = 1;
+    encoder_->max_b_frames = 0;
+    encoder_->refs = 1;
+    // The largest ratio of the quantisers of P and I pictures in libx264: the reference gets a
+    // quantiser 20 lower.
+    constexpr float kFinestKeyPicture = 0.1F;
+    encoder_->i_quant_factor = kFinestKeyPicture;
+    AVDictionary* settings = nullptr;
+    av_dict_set(&settings, "preset", "medium", 0);
+    av_dict_set(&settings, "tune", "zerolatency", 0);
+    av_dict_set(&settings, "forced-idr", "1", 0);
+    av_dict_set_int(&settings, "qp", quantiser, 0);
+    av_dict_set(&settings, "x264-params", "cpu-independent=1:scenecut=0:weightp=0", 0);
+    const int opened = avcodec_open2(encoder_.get(), encoder, &settings);
+    av_dict_free(&settings);
+    check_av(opened, "cannot encode with libx264");
+    const AVCodec* decoder = decoder_by_id();
+    decoder_.reset(avcodec_alloc_context3(decoder));
+    decoder_->thread_count = 1;
+    decoder_->flags |= AV_CODEC_FLAG_LOW_DELAY;
+    check_av(avcodec_open2(decoder_.get(), decoder, nullptr), "cannot decode H.264");
+  }
+
   bool fits(const Picture& picture) const {
     return encoder_->width == picture.width && encoder_->height == picture.height &&
            encoder_->pix_fmt == planar_format(picture.colour.chroma);
   }
   // Returns the second of two pictures after decoding. The first is a key picture, and the second
   // is predicted from it.
-  void run(const Picture& reference, const Picture& patch, Picture& decoded);
+  void run(const Picture& reference, const Picture& patch, Picture& decoded) {
+    encode(reference, AV_PICTURE_TYPE_I);
+    encode(patch, AV_PICTURE_TYPE_P);
+    send(nullptr);
+    check(last_->width == patch.width && last_->height == patch.height && last_->data[0] != nullptr,
+          "a decoder gives back the picture's size");
+    for (int i = 0; i < decoded.plane_count; ++i) {
+      image::Plane& plane = decoded.planes[static_cast<std::size_t>(i)];
+      av_image_copy_plane(plane.row(0),
+                          plane.stride,
+                          last_->data[i],
+                          last_->linesize[i],
+                          plane.width,
+                          plane.height);
+    }
+    avcodec_flush_buffers(decoder_.get());
+  }
 
  private:
-  void encode(const Picture& picture, AVPictureType type);
-  void send(const AVPacket* packet);
+  void encode(const Picture& picture, AVPictureType type) {
+    const FramePtr frame = new_frame(encoder_->pix_fmt, picture.width, picture.height);
+    copy_planes(picture, *frame);
+    frame->pict_type = type;
+    frame->pts = pts_++;
+    check_av(avcodec_send_frame(encoder_.get(), frame.get()), "cannot encode with libx264");
+    check_av(avcodec_receive_packet(encoder_.get(), packet_.get()), "libx264 held a picture back");
+    send(packet_.get());
+    av_packet_unref(packet_.get());
+  }
+
+  void send(const AVPacket* packet) {
+    check_av(avcodec_send_packet(decoder_.get(), packet), "cannot decode H.264");
+    const FramePtr frame(av_frame_alloc());
+    while (avcodec_receive_frame(decoder_.get(), frame.get()) >= 0) {
+      av_frame_unref(last_.get());
+      av_frame_move_ref(last_.get(), frame.get());
+    }
+  }
 
   CodecPtr encoder_;
   CodecPtr decoder_;
@@ -52,70 +114,6 @@ class Loop {
   FramePtr last_{av_frame_alloc()};
   std::int64_t pts_ = 0;
 };
-
-Loop::Loop(int width, int height, Chroma chroma, int quantiser) {
-  const AVCodec* encoder = encoder_by_name();
-  encoder_.reset(avcodec_alloc_context3(encoder));
-  encoder_->width = width;
-  encoder_->height = height;
-  encoder_->pix_fmt = planar_format(chroma);
-  encoder_->time_base = {1, 25};
-  encoder_->thread_count = 1;
-  encoder_->max_b_frames = 0;
-  encoder_->refs = 1;
-  // The largest ratio of the quantisers of P and I pictures in libx264: the reference gets a
-  // quantiser 20 lower.
-  constexpr float kFinestKeyPicture = 0.1F;
-  encoder_->i_quant_factor = kFinestKeyPicture;
-  AVDictionary* settings = nullptr;
-  av_dict_set(&settings, "preset", "medium", 0);
-  av_dict_set(&settings, "tune", "zerolatency", 0);
-  av_dict_set(&settings, "forced-idr", "1", 0);
-  av_dict_set_int(&settings, "qp", quantiser, 0);
-  av_dict_set(&settings, "x264-params", "cpu-independent=1:scenecut=0:weightp=0", 0);
-  const int opened = avcodec_open2(encoder_.get(), encoder, &settings);
-  av_dict_free(&settings);
-  check_av(opened, "cannot encode with libx264");
-  const AVCodec* decoder = decoder_by_id();
-  decoder_.reset(avcodec_alloc_context3(decoder));
-  decoder_->thread_count = 1;
-  decoder_->flags |= AV_CODEC_FLAG_LOW_DELAY;
-  check_av(avcodec_open2(decoder_.get(), decoder, nullptr), "cannot decode H.264");
-}
-
-void Loop::encode(const Picture& picture, AVPictureType type) {
-  const FramePtr frame = new_frame(encoder_->pix_fmt, picture.width, picture.height);
-  copy_planes(picture, *frame);
-  frame->pict_type = type;
-  frame->pts = pts_++;
-  check_av(avcodec_send_frame(encoder_.get(), frame.get()), "cannot encode with libx264");
-  check_av(avcodec_receive_packet(encoder_.get(), packet_.get()), "libx264 held a picture back");
-  send(packet_.get());
-  av_packet_unref(packet_.get());
-}
-
-void Loop::send(const AVPacket* packet) {
-  check_av(avcodec_send_packet(decoder_.get(), packet), "cannot decode H.264");
-  const FramePtr frame(av_frame_alloc());
-  while (avcodec_receive_frame(decoder_.get(), frame.get()) >= 0) {
-    av_frame_unref(last_.get());
-    av_frame_move_ref(last_.get(), frame.get());
-  }
-}
-
-void Loop::run(const Picture& reference, const Picture& patch, Picture& decoded) {
-  encode(reference, AV_PICTURE_TYPE_I);
-  encode(patch, AV_PICTURE_TYPE_P);
-  send(nullptr);
-  check(last_->width == patch.width && last_->height == patch.height && last_->data[0] != nullptr,
-        "a decoder gives back the picture's size");
-  for (int i = 0; i < decoded.plane_count; ++i) {
-    image::Plane& plane = decoded.planes[static_cast<std::size_t>(i)];
-    av_image_copy_plane(
-        plane.row(0), plane.stride, last_->data[i], last_->linesize[i], plane.width, plane.height);
-  }
-  avcodec_flush_buffers(decoder_.get());
-}
 
 }  // namespace
 

@@ -62,58 +62,55 @@ struct Writer::State {
   void check_av(int result, const char* what) const {
     if (result < 0) fail(std::string(what) + ": " + reason(result));
   }
-  void open();
-  void encode(const AVFrame* frame);
-  void write_image(const Picture& picture) const;
-};
 
-void Writer::State::open() {
-  keep_libav_quiet();
-  const char* muxer = options.format == Format::kMp4   ? "mp4"
-                      : options.format == Format::kMkv ? "matroska"
-                                                       : "avi";
-  const std::string url = file_url(part);
-  AVFormatContext* raw = nullptr;
-  check_av(avformat_alloc_output_context2(&raw, nullptr, muxer, url.c_str()), "cannot create");
-  output.reset(raw);
-  output->flags |= AVFMT_FLAG_BITEXACT;
-  const bool has_global_header = (output->oformat->flags & AVFMT_GLOBALHEADER) != 0;
-  codec = open_encoder({info, stored, has_global_header}, options, path);
-  encoder_name = codec->codec->name;
-  stream = avformat_new_stream(output.get(), nullptr);
-  check(stream != nullptr, "a stream can be made");
-  check_av(avcodec_parameters_from_context(stream->codecpar, codec.get()),
-           "cannot describe the stream");
-  stream->time_base = codec->time_base;
-  stream->avg_frame_rate = codec->framerate;
-  stream->sample_aspect_ratio = codec->sample_aspect_ratio;
-  if (const int opened = avio_open(&output->pb, url.c_str(), AVIO_FLAG_WRITE); opened < 0)
-    fail("cannot create: " + reason(opened));
-  AVDictionary* settings = nullptr;
-  if (options.format == Format::kMp4) av_dict_set(&settings, "movflags", "+faststart", 0);
-  const int written = avformat_write_header(output.get(), &settings);
-  av_dict_free(&settings);
-  check_av(written, "cannot write");
-  packet.reset(av_packet_alloc());
-}
-
-void Writer::State::encode(const AVFrame* frame) {
-  check_av(avcodec_send_frame(codec.get(), frame), "cannot encode");
-  for (;;) {
-    const int got = avcodec_receive_packet(codec.get(), packet.get());
-    if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
-    check_av(got, "cannot encode");
-    av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
-    packet->stream_index = stream->index;
-    const int written = av_interleaved_write_frame(output.get(), packet.get());
+  void open() {
+    keep_libav_quiet();
+    const char* muxer = options.format == Format::kMp4   ? "mp4"
+                        : options.format == Format::kMkv ? "matroska"
+                                                         : "avi";
+    const std::string url = file_url(part);
+    AVFormatContext* raw = nullptr;
+    check_av(avformat_alloc_output_context2(&raw, nullptr, muxer, url.c_str()), "cannot create");
+    output.reset(raw);
+    output->flags |= AVFMT_FLAG_BITEXACT;
+    const bool has_global_header = (output->oformat->flags & AVFMT_GLOBALHEADER) != 0;
+    codec = open_encoder({info, stored, has_global_header}, options, path);
+    encoder_name = codec->codec->name;
+    stream = avformat_new_stream(output.get(), nullptr);
+    check(stream != nullptr, "a stream can be made");
+    check_av(avcodec_parameters_from_context(stream->codecpar, codec.get()),
+             "cannot describe the stream");
+    stream->time_base = codec->time_base;
+    stream->avg_frame_rate = codec->framerate;
+    stream->sample_aspect_ratio = codec->sample_aspect_ratio;
+    if (const int opened = avio_open(&output->pb, url.c_str(), AVIO_FLAG_WRITE); opened < 0)
+      fail("cannot create: " + reason(opened));
+    AVDictionary* settings = nullptr;
+    if (options.format == Format::kMp4) av_dict_set(&settings, "movflags", "+faststart", 0);
+    const int written = avformat_write_header(output.get(), &settings);
+    av_dict_free(&settings);
     check_av(written, "cannot write");
-    if (output->pb->error < 0) fail("cannot write: " + reason(output->pb->error));
+    packet.reset(av_packet_alloc());
   }
-}
 
-void Writer::State::write_image(const Picture& picture) const {
-  write_still(part / fmt::format("{:06}.png", count), image::rgb8_from_picture(picture));
-}
+  void encode(const AVFrame* frame) {
+    check_av(avcodec_send_frame(codec.get(), frame), "cannot encode");
+    for (;;) {
+      const int got = avcodec_receive_packet(codec.get(), packet.get());
+      if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
+      check_av(got, "cannot encode");
+      av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
+      packet->stream_index = stream->index;
+      const int written = av_interleaved_write_frame(output.get(), packet.get());
+      check_av(written, "cannot write");
+      if (output->pb->error < 0) fail("cannot write: " + reason(output->pb->error));
+    }
+  }
+
+  void write_image(const Picture& picture) const {
+    write_still(part / fmt::format("{:06}.png", count), image::rgb8_from_picture(picture));
+  }
+};
 
 Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions& options)
     : state_(std::make_unique<State>()) {
