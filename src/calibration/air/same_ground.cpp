@@ -52,12 +52,40 @@ struct System {
   double yy = 0;
 
   // Adds the prior that `unknown` is `value`, with the relative error `trust`.
-  void expect(int unknown, double value, double trust);
-  // Adds a square in a view, and a band of far ground; `t` is the share of its light that arrives.
-  void add_square(const Row& row, double t);
-  void add_far(const Row& row, double t, double mean_light);
+  void expect(int unknown, double value, double trust) {
+    const double weight = 1 / (trust * value * trust * value);
+    aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
+  }
+
+  // Adds a square in a view; `t` is the share of its light that arrives.
+  void add_square(const Row& r, double t) {
+    Square& q = squares[static_cast<std::size_t>(r.square)];
+    const double air = 1 - t;
+    const double mixed = t * r.contrast * r.range * r.range / (kMixedRange * kMixedRange);
+    q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
+    q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
+    aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
+    aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
+    ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
+    yy += r.weight * r.light * r.light;
+  }
+
+  // Adds a band of far ground.
+  void add_far(const Row& r, double t, double mean_light) {
+    const double error = std::hypot(kMinFarError, kFarError * mean_light * t);
+    const double w = 1 / (error * error);
+    Unknowns row = Unknowns::Zero();
+    row[r.sector] = 1 - t, row[kMean] = t;
+    aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
+  }
+
   // Eliminates the squares' own light. It is called once, after all squares were added.
-  void eliminate_own_light();
+  void eliminate_own_light() {
+    for (const Square& q : squares) {
+      if (q.tt == 0) continue;
+      aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
+    }
+  }
 
   Unknowns solution() const { return aa.ldlt().solve(ay); }
   double cost() const { return yy - ay.dot(solution()); }
@@ -69,38 +97,6 @@ struct System {
     return own;
   }
 };
-
-void System::expect(int unknown, double value, double trust) {
-  const double weight = 1 / (trust * value * trust * value);
-  aa(unknown, unknown) += weight, ay[unknown] += weight * value, yy += weight * value * value;
-}
-
-void System::add_square(const Row& r, double t) {
-  Square& q = squares[static_cast<std::size_t>(r.square)];
-  const double air = 1 - t;
-  const double mixed = t * r.contrast * r.range * r.range / (kMixedRange * kMixedRange);
-  q.tt += r.weight * t * t, q.ty += r.weight * t * r.light;
-  q.ta[r.sector] += r.weight * t * air, q.ta[kMixed] += r.weight * t * mixed;
-  aa(r.sector, r.sector) += r.weight * air * air, aa(kMixed, kMixed) += r.weight * mixed * mixed;
-  aa(r.sector, kMixed) += r.weight * air * mixed, aa(kMixed, r.sector) += r.weight * air * mixed;
-  ay[r.sector] += r.weight * air * r.light, ay[kMixed] += r.weight * mixed * r.light;
-  yy += r.weight * r.light * r.light;
-}
-
-void System::eliminate_own_light() {
-  for (const Square& q : squares) {
-    if (q.tt == 0) continue;
-    aa -= q.ta * q.ta.transpose() / q.tt, ay -= q.ta * q.ty / q.tt, yy -= q.ty * q.ty / q.tt;
-  }
-}
-
-void System::add_far(const Row& r, double t, double mean_light) {
-  const double error = std::hypot(kMinFarError, kFarError * mean_light * t);
-  const double w = 1 / (error * error);
-  Unknowns row = Unknowns::Zero();
-  row[r.sector] = 1 - t, row[kMean] = t;
-  aa += w * row * row.transpose(), ay += w * r.light * row, yy += w * r.light * r.light;
-}
 
 // Least number of squares for a fit: fewer do not average out that the light of ground depends on
 // the direction from which it is seen.

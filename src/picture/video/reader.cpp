@@ -55,6 +55,17 @@ bool is_picture_file(const AVFormatContext& input) {
   return std::string_view(input.iformat->name).ends_with("_pipe") && input.nb_streams == 1;
 }
 
+std::optional<double> quantiser_of(const AVFrame& frame) {
+  const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_VIDEO_ENC_PARAMS);
+  if (data == nullptr) return std::nullopt;
+  auto* parameters = reinterpret_cast<AVVideoEncParams*>(data->data);
+  if (parameters->type != AV_VIDEO_ENC_PARAMS_H264) return std::nullopt;
+  double sum = 0;
+  for (unsigned i = 0; i < parameters->nb_blocks; ++i)
+    sum += parameters->qp + av_video_enc_params_block(parameters, i)->delta_qp;
+  return parameters->nb_blocks > 0 ? sum / parameters->nb_blocks : parameters->qp;
+}
+
 }  // namespace
 
 struct Reader::State {
@@ -105,395 +116,360 @@ struct Reader::State {
 
   static std::unique_ptr<State> opened(const std::filesystem::path& path,
                                        const ReaderOptions& options,
-                                       Warn warn);
-  void open_input();
-  void open_codec();
-  void warn_of_fields(const AVStream& stream) const;
-  void describe_stream(const AVStream& stream);
-  void describe(const AVFrame& first);
-  // Goes to `first_frame` without the frames before it; false where they have to be decoded.
-  bool go_to_first_frame();
-  // Decodes from a key packet up to a frame of the index; false where what is decoded is not what
-  // the index says, or refers to what is before the key packet.
-  bool decode_from(const KeyPacket& key, const FrameIndex& index, std::size_t target);
-  // Goes to the key frame at or before a time stamp; false where the file cannot.
-  bool seek(std::int64_t time_stamp);
-  // Fills `packet`. Returns a negative number at the end, as libav does.
-  int read_packet();
-  // Reads packets up to the key packet, which `packet` then holds; false where it does not come.
-  bool find_packet(const KeyPacket& key);
-  // Finds a key packet anywhere in the file.
-  bool go_to_packet(const KeyPacket& key);
-  // Fills `frame`; false at the end.
-  bool decode_one();
-  std::optional<Frame> next();
-  // Decodes one more frame; false at the end.
-  bool look_ahead();
-  bool begins_shot(std::int64_t index);
-  Frame to_frame();
-  void make_plain();
-};
-
-void Reader::State::open_input() {
-  std::error_code ignored;
-  std::string rate;
-  if (auto images = numbered_images(path)) {
-    if (images->has_gaps)
-      airtruth::warn(warn,
-                     path.string() + ": has gaps between the numbers of its " +
-                         std::to_string(images->files.size()) +
-                         " pictures; they are taken as consecutive frames");
-    pictures = std::move(images->files);
-    info.is_rate_stated = options.picture_rate_hz.has_value();
-    if (options.picture_rate_hz) {
-      const AVRational stated = av_d2q(*options.picture_rate_hz, kMaxRateTerm);
-      rate = fmt::format("{}/{}", stated.num, stated.den);
-    }
-  } else if (!std::filesystem::exists(path, ignored)) {
-    fail("does not exist; expected a video");
-  } else if (std::filesystem::is_directory(path, ignored)) {
-    fail("is a folder without numbered images; expected a video or images such as 000000.png");
-  } else if (std::filesystem::file_size(path, ignored) == 0 && !ignored) {
-    fail("is empty; expected a video");
+                                       Warn warn) {
+    auto state = std::make_unique<State>();
+    state->path = path;
+    state->options = options;
+    state->warn = std::move(warn);
+    state->open_input();
+    state->open_codec();
+    return state;
   }
-  input = pictures.empty() ? open_media(path, Media::kAny)
-                           : open_media(pictures.front(), Media::kNumberedImage, rate);
-  for (unsigned i = 0; i < input->nb_streams; ++i)
-    check_picture_size(
-        input->streams[i]->codecpar->width, input->streams[i]->codecpar->height, path);
-  const bool is_known = !options.with_timing && is_picture_file(*input);
-  if (const int found = is_known ? 0 : find_streams(*input); found < 0)
-    fail("cannot be read as a video: " + reason(found));
-  stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
-  if (stream_index < 0) fail("holds no video stream; expected a video");
-  const AVStream& stream = *input->streams[stream_index];
-  if ((stream.disposition & AV_DISPOSITION_ATTACHED_PIC) != 0)
-    fail("holds sound and a cover picture; expected a video");
-}
 
-void Reader::State::open_codec() {
-  const AVStream& stream = *input->streams[stream_index];
-  codec = decoder_of(stream, path);
-  codec->thread_count = options.threads > 0 ? options.threads : usable_processors();
-  codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
-  codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
-  if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
-  codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
-  if (const int opened = avcodec_open2(codec.get(), nullptr, nullptr); opened < 0)
-    fail(std::string("cannot be decoded (") + codec->codec->name + "): " + reason(opened));
-  packet.reset(av_packet_alloc());
-  frame.reset(av_frame_alloc());
-  info.codec = codec->codec->name;
-  describe_stream(stream);
-}
+  void open_input() {
+    std::error_code ignored;
+    std::string rate;
+    if (auto images = numbered_images(path)) {
+      if (images->has_gaps)
+        airtruth::warn(warn,
+                       path.string() + ": has gaps between the numbers of its " +
+                           std::to_string(images->files.size()) +
+                           " pictures; they are taken as consecutive frames");
+      pictures = std::move(images->files);
+      info.is_rate_stated = options.picture_rate_hz.has_value();
+      if (options.picture_rate_hz) {
+        const AVRational stated = av_d2q(*options.picture_rate_hz, kMaxRateTerm);
+        rate = fmt::format("{}/{}", stated.num, stated.den);
+      }
+    } else if (!std::filesystem::exists(path, ignored)) {
+      fail("does not exist; expected a video");
+    } else if (std::filesystem::is_directory(path, ignored)) {
+      fail("is a folder without numbered images; expected a video or images such as 000000.png");
+    } else if (std::filesystem::file_size(path, ignored) == 0 && !ignored) {
+      fail("is empty; expected a video");
+    }
+    input = pictures.empty() ? open_media(path, Media::kAny)
+                             : open_media(pictures.front(), Media::kNumberedImage, rate);
+    for (unsigned i = 0; i < input->nb_streams; ++i)
+      check_picture_size(
+          input->streams[i]->codecpar->width, input->streams[i]->codecpar->height, path);
+    const bool is_known = !options.with_timing && is_picture_file(*input);
+    if (const int found = is_known ? 0 : find_streams(*input); found < 0)
+      fail("cannot be read as a video: " + reason(found));
+    stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+    if (stream_index < 0) fail("holds no video stream; expected a video");
+    const AVStream& stream = *input->streams[stream_index];
+    if ((stream.disposition & AV_DISPOSITION_ATTACHED_PIC) != 0)
+      fail("holds sound and a cover picture; expected a video");
+  }
 
-void Reader::State::warn_of_fields(const AVStream& stream) const {
-  const AVFieldOrder order = stream.codecpar->field_order;
-  if (order == AV_FIELD_UNKNOWN || order == AV_FIELD_PROGRESSIVE) return;
-  airtruth::warn(warn,
-                 path.string() +
-                     ": is interlaced, and its frames are taken whole, each of two moments; "
-                     "`ffmpeg -i IN -vf bwdif OUT` makes a video of one picture for each field");
-}
+  void open_codec() {
+    const AVStream& stream = *input->streams[stream_index];
+    codec = decoder_of(stream, path);
+    codec->thread_count = options.threads > 0 ? options.threads : usable_processors();
+    codec->thread_type = FF_THREAD_FRAME | FF_THREAD_SLICE;
+    codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
+    if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
+    codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
+    if (const int opened = avcodec_open2(codec.get(), nullptr, nullptr); opened < 0)
+      fail(std::string("cannot be decoded (") + codec->codec->name + "): " + reason(opened));
+    packet.reset(av_packet_alloc());
+    frame.reset(av_frame_alloc());
+    info.codec = codec->codec->name;
+    describe_stream(stream);
+  }
 
-void Reader::State::describe_stream(const AVStream& stream) {
-  warn_of_fields(stream);
-  info.tags = tags_of(*input);
-  info.time_base = rational(stream.time_base);
-  const AVRational average =
-      stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
-  if (average.num > 0 && average.den > 0) info.frame_rate = rational(average);
-  info.variable_frame_rate =
-      stream.avg_frame_rate.num > 0 && stream.r_frame_rate.num > 0 &&
-      std::abs(av_q2d(stream.avg_frame_rate) / av_q2d(stream.r_frame_rate) - 1) > 0.01;
-  orientation = orientation_of_stream(stream);
-  info.rotation_deg = orientation.clockwise_deg;
-  info.frame_count_estimate = shown_frames(stream);
-  if (info.frame_count_estimate <= 0 && input->duration > 0)
-    info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
-        static_cast<double>(input->duration) / AV_TIME_BASE * info.frame_rate.value()));
-  if (!pictures.empty()) info.frame_count_estimate = std::ssize(pictures);
-  pts_step = std::max<std::int64_t>(
-      1, std::llround(1.0 / (info.frame_rate.value() * info.time_base.value())));
-  if (stream.sample_aspect_ratio.num > 0) info.sample_aspect = rational(stream.sample_aspect_ratio);
-}
-
-void Reader::State::describe(const AVFrame& first) {
-  check_picture_size(first.width, first.height, path);
-  const auto format = static_cast<AVPixelFormat>(first.format);
-  const char* name = av_get_pix_fmt_name(format);
-  const auto known = layout_of(format);
-  if (!known)
-    fail(std::string("has the pixel format ") + (name != nullptr ? name : "?") +
-         "; expected 4:2:0, 4:2:2, 4:4:4, grey or RGB (convert it: ffmpeg -i IN -pix_fmt yuv420p "
-         "OUT)");
-  layout = *known;
-  info.pixel_format = name;
-  if (layout.shift > 0)
+  void warn_of_fields(const AVStream& stream) const {
+    const AVFieldOrder order = stream.codecpar->field_order;
+    if (order == AV_FIELD_UNKNOWN || order == AV_FIELD_PROGRESSIVE) return;
     airtruth::warn(warn,
-                   path.string() + ": has " + std::to_string(8 + layout.shift) +
-                       " bits a sample; they are rounded to 8");
-  coded_colour.chroma = layout.chroma;
-  coded_colour.matrix =
-      layout.rgb ? image::Matrix::kRgb : matrix_of(first.colorspace, first.height);
-  if (!layout.rgb && coded_colour.matrix == image::Matrix::kRgb)
-    coded_colour.matrix = image::Matrix::kBt601;
-  const bool full = layout.full_range || first.color_range == AVCOL_RANGE_JPEG;
-  coded_colour.range = full ? image::Range::kFull : image::Range::kLimited;
-  coded_colour.siting = siting_of(first.chroma_location);
-  info.primaries_tag = first.color_primaries;
-  info.transfer_tag = first.color_trc;
-  info.width = first.width;
-  info.height = first.height;
-  info.colour = coded_colour;
-  if (info.rotation_deg == 90 || info.rotation_deg == 270) {
-    std::swap(info.width, info.height);
-    std::swap(info.sample_aspect.num, info.sample_aspect.den);
-    if (coded_colour.chroma == image::Chroma::k422) info.colour.chroma = image::Chroma::k440;
-    if (coded_colour.chroma == image::Chroma::k440) info.colour.chroma = image::Chroma::k422;
+                   path.string() +
+                       ": is interlaced, and its frames are taken whole, each of two moments; "
+                       "`ffmpeg -i IN -vf bwdif OUT` makes a video of one picture for each field");
   }
-}
 
-// libav's own reader of numbered images stops at the first gap in the numbers.
-int Reader::State::read_packet() {
-  if (pictures.empty()) return av_read_frame(input.get(), packet.get());
-  if (next_picture == pictures.size()) return AVERROR_EOF;
-  const std::string bytes = read_file(pictures[next_picture]);
-  if (const int made = av_new_packet(packet.get(), static_cast<int>(bytes.size())); made < 0)
-    return made;
-  std::copy(bytes.begin(), bytes.end(), packet->data);
-  packet->stream_index = stream_index;
-  packet->flags |= AV_PKT_FLAG_KEY;
-  packet->pts = packet->dts = static_cast<std::int64_t>(next_picture++);
-  packet->duration = 1;
-  return 0;
-}
+  void describe_stream(const AVStream& stream) {
+    warn_of_fields(stream);
+    info.tags = tags_of(*input);
+    info.time_base = rational(stream.time_base);
+    const AVRational average =
+        stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
+    if (average.num > 0 && average.den > 0) info.frame_rate = rational(average);
+    info.variable_frame_rate =
+        stream.avg_frame_rate.num > 0 && stream.r_frame_rate.num > 0 &&
+        std::abs(av_q2d(stream.avg_frame_rate) / av_q2d(stream.r_frame_rate) - 1) > 0.01;
+    orientation = orientation_of_stream(stream);
+    info.rotation_deg = orientation.clockwise_deg;
+    info.frame_count_estimate = shown_frames(stream);
+    if (info.frame_count_estimate <= 0 && input->duration > 0)
+      info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
+          static_cast<double>(input->duration) / AV_TIME_BASE * info.frame_rate.value()));
+    if (!pictures.empty()) info.frame_count_estimate = std::ssize(pictures);
+    pts_step = std::max<std::int64_t>(
+        1, std::llround(1.0 / (info.frame_rate.value() * info.time_base.value())));
+    if (stream.sample_aspect_ratio.num > 0)
+      info.sample_aspect = rational(stream.sample_aspect_ratio);
+  }
 
-bool Reader::State::find_packet(const KeyPacket& key) {
-  while (read_packet() >= 0) {
-    if (packet->stream_index == stream_index) {
-      const auto times = times_of(*packet, *input->streams[stream_index]->codecpar);
-      if (!times || times->dts > key.dts) break;
-      is_packet_held = times->pts == key.pts && times->dts == key.dts;
-      if (is_packet_held) return true;
+  void describe(const AVFrame& first) {
+    check_picture_size(first.width, first.height, path);
+    const auto format = static_cast<AVPixelFormat>(first.format);
+    const char* name = av_get_pix_fmt_name(format);
+    const auto known = layout_of(format);
+    if (!known)
+      fail(std::string("has the pixel format ") + (name != nullptr ? name : "?") +
+           "; expected 4:2:0, 4:2:2, 4:4:4, grey or RGB (convert it: ffmpeg -i IN -pix_fmt yuv420p "
+           "OUT)");
+    layout = *known;
+    info.pixel_format = name;
+    if (layout.shift > 0)
+      airtruth::warn(warn,
+                     path.string() + ": has " + std::to_string(8 + layout.shift) +
+                         " bits a sample; they are rounded to 8");
+    coded_colour.chroma = layout.chroma;
+    coded_colour.matrix =
+        layout.rgb ? image::Matrix::kRgb : matrix_of(first.colorspace, first.height);
+    if (!layout.rgb && coded_colour.matrix == image::Matrix::kRgb)
+      coded_colour.matrix = image::Matrix::kBt601;
+    const bool full = layout.full_range || first.color_range == AVCOL_RANGE_JPEG;
+    coded_colour.range = full ? image::Range::kFull : image::Range::kLimited;
+    coded_colour.siting = siting_of(first.chroma_location);
+    info.primaries_tag = first.color_primaries;
+    info.transfer_tag = first.color_trc;
+    info.width = first.width;
+    info.height = first.height;
+    info.colour = coded_colour;
+    if (info.rotation_deg == 90 || info.rotation_deg == 270) {
+      std::swap(info.width, info.height);
+      std::swap(info.sample_aspect.num, info.sample_aspect.den);
+      if (coded_colour.chroma == image::Chroma::k422) info.colour.chroma = image::Chroma::k440;
+      if (coded_colour.chroma == image::Chroma::k440) info.colour.chroma = image::Chroma::k422;
     }
-    av_packet_unref(packet.get());
   }
-  av_packet_unref(packet.get());
-  return false;
-}
 
-bool Reader::State::go_to_packet(const KeyPacket& key) {
-  if (av_seek_frame(input.get(), stream_index, key.dts, AVSEEK_FLAG_BACKWARD) >= 0 &&
-      find_packet(key))
-    return true;
-  // Some containers seek to a later packet. All packets from the first on are read instead.
-  input = open_media(path, Media::kAny);
-  return find_streams(*input) >= 0 && find_packet(key);
-}
-
-bool Reader::State::decode_one() {
-  for (;;) {
-    av_frame_unref(frame.get());
-    const int got = avcodec_receive_frame(codec.get(), frame.get());
-    // Of a stream that is cut within a group of pictures, the first ones refer to pictures that are
-    // gone. They are no frames, as ffmpeg, ffprobe and OpenCV count.
-    if (got == 0 && !has_whole_frame && (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) continue;
-    if (got == 0) {
-      has_whole_frame = true;
+  // Goes to `first_frame` without the frames before it; false where they have to be decoded.
+  bool go_to_first_frame() {
+    if (!pictures.empty()) {
+      next_picture = std::min(pictures.size(), static_cast<std::size_t>(options.first_frame));
+      decoded = static_cast<std::int64_t>(next_picture);
       return true;
     }
-    if (got == AVERROR_EOF) return false;
-    if (got != AVERROR(EAGAIN)) {
-      ++corrupt;
-      broken = true;
-      if (draining && got != AVERROR_INVALIDDATA) return false;
-      if (draining) continue;
-    }
-    if (draining) continue;
-    const int read = std::exchange(is_packet_held, false) ? 0 : read_packet();
-    if (read < 0) {
-      read_failed = read != AVERROR_EOF || (input->pb != nullptr && input->pb->error < 0);
-      draining = true;
-      avcodec_send_packet(codec.get(), nullptr);
-      continue;
-    }
-    if (packet->stream_index == stream_index) {
-      if ((packet->flags & AV_PKT_FLAG_CORRUPT) != 0) ++corrupt;
-      const int sent = avcodec_send_packet(codec.get(), packet.get());
-      if (sent < 0 && sent != AVERROR(EAGAIN)) {
-        ++corrupt;
-        broken = true;
-      }
-    }
-    av_packet_unref(packet.get());
-  }
-}
-
-namespace {
-
-std::optional<double> quantiser_of(const AVFrame& frame) {
-  const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_VIDEO_ENC_PARAMS);
-  if (data == nullptr) return std::nullopt;
-  auto* parameters = reinterpret_cast<AVVideoEncParams*>(data->data);
-  if (parameters->type != AV_VIDEO_ENC_PARAMS_H264) return std::nullopt;
-  double sum = 0;
-  for (unsigned i = 0; i < parameters->nb_blocks; ++i)
-    sum += parameters->qp + av_video_enc_params_block(parameters, i)->delta_qp;
-  return parameters->nb_blocks > 0 ? sum / parameters->nb_blocks : parameters->qp;
-}
-
-}  // namespace
-
-Frame Reader::State::to_frame() {
-  Frame result;
-  const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
-  if (bad) {
-    broken = true;
-  } else if (is_key_frame(*frame)) {
-    broken = false;
-  }
-  // Frames that depend on a damaged frame are damaged as well, up to the next key frame.
-  result.damaged = broken;
-  std::int64_t pts = frame->best_effort_timestamp;
-  if (pts == AV_NOPTS_VALUE) pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
-  if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
-  last_pts = pts;
-  result.pts = pts;
-  result.quantiser = quantiser_of(*frame);
-  return result;
-}
-
-// Stills use formats that no Picture can hold.
-void Reader::State::make_plain() {
-  const auto format = static_cast<AVPixelFormat>(frame->format);
-  const AVPixelFormat plain = plain_kin(format);
-  if (plain == AV_PIX_FMT_NONE) return;
-  if (info.pixel_format.empty() && av_pix_fmt_desc_get(format)->comp[0].depth > 8)
-    airtruth::warn(warn, path.string() + ": has more than 8 bits a sample; they are taken to 8");
-  frame = in_format(*frame, plain);
-}
-
-std::optional<Frame> Reader::State::next() {
-  if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
-  for (;;) {
-    if (!std::exchange(is_pending, false) && !decode_one()) {
-      finished = true;
-      return std::nullopt;
-    }
-    Frame result = to_frame();
+    if (!decode_one()) return false;
+    const std::int64_t first = frame->best_effort_timestamp;
     make_plain();
-    if (info.pixel_format.empty()) describe(*frame);
-    if (++decoded <= options.first_frame) continue;
-    const bool same =
-        frame->width == (info.rotation_deg % 180 == 0 ? info.width : info.height) &&
-        frame->height == (info.rotation_deg % 180 == 0 ? info.height : info.width) &&
-        av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame->format)) == info.pixel_format;
-    if (!same)
-      fail("changes its size or pixel format at frame " + std::to_string(decoded - 1) +
-           "; expected one for all");
-    if (!first_pts) first_pts = result.pts;
-    result.index = handed++;
-    result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
-    result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
-    return result;
-  }
-}
-
-bool Reader::State::decode_from(const KeyPacket& key, const FrameIndex& index, std::size_t target) {
-  if (!go_to_packet(key)) return false;
-  avcodec_flush_buffers(codec.get());
-  draining = broken = false;
-  auto expected = static_cast<std::size_t>(
-      std::lower_bound(index.pts.begin(), index.pts.end(), key.pts) - index.pts.begin());
-  const std::int64_t corrupt_before = corrupt;
-  while (decode_one()) {
-    const std::int64_t pts = frame->best_effort_timestamp;
-    // Pictures that are shown before the key frame may refer to those before it.
-    if (pts < key.pts) continue;
-    const bool is_whole =
-        frame->decode_error_flags == 0 && (frame->flags & AV_FRAME_FLAG_CORRUPT) == 0;
-    if (!is_whole || corrupt != corrupt_before || index.frame_at(pts) != expected) return false;
-    if (expected++ == target) return true;
-  }
-  return false;
-}
-
-bool Reader::State::go_to_first_frame() {
-  if (!pictures.empty()) {
-    next_picture = std::min(pictures.size(), static_cast<std::size_t>(options.first_frame));
-    decoded = static_cast<std::int64_t>(next_picture);
-    return true;
-  }
-  if (!decode_one()) return false;
-  const std::int64_t first = frame->best_effort_timestamp;
-  make_plain();
-  describe(*frame);
-  if (first == AV_NOPTS_VALUE) return false;
-  const auto index = index_frames(path, stream_index, first, options.first_frame);
-  const auto target = static_cast<std::size_t>(options.first_frame);
-  if (!index || target >= index->pts.size()) return false;
-  // The second key packet serves where the first is no true beginning: a picture after it refers
-  // to one before it.
-  for (const std::size_t back : {0u, 1u}) {
-    const auto key = index->key_for(target, back);
-    if (!key || !decode_from(*key, *index, target)) continue;
-    is_pending = true;
-    last_pts = AV_NOPTS_VALUE;
-    decoded = options.first_frame;
-    return true;
-  }
-  return false;
-}
-
-bool Reader::State::seek(std::int64_t pts) {
-  ahead.clear();
-  differences.clear();
-  finished = draining = broken = false;
-  avcodec_flush_buffers(codec.get());
-  last_pts = AV_NOPTS_VALUE;
-  if (!pictures.empty()) {
-    next_picture =
-        std::min(pictures.size() - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, pts)));
-  } else if (av_seek_frame(input.get(), stream_index, pts, AVSEEK_FLAG_BACKWARD) < 0) {
+    describe(*frame);
+    if (first == AV_NOPTS_VALUE) return false;
+    const auto index = index_frames(path, stream_index, first, options.first_frame);
+    const auto target = static_cast<std::size_t>(options.first_frame);
+    if (!index || target >= index->pts.size()) return false;
+    // The second key packet serves where the first is no true beginning: a picture after it refers
+    // to one before it.
+    for (const std::size_t back : {0u, 1u}) {
+      const auto key = index->key_for(target, back);
+      if (!key || !decode_from(*key, *index, target)) continue;
+      is_pending = true;
+      last_pts = AV_NOPTS_VALUE;
+      decoded = options.first_frame;
+      return true;
+    }
     return false;
   }
-  options.first_frame = 0;
-  options.frame_count.reset();
-  return true;
-}
 
-bool Reader::State::look_ahead() {
-  auto one = next();
-  if (!one) return false;
-  if (options.with_cuts)
-    if (const auto d = difference.add(one->picture)) differences.push_back(*d);
-  ahead.push_back(std::move(*one));
-  return true;
-}
-
-bool Reader::State::begins_shot(std::int64_t index) {
-  // The differences of the neighbours, as far as they exist.
-  while (first_difference < index - image::kCutNeighbours) {
-    differences.pop_front();
-    ++first_difference;
+  // Decodes from a key packet up to a frame of the index; false where what is decoded is not what
+  // the index says, or refers to what is before the key packet.
+  bool decode_from(const KeyPacket& key, const FrameIndex& index, std::size_t target) {
+    if (!go_to_packet(key)) return false;
+    avcodec_flush_buffers(codec.get());
+    draining = broken = false;
+    auto expected = static_cast<std::size_t>(
+        std::lower_bound(index.pts.begin(), index.pts.end(), key.pts) - index.pts.begin());
+    const std::int64_t corrupt_before = corrupt;
+    while (decode_one()) {
+      const std::int64_t pts = frame->best_effort_timestamp;
+      // Pictures that are shown before the key frame may refer to those before it.
+      if (pts < key.pts) continue;
+      const bool is_whole =
+          frame->decode_error_flags == 0 && (frame->flags & AV_FRAME_FLAG_CORRUPT) == 0;
+      if (!is_whole || corrupt != corrupt_before || index.frame_at(pts) != expected) return false;
+      if (expected++ == target) return true;
+    }
+    return false;
   }
-  if (index < first_difference) return false;
-  const std::vector<double> around(differences.begin(), differences.end());
-  return image::is_cut(around, static_cast<std::size_t>(index - first_difference));
-}
 
-std::unique_ptr<Reader::State> Reader::State::opened(const std::filesystem::path& path,
-                                                     const ReaderOptions& options,
-                                                     Warn warn) {
-  auto state = std::make_unique<State>();
-  state->path = path;
-  state->options = options;
-  state->warn = std::move(warn);
-  state->open_input();
-  state->open_codec();
-  return state;
-}
+  // Goes to the key frame at or before a time stamp; false where the file cannot.
+  bool seek(std::int64_t pts) {
+    ahead.clear();
+    differences.clear();
+    finished = draining = broken = false;
+    avcodec_flush_buffers(codec.get());
+    last_pts = AV_NOPTS_VALUE;
+    if (!pictures.empty()) {
+      next_picture =
+          std::min(pictures.size() - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, pts)));
+    } else if (av_seek_frame(input.get(), stream_index, pts, AVSEEK_FLAG_BACKWARD) < 0) {
+      return false;
+    }
+    options.first_frame = 0;
+    options.frame_count.reset();
+    return true;
+  }
+
+  // Fills `packet`. Returns a negative number at the end, as libav does. libav's own reader of
+  // numbered images stops at the first gap in the numbers.
+  int read_packet() {
+    if (pictures.empty()) return av_read_frame(input.get(), packet.get());
+    if (next_picture == pictures.size()) return AVERROR_EOF;
+    const std::string bytes = read_file(pictures[next_picture]);
+    if (const int made = av_new_packet(packet.get(), static_cast<int>(bytes.size())); made < 0)
+      return made;
+    std::copy(bytes.begin(), bytes.end(), packet->data);
+    packet->stream_index = stream_index;
+    packet->flags |= AV_PKT_FLAG_KEY;
+    packet->pts = packet->dts = static_cast<std::int64_t>(next_picture++);
+    packet->duration = 1;
+    return 0;
+  }
+
+  // Reads packets up to the key packet, which `packet` then holds; false where it does not come.
+  bool find_packet(const KeyPacket& key) {
+    while (read_packet() >= 0) {
+      if (packet->stream_index == stream_index) {
+        const auto times = times_of(*packet, *input->streams[stream_index]->codecpar);
+        if (!times || times->dts > key.dts) break;
+        is_packet_held = times->pts == key.pts && times->dts == key.dts;
+        if (is_packet_held) return true;
+      }
+      av_packet_unref(packet.get());
+    }
+    av_packet_unref(packet.get());
+    return false;
+  }
+
+  // Finds a key packet anywhere in the file.
+  bool go_to_packet(const KeyPacket& key) {
+    if (av_seek_frame(input.get(), stream_index, key.dts, AVSEEK_FLAG_BACKWARD) >= 0 &&
+        find_packet(key))
+      return true;
+    // Some containers seek to a later packet. All packets from the first on are read instead.
+    input = open_media(path, Media::kAny);
+    return find_streams(*input) >= 0 && find_packet(key);
+  }
+
+  // Fills `frame`; false at the end.
+  bool decode_one() {
+    for (;;) {
+      av_frame_unref(frame.get());
+      const int got = avcodec_receive_frame(codec.get(), frame.get());
+      // Of a stream that is cut within a group of pictures, the first ones refer to pictures that
+      // are gone. They are no frames, as ffmpeg, ffprobe and OpenCV count.
+      if (got == 0 && !has_whole_frame && (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0) continue;
+      if (got == 0) {
+        has_whole_frame = true;
+        return true;
+      }
+      if (got == AVERROR_EOF) return false;
+      if (got != AVERROR(EAGAIN)) {
+        ++corrupt;
+        broken = true;
+        if (draining && got != AVERROR_INVALIDDATA) return false;
+        if (draining) continue;
+      }
+      if (draining) continue;
+      const int read = std::exchange(is_packet_held, false) ? 0 : read_packet();
+      if (read < 0) {
+        read_failed = read != AVERROR_EOF || (input->pb != nullptr && input->pb->error < 0);
+        draining = true;
+        avcodec_send_packet(codec.get(), nullptr);
+        continue;
+      }
+      if (packet->stream_index == stream_index) {
+        if ((packet->flags & AV_PKT_FLAG_CORRUPT) != 0) ++corrupt;
+        const int sent = avcodec_send_packet(codec.get(), packet.get());
+        if (sent < 0 && sent != AVERROR(EAGAIN)) {
+          ++corrupt;
+          broken = true;
+        }
+      }
+      av_packet_unref(packet.get());
+    }
+  }
+
+  std::optional<Frame> next() {
+    if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
+    for (;;) {
+      if (!std::exchange(is_pending, false) && !decode_one()) {
+        finished = true;
+        return std::nullopt;
+      }
+      Frame result = to_frame();
+      make_plain();
+      if (info.pixel_format.empty()) describe(*frame);
+      if (++decoded <= options.first_frame) continue;
+      const bool same =
+          frame->width == (info.rotation_deg % 180 == 0 ? info.width : info.height) &&
+          frame->height == (info.rotation_deg % 180 == 0 ? info.height : info.width) &&
+          av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame->format)) == info.pixel_format;
+      if (!same)
+        fail("changes its size or pixel format at frame " + std::to_string(decoded - 1) +
+             "; expected one for all");
+      if (!first_pts) first_pts = result.pts;
+      result.index = handed++;
+      result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
+      result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
+      return result;
+    }
+  }
+
+  // Decodes one more frame; false at the end.
+  bool look_ahead() {
+    auto one = next();
+    if (!one) return false;
+    if (options.with_cuts)
+      if (const auto d = difference.add(one->picture)) differences.push_back(*d);
+    ahead.push_back(std::move(*one));
+    return true;
+  }
+
+  bool begins_shot(std::int64_t index) {
+    // The differences of the neighbours, as far as they exist.
+    while (first_difference < index - image::kCutNeighbours) {
+      differences.pop_front();
+      ++first_difference;
+    }
+    if (index < first_difference) return false;
+    const std::vector<double> around(differences.begin(), differences.end());
+    return image::is_cut(around, static_cast<std::size_t>(index - first_difference));
+  }
+
+  Frame to_frame() {
+    Frame result;
+    const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+    if (bad) {
+      broken = true;
+    } else if (is_key_frame(*frame)) {
+      broken = false;
+    }
+    // Frames that depend on a damaged frame are damaged as well, up to the next key frame.
+    result.damaged = broken;
+    std::int64_t pts = frame->best_effort_timestamp;
+    if (pts == AV_NOPTS_VALUE) pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
+    if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
+    last_pts = pts;
+    result.pts = pts;
+    result.quantiser = quantiser_of(*frame);
+    return result;
+  }
+
+  // Stills use formats that no Picture can hold.
+  void make_plain() {
+    const auto format = static_cast<AVPixelFormat>(frame->format);
+    const AVPixelFormat plain = plain_kin(format);
+    if (plain == AV_PIX_FMT_NONE) return;
+    if (info.pixel_format.empty() && av_pix_fmt_desc_get(format)->comp[0].depth > 8)
+      airtruth::warn(warn, path.string() + ": has more than 8 bits a sample; they are taken to 8");
+    frame = in_format(*frame, plain);
+  }
+};
 
 Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, Warn warn)
     : state_(State::opened(path, options, warn)) {
