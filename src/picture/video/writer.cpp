@@ -136,8 +136,6 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
 }
 
 Writer::~Writer() = default;
-Writer::Writer(Writer&&) noexcept = default;
-Writer& Writer::operator=(Writer&&) noexcept = default;
 
 void Writer::write(const Frame& frame) {
   State& s = *state_;

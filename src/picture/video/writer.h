@@ -48,8 +48,6 @@ class Writer {
  public:
   Writer(const std::filesystem::path& path, const StreamInfo& info, const WriterOptions& options);
   ~Writer();
-  Writer(Writer&&) noexcept;
-  Writer& operator=(Writer&&) noexcept;
 
   // Frames come in presentation order. Throws Error, for example when the disk is full.
   void write(const Frame& frame);

@@ -63,8 +63,6 @@ struct FrameByFrame::State {
 FrameByFrame::FrameByFrame(const scene::Scene& scene, const Options& options)
     : state_(std::make_unique<State>(scene, options)) {}
 FrameByFrame::~FrameByFrame() = default;
-FrameByFrame::FrameByFrame(FrameByFrame&&) noexcept = default;
-FrameByFrame& FrameByFrame::operator=(FrameByFrame&&) noexcept = default;
 
 std::optional<FrameByFrame::Made> FrameByFrame::next() {
   State& state = *state_;

@@ -34,8 +34,6 @@ class FrameByFrame {
   // the user's input, and Interrupted after options.stop.
   FrameByFrame(const scene::Scene& scene, const Options& options);
   ~FrameByFrame();
-  FrameByFrame(FrameByFrame&&) noexcept;
-  FrameByFrame& operator=(FrameByFrame&&) noexcept;
 
   // Empty after the last frame. Throws Interrupted after options.stop. With the method chroma-key
   // all calls, the constructor's too, belong to one thread.
