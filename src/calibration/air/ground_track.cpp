@@ -29,8 +29,8 @@ constexpr double kFarViewDistance = 2.5;
 // Search radius about the expected displacement of views that are farther apart.
 constexpr double kAround = 0.4;
 static_assert(2 * kFarViewDistance > kMaxBetweenViews);
-// Largest displacement at which two views are compared; the rest is for rounding and for the
-// neighbours of the maximum.
+// Largest displacement, by row or by column, at which two views are compared; the rest is for
+// rounding and for the neighbours of the maximum.
 constexpr double kMaxDisplacement = 2 * kFarViewDistance + kAround + 2 * kCoarseCell;
 // Least correlation of such views, 0 to 1, with which the path counts as followed. Below
 // kMinCoarseAgreement in the coarse search the fine one is not made: over coarse and fine cells the
@@ -189,12 +189,8 @@ struct Laid {
 class GroundMaps {
  public:
   // The level frame, in which the ground is z = 1, is that of `level_from_world`. `cell`: the size
-  // of a cell. `max_displacement`: the largest displacement, by row or by column, at which two maps
-  // are compared.
-  GroundMaps(const Scenery& scenery,
-             const Quaternion& level_from_world,
-             double cell,
-             double max_displacement)
+  // of a cell.
+  GroundMaps(const Scenery& scenery, const Quaternion& level_from_world, double cell)
       : cell_(cell), spectra_(scenery.views.size()) {
     const double cosine = least_cosine(scenery.lens);
     std::vector<Rectified> flat(spectra_.size());
@@ -206,7 +202,7 @@ class GroundMaps {
     for (const Rectified& view : flat) extent |= view.extent;
     if (extent.empty()) extent = {0, 0, 1, 1};
     // Padding: the cyclic correlation must not wrap around.
-    const int padding = static_cast<int>(std::ceil(max_displacement / cell_)) + 1;
+    const int padding = static_cast<int>(std::ceil(kMaxDisplacement / cell_)) + 1;
     const cv::Size size(cv::getOptimalDFTSize(extent.width + padding),
                         cv::getOptimalDFTSize(extent.height + padding));
     for_each_view(flat.size(), [&](std::size_t k) {
@@ -315,7 +311,7 @@ double far_agreement(const GroundTrack& track, const GroundMaps& maps) {
 GroundTrack track_at(const Scenery& scenery, double horizon_rad, double cell) {
   // The assumed horizon is higher, so the direction that was level lies below it.
   const Quaternion level_from_world(Eigen::AngleAxisd(-horizon_rad, right_of(scenery.views)));
-  const GroundMaps maps(scenery, level_from_world, cell, kMaxDisplacement);
+  const GroundMaps maps(scenery, level_from_world, cell);
   GroundTrack best = longest_run(registrations(maps),
                                  {0, {Eigen::Vector2d::Zero()}, horizon_rad, level_from_world, 0});
   best.agreement = far_agreement(best, maps);
