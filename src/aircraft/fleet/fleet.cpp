@@ -173,6 +173,16 @@ std::vector<std::string> names_that(const std::function<bool(const std::string&)
   return names;
 }
 
+// All that the model depends on and the state at cruise decides, as text. Two states with the same
+// outcomes give the same model.
+std::string outcomes_of(const wrapper::Wrapper& wrapper) {
+  std::string text = fmt::format("({}", wrapper.condition ? int{*wrapper.condition} : -1);
+  for (const wrapper::Animation& animation : wrapper.animations)
+    text += '|' + wrapper::effect_of(animation);
+  for (const wrapper::Wrapper& nested : wrapper.nested) text += outcomes_of(nested);
+  return text + ")";
+}
+
 }  // namespace
 
 const std::map<std::string, std::string>& left_out() {
@@ -444,20 +454,6 @@ Aircraft load_aircraft(const std::string& name,
                          aircraft.sources.end());
   return aircraft;
 }
-
-namespace {
-
-// All that the model depends on and the state at cruise decides, as text. Two states with the same
-// outcomes give the same model.
-std::string outcomes_of(const wrapper::Wrapper& wrapper) {
-  std::string text = fmt::format("({}", wrapper.condition ? int{*wrapper.condition} : -1);
-  for (const wrapper::Animation& animation : wrapper.animations)
-    text += '|' + wrapper::effect_of(animation);
-  for (const wrapper::Wrapper& nested : wrapper.nested) text += outcomes_of(nested);
-  return text + ")";
-}
-
-}  // namespace
 
 std::string configuration_of(const std::string& name, const model::LoadOptions& options) {
   if (wrapper::is_model_file(name) && wrapper::ending_of(name) != ".xml") return {};

@@ -415,22 +415,6 @@ Airframe airship() {
   return a;
 }
 
-}  // namespace
-
-std::span<const Airframe> airframes() {
-  static const std::vector<Airframe> all = {airship(),
-                                            glider(),
-                                            light_single(),
-                                            heavy_tandem(),
-                                            turbine_single(),
-                                            medium_twin(),
-                                            paraglider(),
-                                            trike()};
-  return all;
-}
-
-namespace {
-
 struct Made {
   const Airframe* airframe;
   const Livery* livery;
@@ -449,6 +433,18 @@ const std::map<std::string, Made>& made() {
 }
 
 }  // namespace
+
+std::span<const Airframe> airframes() {
+  static const std::vector<Airframe> all = {airship(),
+                                            glider(),
+                                            light_single(),
+                                            heavy_tandem(),
+                                            turbine_single(),
+                                            medium_twin(),
+                                            paraglider(),
+                                            trike()};
+  return all;
+}
 
 std::vector<std::string> made_names() {
   std::vector<std::string> names;

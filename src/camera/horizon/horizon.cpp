@@ -136,6 +136,17 @@ Parting best_parting(const Samples& samples) {
   return best;
 }
 
+// The area of the unit square about the origin in which normal . q < t, for a unit normal: the
+// trapezoid over t that two boxes of the widths |x| and |y| make of each other.
+double area_before(const Pixel& normal, double t) {
+  const double wide = std::max(std::abs(normal.x()), std::abs(normal.y()));
+  const double narrow = std::min(std::abs(normal.x()), std::abs(normal.y()));
+  if (t < 0) return 1 - area_before(normal, -t);
+  if (2 * t <= wide - narrow) return 0.5 + t / wide;
+  const double left = std::max(0.0, (wide + narrow) / 2 - t);
+  return 1 - left * left / (2 * wide * narrow);
+}
+
 }  // namespace
 
 Quaternion cam_from_level(const Vector3& up_in_cam) {
@@ -186,21 +197,6 @@ HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,
   const HorizonEdge edge = horizon_edge_beside({picture, lens_, mask()}, expected_up_in_cam);
   return {edge.up_in_cam, 0, edge.sharpness};
 }
-
-namespace {
-
-// The area of the unit square about the origin in which normal . q < t, for a unit normal: the
-// trapezoid over t that two boxes of the widths |x| and |y| make of each other.
-double area_before(const Pixel& normal, double t) {
-  const double wide = std::max(std::abs(normal.x()), std::abs(normal.y()));
-  const double narrow = std::min(std::abs(normal.x()), std::abs(normal.y()));
-  if (t < 0) return 1 - area_before(normal, -t);
-  if (2 * t <= wide - narrow) return 0.5 + t / wide;
-  const double left = std::max(0.0, (wide + narrow) / 2 - t);
-  return 1 - left * left / (2 * wide * narrow);
-}
-
-}  // namespace
 
 float share_below(const lens::Lens& lens,
                   const Vector3& up_in_cam,

@@ -68,6 +68,15 @@ void check_fov(double fov_deg, double limit_deg, const char* model, bool limit_a
                 (limit_allowed ? "at most " : "below ") + number(limit_deg) + " for a " + model);
 }
 
+double angle_between_pixels(const Lens& lens, const Pixel& a, const Pixel& b, const Pixel& centre) {
+  const auto angle_to = [&](const Pixel& p) {
+    const auto ray = lens.ray_from_pixel(p);
+    const auto axis = lens.ray_from_pixel(centre);
+    return ray && axis ? std::acos(std::clamp(ray->dot(*axis), -1.0, 1.0)) : lens.max_angle_rad();
+  };
+  return degrees(angle_to(a) + angle_to(b));
+}
+
 }  // namespace
 
 Lens::Lens(Model model, ImageSize size) : model_(std::move(model)), size_(size) {
@@ -96,19 +105,6 @@ double Lens::focal_px() const {
 }
 
 const char* Lens::name() const { return enum_name(static_cast<ModelKind>(model_.index())); }
-
-namespace {
-
-double angle_between_pixels(const Lens& lens, const Pixel& a, const Pixel& b, const Pixel& centre) {
-  const auto angle_to = [&](const Pixel& p) {
-    const auto ray = lens.ray_from_pixel(p);
-    const auto axis = lens.ray_from_pixel(centre);
-    return ray && axis ? std::acos(std::clamp(ray->dot(*axis), -1.0, 1.0)) : lens.max_angle_rad();
-  };
-  return degrees(angle_to(a) + angle_to(b));
-}
-
-}  // namespace
 
 double Lens::horizontal_fov_deg() const {
   const Pixel c = numbers_of(*this).principal_point_px;

@@ -23,30 +23,6 @@ constexpr const char* kHeader =
 constexpr const char* kRotationHeader = "frame,time_s,qw,qx,qy,qz,inliers,rms_px,state";
 constexpr std::size_t kCsvBlockBytes = std::size_t{1} << 16;  // chosen: few calls, little memory
 
-}  // namespace
-
-void write_csv(const AddBytes& add, const std::vector<FrameMotion>& motion) {
-  const bool rotations = !motion.empty() && motion.front().rotation;
-  std::string text = std::string(rotations ? kRotationHeader : kHeader) + "\n";
-  for (const FrameMotion& m : motion) {
-    check(m.rotation.has_value() == rotations, "one model of motion");
-    text += fmt::format("{},{}", m.frame, m.time_s);
-    if (rotations)
-      text += fmt::format(
-          ",{},{},{},{}", m.rotation->w(), m.rotation->x(), m.rotation->y(), m.rotation->z());
-    else
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) text += fmt::format(",{}", m.frame_from_reference(r, c));
-    text += fmt::format(",{},{},{}\n", m.inliers, m.rms_px, enum_name(m.state));
-    if (text.size() < kCsvBlockBytes) continue;
-    add(text);
-    text.clear();
-  }
-  add(text);
-}
-
-namespace {
-
 // cos(85 degrees), chosen: there a pixel of the frame covers 1 / cos^2 = 130 times its length on
 // the plane, so that the plane holds no detail.
 constexpr double kMinDepthRatio = 0.0872;
@@ -68,6 +44,26 @@ bool is_within_reach(const Homography& frame_from_reference, int width, int heig
 }
 
 }  // namespace
+
+void write_csv(const AddBytes& add, const std::vector<FrameMotion>& motion) {
+  const bool rotations = !motion.empty() && motion.front().rotation;
+  std::string text = std::string(rotations ? kRotationHeader : kHeader) + "\n";
+  for (const FrameMotion& m : motion) {
+    check(m.rotation.has_value() == rotations, "one model of motion");
+    text += fmt::format("{},{}", m.frame, m.time_s);
+    if (rotations)
+      text += fmt::format(
+          ",{},{},{},{}", m.rotation->w(), m.rotation->x(), m.rotation->y(), m.rotation->z());
+    else
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) text += fmt::format(",{}", m.frame_from_reference(r, c));
+    text += fmt::format(",{},{},{}\n", m.inliers, m.rms_px, enum_name(m.state));
+    if (text.size() < kCsvBlockBytes) continue;
+    add(text);
+    text.clear();
+  }
+  add(text);
+}
 
 FrameMotion ReachGuard::next(FrameMotion motion) {
   if (motion.rotation) return motion;

@@ -43,6 +43,13 @@ constexpr double kLooselySettledPx = 0.5;
 // The longest way from the guess, in samples.
 constexpr double kMaxWayPx = 5;
 
+// A patch is found where what remains is at most this share of the patch's contrast.
+constexpr double kMaxUnlikeness = 0.7;
+
+double scale_of(int level) { return static_cast<double>(1 << level); }
+
+double squared(double x, double y) { return x * x + y * y; }
+
 }  // namespace
 
 std::optional<Patch> Patch::at(const cv::Mat& grey, int x, int y) {
@@ -137,12 +144,6 @@ Patch::Difference Patch::difference(const cv::Mat& grey, int x_16th, int y_16th)
   return all;
 }
 
-namespace {
-
-double squared(double x, double y) { return x * x + y * y; }
-
-}  // namespace
-
 std::optional<Patch::Found> Patch::find(const cv::Mat& grey, double guess_x, double guess_y) const {
   double x = guess_x, y = guess_y;
   for (int round = 0; round < kMaxRounds; ++round) {
@@ -186,15 +187,6 @@ Levels levels_of(const cv::Mat& grey) {
   }
   return levels;
 }
-
-namespace {
-
-// A patch is found where what remains is at most this share of the patch's contrast.
-constexpr double kMaxUnlikeness = 0.7;
-
-double scale_of(int level) { return static_cast<double>(1 << level); }
-
-}  // namespace
 
 std::optional<LevelPatch> LevelPatch::around(const Levels& levels,
                                              int level,

@@ -20,10 +20,6 @@ cv::Matx33d plane_map(const Homography& h, int sx, int sy) {
   return {m(0, 0), m(0, 1), m(0, 2), m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2)};
 }
 
-}  // namespace
-
-namespace {
-
 // Calls warp(source, target, sx, sy, black) for each plane, where `black` fills what has no source.
 template <typename Warp>
 image::Picture each_plane(const image::Picture& picture, const Warp& warp) {

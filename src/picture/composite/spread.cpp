@@ -28,6 +28,14 @@ std::vector<float> placed(const PixelBox& from, const PixelBox& to, const Get& g
   return plane;
 }
 
+// A loop that the compiler makes of vectors; each sum of a blur has one order, that of the kernel.
+AIRTRUTH_FOR_VECTORS void add_scaled(const float* __restrict from,
+                                     float weight,
+                                     int count,
+                                     float* __restrict to) {
+  for (int i = 0; i < count; ++i) to[i] += weight * from[i];
+}
+
 }  // namespace
 
 void add_haze(image::Layer& layer,
@@ -58,18 +66,6 @@ std::vector<float> gaussian(double sigma_px) {
   for (float& weight : kernel) weight = static_cast<float>(weight / total);
   return kernel;
 }
-
-namespace {
-
-// A loop that the compiler makes of vectors; each sum of a blur has one order, that of the kernel.
-AIRTRUTH_FOR_VECTORS void add_scaled(const float* __restrict from,
-                                     float weight,
-                                     int count,
-                                     float* __restrict to) {
-  for (int i = 0; i < count; ++i) to[i] += weight * from[i];
-}
-
-}  // namespace
 
 void blur(std::vector<float>& values,
           int width,

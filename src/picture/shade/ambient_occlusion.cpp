@@ -144,6 +144,25 @@ void find_given_back(const Model::Impl& model,
   occlusion.given_back /= static_cast<float>(about_z.size());
 }
 
+// An entry has for each corner its open share, `towards` and `given_back`.
+using StoredCorner = std::array<float, 7>;
+
+template <typename Occlusion, typename Use>
+void each_stored(Occlusion& occlusion, const Use& use) {
+  for (auto& of_part : occlusion)
+    for (auto& triangle : of_part)
+      for (auto* side : {&triangle.front, &triangle.back})
+        for (auto& corner : side->corner) use(corner);
+}
+
+bool is_sound(const AmbientOcclusion& occlusion) {
+  // Largest deviation of a stored length from its bound by rounding.
+  constexpr float kRounding = 1e-3f;
+  const auto within = [](const Eigen::Vector3f& v) { return v.norm() <= 1 + kRounding; };
+  return occlusion.open_share >= 0 && occlusion.open_share <= 1 && within(occlusion.towards) &&
+         within(occlusion.given_back);
+}
+
 }  // namespace
 
 ModelOcclusion model_occlusion(const Model::Impl& model) {
@@ -182,29 +201,6 @@ disk_cache::Key occlusion_key(const model::Mesh& mesh, std::string_view tracer) 
   }
   return key;
 }
-
-namespace {
-
-// An entry has for each corner its open share, `towards` and `given_back`.
-using StoredCorner = std::array<float, 7>;
-
-template <typename Occlusion, typename Use>
-void each_stored(Occlusion& occlusion, const Use& use) {
-  for (auto& of_part : occlusion)
-    for (auto& triangle : of_part)
-      for (auto* side : {&triangle.front, &triangle.back})
-        for (auto& corner : side->corner) use(corner);
-}
-
-bool is_sound(const AmbientOcclusion& occlusion) {
-  // Largest deviation of a stored length from its bound by rounding.
-  constexpr float kRounding = 1e-3f;
-  const auto within = [](const Eigen::Vector3f& v) { return v.norm() <= 1 + kRounding; };
-  return occlusion.open_share >= 0 && occlusion.open_share <= 1 && within(occlusion.towards) &&
-         within(occlusion.given_back);
-}
-
-}  // namespace
 
 std::string stored(const ModelOcclusion& occlusion) {
   std::string body;

@@ -59,6 +59,15 @@ void copy_component(const AVFrame& frame,
   }
 }
 
+using Samples =
+    Eigen::Map<Eigen::Array<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>,
+               Eigen::Unaligned,
+               Eigen::OuterStride<>>;
+
+Samples samples_of(Plane& plane) {
+  return {plane.row(0), plane.height, plane.width, Eigen::OuterStride<>(plane.stride)};
+}
+
 }  // namespace
 
 std::string reason(int error) {
@@ -207,19 +216,6 @@ Orientation orientation_of(const std::int32_t* m) {
   result.clockwise_deg = ((quarter % 4) + 4) % 4 * 90;
   return result;
 }
-
-namespace {
-
-using Samples =
-    Eigen::Map<Eigen::Array<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>,
-               Eigen::Unaligned,
-               Eigen::OuterStride<>>;
-
-Samples samples_of(Plane& plane) {
-  return {plane.row(0), plane.height, plane.width, Eigen::OuterStride<>(plane.stride)};
-}
-
-}  // namespace
 
 Picture oriented(Picture picture, const Orientation& orientation) {
   const int turn_deg = orientation.clockwise_deg;

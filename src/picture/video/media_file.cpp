@@ -67,6 +67,10 @@ void add_tags(const AVDictionary* tags, std::map<std::string, std::string>& resu
   }
 }
 
+// Packets whose pictures are shown later than those of packets after them are at most this many
+// apart: 16 reference pictures of H.264 and HEVC.
+constexpr std::int64_t kMaxReordered = 16;
+
 }  // namespace
 
 std::span<const char* const> readable_containers() { return kContainers; }
@@ -136,14 +140,6 @@ void check_picture_size(int width, int height, const fs::path& path) {
                           kMaxPixels / 1'000'000),
               {path.string()});
 }
-
-namespace {
-
-// Packets whose pictures are shown later than those of packets after them are at most this many
-// apart: 16 reference pictures of H.264 and HEVC.
-constexpr std::int64_t kMaxReordered = 16;
-
-}  // namespace
 
 std::optional<KeyPacket> times_of(const AVPacket& packet, const AVCodecParameters& codec) {
   const bool in_order = codec.video_delay == 0;

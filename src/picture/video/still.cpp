@@ -118,15 +118,26 @@ bool is_jpeg(const fs::path& path) {
   return jpeg;
 }
 
-}  // namespace
+// A pixel of a mask's picture is free from this luma on.
+constexpr int kLight = 128;
 
-void check_still_output(const fs::path& path, bool overwrite) {
-  if (path.empty()) return;
-  is_jpeg(path);
-  check_output_file(path, overwrite);
+// R'G'B' is read where it lies: its planes are G, B and R. Other pictures are converted.
+void fill_mask(const image::Picture& picture, image::Mask& mask) {
+  const bool is_rgb = picture.colour.matrix == image::Matrix::kRgb;
+  const image::Rgb8 packed = is_rgb ? image::Rgb8{} : image::rgb8_from_picture(picture);
+  const auto width = static_cast<std::size_t>(picture.width);
+  std::array<std::vector<std::uint8_t>, 3> components;  // of a row
+  for (auto& component : components) component.resize(is_rgb ? 0 : width);
+  for (int y = 0; y < picture.height; ++y) {
+    auto* row = &mask.free[static_cast<std::size_t>(y) * width];
+    const std::uint8_t* green = is_rgb ? picture.planes[0].row(y) : components[1].data();
+    const std::uint8_t* blue = is_rgb ? picture.planes[1].row(y) : components[2].data();
+    const std::uint8_t* red = is_rgb ? picture.planes[2].row(y) : components[0].data();
+    for (std::size_t c = 0; c < 3 && !is_rgb; ++c)
+      image::take_every(packed.at(0, y) + c, 3, picture.width, components[c].data());
+    image::mark_light(red, green, blue, kLight, picture.width, row);
+  }
 }
-
-namespace {
 
 image::Picture first_picture(const fs::path& path) {
   std::error_code unknown;
@@ -142,6 +153,12 @@ image::Picture first_picture(const fs::path& path) {
 }
 
 }  // namespace
+
+void check_still_output(const fs::path& path, bool overwrite) {
+  if (path.empty()) return;
+  is_jpeg(path);
+  check_output_file(path, overwrite);
+}
 
 std::pair<int, int> size_of_still(const fs::path& path) {
   const InputPtr input = open_media(path, Media::kNumberedImage);
@@ -191,31 +208,6 @@ void write_still(const fs::path& path, const image::Picture& picture, Flush flus
   if (!is_jpeg(path)) return write_still(path, image::rgb8_from_picture(picture), flush);
   write_file(path, encoded(jpeg_frame(picture), kQuality, path), flush);
 }
-
-namespace {
-
-// A pixel of a mask's picture is free from this luma on.
-constexpr int kLight = 128;
-
-// R'G'B' is read where it lies: its planes are G, B and R. Other pictures are converted.
-void fill_mask(const image::Picture& picture, image::Mask& mask) {
-  const bool is_rgb = picture.colour.matrix == image::Matrix::kRgb;
-  const image::Rgb8 packed = is_rgb ? image::Rgb8{} : image::rgb8_from_picture(picture);
-  const auto width = static_cast<std::size_t>(picture.width);
-  std::array<std::vector<std::uint8_t>, 3> components;  // of a row
-  for (auto& component : components) component.resize(is_rgb ? 0 : width);
-  for (int y = 0; y < picture.height; ++y) {
-    auto* row = &mask.free[static_cast<std::size_t>(y) * width];
-    const std::uint8_t* green = is_rgb ? picture.planes[0].row(y) : components[1].data();
-    const std::uint8_t* blue = is_rgb ? picture.planes[1].row(y) : components[2].data();
-    const std::uint8_t* red = is_rgb ? picture.planes[2].row(y) : components[0].data();
-    for (std::size_t c = 0; c < 3 && !is_rgb; ++c)
-      image::take_every(packed.at(0, y) + c, 3, picture.width, components[c].data());
-    image::mark_light(red, green, blue, kLight, picture.width, row);
-  }
-}
-
-}  // namespace
 
 image::Mask read_mask(const fs::path& path, int width, int height) {
   const image::Picture picture = first_picture(path);

@@ -59,6 +59,18 @@ std::size_t middle_of(const scene::Scene& scene, const std::vector<std::size_t>&
   });
 }
 
+std::optional<passage::Approach> nearest_of(const setup::World& world,
+                                            const Party& party,
+                                            double duration_s) {
+  std::optional<passage::Approach> nearest;
+  for (const std::size_t actor : party.actors) {
+    const auto one =
+        passage::closest_approach(world.camera, world.actors[actor].path, 0, duration_s);
+    if (one && (!nearest || one->distance_m < nearest->distance_m)) nearest = one;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<Party> parties_of(const scene::Scene& scene) {
@@ -101,22 +113,6 @@ std::vector<PreviewRow> preview_rows(
   }
   return rows;
 }
-
-namespace {
-
-std::optional<passage::Approach> nearest_of(const setup::World& world,
-                                            const Party& party,
-                                            double duration_s) {
-  std::optional<passage::Approach> nearest;
-  for (const std::size_t actor : party.actors) {
-    const auto one =
-        passage::closest_approach(world.camera, world.actors[actor].path, 0, duration_s);
-    if (one && (!nearest || one->distance_m < nearest->distance_m)) nearest = one;
-  }
-  return nearest;
-}
-
-}  // namespace
 
 std::vector<std::string> approach_lines(const setup::World& world,
                                         const std::vector<Party>& parties,

@@ -86,6 +86,20 @@ struct Excess {
   double value = 0;   // m/s, or degrees of bank
 };
 
+struct Lowest {
+  double down_m = -std::numeric_limits<double>::infinity();
+  double time_s = 0;
+};
+
+// Where a path is lowest from 0 to end_s.
+Lowest lowest(const trajectory::Path& path, double end_s) {
+  Lowest lowest;
+  for (const double time_s : sampled_times(0, end_s))
+    if (const auto state = path.at(time_s); state && state->position_in_world.z() > lowest.down_m)
+      lowest = {state->position_in_world.z(), time_s};
+  return lowest;
+}
+
 }  // namespace
 
 std::string words_beyond_limits(const std::string& aircraft,
@@ -128,24 +142,6 @@ void warn_not_flyable(const scene::Intruder& intruder,
     warn(to_warn,
          fmt::format("{}: intruder '{}': {}", to_string(intruder.where), intruder.id, words));
 }
-
-namespace {
-
-struct Lowest {
-  double down_m = -std::numeric_limits<double>::infinity();
-  double time_s = 0;
-};
-
-// Where a path is lowest from 0 to end_s.
-Lowest lowest(const trajectory::Path& path, double end_s) {
-  Lowest lowest;
-  for (const double time_s : sampled_times(0, end_s))
-    if (const auto state = path.at(time_s); state && state->position_in_world.z() > lowest.down_m)
-      lowest = {state->position_in_world.z(), time_s};
-  return lowest;
-}
-
-}  // namespace
 
 void warn_below_ground(const scene::Scene& scene,
                        const World& world,
