@@ -27,11 +27,6 @@ Bearings FitLimits::bearings(const Vector3& in_reference,
   return {in_reference, in_cam, nearness_of(in_reference, *up_in_reference, frames)};
 }
 
-void KeyFrames::clear() {
-  keys_.clear();
-  links_.clear();
-}
-
 std::vector<Sighting> KeyFrames::find(const Levels& now,
                                       std::int64_t frame,
                                       const Quaternion& guess,

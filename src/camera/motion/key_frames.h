@@ -70,7 +70,6 @@ struct FitLimits {
 class KeyFrames {
  public:
   bool is_empty() const { return keys_.empty(); }
-  void clear();
 
   // The landmarks that are found in a frame whose rotation (cam_from_reference) is about `guess`:
   // those of the newest key frame, and fewer of each older one.

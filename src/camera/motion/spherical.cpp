@@ -199,7 +199,7 @@ class Spherical : public Follower {
     const CornerLoss loss =
         corner_loss(fresh, previous_.size(), survivors, bridged_in_row_, begins_shot);
     if (loss.starts_anew) {
-      keys_.clear();
+      keys_ = KeyFrames();
       make_key(now, {}, {});
       stray_rad_ = kUnknownTurnRad;
       bridged_in_row_ = 0;

@@ -15,7 +15,16 @@ namespace airtruth::composite {
 // a code value.
 class TransferCurve {
  public:
-  explicit TransferCurve(const image::ToneCurve& tone);
+  explicit TransferCurve(const image::ToneCurve& tone) {
+    const auto linear = [&](double coded) { return tone.linear_from_coded(coded); };
+    const auto coded = [&](double light) { return tone.coded_from_linear(light); };
+    // 8-bit Y'CbCr reaches from -1.3 to 2.3.
+    decode_ = tabulate(2.5f, 2560, linear);
+    // A higher exponent has a stronger curvature near black.
+    encode_ = tabulate(1.0f, tone.gamma == 0 ? 4096 : 65536, coded);
+    encode_bright_ = tabulate(10.0f, 2048, coded);
+  }
+
   float linear_from_coded(float coded) const { return odd(decode_, coded); }
   float coded_from_linear(float linear) const {
     return odd(std::abs(linear) <= 1 ? encode_ : encode_bright_, linear);
@@ -28,7 +37,13 @@ class TransferCurve {
     std::vector<float> values;
   };
   template <typename Function>
-  static Table tabulate(float high, int entries, Function function);
+  static Table tabulate(float high, int entries, Function function) {
+    Table table;
+    table.scale = static_cast<float>(entries) / high;
+    for (int i = 0; i <= entries; ++i)
+      table.values.push_back(static_cast<float>(function(static_cast<double>(high) * i / entries)));
+    return table;
+  }
 
   static float odd(const Table& table, float x) {
     const float place = std::abs(x) * table.scale;
