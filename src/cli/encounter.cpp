@@ -9,8 +9,7 @@
 
 #include "cli/commands.h"
 #include "encounter/encounter_model/sampler.h"
-#include "encounter/sets/sample.h"
-#include "encounter/sets/write_set.h"
+#include "encounter/sets/sets.h"
 #include "encounter/track/track.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"

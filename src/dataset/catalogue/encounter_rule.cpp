@@ -17,7 +17,7 @@
 #include "dataset/catalogue/meeting.h"
 #include "encounter/encounter_model/sampler.h"
 #include "encounter/pairing/strata.h"
-#include "encounter/sets/draw_encounter.h"
+#include "encounter/sets/sets.h"
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"

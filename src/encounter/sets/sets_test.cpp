@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "encounter/sets/sets.h"
+
 #include <filesystem>
 #include <iterator>
 
 #include <gtest/gtest.h>
 
-#include "encounter/sets/write_set.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"

@@ -47,8 +47,7 @@ std::vector<track::Encounter> parse_encounters(std::string_view bytes, const fs:
 std::vector<track::Encounter> fitted(std::vector<track::Encounter> encounters,
                                      TracksFormat format,
                                      const fs::path& of) {
-  const bool holds_many = format == TracksFormat::kCsv || format == TracksFormat::kWaypoints;
-  if (holds_many || encounters.size() <= 1) return encounters;
+  if (holds_many(format) || encounters.size() <= 1) return encounters;
   const bool is_of_one = std::ranges::all_of(
       encounters, [](const track::Encounter& each) { return each.aircraft.size() == 1; });
   if (!is_of_one)

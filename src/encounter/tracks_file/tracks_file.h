@@ -29,6 +29,11 @@ constexpr auto enum_names(TracksFormat) {
                                                 {TracksFormat::kWaypoints, "dat"}});
 }
 
+// Whether a file holds any number of encounters.
+constexpr bool holds_many(TracksFormat format) {
+  return format == TracksFormat::kCsv || format == TracksFormat::kWaypoints;
+}
+
 // The format that the extension of a file names. Throws Error for another extension.
 TracksFormat tracks_format_of(const fs::path& file);
 

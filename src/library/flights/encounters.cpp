@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <airtruth/encounters.h>
 
-#include "encounter/sets/sample.h"
-#include "encounter/sets/write_set.h"
+#include "encounter/sets/sets.h"
 #include "encounter/track/track.h"
 #include "foundation/geometry/transform.h"
 
