@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
-#include "foundation/lazy_library/places.h"
 
 namespace airtruth::lazy_library {
 namespace {

@@ -18,7 +18,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/lazy_library/places.h"
+#include "foundation/lazy_library/lazy_library.h"
 
 extern "C" char** environ;
 

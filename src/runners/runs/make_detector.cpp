@@ -10,7 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
-#include "foundation/lazy_library/places.h"
+#include "foundation/lazy_library/lazy_library.h"
 #include "runners/classical/classical.h"
 #include "runners/detector/detector.h"
 #include "runners/network/model_description.h"
