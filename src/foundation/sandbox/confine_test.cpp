@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/sandbox/confine.h"
-
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -13,6 +11,8 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "foundation/sandbox/child.h"
 
 namespace airtruth::sandbox {
 namespace {
