@@ -10,7 +10,6 @@
 
 #include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/table_text.h"
-#include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
 

@@ -8,7 +8,6 @@
 
 #include "encounter/tracks_file/formats.h"
 #include "encounter/tracks_file/table_text.h"
-#include "encounter/tracks_file/track_builder.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
