@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/synthetic/land.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "scene/synthetic/rays.h"
+#include "scene/synthetic/tile.h"
 
 namespace airtruth::synthetic {
 namespace {

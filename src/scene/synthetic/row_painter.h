@@ -10,8 +10,8 @@
 #include "foundation/geometry/transform.h"
 #include "scene/synthetic/ground.h"
 #include "scene/synthetic/own_aircraft.h"
-#include "scene/synthetic/panorama.h"
 #include "scene/synthetic/rays.h"
+#include "scene/synthetic/sky.h"
 
 namespace airtruth::synthetic {
 
