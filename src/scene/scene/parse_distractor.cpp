@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -41,14 +42,7 @@ TableReader::Keys all_keys() {
   return keys;
 }
 
-std::array<double, 3> colour_in(const TableReader& table,
-                                const char* key,
-                                const std::array<double, 3>& otherwise) {
-  const auto colour = table.vector(key, kColour);
-  return colour ? std::array<double, 3>{colour->x(), colour->y(), colour->z()} : otherwise;
-}
-
-Pixel pixel_of(const std::vector<double>& pair) { return {pair[0], pair[1]}; }
+using LinearColour = std::array<double, 3>;
 
 Distractor distractor_in(const TableReader& table, DistractorKind kind) {
   Distractor one =
@@ -62,9 +56,9 @@ Distractor distractor_in(const TableReader& table, DistractorKind kind) {
     table.refuse({"colour"}, enum_name(kind));
   } else {
     table.refuse(kBirdKeys, enum_name(kind));
-    one.colour = colour_in(table, "colour", one.colour);
+    one.colour = table.tuple<LinearColour>("colour", kColour).value_or(one.colour);
   }
-  one.arm_colour = colour_in(table, "arm_colour", one.colour);
+  one.arm_colour = table.tuple<LinearColour>("arm_colour", kColour).value_or(one.colour);
   if (kind != DistractorKind::kMultirotor) {
     table.refuse({"rotors", "arm_colour"}, enum_name(kind));
   } else if (const auto rotors = table.whole("rotors", 4, 8)) {
@@ -80,8 +74,9 @@ void read_drift(const TableReader& table, Intruder& intruder) {
   table.exclude(
       "position_ned_m",
       {"waypoints_ned_m", "speed_mps", "times_s", "path_file", "encounter", "seen", "start_s"});
-  intruder.position_ned_m = table.vector("position_ned_m", kPosition);
-  intruder.velocity_ned_mps = table.vector("velocity_ned_mps", kVelocity).value_or(Vector3::Zero());
+  intruder.position_ned_m = table.tuple<Vector3>("position_ned_m", kPosition);
+  intruder.velocity_ned_mps =
+      table.tuple<Vector3>("velocity_ned_mps", kVelocity).value_or(Vector3::Zero());
 }
 
 Intruder intruder_from(const TableReader& table, DistractorKind kind) {
@@ -91,7 +86,7 @@ Intruder intruder_from(const TableReader& table, DistractorKind kind) {
   intruder.where = table.where();
   intruder.aircraft = enum_name(kind);
   intruder.distractor = distractor_in(table, kind);
-  intruder.offset_ned_m = table.vector("offset_ned_m", kPosition).value_or(Vector3::Zero());
+  intruder.offset_ned_m = table.tuple<Vector3>("offset_ned_m", kPosition).value_or(Vector3::Zero());
   if (table.has("position_ned_m"))
     read_drift(table, intruder);
   else if (table.has("velocity_ned_mps"))
@@ -116,7 +111,7 @@ std::vector<Intruder> flock_in(const TableReader& table,
 }
 
 void read_place(const TableReader& table, LensMark& mark) {
-  if (const auto pair = table.tuple("pixel", {kPixel, kPixel})) mark.pixel = pixel_of(*pair);
+  mark.pixel = table.tuple<Pixel>("pixel", kPixel);
   const bool follows_sun = mark.kind == DistractorKind::kGlint && !mark.pixel;
   if (!mark.pixel && !follows_sun)
     throw Error(fmt::format("[[distractor]] of kind \"{}\" has no pixel; expected the place of its "
@@ -129,8 +124,7 @@ void read_place(const TableReader& table, LensMark& mark) {
   } else if (table.has("along")) {
     table.fail("along", "along is for a glint that follows the sun, without a pixel");
   }
-  if (const auto pair = table.tuple("velocity_px_s", {kSpotSpeed, kSpotSpeed}))
-    mark.velocity_px_s = pixel_of(*pair);
+  mark.velocity_px_s = table.tuple<Pixel>("velocity_px_s", kSpotSpeed).value_or(mark.velocity_px_s);
 }
 
 LensMark mark_from(const TableReader& table, DistractorKind kind) {
@@ -151,7 +145,7 @@ LensMark mark_from(const TableReader& table, DistractorKind kind) {
                            shown(mark.size_px)));
   mark.softness = table.number("softness", kShare).value_or(mark.softness);
   mark.opacity = table.number("opacity", kOpacity).value_or(mark.opacity);
-  mark.colour = colour_in(table, "colour", mark.colour);
+  mark.colour = table.tuple<LinearColour>("colour", kColour).value_or(mark.colour);
   mark.begin_s = table.number("begin_s", kTime).value_or(mark.begin_s);
   if (mark.end_s) *mark.end_s += mark.begin_s;
   if (const auto end_s = table.number("end_s", kTime)) mark.end_s = end_s;

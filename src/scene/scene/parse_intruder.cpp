@@ -21,14 +21,14 @@ Seen seen_from(const TableReader& table) {
   Seen seen;
   seen.where = table.where();
   const auto time_s = table.number("time_s", kTime);
-  const auto pixel = table.tuple("pixel", {kPixel, kPixel});
+  const auto pixel = table.tuple<Pixel>("pixel", kPixel);
   if (!time_s || !pixel)
     throw Error(fmt::format("[[intruder.seen]] has no {}; expected time_s, pixel = [x, y], and "
                             "range_m or width_px",
                             time_s ? "pixel" : "time_s"),
                 table.where());
   seen.time_s = *time_s;
-  seen.pixel = {(*pixel)[0], (*pixel)[1]};
+  seen.pixel = *pixel;
   table.exclude("range_m", {"width_px"});
   seen.range_m = table.number("range_m", kRangeToAircraft);
   seen.width_px = table.number("width_px", kApparentSize);

@@ -315,12 +315,6 @@ std::optional<std::vector<double>> TableReader::tuple(std::string_view key,
       array(key, fmt::format("an array of {} numbers", limits.size())), std::string(key), limits);
 }
 
-std::optional<Vector3> TableReader::vector(std::string_view key, const Limits& each) const {
-  const auto values = tuple(key, {each, each, each});
-  if (!values) return std::nullopt;
-  return Vector3((*values)[0], (*values)[1], (*values)[2]);
-}
-
 std::optional<std::vector<Vector3>> TableReader::points(std::string_view key,
                                                         const Limits& each) const {
   note(key, NumberKey{NumberShape::kPoints, {each, each, each}});

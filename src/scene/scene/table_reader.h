@@ -95,7 +95,17 @@ class TableReader {
   // An array of exactly one number for each element of `limits`.
   std::optional<std::vector<double>> tuple(std::string_view key,
                                            const std::vector<Limits>& limits) const;
-  std::optional<Vector3> vector(std::string_view key, const Limits& each) const;
+  // The same as an array of fixed size, such as Vector3 or std::array<double, 2>, with one range.
+  template <typename Array>
+  std::optional<Array> tuple(std::string_view key, const Limits& each) const {
+    Array array{};
+    const auto values =
+        tuple(key, std::vector<Limits>(static_cast<std::size_t>(array.size()), each));
+    if (!values) return std::nullopt;
+    auto value = values->begin();
+    for (double& number : array) number = *value++;
+    return array;
+  }
   std::optional<std::vector<Vector3>> points(std::string_view key, const Limits& each) const;
 
   // The table at `key`; an empty table where it is absent.

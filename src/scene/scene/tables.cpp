@@ -2,7 +2,9 @@
 #include "scene/scene/tables.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -14,14 +16,6 @@
 
 namespace airtruth::scene {
 namespace {
-
-std::optional<std::array<double, 2>> pair_from(const TableReader& table,
-                                               std::string_view key,
-                                               const Limits& limits) {
-  const auto values = table.tuple(key, {limits, limits});
-  if (!values) return std::nullopt;
-  return std::array<double, 2>{(*values)[0], (*values)[1]};
-}
 
 void check_distortion(const TableReader& table, lens::ModelKind model, std::size_t count) {
   if (model == lens::ModelKind::kPinhole && count > 0)
@@ -35,14 +29,6 @@ void check_distortion(const TableReader& table, lens::ModelKind model, std::size
   if (model == lens::ModelKind::kFisheye && count > 4)
     table.fail("distortion",
                fmt::format("distortion has {} numbers; fisheye takes at most 4", count));
-}
-
-std::optional<std::array<double, 3>> three_from(const TableReader& table,
-                                                std::string_view key,
-                                                const Limits& each) {
-  const auto values = table.tuple(key, {each, each, each});
-  if (!values) return std::nullopt;
-  return std::array<double, 3>{(*values)[0], (*values)[1], (*values)[2]};
 }
 
 }  // namespace
@@ -79,8 +65,9 @@ Lens lens_in(const TableReader& parent) {
   lens.model = table.choice<lens::ModelKind>("model").value_or(lens.model);
   lens.vertical_fov_deg = table.number(
       "vertical_fov_deg", lens.model == lens::ModelKind::kFisheye ? kFisheyeView : kPinholeView);
-  lens.focal_px = pair_from(table, "focal_px", kFocal);
-  lens.principal_point_px = pair_from(table, "principal_point_px", kPrincipalPoint);
+  lens.focal_px = table.tuple<std::array<double, 2>>("focal_px", kFocal);
+  lens.principal_point_px =
+      table.tuple<std::array<double, 2>>("principal_point_px", kPrincipalPoint);
   lens.distortion = table.numbers("distortion", kDistortion).value_or(std::vector<double>{});
   check_distortion(table, lens.model, lens.distortion.size());
   if (!lens.vertical_fov_deg && !lens.focal_px)
@@ -113,9 +100,10 @@ Camera camera_in(const TableReader& parent, const Motion& motion) {
   camera.path_file = table.path("path_file");
   read_log(table, camera);
   camera.follows_log_attitude = motion.reference == MotionReference::kSmoothed;
-  camera.position_ned_m = table.vector("position_ned_m", kPosition).value_or(camera.position_ned_m);
+  camera.position_ned_m =
+      table.tuple<Vector3>("position_ned_m", kPosition).value_or(camera.position_ned_m);
   camera.velocity_ned_mps =
-      table.vector("velocity_ned_mps", kVelocity).value_or(camera.velocity_ned_mps);
+      table.tuple<Vector3>("velocity_ned_mps", kVelocity).value_or(camera.velocity_ned_mps);
   if (const auto angles = table.tuple("attitude_yaw_pitch_roll_deg", {kTurn, kPitch, kTurn}))
     camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{(*angles)[0], (*angles)[1], (*angles)[2]};
   return camera;
@@ -140,18 +128,14 @@ TableReader::Keys keys_of_table(std::string_view table) {
   return keys;
 }
 
-void read(const TableReader& table, const CameraKey& key, std::optional<double>& value) {
-  value = table.number(key.key(), key.limits);
-}
-
-void read(const TableReader& table,
-          const CameraKey& key,
-          std::optional<std::array<double, 3>>& value) {
-  value = three_from(table, key.key(), key.limits);
-}
-
-void read(const TableReader& table, const CameraKey& key, std::optional<Readout>& value) {
-  value = table.choice<Readout>(key.key());
+template <typename Value>
+void read(const TableReader& table, const CameraKey& key, std::optional<Value>& value) {
+  if constexpr (std::is_same_v<Value, double>)
+    value = table.number(key.key(), key.limits);
+  else if constexpr (std::is_same_v<Value, Readout>)
+    value = table.choice<Readout>(key.key());
+  else
+    value = table.tuple<Value>(key.key(), key.limits);
 }
 
 }  // namespace
@@ -215,8 +199,8 @@ Light light_in(const TableReader& parent) {
       table.number("sun_elevation_deg", kPitch).value_or(light.sun_elevation_deg);
   light.sun_is_stated = table.has("sun_azimuth_deg") || table.has("sun_elevation_deg");
   light.exposure = table.number("exposure", kExposureFactor);
-  light.sky_colour = three_from(table, "sky_colour", kLinearLight);
-  light.ground_colour = three_from(table, "ground_colour", kLinearLight);
+  light.sky_colour = table.tuple<std::array<double, 3>>("sky_colour", kLinearLight);
+  light.ground_colour = table.tuple<std::array<double, 3>>("ground_colour", kLinearLight);
   light.ground_albedo = table.number("ground_albedo", kAlbedo);
   return light;
 }
