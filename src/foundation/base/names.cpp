@@ -7,23 +7,15 @@
 #include <numeric>
 
 namespace airtruth {
-namespace {
-
-bool same_letter(char a, char b, LetterCase letter_case) {
-  if (letter_case == LetterCase::kMatters) return a == b;
-  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-}
-
-}  // namespace
 
 bool matches(std::string_view pattern, std::string_view name, LetterCase letter_case) {
+  if (letter_case == LetterCase::kIgnored) return matches(lower_case(pattern), lower_case(name));
   std::size_t p = 0;
   std::size_t n = 0;
   std::size_t star = std::string_view::npos;  // the last * in the pattern, for backtracking
   std::size_t met = 0;
   while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] != '*' &&
-        (pattern[p] == '?' || same_letter(pattern[p], name[n], letter_case))) {
+    if (p < pattern.size() && pattern[p] != '*' && (pattern[p] == '?' || pattern[p] == name[n])) {
       ++p, ++n;
     } else if (p < pattern.size() && pattern[p] == '*') {
       star = p++;
@@ -46,9 +38,7 @@ std::string lower_case(std::string_view text) {
 }
 
 bool contains_ignoring_case(std::string_view text, std::string_view part) {
-  return std::search(text.begin(), text.end(), part.begin(), part.end(), [](char a, char b) {
-           return same_letter(a, b, LetterCase::kIgnored);
-         }) != text.end();
+  return lower_case(text).find(lower_case(part)) != std::string::npos;
 }
 
 bool is_pattern(std::string_view text) { return text.find_first_of("*?") != text.npos; }

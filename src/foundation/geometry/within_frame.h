@@ -75,9 +75,6 @@ struct Shake {
   // The rate of that rotation, in the axes of cam.
   Vector3 rate_radps = Vector3::Zero();
 
-  Homography homography_at(double dt_s) const {
-    return frame_from_reference + dt_s * frame_from_reference_per_s;
-  }
   Quaternion rotation_at(double dt_s) const {
     return rotation ? rotation_from_vector(dt_s * rate_radps) * *rotation : Quaternion::Identity();
   }
