@@ -10,7 +10,6 @@
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
-#include "scene/flight_log/builder.h"
 #include "scene/flight_log/formats.h"
 
 namespace airtruth::flight_log {

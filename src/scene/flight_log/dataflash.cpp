@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
-#include "scene/flight_log/builder.h"
 #include "scene/flight_log/formats.h"
 
 namespace airtruth::flight_log {

@@ -92,4 +92,9 @@ void add_gpmf_packet(FlightLog& log,
                      double begin_s,
                      double end_s);
 
+// The log without positions that no aircraft reaches from their neighbours: those that are kept
+// form the longest run of positions of which each is within reach of the one before, continued on
+// both sides by the positions within reach. Throws Error where the log spans more than a day.
+FlightLog without_jumps(FlightLog log, const std::string& file);
+
 }  // namespace airtruth::flight_log

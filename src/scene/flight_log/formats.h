@@ -3,13 +3,15 @@
 
 #include <bit>
 #include <cstring>
+#include <map>
 #include <string>
 #include <string_view>
 
+#include "foundation/base/error.h"
 #include "scene/flight_log/flight_log.h"
 
-// One reader for each format of flight logs. `file` is the name that errors carry. The readers
-// return what the file states; builder.h sorts out times that do not increase.
+// What the readers of the formats share, and one reader for each of them. `file` is the name that
+// errors carry. The readers return what the file states.
 namespace airtruth::flight_log {
 
 bool is_dji_subtitles(std::string_view content);
@@ -37,5 +39,41 @@ T little_endian(std::string_view bytes, std::size_t at) {
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
+
+// Records are added to a log under the rules that every log obeys. One whose time does not follow
+// the one before is left out and counted; loggers repeat a time when they write a value twice.
+
+// What is wrong with a record, as a sentence; empty where nothing is: a number that is not finite,
+// a latitude beyond 90 degrees, a longitude beyond 180 degrees, a height beyond 100 km, a turn rate
+// beyond 1,000 rad/s, and the place 0, 0, which receivers write before they have a fix.
+std::string fault_of(const Fix& fix);
+std::string fault_of(const Attitude& attitude);
+std::string fault_of(const Rates& rates);
+
+// Adds a Fix, an Attitude or Rates; one that has a fault is left out.
+template <typename Record>
+void add_record(FlightLog& log, const Record& record, const Where& where);
+
+// Counts a record that is left out, and keeps the first fault.
+void leave_out(FlightLog& log, const std::string& fault, const Where& where);
+
+// The receiver with the lowest number that has two positions; where none has, that with the lowest
+// number. An empty log where there is no receiver.
+template <typename Number>
+FlightLog first_with_fix(const std::map<Number, FlightLog>& receivers) {
+  for (const auto& [number, receiver] : receivers)
+    if (receiver.fixes.size() >= 2) return receiver;
+  return receivers.empty() ? FlightLog() : receivers.begin()->second;
+}
+
+// Gives a log the positions of another one, and what that one left out.
+void take_positions(FlightLog& log, const FlightLog& positions);
+
+// The log with its times counted from its first record of any kind.
+FlightLog from_first_record(FlightLog log);
+
+// At most 40 bytes of a file's text for a message of one line: other than printable ASCII becomes
+// '?'.
+std::string printable(std::string_view text);
 
 }  // namespace airtruth::flight_log

@@ -17,7 +17,6 @@
 #include "foundation/geometry/transform.h"
 #include "picture/video/metadata.h"
 #include "picture/video/reader.h"
-#include "scene/flight_log/builder.h"
 #include "scene/flight_log/flight_log.h"
 #include "scene/flight_log/local_path.h"
 
