@@ -2,7 +2,12 @@
 #include "foundation/image/colour.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "foundation/base/vectors.h"
 
 namespace airtruth::image {
 
@@ -41,6 +46,211 @@ Rgb linear_at(const Picture& picture, const ColourCode& code, int x, int y, cons
   Rgb rgb = code.rgb_from_ycc(ycc);
   for (float& c : rgb) c = tone.linear_from_coded_clamped(c);
   return rgb;
+}
+
+// Pictures as packed sRGB and back. Samples are copied to blocks of floats, which the compiler
+// converts by vectors.
+
+namespace {
+
+constexpr int kBlock = 64;  // pixels; the arrays of a block fit in the first-level cache
+// Plain arrays: GCC does not vectorise loops over std::array.
+using Codes = std::uint8_t[kBlock];
+using Floats = float[kBlock];
+
+inline std::uint8_t code_of(float value) {
+  return static_cast<std::uint8_t>(static_cast<int>(std::clamp(value, 0.0f, 255.0f) + 0.5f));
+}
+
+// Planes of a block: Y', Cb and Cr, or R', G' and B'.
+struct Block {
+  alignas(64) Codes a;
+  alignas(64) Codes b;
+  alignas(64) Codes c;
+};
+
+AIRTRUTH_FOR_VECTORS void rgb_from_ycc(const Block& ycc, const ColourCode& colour, Block& rgb) {
+  const ColourCode code = colour;
+  alignas(64) Floats red, green, blue;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const Rgb value = code.rgb_from_ycc({float(ycc.a[i]), float(ycc.b[i]), float(ycc.c[i])});
+    red[i] = value[0];
+    green[i] = value[1];
+    blue[i] = value[2];
+  }
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    rgb.a[i] = code_of(red[i] * 255.0f);
+    rgb.b[i] = code_of(green[i] * 255.0f);
+    rgb.c[i] = code_of(blue[i] * 255.0f);
+  }
+}
+
+AIRTRUTH_FOR_VECTORS void interleave(const Block& rgb, std::size_t count, std::uint8_t* target) {
+  for (std::size_t i = 0; i < count; ++i) {
+    target[3 * i] = rgb.a[i];
+    target[3 * i + 1] = rgb.b[i];
+    target[3 * i + 2] = rgb.c[i];
+  }
+}
+
+// Copies samples of a plane from pixel x on; one sample is that of 1 << shift pixels.
+void spread(const Plane& plane, int x, int y, int shift, std::size_t count, Codes& target) {
+  const std::uint8_t* row = plane.row(y);
+  if (shift == 0) {
+    std::copy_n(row + x, count, target);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) target[i] = row[(x + static_cast<int>(i)) >> shift];
+}
+
+AIRTRUTH_FOR_VECTORS void take_every_third(const std::uint8_t* source,
+                                           int count,
+                                           std::uint8_t* target) {
+  for (int x = 0; x < count; ++x) target[x] = source[3 * x];
+}
+
+AIRTRUTH_FOR_VECTORS void take_every_fourth(const std::uint8_t* source,
+                                            int count,
+                                            std::uint8_t* target) {
+  for (int x = 0; x < count; ++x) target[x] = source[4 * x];
+}
+
+AIRTRUTH_FOR_VECTORS void mark_light_by_vectors(const std::uint8_t* red,
+                                                const std::uint8_t* green,
+                                                const std::uint8_t* blue,
+                                                int least,
+                                                int count,
+                                                std::uint8_t* target) {
+  for (int x = 0; x < count; ++x)
+    target[x] = (red[x] + 2 * green[x] + blue[x]) / 4 >= least ? 255 : 0;
+}
+
+}  // namespace
+
+void take_every(const std::uint8_t* source, int step, int count, std::uint8_t* target) {
+  if (step == 3) return take_every_third(source, count, target);
+  if (step == 4) return take_every_fourth(source, count, target);
+  for (int x = 0; x < count; ++x) target[x] = source[x * step];
+}
+
+// Functions with several variants are private: GCC exports their names whatever their visibility.
+void mark_light(const std::uint8_t* red,
+                const std::uint8_t* green,
+                const std::uint8_t* blue,
+                int least,
+                int count,
+                std::uint8_t* target) {
+  mark_light_by_vectors(red, green, blue, least, count, target);
+}
+
+Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int height) {
+  // The code value of grey in Cb and Cr.
+  constexpr std::uint8_t kNoChroma = 128;
+  Rgb8 result = make_rgb8(width, height);
+  const ColourCode code(picture.colour);
+  const int sx = log2_chroma_width(picture.colour.chroma);
+  const int sy = log2_chroma_height(picture.colour.chroma);
+  const int x_end = std::min(width, picture.width - x0);
+  Block ycc, rgb;
+  for (Codes* codes : {&ycc.a, &ycc.b, &ycc.c}) std::fill_n(*codes, kBlock, kNoChroma);
+  for (int y = std::max(0, -y0); y < std::min(height, picture.height - y0); ++y) {
+    for (int x = std::max(0, -x0); x < x_end; x += kBlock) {
+      const auto count = static_cast<std::size_t>(std::min(kBlock, x_end - x));
+      spread(picture.planes[0], x0 + x, y0 + y, 0, count, ycc.a);
+      if (picture.plane_count == 3) {
+        spread(picture.planes[1], x0 + x, (y0 + y) >> sy, sx, count, ycc.b);
+        spread(picture.planes[2], x0 + x, (y0 + y) >> sy, sx, count, ycc.c);
+      }
+      rgb_from_ycc(ycc, code, rgb);
+      interleave(rgb, count, result.at(x, y));
+    }
+  }
+  return result;
+}
+
+Rgb8 rgb8_from_picture(const Picture& picture) {
+  return rgb8_from_picture(picture, 0, 0, picture.width, picture.height);
+}
+
+namespace {
+
+// A block of Y', rounded, with its chroma.
+struct CodedBlock {
+  alignas(64) Codes luma;
+  alignas(64) Floats cb;
+  alignas(64) Floats cr;
+};
+
+// `packed` has kBlock pixels.
+AIRTRUTH_FOR_VECTORS void ycc_from_rgb(const std::uint8_t* packed,
+                                       const ColourCode& colour,
+                                       CodedBlock& coded) {
+  const ColourCode code = colour;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const Ycc value = code.ycc_from_rgb({float(packed[3 * i]) / 255.0f,
+                                         float(packed[3 * i + 1]) / 255.0f,
+                                         float(packed[3 * i + 2]) / 255.0f});
+    coded.luma[i] = code_of(value.y);
+    coded.cb[i] = value.cb;
+    coded.cr[i] = value.cr;
+  }
+}
+
+// Adds a row of chroma to the sums of its blocks, from left to right.
+void add_chroma(const Floats& from, int shift, float weight, float* sums, std::size_t count) {
+  if (shift == 0) {
+    for (std::size_t i = 0; i < count; ++i) sums[i] += from[i] * weight;
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    sums[i] += from[2 * i] * weight;
+    sums[i] += from[2 * i + 1] * weight;
+  }
+}
+
+void round_row(const std::vector<float>& sums, std::uint8_t* row, int count) {
+  for (int i = 0; i < count; ++i) row[i] = code_of(sums[static_cast<std::size_t>(i)]);
+}
+
+// The pixels of a block from (x, y) on. Beyond the right and lower edges, the pixels of the edge
+// are repeated.
+void copy_pixels(const Rgb8& rgb, int x, int y, std::array<std::uint8_t, 3 * kBlock>& pixels) {
+  const int inside = std::min(kBlock, rgb.width - x);
+  const int row = std::min(y, rgb.height - 1);
+  std::copy_n(rgb.at(x, row), 3 * inside, pixels.begin());
+  for (int i = inside; i < kBlock; ++i)
+    std::copy_n(rgb.at(rgb.width - 1, row), 3, pixels.begin() + 3 * i);
+}
+
+}  // namespace
+
+Picture picture_from_rgb8(const Rgb8& rgb, const Colour& colour) {
+  Picture picture = make_picture(rgb.width, rgb.height, colour);
+  const ColourCode code(colour);
+  const bool is_grey = picture.plane_count == 1;
+  const int sx = is_grey ? 0 : log2_chroma_width(colour.chroma);
+  const int sy = is_grey ? 0 : log2_chroma_height(colour.chroma);
+  const float weight = 1.0f / static_cast<float>((1 << sx) * (1 << sy));
+  const int wide = ((rgb.width - 1) / kBlock + 1) * kBlock >> sx;
+  std::array<std::uint8_t, 3 * kBlock> pixels;
+  CodedBlock coded;
+  for (int cy = 0; cy << sy < rgb.height; ++cy) {
+    std::vector<float> cb(static_cast<std::size_t>(wide)), cr(cb);
+    for (int y = cy << sy; y < (cy + 1) << sy; ++y) {
+      for (int x = 0; x < rgb.width; x += kBlock) {
+        copy_pixels(rgb, x, y, pixels);
+        ycc_from_rgb(pixels.data(), code, coded);
+        if (y < rgb.height)
+          std::copy_n(coded.luma, std::min(kBlock, rgb.width - x), picture.planes[0].row(y) + x);
+        add_chroma(coded.cb, sx, weight, cb.data() + (x >> sx), kBlock >> sx);
+        add_chroma(coded.cr, sx, weight, cr.data() + (x >> sx), kBlock >> sx);
+      }
+    }
+    if (is_grey) continue;
+    round_row(cb, picture.planes[1].row(cy), picture.planes[1].width);
+    round_row(cr, picture.planes[2].row(cy), picture.planes[2].width);
+  }
+  return picture;
 }
 
 }  // namespace airtruth::image

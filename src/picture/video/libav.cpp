@@ -11,7 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/transform.h"
-#include "foundation/image/packed.h"
+#include "foundation/image/colour.h"
 
 namespace airtruth::video {
 namespace {

@@ -13,7 +13,6 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/image/colour.h"
-#include "foundation/image/packed.h"
 #include "picture/video/libav.h"
 #include "picture/video/media_file.h"
 #include "picture/video/reader.h"
