@@ -5,8 +5,8 @@
 
 #include "foundation/base/names.h"
 #include "foundation/geometry/transform.h"
-#include "library/pictures/run_options.h"
-#include "library/records/lens_state.h"
+#include "library/pictures/public_forms.h"
+#include "library/records/public_forms.h"
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/motion_source.h"

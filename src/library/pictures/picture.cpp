@@ -7,7 +7,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
-#include "library/pictures/public_picture.h"
+#include "library/pictures/public_forms.h"
 
 namespace airtruth {
 namespace {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <airtruth/renderer.h>
 
-#include "library/pictures/public_picture.h"
-#include "library/pictures/run_options.h"
-#include "library/records/lens_state.h"
-#include "library/records/truth_values.h"
+#include "library/pictures/public_forms.h"
+#include "library/records/public_forms.h"
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/frame_by_frame.h"
 

@@ -6,9 +6,8 @@
 #include <airtruth/stream.h>
 
 #include "dataset/catalogue/catalogue.h"
-#include "library/pictures/public_picture.h"
-#include "library/pictures/run_options.h"
-#include "library/records/truth_values.h"
+#include "library/pictures/public_forms.h"
+#include "library/records/public_forms.h"
 
 namespace airtruth {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <airtruth/video.h>
 
-#include "library/pictures/public_picture.h"
+#include "library/pictures/public_forms.h"
 #include "picture/video/reader.h"
 
 namespace airtruth {

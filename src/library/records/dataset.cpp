@@ -10,7 +10,7 @@
 #include "foundation/base/files.h"
 #include "foundation/json/parse_json.h"
 #include "labels/annotation/truth.h"
-#include "library/records/truth_values.h"
+#include "library/records/public_forms.h"
 
 namespace airtruth {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "camera/lens/calibration_file.h"
 #include "labels/annotation/lens_facts.h"
-#include "library/records/lens_state.h"
+#include "library/records/public_forms.h"
 
 namespace airtruth {
 namespace {

@@ -7,8 +7,7 @@
 
 #include "labels/annotation/lens_facts.h"
 #include "labels/annotation/truth_fields.h"
-#include "library/records/lens_state.h"
-#include "library/records/truth_values.h"
+#include "library/records/public_forms.h"
 
 namespace airtruth {
 namespace {

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <airtruth/picture.h>
+#include <airtruth/video.h>
+
+#include "foundation/image/picture.h"
+#include "picture/video/reader.h"
 #include "sequence/pipeline/options.h"
 
+// The public forms of pictures and of videos, and the options of runs that public ones state.
 namespace airtruth {
+
+FramePicture public_picture(const image::Picture& picture);
+VideoInfo public_info(const video::StreamInfo& info);
 
 // Which cache a caller's options name.
 template <typename AnyOptions>

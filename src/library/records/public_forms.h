@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <airtruth/lens.h>
 #include <airtruth/truth.h>
 
+#include "camera/lens/lens.h"
 #include "labels/annotation/truth.h"
 
-// The public form of the truth, whose vectors are arrays.
+// The public forms of lenses and of the truth, whose vectors are arrays.
 namespace airtruth {
+
+// What a public Lens holds.
+struct Lens::State {
+  lens::Lens lens;
+};
+
+Lens public_lens(const lens::Lens& lens);
 
 FrameTruth public_truth(const annotation::Frame& frame);
 SequenceTruth public_truth(const annotation::Truth& truth);
