@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "cli/console.h"
+#include "foundation/base/error.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::cli {
 
@@ -56,8 +61,29 @@ inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
   command.add_option("--jobs,-j", jobs, about)->check(CLI::Range(1, 1024));
 }
 
+// A number from `low` to `high`, whose default the help states.
+template <typename Number>
+void add_number(CLI::App& command,
+                const char* name,
+                Number& number,
+                const char* about,
+                Number low,
+                Number high) {
+  command.add_option(name, number, about)->check(CLI::Range(low, high))->capture_default_str();
+}
+
 // Reads the width and height from "1280x960", the form of --size. Throws Error for any other form.
-std::pair<int, int> size_from(const std::string& text);
+inline std::pair<int, int> size_from(std::string_view text) {
+  constexpr int kLargestSide = 65536;  // pixels: no video is larger
+  const std::size_t x = std::min(text.find('x'), text.size());
+  const auto width = number_from_text<int>(text.substr(0, x));
+  const auto height = number_from_text<int>(text.substr(std::min(x + 1, text.size())));
+  const auto is_side = [](const std::optional<int>& side) {
+    return side && *side >= 1 && *side <= kLargestSide;
+  };
+  if (is_side(width) && is_side(height)) return {*width, *height};
+  throw Error(fmt::format("--size is '{}'; expected WIDTHxHEIGHT, as 1280x960", text));
+}
 
 // Declares a subcommand with its arguments, and what it does once they are parsed.
 using Add = void(CLI::App& app, Context& context);

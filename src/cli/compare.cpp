@@ -50,9 +50,7 @@ void compare(CompareArguments arguments, Context& context) {
 
 // How many frames and pairs, and what is searched for.
 void add_match_options(CLI::App& command, CompareArguments& arguments) {
-  command.add_option("--pairs", arguments.pairs, "Pairs in the figure")
-      ->check(CLI::Range(1, 40))
-      ->capture_default_str();
+  add_number(command, "--pairs", arguments.pairs, "Pairs in the figure", 1, 40);
   command
       .add_option("--frames", arguments.most_frames, "At most so many frames from the first box on")
       ->check(CLI::PositiveNumber);

@@ -46,9 +46,7 @@ void add_demo(CLI::App& app, Context& context) {
       demo);
   command->add_option("--out,-o", arguments->out, "Folder to make")->capture_default_str();
   command->add_option("--seed", arguments->demo.seed, "Another flight")->capture_default_str();
-  command->add_option("--frames", arguments->demo.frame_count, "Length")
-      ->check(CLI::Range(2, 100000))
-      ->capture_default_str();
+  add_number(*command, "--frames", arguments->demo.frame_count, "Length", 2, 100000);
   command->add_flag(
       "--overwrite", arguments->demo.run.overwrite, "Replace the folder's files where they exist");
 }

@@ -111,15 +111,13 @@ void add_evision(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--light-aircraft", options.light_aircraft, "Aircraft of the C172 sequences")
       ->capture_default_str();
-  command->add_option("--scale", options.scale, "Scale both aircraft")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
-  command
-      ->add_option("--spread",
-                   options.spread_px,
-                   "Pixels that the warps add to each side of a published box")
-      ->check(CLI::Range(0, 20))
-      ->capture_default_str();
+  add_number(*command, "--scale", options.scale, "Scale both aircraft", 0.01, 100.0);
+  add_number(*command,
+             "--spread",
+             options.spread_px,
+             "Pixels that the warps add to each side of a published box",
+             0,
+             20);
   command->add_option(
       "--frames", arguments->frames, "Also write every frame's two boxes here (.csv)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file of --frames");

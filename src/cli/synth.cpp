@@ -84,60 +84,43 @@ void add_file_options(CLI::App& command, SynthArguments& arguments) {
 
 void add_camera_options(CLI::App& command, SynthArguments& arguments) {
   synthetic::FlightOptions& flight = arguments.flight;
-  command.add_option("--width", flight.width, "Pixels")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str();
-  command.add_option("--height", flight.height, "Pixels")
-      ->check(CLI::Range(64, 8192))
-      ->capture_default_str();
-  command.add_option("--rate", flight.frame_rate_hz, "Frames a second")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  command.add_option("--frames", flight.frame_count, "Number of frames")
-      ->check(CLI::Range(1, kMaxFrames))
-      ->capture_default_str();
+  add_number(command, "--width", flight.width, "Pixels", 64, 8192);
+  add_number(command, "--height", flight.height, "Pixels", 64, 8192);
+  add_number(command, "--rate", flight.frame_rate_hz, "Frames a second", 1.0, 1000.0);
+  add_number(command, "--frames", flight.frame_count, "Number of frames", 1, kMaxFrames);
   command.add_option("--duration", arguments.duration_s, "Seconds, in place of --frames")
       ->check(CLI::Range(1e-6, 1e6));
-  command.add_option("--fov", flight.vertical_fov_deg, "Pinhole: vertical view in degrees")
-      ->check(CLI::Range(1.0, 150.0))
-      ->capture_default_str();
+  add_number(
+      command, "--fov", flight.vertical_fov_deg, "Pinhole: vertical view in degrees", 1.0, 150.0);
   command.add_option("--lens", arguments.lens_file, "A calibration file, in place of --fov");
 }
 
 void add_world_options(CLI::App& command, SynthArguments& arguments) {
   synthetic::FlightOptions& flight = arguments.flight;
-  command.add_option("--speed", flight.speed_mps, "Metres a second")
-      ->check(CLI::Range(0.0, 400.0))
-      ->capture_default_str();
-  command.add_option("--altitude", flight.altitude_m, "Metres above the ground")
-      ->check(CLI::Range(20.0, 900.0))
-      ->capture_default_str();
+  add_number(command, "--speed", flight.speed_mps, "Metres a second", 0.0, 400.0);
+  add_number(command, "--altitude", flight.altitude_m, "Metres above the ground", 20.0, 900.0);
   command.add_option("--sun-azimuth", flight.sun_azimuth_deg, "Degrees from north towards east")
       ->capture_default_str();
-  command.add_option("--sun-elevation", flight.sun_elevation_deg, "Degrees")
-      ->check(CLI::Range(2.0, 90.0))
-      ->capture_default_str();
-  command.add_option("--clouds", flight.cloud_cover, "Cloud cover, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command.add_option("--extinction", flight.extinction_per_km, "Of the air, per km; 0 is none")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
+  add_number(command, "--sun-elevation", flight.sun_elevation_deg, "Degrees", 2.0, 90.0);
+  add_number(command, "--clouds", flight.cloud_cover, "Cloud cover, 0 to 1", 0.0, 1.0);
+  add_number(command,
+             "--extinction",
+             flight.extinction_per_km,
+             "Of the air, per km; 0 is none",
+             0.0,
+             10.0);
 }
 
 void add_disturbance_options(CLI::App& command, SynthArguments& arguments) {
   synthetic::FlightOptions& flight = arguments.flight;
-  command.add_option("--shake", flight.shake_deg, "Vibration, degrees rms")
-      ->check(CLI::Range(0.0, 5.0))
-      ->capture_default_str();
-  command.add_option("--noise", flight.noise, "Sensor noise; 1 is a cheap camera's")
-      ->check(CLI::Range(0.0, 20.0))
-      ->capture_default_str();
-  command
-      .add_option(
-          "--clutter", flight.clutter, "Share of the picture that moves independently, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+  add_number(command, "--shake", flight.shake_deg, "Vibration, degrees rms", 0.0, 5.0);
+  add_number(command, "--noise", flight.noise, "Sensor noise; 1 is a cheap camera's", 0.0, 20.0);
+  add_number(command,
+             "--clutter",
+             flight.clutter,
+             "Share of the picture that moves independently, 0 to 1",
+             0.0,
+             1.0);
   command.add_flag(
       "--no-own-aircraft", arguments.no_own_aircraft, "Leave the own aircraft out of the view");
   command.add_flag("--rotate-only",
@@ -163,9 +146,7 @@ void add_synth(CLI::App& app, Context& context) {
   add_camera_options(*command, *arguments);
   add_world_options(*command, *arguments);
   add_disturbance_options(*command, *arguments);
-  command->add_option("--quality", arguments->quality, "H.264 CRF")
-      ->check(CLI::Range(0, 51))
-      ->capture_default_str();
+  add_number(*command, "--quality", arguments->quality, "H.264 CRF", 0, 51);
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
 }
 
