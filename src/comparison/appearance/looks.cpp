@@ -14,7 +14,7 @@
 #include "comparison/appearance/segment.h"
 #include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
-#include "foundation/geometry/whole_pixels.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 
 namespace airtruth::appearance {

@@ -9,7 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
-#include "foundation/geometry/whole_pixels.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/mats.h"
 
 namespace airtruth::appearance {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
-#include "foundation/geometry/whole_pixels.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 #include "show/drawing/draw.h"
 

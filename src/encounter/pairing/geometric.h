@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 
-#include "encounter/pairing/distribution.h"
 #include "encounter/pairing/pair.h"
 #include "encounter/pairing/strata.h"
 #include "encounter/track/track.h"

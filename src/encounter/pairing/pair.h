@@ -2,8 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "encounter/pairing/distribution.h"
 #include "encounter/track/track.h"
 #include "foundation/base/seed.h"
 
@@ -12,6 +13,32 @@
 // MIT-LL's em-pairing-uncor-importancesampling (Kochenderfer, Espindle, Kuchar and Griffith 2010,
 // "Airspace encounter models for estimating collision risk", section on encounter generation).
 namespace airtruth::pairing {
+
+// A distribution that is uniform within each of some bins.
+//
+//   Distribution({-500, -100, 500}, {1, 3}) has a quarter of its values below -100.
+//   Distribution({62}) is always 62.
+class Distribution {
+ public:
+  // `edges` are one number or increasing ones; `shares` are one for each bin, in any unit, and
+  // empty for shares in proportion to the bins' widths. Throws Error otherwise, or where a number
+  // is not finite, a share is negative or all are 0. `name` is the quantity in messages.
+  explicit Distribution(std::vector<double> edges,
+                        std::vector<double> shares = {},
+                        const std::string& name = "the range");
+
+  // The value below which the share u of the distribution lies; u in [0, 1].
+  double quantile(double u) const;
+  // 0 outside of the bins. A distribution of one value has no density, and the result is infinite.
+  double density(double value) const;
+  double low() const { return edges_.front(); }
+  double high() const { return edges_.back(); }
+
+ private:
+  std::vector<double> edges_;
+  // Running sums of the shares, the last of them 1; for one value none.
+  std::vector<double> sums_;
+};
 
 // Where an intruder is at the closest approach.
 struct ClosestApproach {

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "encounter/encounter_model/model_file.h"
-#include "encounter/pairing/distribution.h"
 #include "encounter/tracks_file/tracks_file.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"

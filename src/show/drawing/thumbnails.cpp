@@ -11,7 +11,7 @@
 #include "aircraft/texture_file/picture.h"
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
-#include "foundation/geometry/whole_pixels.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 #include "show/drawing/draw.h"
 
