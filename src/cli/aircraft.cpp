@@ -133,8 +133,8 @@ void show(const ShowArguments& arguments, Context& context) {
 }
 
 void add_list(CLI::App& group, Context& context) {
-  auto [command, arguments] =
-      add_command(group, context, "list", "Print the name of every aircraft, a line each", list);
+  auto [command, arguments] = add_command(group, context, "list", list);
+  command->description("Print the name of every aircraft, a line each");
   command->add_option("FILTER",
                       arguments->filter,
                       "Show only names that contain this, or that it fits with * and ?; "
@@ -156,12 +156,8 @@ void add_list(CLI::App& group, Context& context) {
 }
 
 void add_show(CLI::App& group, Context& context) {
-  auto [command, arguments] =
-      add_command(group,
-                  context,
-                  "show",
-                  "Size and liveries of one aircraft, and a contact sheet of pictures",
-                  show);
+  auto [command, arguments] = add_command(group, context, "show", show);
+  command->description("Size and liveries of one aircraft, and a contact sheet of pictures");
   command
       ->add_option(
           "NAME",

@@ -180,8 +180,8 @@ void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, Context& context) {
-  auto [command, arguments] = add_command(
-      app, context, "calibrate", "Measure what a clip's camera and air do to light", calibrate);
+  auto [command, arguments] = add_command(app, context, "calibrate", calibrate);
+  command->description("Measure what a clip's camera and air do to light");
   command->add_option("VIDEO", arguments->videos, "The video, or several of one camera")
       ->required();
   command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
@@ -200,12 +200,8 @@ void add_calibrate(CLI::App& app, Context& context) {
 }
 
 void add_mask(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "mask",
-                  "Find the own aircraft: what stays still while the world moves",
-                  find_mask);
+  auto [command, arguments] = add_command(app, context, "mask", find_mask);
+  command->description("Find the own aircraft: what stays still while the world moves");
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("-o,--out", arguments->out, "Mask to write: black = own aircraft (.png)")
       ->required();

@@ -33,16 +33,14 @@ struct Context {
 // Declares a command that calls run(arguments, context) after its arguments are parsed. Returns the
 // command, and the arguments that its options are to set.
 template <typename Parameter>
-std::pair<CLI::App*, std::remove_cvref_t<Parameter>*> add_command(CLI::App& group,
-                                                                  Context& context,
-                                                                  const char* name,
-                                                                  const char* about,
-                                                                  void (*run)(Parameter,
-                                                                              Context&)) {
-  CLI::App* command = group.add_subcommand(name, about);
+auto add_command(CLI::App& group,
+                 Context& context,
+                 const char* name,
+                 void (*run)(Parameter, Context&)) {
+  CLI::App* command = group.add_subcommand(name);
   auto arguments = std::make_shared<std::remove_cvref_t<Parameter>>();
   command->callback([run, arguments, &context] { run(*arguments, context); });
-  return {command, arguments.get()};
+  return std::pair(command, arguments.get());
 }
 
 // Shows the warnings of a stage and its progress, and lets an interrupt stop it.

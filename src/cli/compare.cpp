@@ -81,12 +81,9 @@ void add_match_options(CLI::App& command, CompareArguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "compare",
-                  "Put an aircraft beside a real one in its own clip, and measure how both look",
-                  compare);
+  auto [command, arguments] = add_command(app, context, "compare", compare);
+  command->description(
+      "Put an aircraft beside a real one in its own clip, and measure how both look");
   command->add_option("--real", arguments->real, "Video with a real aircraft in it")->required();
   command
       ->add_option("--boxes",

@@ -138,8 +138,8 @@ void run_report(Report arguments, Context& context) {
 constexpr const char* kBothWays = "coco, yolo, mot, voc, cvat, aot, otb, got10k, vot";
 
 void add_export(CLI::App& group, Context& context) {
-  auto [command, out] =
-      add_command(group, context, "export", "Write a data set in a format of others", run_export);
+  auto [command, out] = add_command(group, context, "export", run_export);
+  command->description("Write a data set in a format of others");
   command->add_option("DIR", out->set, "A data set, or a folder that `render` made")->required();
   command
       ->add_option(
@@ -197,11 +197,8 @@ void add_export(CLI::App& group, Context& context) {
 }
 
 void add_report(CLI::App& group, Context& context) {
-  auto [command, page] = add_command(group,
-                                     context,
-                                     "report",
-                                     "A page on a data set: what is in it, and each sequence",
-                                     run_report);
+  auto [command, page] = add_command(group, context, "report", run_report);
+  command->description("A page on a data set: what is in it, and each sequence");
   command->add_option("DIR", page->set, "A data set, or a folder that `render` made")->required();
   command->add_option("--out,-o", page->out, "The page (default: report.html)");
   command->add_flag("--overwrite", page->options.overwrite, "Replace the page if it is there");
@@ -209,11 +206,8 @@ void add_report(CLI::App& group, Context& context) {
 }
 
 void add_import(CLI::App& group, Context& context) {
-  auto [command, in] = add_command(group,
-                                   context,
-                                   "import",
-                                   "Import labelled video of others, to look at and to evaluate on",
-                                   run_import);
+  auto [command, in] = add_command(group, context, "import", run_import);
+  command->description("Import labelled video of others, to look at and to evaluate on");
   command->add_option("SOURCE", in->source, "Its folder, or its annotation file")->required();
   command
       ->add_option(
@@ -510,16 +504,26 @@ void add_build_options(CLI::App& command, DatasetArguments& arguments) {
 }
 
 void add_build(CLI::App& group, Context& context) {
-  auto [command, arguments] = add_command(
-      group, context, "build", "Make every sequence of a catalogue that is not there yet", build);
+  auto [command, arguments] = add_command(group, context, "build", build);
+  command->description("Make every sequence of a catalogue that is not there yet");
   add_build_options(*command, *arguments);
   command->add_option(
       "--only", arguments->build.only, "Only sequences whose name fits this pattern (* and ?)");
 }
 
+void work(const DatasetArguments& arguments, Context& context) {
+  const build::BuildOptions& options = arguments.build;
+  if (options.share >= options.shares)
+    throw Error(fmt::format("--index is {} of {}; expected 0 to {}",
+                            options.share,
+                            options.shares,
+                            options.shares - 1));
+  build(arguments, context);
+}
+
 void add_work(CLI::App& group, Context& context) {
-  auto arguments = std::make_shared<DatasetArguments>();
-  auto* command = group.add_subcommand("work", "One worker's share of a build, for job arrays");
+  auto [command, arguments] = add_command(group, context, "work", work);
+  command->description("One worker's share of a build, for job arrays");
   add_build_options(*command, *arguments);
   command->add_option("--index", arguments->build.share, "This worker's number, from 0")
       ->required()
@@ -527,32 +531,24 @@ void add_work(CLI::App& group, Context& context) {
   command->add_option("--of", arguments->build.shares, "How many workers there are")
       ->required()
       ->check(CLI::PositiveNumber);
-  command->callback([arguments, &context] {
-    if (arguments->build.share >= arguments->build.shares)
-      throw Error(fmt::format("--index is {} of {}; expected 0 to {}",
-                              arguments->build.share,
-                              arguments->build.shares,
-                              arguments->build.shares - 1));
-    build(*arguments, context);
-  });
 }
 
 void add_plan(CLI::App& group, Context& context) {
-  auto [command, arguments] = add_command(
-      group, context, "plan", "Say what a catalogue would make, how long and how large", plan);
+  auto [command, arguments] = add_command(group, context, "plan", plan);
+  command->description("Say what a catalogue would make, how long and how large");
   command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
   add_backgrounds(*command, arguments->backgrounds);
 }
 
 void add_status(CLI::App& group, Context& context) {
-  auto [command, arguments] =
-      add_command(group, context, "status", "Say how far a data set is", status);
+  auto [command, arguments] = add_command(group, context, "status", status);
+  command->description("Say how far a data set is");
   command->add_option("DIR", arguments->folder, "The data set's folder")->required();
 }
 
 void add_verify(CLI::App& group, Context& context) {
-  auto [command, arguments] = add_command(
-      group, context, "verify", "Check every file, label and frame count of a data set", verify);
+  auto [command, arguments] = add_command(group, context, "verify", verify);
+  command->description("Check every file, label and frame count of a data set");
   command->add_option("DIR", arguments->folder, "The data set's folder")->required();
   command->add_flag("--finish",
                     arguments->finish,
@@ -566,8 +562,8 @@ void add_verify(CLI::App& group, Context& context) {
 }
 
 void add_submit(CLI::App& group, Context& context) {
-  auto [command, arguments] =
-      add_command(group, context, "submit", "Have a cluster make a data set", submit);
+  auto [command, arguments] = add_command(group, context, "submit", submit);
+  command->description("Have a cluster make a data set");
   command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
   command
       ->add_option("--out,-o",

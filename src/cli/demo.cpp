@@ -38,12 +38,9 @@ void demo(DemoArguments arguments, Context& context) {
 }  // namespace
 
 void add_demo(CLI::App& app, Context& context) {
-  auto [command, arguments] = add_command(
-      app,
-      context,
-      "demo",
-      "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay",
-      demo);
+  auto [command, arguments] = add_command(app, context, "demo", demo);
+  command->description(
+      "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay");
   command->add_option("--out,-o", arguments->out, "Folder to make")->capture_default_str();
   command->add_option("--seed", arguments->demo.seed, "Another flight")->capture_default_str();
   add_number(*command, "--frames", arguments->demo.frame_count, "Length", 2, 100000);

@@ -148,8 +148,8 @@ void add_options(CLI::App& command, Detect& arguments) {
 }  // namespace
 
 void add_detect(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app, context, "detect", "Run detectors over a data set or a video", run_detect);
+  auto [command, arguments] = add_command(app, context, "detect", run_detect);
+  command->description("Run detectors over a data set or a video");
   add_options(*command, *arguments);
 }
 

@@ -123,12 +123,9 @@ void add_pairing_options(CLI::App& command, Sample& arguments) {
 }
 
 void add_sample(CLI::App& group, Context& context) {
-  auto [command, arguments] = add_command(
-      group,
-      context,
-      "sample",
-      "Draw tracks from an encounter model, alone or paired with an own track to encounters",
-      sample);
+  auto [command, arguments] = add_command(group, context, "sample", sample);
+  command->description(
+      "Draw tracks from an encounter model, alone or paired with an own track to encounters");
   command
       ->add_option("MODEL",
                    arguments->model,
@@ -197,12 +194,8 @@ void convert(const Convert& arguments, Context& context) {
 }
 
 void add_convert(CLI::App& group, Context& context) {
-  auto [command, arguments] =
-      add_command(group,
-                  context,
-                  "convert",
-                  "Write encounters in another format, which the extension of the file names",
-                  convert);
+  auto [command, arguments] = add_command(group, context, "convert", convert);
+  command->description("Write encounters in another format, which the extension of the file names");
   command
       ->add_option(
           "IN", arguments->in, "Encounters: .csv (airtruth, MIT-LL's track), .daa, .txt or .dat")

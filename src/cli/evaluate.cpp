@@ -417,12 +417,8 @@ void add_measure_options(CLI::App* command, Evaluate& arguments) {
 }  // namespace
 
 void add_evaluate(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "evaluate",
-                  "Score trackers' and detectors' results against a data set",
-                  run_evaluate);
+  auto [command, arguments] = add_command(app, context, "evaluate", run_evaluate);
+  command->description("Score trackers' and detectors' results against a data set");
   command->add_option("DIR", arguments->set, "A data set, made or imported")->required();
   command
       ->add_option("RESULTS",

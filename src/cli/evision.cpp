@@ -98,12 +98,8 @@ void evision(EvisionArguments arguments, Context& context) {
 }  // namespace
 
 void add_evision(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "evision",
-                  "Compare the published E-Vision annotations with boxes of our own",
-                  evision);
+  auto [command, arguments] = add_command(app, context, "evision", evision);
+  command->description("Compare the published E-Vision annotations with boxes of our own");
   evision::EvisionOptions& options = arguments->options;
   command->add_option("DIR", arguments->folder, "Folder with groundtruth/*.xml and positions/*.csv")
       ->required();

@@ -114,13 +114,10 @@ void crop(const CropArguments& arguments, Context& context) {
 void add_lens(CLI::App& app, Context& context) {
   auto* group = app.add_subcommand("lens", "Lenses");
   group->require_subcommand(1);
-  auto [command, arguments] =
-      add_command(*group,
-                  context,
-                  "estimate",
-                  "Estimate a camera's focal length from a video in which it "
-                  "turns, where no calibration is at hand",
-                  estimate);
+  auto [command, arguments] = add_command(*group, context, "estimate", estimate);
+  command->description(
+      "Estimate a camera's focal length from a video in which it "
+      "turns, where no calibration is at hand");
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("-o,--out", arguments->out, "Calibration to write, for [lens] file (.yml)");
@@ -129,12 +126,8 @@ void add_lens(CLI::App& app, Context& context) {
                     "Write the calibration also where other focal lengths fit as well");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
 
-  auto [crop_command, cut] =
-      add_command(*group,
-                  context,
-                  "crop",
-                  "Write the lens of a picture that is the middle of the calibrated one",
-                  crop);
+  auto [crop_command, cut] = add_command(*group, context, "crop", crop);
+  crop_command->description("Write the lens of a picture that is the middle of the calibrated one");
   crop_command->add_option("CALIBRATION", cut->file, "OpenCV or Gyroflow calibration")->required();
   crop_command
       ->add_option("--size", cut->size, "WIDTHxHEIGHT of the video: its largest part of that shape")

@@ -150,8 +150,8 @@ void align(const AlignArguments& arguments, Context& context) {
 }
 
 void add_log_show(CLI::App& group, Context& context) {
-  auto [command, arguments] =
-      add_command(group, context, "show", "Say what is in a flight log", show_log);
+  auto [command, arguments] = add_command(group, context, "show", show_log);
+  command->description("Say what is in a flight log");
   command
       ->add_option(
           "FILE", arguments->file, "DJI .srt, GoPro .mp4, PX4 .ulg, ArduPilot .bin, .gpx or .csv")
@@ -159,12 +159,9 @@ void add_log_show(CLI::App& group, Context& context) {
 }
 
 void add_align(CLI::App& group, Context& context) {
-  auto [command, arguments] =
-      add_command(group,
-                  context,
-                  "align",
-                  "Find the time of a log at a video's first frame, from the turn rates of both",
-                  align);
+  auto [command, arguments] = add_command(group, context, "align", align);
+  command->description(
+      "Find the time of a log at a video's first frame, from the turn rates of both");
   command->add_option("LOG", arguments->log, "Flight log with attitudes or turn rates")->required();
   command->add_option("VIDEO", arguments->video, "Video of the same flight")->required();
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");

@@ -120,8 +120,8 @@ void measure(MotionArguments arguments, Context& context) {
 }  // namespace
 
 void add_motion(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app, context, "motion", "Measure how a video's camera moved", measure);
+  auto [command, arguments] = add_command(app, context, "motion", measure);
+  command->description("Measure how a video's camera moved");
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command
       ->add_option(

@@ -55,8 +55,8 @@ void inspect(const InspectArguments& arguments, Context& context) {
 }  // namespace
 
 void add_overlay(CLI::App& app, Context& context) {
-  auto [command, arguments] = add_command(
-      app, context, "overlay", "Burn boxes, range and id into a copy of a finished video", overlay);
+  auto [command, arguments] = add_command(app, context, "overlay", overlay);
+  command->description("Burn boxes, range and id into a copy of a finished video");
   command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")
       ->required();
   command->add_option("-o,--out", arguments->out, "The video to write (.mp4, .mkv or .avi)")
@@ -65,12 +65,8 @@ void add_overlay(CLI::App& app, Context& context) {
 }
 
 void add_inspect(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "inspect",
-                  "Show a frame's intruder: background, alpha and result, enlarged",
-                  inspect);
+  auto [command, arguments] = add_command(app, context, "inspect", inspect);
+  command->description("Show a frame's intruder: background, alpha and result, enlarged");
   command->add_option("DIR", arguments->folder, "A folder that `airtruth render` has finished")
       ->required();
   command->add_option("--frame", arguments->frame, "Frame number, from 0")->required();

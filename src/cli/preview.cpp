@@ -90,12 +90,8 @@ void preview(const PreviewArguments& arguments, Context& context) {
 }  // namespace
 
 void add_preview(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "preview",
-                  "Show where a scene's intruders will be, without rendering the clip",
-                  preview);
+  auto [command, arguments] = add_command(app, context, "preview", preview);
+  command->description("Show where a scene's intruders will be, without rendering the clip");
   command->add_option("SCENE", arguments->scene, "Scene file (.toml)")->required();
   command->add_option(
       "-o,--out",

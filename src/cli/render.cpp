@@ -93,12 +93,8 @@ void render(const RenderArguments& arguments, Context& context) {
 }  // namespace
 
 void add_render(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "render",
-                  "Put the scene's intruders into its video, with the truth of every frame",
-                  render);
+  auto [command, arguments] = add_command(app, context, "render", render);
+  command->description("Put the scene's intruders into its video, with the truth of every frame");
   command
       ->add_option(
           "SCENE", arguments->scene, "Scene file (.toml); examples/render.toml shows every key")

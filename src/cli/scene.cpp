@@ -45,12 +45,8 @@ void new_scene(const NewArguments& arguments, Context& context) {
 void add_scene(CLI::App& app, Context& context) {
   auto* group = app.add_subcommand("scene", "Scene files");
   group->require_subcommand(1);
-  auto [command, arguments] =
-      add_command(*group,
-                  context,
-                  "new",
-                  "Write a commented scene for a video, with a first encounter",
-                  new_scene);
+  auto [command, arguments] = add_command(*group, context, "new", new_scene);
+  command->description("Write a commented scene for a video, with a first encounter");
   command
       ->add_option("VIDEO", arguments->video, "The onboard video, or a folder of numbered pictures")
       ->required();

@@ -110,8 +110,8 @@ void studio(const StudioArguments& arguments, Context& context) {
 }  // namespace
 
 void add_studio(CLI::App& app, Context& context) {
-  auto [command, arguments] = add_command(
-      app, context, "studio", "Place aircraft by hand on the video, in a browser's page", studio);
+  auto [command, arguments] = add_command(app, context, "studio", studio);
+  command->description("Place aircraft by hand on the video, in a browser's page");
   command
       ->add_option("SCENE|VIDEO",
                    arguments->input,

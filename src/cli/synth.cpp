@@ -131,12 +131,8 @@ void add_disturbance_options(CLI::App& command, SynthArguments& arguments) {
 }  // namespace
 
 void add_synth(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app,
-                  context,
-                  "synth",
-                  "Make a virtual flight: onboard video of a world that is known exactly",
-                  synth);
+  auto [command, arguments] = add_command(app, context, "synth", synth);
+  command->description("Make a virtual flight: onboard video of a world that is known exactly");
   add_file_options(*command, *arguments);
   command
       ->add_option("--seed",

@@ -158,8 +158,8 @@ void add_run_options(CLI::App& command, runs::TrackOptions& options) {
 }  // namespace
 
 void add_track(CLI::App& app, Context& context) {
-  auto [command, arguments] =
-      add_command(app, context, "track", "Run trackers over a data set or a video", run_track);
+  auto [command, arguments] = add_command(app, context, "track", run_track);
+  command->description("Run trackers over a data set or a video");
   add_source_options(*command, *arguments);
   add_run_options(*command, arguments->options);
 }
