@@ -142,14 +142,11 @@ void add_list(CLI::App& group, Context& context) {
   CLI::Option* sizes = command->add_flag(
       "--sizes", arguments->sizes, "Also the type of each and its published size");
   CLI::Option* left_out =
-      command->add_flag("--left-out",
-                        arguments->is_left_out,
-                        "In their place: the names of the package that are not offered, and why");
+      command->add_flag("--left-out", arguments->is_left_out)
+          ->description("In their place: the names of the package that are not offered, and why");
   left_out->excludes(sizes);
-  command
-      ->add_option("--sheet",
-                   arguments->sheet,
-                   "In their place: draw one aircraft of each type here (.png or .jpg)")
+  command->add_option("--sheet", arguments->sheet)
+      ->description("In their place: draw one aircraft of each type here (.png or .jpg)")
       ->excludes(sizes)
       ->excludes(left_out);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the picture if it exists");
@@ -158,10 +155,8 @@ void add_list(CLI::App& group, Context& context) {
 void add_show(CLI::App& group, Context& context) {
   auto [command, arguments] = add_command(group, context, "show", show);
   command->description("Size and liveries of one aircraft, and a contact sheet of pictures");
-  command
-      ->add_option(
-          "NAME",
-          arguments->name,
+  command->add_option("NAME", arguments->name)
+      ->description(
           "A name of `aircraft list`, or a model file (.ac .obj .3ds .stl .ply .dae .gltf .glb "
           ".fbx)")
       ->required();

@@ -158,21 +158,15 @@ void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
   command->add_option(
       "--lens", arguments.lens, "Calibration (OpenCV or Gyroflow): for sun and extinction");
   command->add_option("--mask", arguments.mask, "Own-aircraft mask: black = own aircraft");
-  command
-      ->add_option("--altitude",
-                   arguments.altitude_m,
-                   "Height of the camera above the ground, m: for the extinction")
+  command->add_option("--altitude", arguments.altitude_m)
+      ->description("Height of the camera above the ground, m: for the extinction")
       ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--heading",
-                   arguments.heading_deg,
-                   "Where the camera looks in the first frame, degrees from north: for the sun")
+  command->add_option("--heading", arguments.heading_deg)
+      ->description("Where the camera looks in the first frame, degrees from north: for the sun")
       ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str();
-  command
-      ->add_option(
-          "--gamma",
-          arguments.gamma,
+  command->add_option("--gamma", arguments.gamma)
+      ->description(
           "Exponent of the camera's tone curve, which one clip does not show [sRGB's curve]")
       ->check(CLI::Range(scene::kGamma.low, scene::kGamma.high));
 }
@@ -186,11 +180,10 @@ void add_calibrate(CLI::App& app, Context& context) {
       ->required();
   command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
   add_known_facts(command, *arguments);
-  command->add_option(
-      "--profile",
-      arguments->profile,
-      "Known camera, for what the clip does not show; none: the clip's values alone "
-      "[the one that the video's tags and size tell, else the median over all]");
+  command->add_option("--profile", arguments->profile)
+      ->description(
+          "Known camera, for what the clip does not show; none: the clip's values alone "
+          "[the one that the video's tags and size tell, else the median over all]");
   command->add_flag_callback(
       "--list-profiles",
       [] { throw CLI::CallForVersion(profile_lines(), 0); },

@@ -61,13 +61,9 @@ inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
 
 // A number from `low` to `high`, whose default the help states.
 template <typename Number>
-void add_number(CLI::App& command,
-                const char* name,
-                Number& number,
-                const char* about,
-                Number low,
-                Number high) {
-  command.add_option(name, number, about)->check(CLI::Range(low, high))->capture_default_str();
+CLI::Option* add_number(
+    CLI::App& command, const char* name, Number& number, Number low, Number high) {
+  return command.add_option(name, number)->check(CLI::Range(low, high))->capture_default_str();
 }
 
 // Reads the width and height from "1280x960", the form of --size. Throws Error for any other form.

@@ -50,7 +50,7 @@ void compare(CompareArguments arguments, Context& context) {
 
 // How many frames and pairs, and what is searched for.
 void add_match_options(CLI::App& command, CompareArguments& arguments) {
-  add_number(command, "--pairs", arguments.pairs, "Pairs in the figure", 1, 40);
+  add_number(command, "--pairs", arguments.pairs, 1, 40)->description("Pairs in the figure");
   command
       .add_option("--frames", arguments.most_frames, "At most so many frames from the first box on")
       ->check(CLI::PositiveNumber);
@@ -60,21 +60,16 @@ void add_match_options(CLI::App& command, CompareArguments& arguments) {
       "Search the type, attitude, livery and sun with which the inserted aircraft looks like the "
       "real one (the default), or take the scene's");
   CLI::Option* types =
-      command
-          .add_option("--types",
-                      arguments.types,
-                      "Aircraft to search among (`airtruth aircraft list`), with commas between")
+      command.add_option("--types", arguments.types)
+          ->description("Aircraft to search among (`airtruth aircraft list`), with commas between")
           ->delimiter(',');
-  command
-      .add_flag("--helicopter",
-                arguments.helicopter,
-                "The real aircraft is a helicopter: search among helicopters, not aeroplanes")
+  command.add_flag("--helicopter", arguments.helicopter)
+      ->description("The real aircraft is a helicopter: search among helicopters, not aeroplanes")
       ->excludes(types);
-  command
-      .add_option("--camera-pitch",
-                  arguments.camera_pitch_deg,
-                  "Degrees that the camera looks up, which says where light comes from (without: "
-                  "as much as has the aircraft most nearly level, 0 to 60)")
+  command.add_option("--camera-pitch", arguments.camera_pitch_deg)
+      ->description(
+          "Degrees that the camera looks up, which says where light comes from (without: "
+          "as much as has the aircraft most nearly level, 0 to 60)")
       ->check(CLI::Range(-90.0, 90.0));
 }
 
@@ -85,22 +80,18 @@ void add_compare(CLI::App& app, Context& context) {
   command->description(
       "Put an aircraft beside a real one in its own clip, and measure how both look");
   command->add_option("--real", arguments->real, "Video with a real aircraft in it")->required();
-  command
-      ->add_option("--boxes",
-                   arguments->boxes,
-                   "Its boxes, which may be loose: frame,x,y,width,height (.csv)")
+  command->add_option("--boxes", arguments->boxes)
+      ->description("Its boxes, which may be loose: frame,x,y,width,height (.csv)")
       ->required();
-  command
-      ->add_option("--scene",
-                   arguments->scene,
-                   "Scene that says which aircraft, light, lens and camera model; its video and "
-                   "path are not used, and its aircraft's type and attitude and its sun with "
-                   "--no-match alone")
+  command->add_option("--scene", arguments->scene)
+      ->description(
+          "Scene that says which aircraft, light, lens and camera model; its video and "
+          "path are not used, and its aircraft's type and attitude and its sun with "
+          "--no-match alone")
       ->required();
   command->add_option("-o,--out", arguments->out, "Folder to make")->required();
-  command
-      ->add_option(
-          "--origin", arguments->origin_px, "What the boxes' first pixel is called (MATLAB: 1)")
+  command->add_option("--origin", arguments->origin_px)
+      ->description("What the boxes' first pixel is called (MATLAB: 1)")
       ->capture_default_str();
   add_match_options(*command, *arguments);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the folder if it exists");

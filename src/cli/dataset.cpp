@@ -141,9 +141,8 @@ void add_export(CLI::App& group, Context& context) {
   auto [command, out] = add_command(group, context, "export", run_export);
   command->description("Write a data set in a format of others");
   command->add_option("DIR", out->set, "A data set, or a folder that `render` made")->required();
-  command
-      ->add_option(
-          "--format,-f", out->format, std::string(kBothWays) + ", webdataset or table (CSV)")
+  command->add_option("--format,-f", out->format)
+      ->description(std::string(kBothWays) + ", webdataset or table (CSV)")
       ->required();
   command
       ->add_option("--out,-o", out->out, "A new folder; an export that was stopped goes on in it")
@@ -173,25 +172,20 @@ void add_export(CLI::App& group, Context& context) {
                     out->options.mot_classes,
                     "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
                     "one class that MOT17's evaluation counts)");
-  command
-      ->add_option("--min-contrast",
-                   out->options.min_contrast,
-                   "Boxes with a lower contrast to noise count neither way: COCO's iscrowd, VOC's "
-                   "difficult and MOT's seventh column say so; others leave them out (default: 0)")
+  command->add_option("--min-contrast", out->options.min_contrast)
+      ->description(
+          "Boxes with a lower contrast to noise count neither way: COCO's iscrowd, VOC's "
+          "difficult and MOT's seventh column say so; others leave them out (default: 0)")
       ->check(CLI::Range(0.0, 1e6));
-  command
-      ->add_option("--min-size",
-                   out->options.min_size_px,
-                   "The same for boxes whose longer side has fewer pixels (default: 0)")
+  command->add_option("--min-size", out->options.min_size_px)
+      ->description("The same for boxes whose longer side has fewer pixels (default: 0)")
       ->check(CLI::Range(0.0, 1e6));
-  command->add_flag("--drop-faint",
-                    out->options.drop_faint,
-                    "Leave out what --min-contrast and --min-size refuse, in every format");
-  command
-      ->add_option("--shard-mb",
-                   out->options.shard_mb,
-                   "Of webdataset: a shard ends with the sample that makes it this large, in 10^6 "
-                   "bytes (default: 500)")
+  command->add_flag("--drop-faint", out->options.drop_faint)
+      ->description("Leave out what --min-contrast and --min-size refuse, in every format");
+  command->add_option("--shard-mb", out->options.shard_mb)
+      ->description(
+          "Of webdataset: a shard ends with the sample that makes it this large, in 10^6 "
+          "bytes (default: 500)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}));
   add_jobs(*command, out->options.jobs, "Sequences at a time (default: one per core)");
 }
@@ -209,11 +203,9 @@ void add_import(CLI::App& group, Context& context) {
   auto [command, in] = add_command(group, context, "import", run_import);
   command->description("Import labelled video of others, to look at and to evaluate on");
   command->add_option("SOURCE", in->source, "Its folder, or its annotation file")->required();
-  command
-      ->add_option(
-          "--format,-f",
-          in->format,
-          std::string(kBothWays) + "; webdataset (labels alone), evision or csv (frame,x,y,w,h)")
+  command->add_option("--format,-f", in->format)
+      ->description(std::string(kBothWays) +
+                    "; webdataset (labels alone), evision or csv (frame,x,y,w,h)")
       ->required();
   command->add_option("--out,-o", in->out, "A new folder")->required();
   command->add_option(
@@ -223,27 +215,21 @@ void add_import(CLI::App& group, Context& context) {
                       "[CLIP=]N, of otb, got10k and vot: the number of the first box's picture, "
                       "where there are more pictures than boxes");
   command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
-  command
-      ->add_option("--origin",
-                   in->options.read.origin_px,
-                   "Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
+  command->add_option("--origin", in->options.read.origin_px)
+      ->description("Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
       ->check(CLI::Range(0, 1));
   command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
-  command
-      ->add_option("--frame-rate",
-                   in->options.frame_rate_hz,
-                   "Frames a second of numbered pictures, where nothing says it")
+  command->add_option("--frame-rate", in->options.frame_rate_hz)
+      ->description("Frames a second of numbered pictures, where nothing says it")
       ->check(CLI::PositiveNumber);
-  command->add_option("--class-of",
-                      in->classes_of_categories,
-                      "CATEGORY=CLASS, for a category whose word states no class or another one");
-  command->add_option(
-      "--class",
-      in->classes,
-      "What the objects are, where they are no aircraft: bird, multirotor, balloon, "
-      "glint, dirt, insect, or ignore for regions that count neither way; "
-      "CLIP=CLASS for clips whose name fits (* and ?)");
+  command->add_option("--class-of", in->classes_of_categories)
+      ->description("CATEGORY=CLASS, for a category whose word states no class or another one");
+  command->add_option("--class", in->classes)
+      ->description(
+          "What the objects are, where they are no aircraft: bird, multirotor, balloon, "
+          "glint, dirt, insect, or ignore for regions that count neither way; "
+          "CLIP=CLASS for clips whose name fits (* and ?)");
 }
 
 struct DatasetArguments {
@@ -477,11 +463,10 @@ void verify(const DatasetArguments& arguments, Context& context) {
 }
 
 void add_folder_size(CLI::App& command, std::int64_t& max_in_a_folder) {
-  command
-      .add_option("--folder-size",
-                  max_in_a_folder,
-                  "A set of more sequences has them in numbered folders with as many each; decided "
-                  "when the set is begun (default: 4,000)")
+  command.add_option("--folder-size", max_in_a_folder)
+      ->description(
+          "A set of more sequences has them in numbered folders with as many each; decided "
+          "when the set is begun (default: 4,000)")
       ->check(CLI::Range(1, 1'000'000));
 }
 
@@ -493,10 +478,8 @@ void add_backgrounds(CLI::App& command, std::vector<std::string>& backgrounds) {
 void add_build_options(CLI::App& command, DatasetArguments& arguments) {
   command.add_option("CATALOGUE", arguments.catalogue, "Catalogue file (.toml); see catalogues/")
       ->required();
-  command
-      .add_option("--out,-o",
-                  arguments.folder,
-                  "The data set's folder; a build that was stopped goes on in it")
+  command.add_option("--out,-o", arguments.folder)
+      ->description("The data set's folder; a build that was stopped goes on in it")
       ->required();
   add_jobs(command, arguments.build.jobs, "Sequences at a time (default: one per core)");
   add_backgrounds(command, arguments.backgrounds);
@@ -550,9 +533,8 @@ void add_verify(CLI::App& group, Context& context) {
   auto [command, arguments] = add_command(group, context, "verify", verify);
   command->description("Check every file, label and frame count of a data set");
   command->add_option("DIR", arguments->folder, "The data set's folder")->required();
-  command->add_flag("--finish",
-                    arguments->finish,
-                    "First write the manifest, where several workers made the sequences");
+  command->add_flag("--finish", arguments->finish)
+      ->description("First write the manifest, where several workers made the sequences");
   command->add_flag(
       "--deep", arguments->deep, "Also draw sampled frames anew and compare them with the videos");
   command
@@ -565,26 +547,22 @@ void add_submit(CLI::App& group, Context& context) {
   auto [command, arguments] = add_command(group, context, "submit", submit);
   command->description("Have a cluster make a data set");
   command->add_option("CATALOGUE", arguments->catalogue, "Catalogue file (.toml)")->required();
-  command
-      ->add_option("--out,-o",
-                   arguments->folder,
-                   "The data set's folder, on a file system that all nodes see")
+  command->add_option("--out,-o", arguments->folder)
+      ->description("The data set's folder, on a file system that all nodes see")
       ->required();
   command->add_flag(
       "--slurm", arguments->on_slurm, "As a Slurm job array, with a job after it that verifies");
-  command->add_option(
-      "--array-size",
-      arguments->array_size,
-      "Tasks N (default: one per sequence, at most 1,000), and how many of them run "
-      "at a time: N, N%M or %M");
+  command->add_option("--array-size", arguments->array_size)
+      ->description(
+          "Tasks N (default: one per sequence, at most 1,000), and how many of them run "
+          "at a time: N, N%M or %M");
   add_folder_size(*command, arguments->slurm.max_in_a_folder);
   command->add_option("--partition", arguments->slurm.partition, "Slurm partition");
-  command
-      ->add_option("--sbatch",
-                   arguments->slurm.sbatch,
-                   "An option for sbatch, as \"--time=2:00:00\", \"--mem=4G\" or "
-                   "\"--account=NAME\"; give it again for more. It counts before [slurm] of the "
-                   "catalogue")
+  command->add_option("--sbatch", arguments->slurm.sbatch)
+      ->description(
+          "An option for sbatch, as \"--time=2:00:00\", \"--mem=4G\" or "
+          "\"--account=NAME\"; give it again for more. It counts before [slurm] of the "
+          "catalogue")
       ->allow_extra_args(false)
       ->take_all();
   add_backgrounds(*command, arguments->backgrounds);

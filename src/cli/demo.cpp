@@ -43,7 +43,7 @@ void add_demo(CLI::App& app, Context& context) {
       "From nothing: a virtual flight, an aircraft put into it, its truth and an overlay");
   command->add_option("--out,-o", arguments->out, "Folder to make")->capture_default_str();
   command->add_option("--seed", arguments->demo.seed, "Another flight")->capture_default_str();
-  add_number(*command, "--frames", arguments->demo.frame_count, "Length", 2, 100000);
+  add_number(*command, "--frames", arguments->demo.frame_count, 2, 100000)->description("Length");
   command->add_flag(
       "--overwrite", arguments->demo.run.overwrite, "Replace the folder's files where they exist");
 }

@@ -80,67 +80,50 @@ void run_detect(Detect arguments, Context& context) {
 
 void add_options(CLI::App& command, Detect& arguments) {
   runs::DetectOptions& options = arguments.options;
-  command
-      .add_option("DIR|VIDEO",
-                  arguments.source,
-                  "A data set, made or imported; or a video or folder of images")
+  command.add_option("DIR|VIDEO", arguments.source)
+      ->description("A data set, made or imported; or a video or folder of images")
       ->required();
-  command.add_option(
-      "--detector,-d",
-      options.detectors,
-      fmt::format("One or more of {}, {}; NAME=DETECTOR names its results (default: {})",
-                  fmt::join(runs::detector_names(), ", "),
-                  fmt::join(runs::detector_forms(), ", "),
-                  runs::kShippedDetector));
-  command
-      .add_option("--out,-o",
-                  arguments.out,
-                  "Results, a folder for each detector; a run that was stopped goes on in it")
+  command.add_option("--detector,-d", options.detectors)
+      ->description(
+          fmt::format("One or more of {}, {}; NAME=DETECTOR names its results (default: {})",
+                      fmt::join(runs::detector_names(), ", "),
+                      fmt::join(runs::detector_forms(), ", "),
+                      runs::kShippedDetector));
+  command.add_option("--out,-o", arguments.out)
+      ->description("Results, a folder for each detector; a run that was stopped goes on in it")
       ->required();
   command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
   command.add_option(
       "--min-score", options.min_score, "Leave out detections with a lower score (default: none)");
-  command
-      .add_option("--max-per-frame",
-                  options.max_per_frame,
-                  "Keep only so many of a frame, those of the highest scores (default: 100)")
+  command.add_option("--max-per-frame", options.max_per_frame)
+      ->description("Keep only so many of a frame, those of the highest scores (default: 100)")
       ->check(CLI::Range(1, 100'000));
   command.add_flag("--backgrounds,!--no-backgrounds",
                    options.backgrounds,
                    "The videos that a set was made over as well, which show no intruder (default)");
-  command
-      .add_option("--frame-rate",
-                  options.frame_rate_hz,
-                  "Frames a second of numbered pictures, where nothing states it")
+  command.add_option("--frame-rate", options.frame_rate_hz)
+      ->description("Frames a second of numbered pictures, where nothing states it")
       ->check(CLI::PositiveNumber);
-  command.add_option("--lens",
-                     arguments.lens,
-                     "Calibration file for what states no lens (default: a guess of 60 degrees)");
+  command.add_option("--lens", arguments.lens)
+      ->description("Calibration file for what states no lens (default: a guess of 60 degrees)");
   command.add_option(
       "--mask", arguments.mask, "Own-aircraft mask for what states none: black = own aircraft");
-  command.add_flag("--use-masks,!--no-masks",
-                   options.masks,
-                   "Nothing is detected, and no motion measured, on the own aircraft (default)");
-  command.add_flag(
-      "--mask-results",
-      options.mask_results,
-      "Leave out what networks and programs detect by more than half on the own aircraft");
+  command.add_flag("--use-masks,!--no-masks", options.masks)
+      ->description("Nothing is detected, and no motion measured, on the own aircraft (default)");
+  command.add_flag("--mask-results", options.mask_results)
+      ->description(
+          "Leave out what networks and programs detect by more than half on the own aircraft");
   command.add_flag(
       "--associate", arguments.associate, "Make tracks of the detections, by bearing and size");
-  command.add_option("--declare",
-                     arguments.declare,
-                     "M/N: a track is declared with M detections in N frames (default: 3/5)");
-  command.add_option("--confident",
-                     arguments.confident,
-                     "Least score that may begin a track (default: the detector's, else any)");
-  command
-      .add_option("--timeout",
-                  options.answer_s,
-                  "Longest that a program may take for a frame, s (default: 30)")
+  command.add_option("--declare", arguments.declare)
+      ->description("M/N: a track is declared with M detections in N frames (default: 3/5)");
+  command.add_option("--confident", arguments.confident)
+      ->description("Least score that may begin a track (default: the detector's, else any)");
+  command.add_option("--timeout", options.answer_s)
+      ->description("Longest that a program may take for a frame, s (default: 30)")
       ->check(CLI::Range(0.001, 86'400.0));
-  command
-      .add_option(
-          "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
+  command.add_option("--start-timeout", options.start_s)
+      ->description("Longest that it may take to start, s (default: 30)")
       ->check(CLI::Range(0.001, 86'400.0));
   add_jobs(command, options.jobs, "Sequences at a time (default: 1)");
 }

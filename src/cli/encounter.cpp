@@ -80,9 +80,8 @@ void add_cut_options(CLI::App& command, Sample& arguments) {
       ->expected(1, 100);
   command.add_option("--airspace", arguments.airspace, "Airspace classes of the model, from 1")
       ->expected(1, 100);
-  command
-      .add_option(
-          "--altitude-ft", arguments.altitude_ft, "Lowest and highest altitude at the start")
+  command.add_option("--altitude-ft", arguments.altitude_ft)
+      ->description("Lowest and highest altitude at the start")
       ->expected(2);
 }
 
@@ -126,21 +125,18 @@ void add_sample(CLI::App& group, Context& context) {
   auto [command, arguments] = add_command(group, context, "sample", sample);
   command->description(
       "Draw tracks from an encounter model, alone or paired with an own track to encounters");
-  command
-      ->add_option("MODEL",
-                   arguments->model,
-                   "Encounter model of MIT-LL (.txt), or the word geometric: steady flight from "
-                   "stated ranges, each covered evenly")
+  command->add_option("MODEL", arguments->model)
+      ->description(
+          "Encounter model of MIT-LL (.txt), or the word geometric: steady flight from "
+          "stated ranges, each covered evenly")
       ->required();
   command->add_option("-o,--out", arguments->out, "File to write: .csv, .daa, .txt or .dat")
       ->required();
   command->add_option("--count,-n", arguments->count, "Tracks or encounters (default: 100)")
       ->check(CLI::Range(std::int64_t{1}, kMaxCount));
   command->add_option("--seed", arguments->seed, "The same seed gives the same file (default: 1)");
-  command
-      ->add_option("--duration",
-                   arguments->duration_s,
-                   "Length of a track in s (default: that of the own track, else 60)")
+  command->add_option("--duration", arguments->duration_s)
+      ->description("Length of a track in s (default: that of the own track, else 60)")
       ->check(CLI::Range(1, encounter_model::kMaxDuration_s));
   add_cut_options(*command, *arguments);
   add_pairing_options(*command, *arguments);
@@ -196,20 +192,16 @@ void convert(const Convert& arguments, Context& context) {
 void add_convert(CLI::App& group, Context& context) {
   auto [command, arguments] = add_command(group, context, "convert", convert);
   command->description("Write encounters in another format, which the extension of the file names");
-  command
-      ->add_option(
-          "IN", arguments->in, "Encounters: .csv (airtruth, MIT-LL's track), .daa, .txt or .dat")
+  command->add_option("IN", arguments->in)
+      ->description("Encounters: .csv (airtruth, MIT-LL's track), .daa, .txt or .dat")
       ->required();
-  command
-      ->add_option("OUT",
-                   arguments->out,
-                   "File to write: .csv (airtruth), .daa (DAIDALUS), .txt (MIT-LL's table), .dat "
-                   "(MIT-LL's waypoints)")
+  command->add_option("OUT", arguments->out)
+      ->description(
+          "File to write: .csv (airtruth), .daa (DAIDALUS), .txt (MIT-LL's table), .dat "
+          "(MIT-LL's waypoints)")
       ->required();
-  command
-      ->add_option("--encounter",
-                   arguments->number,
-                   "Take this encounter alone, counted from 1; .daa and .txt hold one")
+  command->add_option("--encounter", arguments->number)
+      ->description("Take this encounter alone, counted from 1; .daa and .txt hold one")
       ->check(CLI::PositiveNumber);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
 }

@@ -153,48 +153,36 @@ void print_false_alarms(const scores::DetectorScore& detector, Console& console)
 void add_detection_options(CLI::App& command, Evaluate& arguments) {
   detector_evaluation::AssessOptions& options = arguments.detections;
   const auto group = "Detectors' results";
-  command
-      .add_option("--centre-px",
-                  options.centre_px,
-                  "A detection finds an aircraft where their centres are this near, or half of the "
-                  "aircraft's longer side (default: 10)")
+  command.add_option("--centre-px", options.centre_px)
+      ->description(
+          "A detection finds an aircraft where their centres are this near, or half of the "
+          "aircraft's longer side (default: 10)")
       ->check(CLI::Range(0.1, 1000.0))
       ->group(group);
-  command
-      .add_option("--score",
-                  options.score,
-                  "Detections with this score or more count at the operating point")
+  command.add_option("--score", options.score)
+      ->description("Detections with this score or more count at the operating point")
       ->group(group);
-  command
-      .add_option("--false-alarms",
-                  options.false_alarms_per_image,
-                  "Otherwise the least score with so many false alarms an image at most (default: "
-                  "0.1)")
+  command.add_option("--false-alarms", options.false_alarms_per_image)
+      ->description(
+          "Otherwise the least score with so many false alarms an image at most (default: "
+          "0.1)")
       ->check(CLI::Range(0.0, 1e6))
       ->group(group);
-  command
-      .add_option(
-          "--volume",
-          options.volume,
+  command.add_option("--volume", options.volume)
+      ->description(
           "Volume to keep clear of: f3442, do365-non-cooperative and others, or the scenes' "
           "own")
       ->group(group);
-  command
-      .add_option("--manoeuvre-s",
-                  options.manoeuvre_s,
-                  "Which encounters are declared this long before the volume is violated, s")
+  command.add_option("--manoeuvre-s", options.manoeuvre_s)
+      ->description("Which encounters are declared this long before the volume is violated, s")
       ->check(CLI::Range(0.0, 3600.0))
       ->group(group);
-  command
-      .add_option("--ignore",
-                  arguments.ignore,
-                  "CSV of regions that count neither way (default: DIR/ignore.csv)")
+  command.add_option("--ignore", arguments.ignore)
+      ->description("CSV of regions that count neither way (default: DIR/ignore.csv)")
       ->check(CLI::ExistingFile)
       ->group(group);
-  command
-      .add_flag("--detections",
-                arguments.is_detections,
-                "MOTChallenge text with tracks is a detector's, not a tracker's")
+  command.add_flag("--detections", arguments.is_detections)
+      ->description("MOTChallenge text with tracks is a detector's, not a tracker's")
       ->group(group);
 }
 
@@ -390,23 +378,19 @@ void run_evaluate(Evaluate arguments, Context& context) {
 
 // The options that change what is measured.
 void add_measure_options(CLI::App* command, Evaluate& arguments) {
-  command
-      ->add_option("--origin",
-                   arguments.options.origin_px,
-                   "What the results call the first pixel: 0 (default) or 1")
+  command->add_option("--origin", arguments.options.origin_px)
+      ->description("What the results call the first pixel: 0 (default) or 1")
       ->check(CLI::Range(0, 1));
-  command
-      ->add_option("--eao-range",
-                   arguments.eao_range,
-                   "Lengths over which VOT's expected average overlap is taken, frames (default: "
-                   "by the data set's own lengths)")
+  command->add_option("--eao-range", arguments.eao_range)
+      ->description(
+          "Lengths over which VOT's expected average overlap is taken, frames (default: "
+          "by the data set's own lengths)")
       ->expected(2)
       ->check(CLI::Range(1, 1'000'000));
-  command
-      ->add_option("--where",
-                   arguments.where,
-                   "KEY=LOW..HIGH: only sequences whose visibility_m, exposure, white_balance, "
-                   "blur, noise or sun_share is within (docs/formats/scene.md)")
+  command->add_option("--where", arguments.where)
+      ->description(
+          "KEY=LOW..HIGH: only sequences whose visibility_m, exposure, white_balance, "
+          "blur, noise or sun_share is within (docs/formats/scene.md)")
       ->allow_extra_args(false);
   command->add_flag("--speed-until-loss",
                     arguments.options.until_loss,
@@ -420,23 +404,19 @@ void add_evaluate(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "evaluate", run_evaluate);
   command->description("Score trackers' and detectors' results against a data set");
   command->add_option("DIR", arguments->set, "A data set, made or imported")->required();
-  command
-      ->add_option("RESULTS",
-                   arguments->results,
-                   "Folders of results, one for each tracker or detector; "
-                   "a detector's may be a COCO results file")
+  command->add_option("RESULTS", arguments->results)
+      ->description(
+          "Folders of results, one for each tracker or detector; "
+          "a detector's may be a COCO results file")
       ->required();
-  command
-      ->add_option(
-          "--out,-o",
-          arguments->out,
+  command->add_option("--out,-o", arguments->out)
+      ->description(
           "Folder for evaluation.json, detection.json, the tables, report.html and detection.html")
       ->required();
   add_measure_options(command, *arguments);
   add_detection_options(*command, *arguments);
-  command->add_option("--against",
-                      arguments->against,
-                      "Another evaluation.json: how far do the two rankings agree?");
+  command->add_option("--against", arguments->against)
+      ->description("Another evaluation.json: how far do the two rankings agree?");
   command->add_option(
       "--figures", arguments->figures, "Also the plots as files for a paper: png, pdf or svg");
   command->add_flag(

@@ -107,19 +107,14 @@ void add_evision(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--light-aircraft", options.light_aircraft, "Aircraft of the C172 sequences")
       ->capture_default_str();
-  add_number(*command, "--scale", options.scale, "Scale both aircraft", 0.01, 100.0);
-  add_number(*command,
-             "--spread",
-             options.spread_px,
-             "Pixels that the warps add to each side of a published box",
-             0,
-             20);
+  add_number(*command, "--scale", options.scale, 0.01, 100.0)->description("Scale both aircraft");
+  add_number(*command, "--spread", options.spread_px, 0, 20)
+      ->description("Pixels that the warps add to each side of a published box");
   command->add_option(
       "--frames", arguments->frames, "Also write every frame's two boxes here (.csv)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file of --frames");
-  command->add_flag("--still",
-                    arguments->still,
-                    "Without the camera's motion, which moves and turns the published boxes");
+  command->add_flag("--still", arguments->still)
+      ->description("Without the camera's motion, which moves and turns the published boxes");
   command->add_flag("--level", arguments->level, "Wings level, in place of banked turns");
 }
 

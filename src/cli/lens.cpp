@@ -121,9 +121,8 @@ void add_lens(CLI::App& app, Context& context) {
   command->add_option("VIDEO", arguments->video, "The video")->required();
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("-o,--out", arguments->out, "Calibration to write, for [lens] file (.yml)");
-  command->add_flag("--uncertain",
-                    arguments->uncertain,
-                    "Write the calibration also where other focal lengths fit as well");
+  command->add_flag("--uncertain", arguments->uncertain)
+      ->description("Write the calibration also where other focal lengths fit as well");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
 
   auto [crop_command, cut] = add_command(*group, context, "crop", crop);

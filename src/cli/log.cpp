@@ -152,9 +152,8 @@ void align(const AlignArguments& arguments, Context& context) {
 void add_log_show(CLI::App& group, Context& context) {
   auto [command, arguments] = add_command(group, context, "show", show_log);
   command->description("Say what is in a flight log");
-  command
-      ->add_option(
-          "FILE", arguments->file, "DJI .srt, GoPro .mp4, PX4 .ulg, ArduPilot .bin, .gpx or .csv")
+  command->add_option("FILE", arguments->file)
+      ->description("DJI .srt, GoPro .mp4, PX4 .ulg, ArduPilot .bin, .gpx or .csv")
       ->required();
 }
 
@@ -168,9 +167,8 @@ void add_align(CLI::App& group, Context& context) {
   command->add_option("--fov", arguments->fov_deg, "Vertical view of a pinhole, degrees")
       ->check(CLI::Range(1.0, 179.0));
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
-  command
-      ->add_option(
-          "--first-frame", arguments->first_frame, "First frame of the video that counts [0]")
+  command->add_option("--first-frame", arguments->first_frame)
+      ->description("First frame of the video that counts [0]")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
 }
 

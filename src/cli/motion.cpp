@@ -123,17 +123,14 @@ void add_motion(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "motion", measure);
   command->description("Measure how a video's camera moved");
   command->add_option("VIDEO", arguments->video, "The video")->required();
-  command
-      ->add_option(
-          "-o,--out",
-          arguments->out,
+  command->add_option("-o,--out", arguments->out)
+      ->description(
           "Table to write: frame,time_s,h11..h33 (or qw,qx,qy,qz),inliers,rms_px,state (.csv)")
       ->required();
-  command
-      ->add_option("--model",
-                   arguments->model_name,
-                   "rotation: on the sphere, through a known lens; homography: one plane; auto: "
-                   "rotation with --lens, homography without")
+  command->add_option("--model", arguments->model_name)
+      ->description(
+          "rotation: on the sphere, through a known lens; homography: one plane; auto: "
+          "rotation with --lens, homography without")
       ->check(CLI::IsMember({"auto", "rotation", "homography"}))
       ->capture_default_str();
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow), for rotation");
@@ -144,9 +141,8 @@ void add_motion(CLI::App& app, Context& context) {
   command->add_option("--reference", arguments->reference_name, "first_frame or smoothed")
       ->check(CLI::IsMember({"first_frame", "smoothed"}))
       ->capture_default_str();
-  command
-      ->add_option(
-          "--smoothing", arguments->smoothing_s, "smoothed: width of the window in seconds")
+  command->add_option("--smoothing", arguments->smoothing_s)
+      ->description("smoothed: width of the window in seconds")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");

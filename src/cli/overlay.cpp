@@ -73,10 +73,8 @@ void add_inspect(CLI::App& app, Context& context) {
   command->add_option("-o,--out", arguments->out, "The picture to write (.png or .jpg)")
       ->required();
   command->add_option("--intruder", arguments->intruder, "Its id (default: the first in view)");
-  command
-      ->add_option("--zoom",
-                   arguments->zoom,
-                   "Enlargement (default 8); less where the picture would pass 4000 px")
+  command->add_option("--zoom", arguments->zoom)
+      ->description("Enlargement (default 8); less where the picture would pass 4000 px")
       ->check(CLI::Range(1, 64));
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
 }

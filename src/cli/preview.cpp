@@ -93,16 +93,13 @@ void add_preview(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "preview", preview);
   command->description("Show where a scene's intruders will be, without rendering the clip");
   command->add_option("SCENE", arguments->scene, "Scene file (.toml)")->required();
-  command->add_option(
-      "-o,--out",
-      arguments->out,
-      "The picture to write (.png or .jpg), replaced where it exists [preview.png]");
-  command->add_flag(
-      "--motion",
-      arguments->motion,
-      "Measure the camera's motion first, a pass over the clip that is kept for later, "
-      "and show each moment as it will be rendered. Without it a motion that is kept "
-      "is used, and else none is shown");
+  command->add_option("-o,--out", arguments->out)
+      ->description("The picture to write (.png or .jpg), replaced where it exists [preview.png]");
+  command->add_flag("--motion", arguments->motion)
+      ->description(
+          "Measure the camera's motion first, a pass over the clip that is kept for later, "
+          "and show each moment as it will be rendered. Without it a motion that is kept "
+          "is used, and else none is shown");
   command->add_flag("--watch", arguments->watch, "Draw anew whenever the scene file is saved");
 }
 

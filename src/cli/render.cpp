@@ -95,25 +95,22 @@ void render(const RenderArguments& arguments, Context& context) {
 void add_render(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "render", render);
   command->description("Put the scene's intruders into its video, with the truth of every frame");
-  command
-      ->add_option(
-          "SCENE", arguments->scene, "Scene file (.toml); examples/render.toml shows every key")
+  command->add_option("SCENE", arguments->scene)
+      ->description("Scene file (.toml); examples/render.toml shows every key")
       ->required();
   command->add_option(
       "--out,-o", arguments->out, "Folder in which DIR/<name>/ is made (default: here)");
   command->add_flag(
       "--overwrite", arguments->overwrite, "Replace the output folder where it exists");
-  command
-      ->add_option(
-          "--threads,-j", arguments->threads, "Threads that make frames (default: all cores)")
+  command->add_option("--threads,-j", arguments->threads)
+      ->description("Threads that make frames (default: all cores)")
       ->check(CLI::Range(1, 1024));
   command->add_option(
       "--gpu", arguments->device, "chroma-key's OpenGL device: a number, or none for llvmpipe");
   command->add_flag(
       "--timings", arguments->timings, "Also print the CPU and wall time of each stage");
-  command->add_flag("--no-cache",
-                    arguments->no_cache,
-                    "Measure the camera's motion and the aircraft's occlusion anew");
+  command->add_flag("--no-cache", arguments->no_cache)
+      ->description("Measure the camera's motion and the aircraft's occlusion anew");
 }
 
 }  // namespace airtruth::cli

@@ -50,14 +50,11 @@ void add_scene(CLI::App& app, Context& context) {
   command
       ->add_option("VIDEO", arguments->video, "The onboard video, or a folder of numbered pictures")
       ->required();
-  command->add_option("-o,--out",
-                      arguments->out,
-                      "Scene file to write (default: the video's name with .toml, here)");
+  command->add_option("-o,--out", arguments->out)
+      ->description("Scene file to write (default: the video's name with .toml, here)");
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
-  command
-      ->add_option("--frame-rate",
-                   arguments->frame_rate_hz,
-                   "Frames a second of numbered pictures, which state none")
+  command->add_option("--frame-rate", arguments->frame_rate_hz)
+      ->description("Frames a second of numbered pictures, which state none")
       ->check(CLI::PositiveNumber);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
 }

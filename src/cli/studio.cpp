@@ -112,20 +112,17 @@ void studio(const StudioArguments& arguments, Context& context) {
 void add_studio(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "studio", studio);
   command->description("Place aircraft by hand on the video, in a browser's page");
-  command
-      ->add_option("SCENE|VIDEO",
-                   arguments->input,
-                   "Scene file (.toml), or an onboard video, for which one of its name is begun "
-                   "here, or opened where it exists")
+  command->add_option("SCENE|VIDEO", arguments->input)
+      ->description(
+          "Scene file (.toml), or an onboard video, for which one of its name is begun "
+          "here, or opened where it exists")
       ->required();
   command->add_option(
       "-o,--out", arguments->out, "Folder of the videos that the page renders [out]");
   command->add_option(
       "--lens", arguments->lens, "For a video: calibration (OpenCV or Gyroflow) of its camera");
-  command
-      ->add_option("--frame-rate",
-                   arguments->frame_rate_hz,
-                   "Frames a second of numbered pictures, which state none")
+  command->add_option("--frame-rate", arguments->frame_rate_hz)
+      ->description("Frames a second of numbered pictures, which state none")
       ->check(CLI::PositiveNumber);
   command->add_option("--port", arguments->port, "Port of 127.0.0.1; 0: any that is free [0]")
       ->check(CLI::Range(0, 65535));

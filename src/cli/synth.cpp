@@ -84,48 +84,43 @@ void add_file_options(CLI::App& command, SynthArguments& arguments) {
 
 void add_camera_options(CLI::App& command, SynthArguments& arguments) {
   synthetic::FlightOptions& flight = arguments.flight;
-  add_number(command, "--width", flight.width, "Pixels", 64, 8192);
-  add_number(command, "--height", flight.height, "Pixels", 64, 8192);
-  add_number(command, "--rate", flight.frame_rate_hz, "Frames a second", 1.0, 1000.0);
-  add_number(command, "--frames", flight.frame_count, "Number of frames", 1, kMaxFrames);
+  add_number(command, "--width", flight.width, 64, 8192)->description("Pixels");
+  add_number(command, "--height", flight.height, 64, 8192)->description("Pixels");
+  add_number(command, "--rate", flight.frame_rate_hz, 1.0, 1000.0)->description("Frames a second");
+  add_number(command, "--frames", flight.frame_count, 1, kMaxFrames)
+      ->description("Number of frames");
   command.add_option("--duration", arguments.duration_s, "Seconds, in place of --frames")
       ->check(CLI::Range(1e-6, 1e6));
-  add_number(
-      command, "--fov", flight.vertical_fov_deg, "Pinhole: vertical view in degrees", 1.0, 150.0);
+  add_number(command, "--fov", flight.vertical_fov_deg, 1.0, 150.0)
+      ->description("Pinhole: vertical view in degrees");
   command.add_option("--lens", arguments.lens_file, "A calibration file, in place of --fov");
 }
 
 void add_world_options(CLI::App& command, SynthArguments& arguments) {
   synthetic::FlightOptions& flight = arguments.flight;
-  add_number(command, "--speed", flight.speed_mps, "Metres a second", 0.0, 400.0);
-  add_number(command, "--altitude", flight.altitude_m, "Metres above the ground", 20.0, 900.0);
+  add_number(command, "--speed", flight.speed_mps, 0.0, 400.0)->description("Metres a second");
+  add_number(command, "--altitude", flight.altitude_m, 20.0, 900.0)
+      ->description("Metres above the ground");
   command.add_option("--sun-azimuth", flight.sun_azimuth_deg, "Degrees from north towards east")
       ->capture_default_str();
-  add_number(command, "--sun-elevation", flight.sun_elevation_deg, "Degrees", 2.0, 90.0);
-  add_number(command, "--clouds", flight.cloud_cover, "Cloud cover, 0 to 1", 0.0, 1.0);
-  add_number(command,
-             "--extinction",
-             flight.extinction_per_km,
-             "Of the air, per km; 0 is none",
-             0.0,
-             10.0);
+  add_number(command, "--sun-elevation", flight.sun_elevation_deg, 2.0, 90.0)
+      ->description("Degrees");
+  add_number(command, "--clouds", flight.cloud_cover, 0.0, 1.0)->description("Cloud cover, 0 to 1");
+  add_number(command, "--extinction", flight.extinction_per_km, 0.0, 10.0)
+      ->description("Of the air, per km; 0 is none");
 }
 
 void add_disturbance_options(CLI::App& command, SynthArguments& arguments) {
   synthetic::FlightOptions& flight = arguments.flight;
-  add_number(command, "--shake", flight.shake_deg, "Vibration, degrees rms", 0.0, 5.0);
-  add_number(command, "--noise", flight.noise, "Sensor noise; 1 is a cheap camera's", 0.0, 20.0);
-  add_number(command,
-             "--clutter",
-             flight.clutter,
-             "Share of the picture that moves independently, 0 to 1",
-             0.0,
-             1.0);
+  add_number(command, "--shake", flight.shake_deg, 0.0, 5.0)->description("Vibration, degrees rms");
+  add_number(command, "--noise", flight.noise, 0.0, 20.0)
+      ->description("Sensor noise; 1 is a cheap camera's");
+  add_number(command, "--clutter", flight.clutter, 0.0, 1.0)
+      ->description("Share of the picture that moves independently, 0 to 1");
   command.add_flag(
       "--no-own-aircraft", arguments.no_own_aircraft, "Leave the own aircraft out of the view");
-  command.add_flag("--rotate-only",
-                   arguments.rotate_only,
-                   "The camera turns but does not move, so that a homography is exact");
+  command.add_flag("--rotate-only", arguments.rotate_only)
+      ->description("The camera turns but does not move, so that a homography is exact");
 }
 
 }  // namespace
@@ -134,15 +129,13 @@ void add_synth(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "synth", synth);
   command->description("Make a virtual flight: onboard video of a world that is known exactly");
   add_file_options(*command, *arguments);
-  command
-      ->add_option("--seed",
-                   arguments->flight.seed,
-                   "Of the random numbers: another world and another flight")
+  command->add_option("--seed", arguments->flight.seed)
+      ->description("Of the random numbers: another world and another flight")
       ->capture_default_str();
   add_camera_options(*command, *arguments);
   add_world_options(*command, *arguments);
   add_disturbance_options(*command, *arguments);
-  add_number(*command, "--quality", arguments->quality, "H.264 CRF", 0, 51);
+  add_number(*command, "--quality", arguments->quality, 0, 51)->description("H.264 CRF");
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
 }
 

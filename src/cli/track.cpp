@@ -103,24 +103,18 @@ void run_track(Track arguments, Context& context) {
 
 // What is followed, by which trackers, and where their results go.
 void add_source_options(CLI::App& command, Track& arguments) {
-  command
-      .add_option("DIR|VIDEO",
-                  arguments.source,
-                  "A data set, made or imported; or a video or folder of images, with --init")
+  command.add_option("DIR|VIDEO", arguments.source)
+      ->description("A data set, made or imported; or a video or folder of images, with --init")
       ->required();
   std::string names;
   for (const std::string& name : tracking::tracker_names()) names += name + ", ";
-  command
-      .add_option("--tracker,-t",
-                  arguments.trackers,
-                  "One or more of " + names +
-                      "trax:COMMAND for a program that speaks TraX (NAME=trax:COMMAND names its "
-                      "results), trax-socket:COMMAND for one that connects to TRAX_SOCKET")
+  command.add_option("--tracker,-t", arguments.trackers)
+      ->description("One or more of " + names +
+                    "trax:COMMAND for a program that speaks TraX (NAME=trax:COMMAND names its "
+                    "results), trax-socket:COMMAND for one that connects to TRAX_SOCKET")
       ->required();
-  command
-      .add_option("--out,-o",
-                  arguments.out,
-                  "Results, a folder for each tracker; a run that was stopped goes on in it")
+  command.add_option("--out,-o", arguments.out)
+      ->description("Results, a folder for each tracker; a run that was stopped goes on in it")
       ->required();
   command.add_option("--protocol",
                      arguments.protocol,
@@ -137,19 +131,14 @@ void add_run_options(CLI::App& command, runs::TrackOptions& options) {
   command.add_option("--seed", options.seed, "Of the trackers' random numbers (default: 1)");
   command.add_option("--repetitions", options.repetitions, "Of --protocol restart (default: 1)")
       ->check(CLI::Range(1, 999));
-  command
-      .add_option("--anchor-step",
-                  options.anchor_step,
-                  "Frames between the starts of --protocol multistart (default: 50)")
+  command.add_option("--anchor-step", options.anchor_step)
+      ->description("Frames between the starts of --protocol multistart (default: 50)")
       ->check(CLI::Range(1, 1'000'000));
-  command
-      .add_option("--timeout",
-                  options.answer_s,
-                  "Longest that a TraX tracker may take for an answer, s (default: 30)")
+  command.add_option("--timeout", options.answer_s)
+      ->description("Longest that a TraX tracker may take for an answer, s (default: 30)")
       ->check(CLI::Range(0.001, 86'400.0));
-  command
-      .add_option(
-          "--start-timeout", options.start_s, "Longest that it may take to start, s (default: 30)")
+  command.add_option("--start-timeout", options.start_s)
+      ->description("Longest that it may take to start, s (default: 30)")
       ->check(CLI::Range(0.001, 86'400.0));
   add_jobs(
       command, options.jobs, "Sequences at a time (default: 1, so that times are a tracker's own)");
