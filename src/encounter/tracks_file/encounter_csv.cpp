@@ -151,19 +151,15 @@ std::string encounter_csv_rows(const track::Encounter& encounter, std::uint64_t 
   for (const track::Track& track : encounter.aircraft) {
     const std::vector<Vector3> velocities = track::velocities_of(track);
     for (std::size_t i = 0; i < track.size(); ++i) {
-      const Vector3& p = track.positions_ned_m[i];
-      const Vector3& v = velocities[i];
+      const Vector3 p = track.positions_ned_m[i].array() + kPlainZero;
+      const Vector3 v = velocities[i].array() + kPlainZero;
       fmt::format_to(std::back_inserter(text),
-                     "{},{},{},{},{},{},{},{},{},{}\n",
+                     "{},{},{},{},{},{}\n",
                      number,
                      track.name,
                      track.times_s[i],
-                     kPlainZero + p.x(),
-                     kPlainZero + p.y(),
-                     kPlainZero + p.z(),
-                     kPlainZero + v.x(),
-                     kPlainZero + v.y(),
-                     kPlainZero + v.z(),
+                     fmt::join(p, ","),
+                     fmt::join(v, ","),
                      encounter.weight);
     }
   }

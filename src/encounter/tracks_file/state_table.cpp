@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "encounter/track/track.h"
 #include "encounter/tracks_file/formats.h"
@@ -272,6 +273,9 @@ std::vector<track::Track> whole_tracks(const track::Encounter& encounter, const 
 
 // Numbers are written so that reading gives the same ones; -0 becomes 0.
 double plain(double number) { return number + 0.0; }
+Vector3 east_north_up(const Vector3& ned) {
+  return {plain(ned.y()), plain(ned.x()), plain(-ned.z())};
+}
 
 }  // namespace
 
@@ -288,17 +292,11 @@ std::string daa_of(const track::Encounter& encounter) {
     if (time_s == HUGE_VAL) return text;
     for (std::size_t a = 0; a < tracks.size(); ++a) {
       if (next[a] >= tracks[a].size() || tracks[a].times_s[next[a]] != time_s) continue;
-      const Vector3& p = tracks[a].positions_ned_m[next[a]];
-      const Vector3& v = tracks[a].velocities_ned_mps[next[a]];
       fmt::format_to(std::back_inserter(text),
-                     "{} {} {} {} {} {} {} {}\n",
+                     "{} {} {} {}\n",
                      tracks[a].name,
-                     plain(p.y()),
-                     plain(p.x()),
-                     plain(-p.z()),
-                     plain(v.y()),
-                     plain(v.x()),
-                     plain(-v.z()),
+                     fmt::join(east_north_up(tracks[a].positions_ned_m[next[a]]), " "),
+                     fmt::join(east_north_up(tracks[a].velocities_ned_mps[next[a]]), " "),
                      time_s);
       ++next[a];
     }
@@ -311,15 +309,12 @@ std::string state_table_of(const track::Encounter& encounter) {
       "unitless, [ft], [ft], [ft], [rad], [ftps], [ftps], [s]\n";
   for (const track::Track& track : whole_tracks(encounter, ".txt"))
     for (std::size_t i = 0; i < track.size(); ++i) {
-      const Vector3 p = track.positions_ned_m[i] / kMetresOfFoot;
       const Vector3 v = track.velocities_ned_mps[i] / kMetresOfFoot;
       const double course = std::atan2(v.y(), v.x());
       fmt::format_to(std::back_inserter(text),
-                     "{}, {}, {}, {}, {}, {}, {}, {}\n",
+                     "{}, {}, {}, {}, {}, {}\n",
                      track.name,
-                     plain(p.y()),
-                     plain(p.x()),
-                     plain(-p.z()),
+                     fmt::join(east_north_up(track.positions_ned_m[i] / kMetresOfFoot), ", "),
                      plain(course < 0 ? course + 2 * kPi : course),
                      v.head<2>().norm(),
                      plain(-v.z()),

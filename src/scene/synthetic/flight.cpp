@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include "foundation/base/error.h"
@@ -276,13 +277,8 @@ std::string csv_from_flight(const Flight& flight) {
       "roll_deg\n";
   const auto append = [&](const trajectory::State& s) {
     const YawPitchRoll a = yaw_pitch_roll(s.world_from_body);
-    text += fmt::format(",{},{},{},{},{},{}",
-                        s.position_in_world.x(),
-                        s.position_in_world.y(),
-                        s.position_in_world.z(),
-                        a.yaw_deg,
-                        a.pitch_deg,
-                        a.roll_deg);
+    text += fmt::format(
+        ",{},{},{},{}", fmt::join(s.position_in_world, ","), a.yaw_deg, a.pitch_deg, a.roll_deg);
   };
   for (int k = 0; k < flight.options().frame_count; ++k) {
     text += fmt::format("{},{}", k, k / flight.options().frame_rate_hz);
