@@ -254,22 +254,6 @@ const image::Mask& Flight::own_aircraft() const { return impl_->own.mask; }
 const lens::Lens& Flight::lens() const { return impl_->lens; }
 const FlightOptions& Flight::options() const { return impl_->options; }
 
-Homography Flight::frame_from_first(int index) const {
-  const auto* pinhole = std::get_if<lens::Pinhole>(&impl_->lens.model());
-  check(pinhole != nullptr, "frame_from_first needs a pinhole");
-  Matrix3 pixel_from_cam = Matrix3::Identity();
-  pixel_from_cam(0, 0) = pinhole->focal_px.x();
-  pixel_from_cam(1, 1) = pinhole->focal_px.y();
-  pixel_from_cam(0, 2) = pinhole->principal_point_px.x();
-  pixel_from_cam(1, 2) = pinhole->principal_point_px.y();
-  const auto cam_from_world = [&](int k) {
-    return (cam_from_body() * camera(k).world_from_body.conjugate()).toRotationMatrix();
-  };
-  const Homography h = pixel_from_cam * cam_from_world(index) * cam_from_world(0).transpose() *
-                       pixel_from_cam.inverse();
-  return h / h(2, 2);
-}
-
 std::string csv_from_flight(const Flight& flight) {
   std::string text =
       "frame,time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg,"

@@ -77,8 +77,6 @@ class Flight {
   const image::Mask& own_aircraft() const;
   const lens::Lens& lens() const;
   const FlightOptions& options() const;
-  // The exact homography frame_from_first of the far field: K R_k R_0^-1 K^-1. Only for a pinhole.
-  Homography frame_from_first(int index) const;
 
  private:
   struct Impl;

@@ -11,6 +11,7 @@
 #include <tbb/global_control.h>
 
 #include "foundation/base/error.h"
+#include "support/far_field.h"
 
 namespace airtruth::synthetic {
 namespace {
@@ -111,12 +112,12 @@ TEST(Flight, TheHomographyCarriesTheFirstFrameToAnyOther) {
   const image::Picture first = flight.frame(0);
   for (const int frame : {3, 18, 39}) {
     const image::Picture later = flight.frame(frame);
-    const double with = mean_difference(first, later, flight.frame_from_first(frame));
+    const double with = mean_difference(first, later, frame_from_first(flight, frame));
     const double without = mean_difference(first, later, Homography::Identity());
     EXPECT_LT(with, 2.5) << frame;
     EXPECT_LT(with, 0.5 * without) << frame;
     // A warp that is half a pixel off is worse, so the check detects such an error.
-    Homography aside = flight.frame_from_first(frame);
+    Homography aside = frame_from_first(flight, frame);
     aside.row(0) += 0.5 * aside.row(2);
     EXPECT_LT(with, mean_difference(first, later, aside)) << frame;
   }

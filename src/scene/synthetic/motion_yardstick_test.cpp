@@ -13,6 +13,7 @@
 #include "camera/motion/motion.h"
 #include "foundation/base/median.h"
 #include "scene/synthetic/flight.h"
+#include "support/far_field.h"
 
 // Compares measured motion with known motion: a pinhole that only rotates, so that a homography is
 // exact, with the own aircraft in view and a fifth of the picture moving independently.
@@ -62,7 +63,7 @@ TEST(MotionYardstick, FrameToFrameErrorAtTheCornersIsBelowAThirdOfAPixel) {
   Homography truth_before = Homography::Identity();
   for (int k = 0; k < kFrames; ++k) {
     const image::Picture picture = flight.frame(k);
-    const Homography truth = flight.frame_from_first(k);
+    const Homography truth = frame_from_first(flight, k);
     for (Model& model : models) {
       const motion::FrameMotion moved = model.estimator.next(picture, k / options.frame_rate_hz);
       const Homography measured =
