@@ -39,19 +39,6 @@ std::string element(const std::string& key, std::size_t index) {
   return fmt::format("{}[{}]", key, index);
 }
 
-// The value of a key that must be there, with what is expected in the message where it is not.
-const Json& required(const Json& object,
-                     const std::string& key,
-                     std::string_view expected,
-                     const std::string& place,
-                     const Where& where) {
-  const auto found = object.find(key);
-  if (found != object.end()) return *found;
-  throw Error(
-      fmt::format("{}has no {}; expected {}", place.empty() ? "" : place + " ", key, expected),
-      where);
-}
-
 std::string whole_number(std::int64_t least, std::int64_t most) {
   return fmt::format("a whole number from {} to {}", least, most);
 }
@@ -92,8 +79,15 @@ const Json& JsonObject::value(const std::string& key) const {
   return *found;
 }
 
+const Json& JsonObject::required(const std::string& key, const std::string& expected) const {
+  const auto found = json_->find(key);
+  if (found != json_->end()) return *found;
+  throw Error((place_.empty() ? "" : place_ + " ") + "has no " + key + "; expected " + expected,
+              where_);
+}
+
 const Json& JsonObject::list(const std::string& key, const std::string& expected) const {
-  const Json& found = required(*json_, key, expected, place_, where_);
+  const Json& found = required(key, expected);
   if (!found.is_array()) fail(found, key, expected);
   return found;
 }
@@ -126,7 +120,7 @@ void JsonObject::fail(const std::string& key, const std::string& expected) const
 }
 
 std::string JsonObject::text(const std::string& key) const {
-  const Json& found = required(*json_, key, "a string", place_, where_);
+  const Json& found = required(key, "a string");
   if (!found.is_string()) fail(found, key, "a string");
   return found.get<std::string>();
 }
@@ -136,7 +130,7 @@ std::optional<std::string> JsonObject::maybe_text(const std::string& key) const 
 }
 
 bool JsonObject::truth(const std::string& key) const {
-  const Json& found = required(*json_, key, "true or false", place_, where_);
+  const Json& found = required(key, "true or false");
   if (found.is_boolean()) return found.get<bool>();
   if (!found.is_number()) fail(found, key, "true or false");
   return found.get<double>() != 0;
@@ -152,7 +146,7 @@ double JsonObject::number(const Json& value, const std::string& key) const {
 }
 
 double JsonObject::number(const std::string& key) const {
-  return number(required(*json_, key, "a number", place_, where_), key);
+  return number(required(key, "a number"), key);
 }
 
 std::optional<double> JsonObject::maybe_number(const std::string& key) const {
@@ -176,7 +170,7 @@ std::int64_t JsonObject::whole(const std::string& key,
                                std::int64_t most) const {
   const bool is_any = least == -kLargestWhole && most == kLargestWhole;
   const std::string expected = is_any ? "a whole number" : whole_number(least, most);
-  return whole(required(*json_, key, expected, place_, where_), key, least, most);
+  return whole(required(key, expected), key, least, most);
 }
 
 std::optional<std::int64_t> JsonObject::maybe_integer(const std::string& key) const {
@@ -251,9 +245,8 @@ std::vector<std::string> JsonObject::texts(const std::string& key) const {
 }
 
 JsonObject JsonObject::object(const std::string& key) const {
-  JsonObject result(required(*json_, key, "an object", place_, where_),
-                    text_.empty() ? where_ : where_of(key),
-                    path_of(key));
+  JsonObject result(
+      required(key, "an object"), text_.empty() ? where_ : where_of(key), path_of(key));
   result.text_ = text_;
   return result;
 }
