@@ -13,8 +13,8 @@
 
 #include "comparison/appearance/segment.h"
 #include "foundation/base/median.h"
-#include "foundation/geometry/transform.h"
 #include "foundation/geometry/box.h"
+#include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
 
 namespace airtruth::appearance {
