@@ -285,6 +285,13 @@ def check_ranges_and_speed(run_airtruth, place):
         _, tracker, warnings = evaluated("--eao-range", str(low), str(high))
         if warnings.count("runs ends at 59") != 2 or (tracker["restart"]["eao"], tracker["multistart"]["eao"]) != (restart, multistart):
             sys.exit(f"evaluate_test: --eao-range {low} {high}: {tracker['restart']['eao']} {tracker['multistart']['eao']} {warnings}")
+    for name in ("a.txt", "a_time.txt"):
+        os.remove(os.path.join(place, "mine", name))
+    _, tracker, _ = evaluated()  # VOT's runs alone
+    with open(place + "/evaluation/breakdown.csv", encoding="utf-8") as file:
+        rows = file.readlines()
+    if tracker["restart"]["eao"] != 1 or tracker.get("overall") or len(rows) != 1:
+        sys.exit(f"evaluate_test: runs alone: {tracker['restart']}, {tracker.get('overall')}, {rows}")
 
 
 def main():

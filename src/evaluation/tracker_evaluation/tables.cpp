@@ -74,7 +74,9 @@ Json breakdown_of(const ScoredTracker& tracker) {
     json[key] = list;
   }
   Json backgrounds = Json::object();
-  for (const Bin& bin : tracker.bins.at(kBackground)) backgrounds[bin.name] = json_of(bin);
+  // A tracker that has VOT's runs alone has no bins.
+  if (const auto found = tracker.bins.find(kBackground); found != tracker.bins.end())
+    for (const Bin& bin : found->second) backgrounds[bin.name] = json_of(bin);
   json[kBackground] = backgrounds;
   return json;
 }

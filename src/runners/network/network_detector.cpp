@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/network/network_detector.h"
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 

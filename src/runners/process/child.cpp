@@ -270,6 +270,7 @@ void Child::accept(Clock::time_point deadline) {
     if (connected.is_open()) {
       listening_.reset();
       to_.reset(::fcntl(connected.get(), F_DUPFD_CLOEXEC, 0));
+      if (!to_.is_open()) fail_system("keep a connection");
       from_ = std::move(connected);
       return;
     }
