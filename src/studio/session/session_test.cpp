@@ -169,6 +169,8 @@ TEST_F(OfASession, OfAChangeThePartThatChangedIsSent) {
   EXPECT_EQ(frame({{"frame", 3}, {"crop", "change"}}).header["crop"], Json({0, 0, 320, 240}));
   ask("edit", {{"changes", pixel(120, 90)}});
   const Json crop = frame({{"frame", 3}, {"crop", "change"}}).header["crop"];
+  EXPECT_EQ(crop[0].get<int>() % 2, 0);
+  EXPECT_EQ(crop[1].get<int>() % 2, 0);
   EXPECT_LT(crop[2].get<int>(), 200);
   EXPECT_LT(crop[3].get<int>(), 120);
   EXPECT_LE(crop[0].get<int>(), 60);

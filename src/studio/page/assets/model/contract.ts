@@ -88,6 +88,7 @@ export interface Volume {
 }
 
 export interface Plan {
+  complete: boolean;  // nothing is left to be measured
   frames: number[];
   own: {ned: Ned[]; heading_deg: number; attitude: string};
   horizontal_fov_deg: number;
