@@ -89,7 +89,7 @@ AVPixelFormat plain_kin(AVPixelFormat format);
 // Converts a frame to that format (libswscale, no dithering). Alpha is dropped.
 FramePtr in_format(const AVFrame& frame, AVPixelFormat format);
 
-// By the picture's height where `space` is untagged.
+// By the picture's height where `space` is untagged or another.
 image::Matrix matrix_of(AVColorSpace space, int height);
 AVColorSpace space_of(image::Matrix matrix);
 
