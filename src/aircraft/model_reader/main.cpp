@@ -14,6 +14,7 @@
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 #include "foundation/sandbox/child.h"
+#include "foundation/sandbox/confine.h"
 
 namespace {
 

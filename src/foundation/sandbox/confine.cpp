@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "foundation/sandbox/confine.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
@@ -17,7 +19,6 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
-#include "foundation/sandbox/child.h"
 
 namespace airtruth::sandbox {
 namespace {

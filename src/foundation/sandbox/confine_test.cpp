@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "foundation/sandbox/confine.h"
+
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -11,8 +13,6 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include "foundation/sandbox/child.h"
 
 namespace airtruth::sandbox {
 namespace {

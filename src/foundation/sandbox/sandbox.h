@@ -13,8 +13,8 @@
 #include "foundation/sandbox/messages.h"
 
 // A program of ours that reads an untrusted file in a child process, which can only answer through
-// its socket (docs/decisions/0013). This is the parent's side; the child's is child.h, with what
-// it may do, and what both say to each other is messages.h.
+// its socket (docs/decisions/0013). This is the parent's side; the child's is child.h, what it may
+// do is confine.h, and what both say to each other is messages.h.
 //
 //   sandbox::Process reader(kModelReader, stop);
 //   reader.set_deadline(20, "is not read within 20 s");

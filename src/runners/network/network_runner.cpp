@@ -19,6 +19,7 @@
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/text.h"
 #include "foundation/sandbox/child.h"
+#include "foundation/sandbox/confine.h"
 #include "foundation/sandbox/messages.h"
 #include "runners/network/inference.h"
 #include "runners/network/network_child.h"
