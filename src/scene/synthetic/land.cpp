@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "scene/synthetic/land.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <tbb/parallel_for.h>
 
 #include "scene/synthetic/rays.h"
-#include "scene/synthetic/tile.h"
 
 namespace airtruth::synthetic {
 namespace {
