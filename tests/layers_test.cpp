@@ -325,6 +325,7 @@ TEST(Modules, HaveAHeaderForEachSource) {
       {"scene/trajectory", "path"},
       {"show/drawing", "pictures.h"},
       {"runners/classical", "classical.h"},
+      {"runners/detector", "detector.h"},
       {"runners/network", "inference.h"},
       {"runners/results", "results_folder.h"},
       {"runners/tracking", "tracker.h"}};
