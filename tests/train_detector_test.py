@@ -32,6 +32,13 @@ def run(*arguments):
                           env={**os.environ, "PYTHONPATH": PACKAGES})
 
 
+def run_beside(code, folder=None):
+    """Runs code that sees the script's names as `script`."""
+    loaded = WITH_STAND_INS.replace('run_name="__main__")', 'run_name="script")').replace("runpy.run_path", "script = runpy.run_path")
+    return subprocess.run([sys.executable, "-c", loaded + code, SCRIPT], capture_output=True, text=True, check=False, cwd=folder,
+                          env={**os.environ, "PYTHONPATH": PACKAGES})
+
+
 class TrainDetector(unittest.TestCase):
     def test_it_compiles(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -53,7 +60,7 @@ class TrainDetector(unittest.TestCase):
             self.assertEqual(os.listdir(folder), [])
 
     def test_a_faint_aircraft_counts_neither_way(self):
-        code = WITH_STAND_INS.replace('run_name="__main__")', 'run_name="script")').replace("runpy.run_path", "script = runpy.run_path") + """
+        code = """
 import numpy as np
 sky = np.full((100, 200), 100, np.uint8)
 sky[:, 120:] = 60  # a step in the background far from all aircraft but the last
@@ -69,14 +76,13 @@ assert frames.ignored[0].tolist() == [[1, 2, 3, 4], [*boxes[0]], [*boxes[3]]], f
 frames.add(sky[10:14, 10:16], np.array([[0, 0, 6, 4]], np.float32))  # nothing around it: it stays
 assert len(frames.boxes[1]) == 1 and len(frames.ignored[1]) == 0
 """
-        done = subprocess.run([sys.executable, "-c", code, SCRIPT], capture_output=True, text=True, check=False,
-                              env={**os.environ, "PYTHONPATH": PACKAGES})
+        done = run_beside(code)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 
 class Negatives(unittest.TestCase):
     def test_half_of_the_crops_without_an_aircraft_are_about_false_alarms(self):
-        code = WITH_STAND_INS.replace('run_name="__main__")', 'run_name="script")').replace("runpy.run_path", "script = runpy.run_path") + """
+        code = """
 import pathlib
 import numpy as np
 import airtruth
@@ -103,8 +109,7 @@ assert all(mixed.draw(True, dice)[0].shape == (290, 290) for _ in range(20))
 assert mixed.words().endswith("2 mined false alarms")
 """
         with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([sys.executable, "-c", code, SCRIPT], capture_output=True, text=True, check=False, cwd=folder,
-                                  env={**os.environ, "PYTHONPATH": PACKAGES})
+            done = run_beside(code, folder)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 

@@ -191,7 +191,8 @@ def stated(name, options, seed):
     text = json.dumps(catalogue.of_clips([], None)) + (json.dumps(catalogue.of_flights(None)) if TRAININGS[name].ships else "")
     rules = f"{zlib.crc32(text.encode()):08x}"
     return {"frames": options.frames, "negatives": options.negatives, "batch": options.batch, "steps": options.steps,
-            "minutes": None if options.steps else options.minutes, "seed": seed, "train_on": options.train_on, "least_contrast": train_detector.LEAST_CONTRAST,
+            "minutes": None if options.steps else options.minutes, "seed": seed, "train_on": options.train_on,
+            "least_contrast": train_detector.LEAST_CONTRAST,
             "catalogue": "" if name == "real" else str(options.catalogue or f"of this command, {rules}")}
 
 
