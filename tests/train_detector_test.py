@@ -27,16 +27,15 @@ runpy.run_path(script, run_name="__main__")
 """
 
 
-def run(*arguments):
-    return subprocess.run([sys.executable, "-c", WITH_STAND_INS, SCRIPT, *arguments], capture_output=True, text=True, check=False,
+def run(*arguments, code=WITH_STAND_INS, folder=None):
+    return subprocess.run([sys.executable, "-c", code, SCRIPT, *arguments], capture_output=True, text=True, check=False, cwd=folder,
                           env={**os.environ, "PYTHONPATH": PACKAGES})
 
 
 def run_beside(code, folder=None):
     """Runs code that sees the script's names as `script`."""
     loaded = WITH_STAND_INS.replace('run_name="__main__")', 'run_name="script")').replace("runpy.run_path", "script = runpy.run_path")
-    return subprocess.run([sys.executable, "-c", loaded + code, SCRIPT], capture_output=True, text=True, check=False, cwd=folder,
-                          env={**os.environ, "PYTHONPATH": PACKAGES})
+    return run(code=loaded + code, folder=folder)
 
 
 class TrainDetector(unittest.TestCase):

@@ -161,10 +161,8 @@ void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
   command->add_option("--altitude", arguments.altitude_m)
       ->description("Height of the camera above the ground, m: for the extinction")
       ->check(CLI::PositiveNumber);
-  command->add_option("--heading", arguments.heading_deg)
-      ->description("Where the camera looks in the first frame, degrees from north: for the sun")
-      ->check(CLI::Range(-360.0, 360.0))
-      ->capture_default_str();
+  add_number(*command, "--heading", arguments.heading_deg, -360.0, 360.0)
+      ->description("Where the camera looks in the first frame, degrees from north: for the sun");
   command->add_option("--gamma", arguments.gamma)
       ->description(
           "Exponent of the camera's tone curve, which one clip does not show [sRGB's curve]")

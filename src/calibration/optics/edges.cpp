@@ -8,6 +8,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "calibration/optics/chroma.h"
 #include "calibration/optics/straight_step.h"
 #include "camera/motion/corners.h"
 #include "foundation/geometry/transform.h"

@@ -113,8 +113,7 @@ struct Sequence {
 };
 
 const lens::Lens& pinhole() {
-  static const lens::Lens lens(lens::Pinhole{{kFocalPx, kFocalPx}, {kWidth / 2.0, kHeight / 2.0}},
-                               {kWidth, kHeight});
+  static const lens::Lens lens = lens::undistorted(false, kFocalPx, {kWidth, kHeight});
   return lens;
 }
 

@@ -70,8 +70,7 @@ class Views {
         std::max({extents_.length_m(), extents_.span_m(), extents_.height_m()});
     const double range_m = 100 * largest_m;
     const double focal_px = kLengthPx * range_m / largest_m;
-    const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {kViewPx / 2.0, kViewPx / 2.0}},
-                          {kViewPx, kViewPx});
+    const lens::Lens lens = lens::undistorted(false, focal_px, {kViewPx, kViewPx});
     const Quaternion world_from_cam =
         cam_from_aircraft({azimuth_deg, elevation_deg, 0}).conjugate();
     const Vector3 centre = 0.5 * (extents_.low_in_body + extents_.high_in_body);

@@ -114,7 +114,7 @@ DrawnNumber fixed(double value) { return {value, value, {}}; }
 
 void read_pixel(const TableReader& table, DrawnSeen& seen) {
   table.exclude("pixel", {"x_px", "y_px"});
-  const auto pixel = table.tuple("pixel", {scene::kPixel, scene::kPixel});
+  const auto pixel = table.tuple<Pixel>("pixel", scene::kPixel);
   const auto x_px = number_in(table, "x_px", scene::kPixel);
   const auto y_px = number_in(table, "y_px", scene::kPixel);
   if (!pixel && !(x_px && y_px))

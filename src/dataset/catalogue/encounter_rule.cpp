@@ -77,11 +77,10 @@ std::vector<std::size_t> bins_in(const TableReader& table, const char* key) {
 }
 
 encounter_model::Cut cut_in(const TableReader& table) {
-  encounter_model::Cut cut{bins_in(table, "domains"), bins_in(table, "airspaces"), {}};
   const Limits altitude{"feet from 0 to 1e5", 0, 1e5};
-  if (const auto range = table.tuple("altitude_ft", {altitude, altitude}))
-    cut.altitude_ft = {(*range)[0], (*range)[1]};
-  return cut;
+  return {bins_in(table, "domains"),
+          bins_in(table, "airspaces"),
+          table.tuple<std::array<double, 2>>("altitude_ft", altitude)};
 }
 
 void read_geometry(const TableReader& table, EncounterRule& rule) {

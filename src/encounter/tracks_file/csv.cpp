@@ -39,8 +39,6 @@ const std::vector<std::string> kEncounterColumnNames =
     words_in("encounter aircraft time_s north_m east_m down_m north_mps east_mps down_mps weight");
 // The largest number of an encounter; a double holds every whole number up to it.
 constexpr double kLargestNumber = 1e9;
-// Added to a number, it makes -0 a plain 0 and changes no other.
-constexpr double kPlainZero = 0;
 
 using Places = std::vector<std::size_t>;
 
@@ -157,8 +155,8 @@ std::string encounter_csv_rows(const track::Encounter& encounter, std::uint64_t 
   for (const track::Track& track : encounter.aircraft) {
     const std::vector<Vector3> velocities = track::velocities_of(track);
     for (std::size_t i = 0; i < track.size(); ++i) {
-      const Vector3 p = track.positions_ned_m[i].array() + kPlainZero;
-      const Vector3 v = velocities[i].array() + kPlainZero;
+      const Vector3 p = plain(track.positions_ned_m[i]);
+      const Vector3 v = plain(velocities[i]);
       fmt::format_to(std::back_inserter(text),
                      "{},{},{},{},{},{}\n",
                      number,

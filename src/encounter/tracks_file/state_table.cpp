@@ -271,11 +271,7 @@ std::vector<track::Track> whole_tracks(const track::Encounter& encounter, const 
   return tracks;
 }
 
-// Numbers are written so that reading gives the same ones; -0 becomes 0.
-double plain(double number) { return number + 0.0; }
-Vector3 east_north_up(const Vector3& ned) {
-  return {plain(ned.y()), plain(ned.x()), plain(-ned.z())};
-}
+Vector3 east_north_up(const Vector3& ned) { return plain(Vector3(ned.y(), ned.x(), -ned.z())); }
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 
 #include "encounter/track/track.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/transform.h"
 
 // Text files of rows and cells, read line by line, and their rows put together to tracks.
 namespace airtruth::tracks_file {
@@ -36,6 +37,10 @@ class Lines {
   std::string file_;
   int number_ = 0;
 };
+
+// Numbers are written so that reading gives the same ones; -0 becomes 0.
+inline double plain(double number) { return number + 0.0; }
+inline Vector3 plain(const Vector3& v) { return v.array() + 0.0; }
 
 // Whether the first line with content has this cell.
 bool begins_with_column(std::string_view text, std::string_view column);

@@ -116,9 +116,9 @@ std::size_t place_of(std::vector<std::size_t>& list, std::size_t value) {
 }
 
 // One group: beside the columns each row has one of its own, which leaves it alone.
-void solve(const std::vector<const GatedPair*>& pairs,
-           double alone_cost,
-           std::vector<std::optional<std::size_t>>& column_of_row) {
+void solve_group(const std::vector<const GatedPair*>& pairs,
+                 double alone_cost,
+                 std::vector<std::optional<std::size_t>>& column_of_row) {
   std::vector<std::size_t> rows;
   std::vector<std::size_t> columns;
   for (const GatedPair* pair : pairs) {
@@ -152,7 +152,7 @@ std::vector<std::optional<std::size_t>> least_cost_pairs(const std::vector<Gated
   std::map<std::size_t, std::vector<const GatedPair*>> pairs_of_group;
   for (const GatedPair& pair : pairs) pairs_of_group[groups.of(pair.row)].push_back(&pair);
   std::vector<std::optional<std::size_t>> column_of_row(rows);
-  for (const auto& [group, own] : pairs_of_group) solve(own, alone_cost, column_of_row);
+  for (const auto& [group, own] : pairs_of_group) solve_group(own, alone_cost, column_of_row);
   return column_of_row;
 }
 

@@ -29,7 +29,8 @@ struct TruthClip {
   // Set for rendered sequences.
   std::optional<lens::Lens> lens;
   // Contrast in grey levels (show/drawing/thumbnails.h) by frame of the clip, filled in by
-  // add_film(). Empty, as all below, where the object is not visible or the value is unknown.
+  // add_film(). Empty where the object is not visible or the value is unknown,
+  // as range_m() and size_px() are.
   std::vector<std::optional<double>> contrast;
   // Some frames, for the page.
   std::vector<report::Still> stills;

@@ -24,10 +24,10 @@ inline int whole_pixels(double px) {
 //
 //   pixels_of({1.2, 0, 2.0, 1}) == {1, 0, 3, 1}
 inline PixelBox pixels_of(const Box& box) {
-  const auto bounded = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
-  const int x = bounded(std::floor(box.x));
-  const int y = bounded(std::floor(box.y));
-  return {x, y, bounded(std::ceil(box.right())) - x, bounded(std::ceil(box.bottom())) - y};
+  const int x = whole_pixels(std::floor(box.x));
+  const int y = whole_pixels(std::floor(box.y));
+  return {
+      x, y, whole_pixels(std::ceil(box.right())) - x, whole_pixels(std::ceil(box.bottom())) - y};
 }
 
 // Of two boxes of either kind.

@@ -34,7 +34,7 @@ struct FreeOutput {
 struct Writer::State {
   // An unfinished video leaves nothing behind.
   ~State() {
-    if (!unfinished || finished) return;
+    if (!unfinished) return;
     output.reset();
     std::error_code ignored;
     fs::remove_all(part, ignored);
@@ -53,7 +53,6 @@ struct Writer::State {
   std::int64_t count = 0;
   std::int64_t last_pts = -1;
   std::int64_t first_pts = 0;
-  bool finished = false;
   std::optional<Unfinished> unfinished;
 
   [[noreturn]] void fail(const std::string& message) const {
@@ -180,7 +179,7 @@ void Writer::finish() {
     fs::rename(s.part, s.path, failed);
     if (failed) s.fail("cannot create: " + failed.message());
   });
-  s.finished = true;
+  s.unfinished.reset();
 }
 
 Format format_of_file(const fs::path& path) {

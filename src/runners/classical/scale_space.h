@@ -91,8 +91,8 @@ struct Level {
   bool hides(const cv::Point& sample) const {
     return !hidden.empty() && hidden.at<std::uint8_t>(sample) != 0;
   }
-  // The sample of the largest relative response within `radius` samples.
-  cv::Point strongest_near(const cv::Point& sample, int radius) const;
+  // The sample of the largest relative response within `radius` samples of `centre`.
+  cv::Point strongest_near(const cv::Point& centre, int radius) const;
 };
 
 // The levels of a picture's luma: as many as needed for objects of kLargestPx, as far as its size

@@ -257,8 +257,8 @@ TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, 
   TrackerResults results;
   const fs::path own = folder / (clip.name + ".txt");
   const fs::path got10k = folder / clip.name / (clip.name + "_001.txt");
-  for (const fs::path& file : {own, got10k}) {
-    if (results.one_pass || !fs::exists(file)) continue;
+  const fs::path& file = fs::exists(own) ? own : got10k;
+  if (fs::exists(file)) {
     const fs::path times = file.parent_path() / (clip.name + "_time.txt");
     results.one_pass = TrackerResults::OnePass{one_pass_run(file, clip, origin_px),
                                                read_times(times, clip.frames.size())};

@@ -63,7 +63,6 @@ class Follower {
   // Empty where the tracker lost the object or has failed.
   std::optional<Box> next(const image::Picture& picture) {
     std::optional<Box> box;
-    seconds_ = 0;
     if (!tracker_) return box;
     guarded([&] {
       tracker_->load(picture);
@@ -101,7 +100,6 @@ class Follower {
       return true;
     } catch (const process::Failure& error) {
       fault_ = error.what();
-      seconds_ = 0;
       if (tracker_) log_ += tracker_->log();
       log_ += "airtruth: the tracker " + fault_ + "\n";
       tracker_.reset();

@@ -46,8 +46,7 @@ image::Rgb8 tile(const fleet::Aircraft& aircraft,
   const double largest_m = std::max({size.length_m(), size.span_m(), size.height_m()});
   const double range_m = 12 * largest_m;
   const double focal_px = pose.length_px * range_m / largest_m;
-  const lens::Lens lens(lens::Pinhole{{focal_px, focal_px}, {tile_px / 2.0, tile_px / 2.0}},
-                        {tile_px, tile_px});
+  const lens::Lens lens = lens::undistorted(false, focal_px, {tile_px, tile_px});
   const Vector3 centre = 0.5 * (size.low_in_body + size.high_in_body);
   const Vector3 to_eye = unit_vector(pose.azimuth_deg, pose.elevation_deg);
   // The aircraft stands level at the origin, nose north; the eye looks back at its middle.
