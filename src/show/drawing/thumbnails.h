@@ -9,7 +9,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
 
-// Small pictures for HTML pages.
+// Small pictures for HTML pages, and the pages' JPEGs with boxes.
 namespace airtruth::drawing {
 
 // The whole picture, at most `width` pixels wide.

@@ -11,7 +11,8 @@
 
 namespace airtruth::session {
 
-// The aircraft that can be put into a scene, with pictures. Of one thread.
+// The aircraft that can be put into a scene, and pictures of them and of distractors. Of one
+// thread.
 class Gallery {
  public:
   // {"groups": [{"name", "type", "class", "length_m", "span_m", "liveries": [...]}]}: the types

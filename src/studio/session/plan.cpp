@@ -296,27 +296,26 @@ class Planner {
   Json handles(const Json& table, std::size_t actor) const {
     Json result = Json::array();
     if (!table.is_array()) return result;
-    const auto& seen = stage_.stated_seen(parties_[actor].middle);
     setup::World alone = still_;
     alone.actors = {still_.actors[actor]};
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (const scene::Seen& seen : stage_.stated_seen(parties_[actor].middle)) {
       const auto frame =
-          static_cast<std::int64_t>(std::llround(seen[i].time_s * stage_.clip_rate_hz()));
+          static_cast<std::int64_t>(std::llround(seen.time_s * stage_.clip_rate_hz()));
       const setup::Moment moment =
           setup::moment_at(alone, frame, stage_.time_s(frame), stage_.shake_at(frame));
       const auto& state = moment.states.front();
       const auto& box = moment.boxes.front().box;
       result.push_back(
           {{"frame", frame},
-           {"pixel", {seen[i].pixel.x(), seen[i].pixel.y()}},
+           {"pixel", {seen.pixel.x(), seen.pixel.y()}},
            {"range_m",
             state ? Json(hundredths(
                         (state->position_in_world - moment.camera.position_in_world).norm()))
                   : Json()},
            {"width_px",
-            seen[i].width_px ? Json(*seen[i].width_px)
-            : box            ? Json(hundredths(box->width))
-                             : Json()}});
+            seen.width_px ? Json(*seen.width_px)
+            : box         ? Json(hundredths(box->width))
+                          : Json()}});
     }
     return result;
   }

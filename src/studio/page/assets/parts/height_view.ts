@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
-import {type Flyer, momentsOf, numberOf, roomOf, tableOf} from '../model/flyers';
+import {type Flyer, frameOf, momentsOf, numberOf, roomOf, tableOf} from '../model/flyers';
 import {type Point, clamp, nedAt, round} from '../model/geometry';
 import {arrow, attribute, renewed, s} from './part';
 import {type Drag, SideView, niceStep} from './side_view';
@@ -152,7 +152,7 @@ export class HeightView extends SideView {
       if (!moments[index]) return [];
       const [first, last] = roomOf(moments, index, clip);
       if (last < first) return [];
-      const frame = clamp(Math.round(time_s * clip.rate_hz), first, last);
+      const frame = clamp(frameOf(time_s, clip), first, last);
       this.studio.show(frame);
       return [{set: [...moments[index].path, 'time_s'], to: round(frame / clip.rate_hz, 3)}];
     }

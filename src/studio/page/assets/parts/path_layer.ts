@@ -232,13 +232,14 @@ export class PathLayer {
       this.moveTo(
           {moment, flyer, offset: [0, 0], merge: this.wheelMerge.name, last: from, isMoved: false},
           [from[0] + step * by[0], from[1] - step * by[1]], event.timeStamp);
-    } else if (event.key === '+' || event.key === '=') {
-      this.size(index, 1.05, event.timeStamp);
-    } else if (event.key === '-') {
-      this.size(index, 1 / 1.05, event.timeStamp);
-    } else {
       return;
     }
+    if (event.key === '+' || event.key === '=')
+      this.size(index, 1.05, event.timeStamp);
+    else if (event.key === '-')
+      this.size(index, 1 / 1.05, event.timeStamp);
+    else
+      return;
     event.preventDefault();
     event.stopPropagation();
   }

@@ -169,12 +169,12 @@ export class PlanView extends SideView {
 
   protected override place([x, y]: Point, flyer: Flyer, own: Ned|null): SVGElement[] {
     if (!own) return [];
-    const [ox, oy] = this.at(own);
     this.take(x, y, 5 * this.px);
     const [mark] = super.place([x, y], flyer, own);
     mark.append(s('title', {}, flyer.id));
-    const isSelected = isSame(flyer.path, this.now.selected);
-    return isSelected ? [s('line', {class: 'sight', x1: ox, y1: oy, x2: x, y2: y}), mark] : [mark];
+    if (!isSame(flyer.path, this.now.selected)) return [mark];
+    const [ox, oy] = this.at(own);
+    return [s('line', {class: 'sight', x1: ox, y1: oy, x2: x, y2: y}), mark];
   }
 
   protected approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
