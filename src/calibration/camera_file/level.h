@@ -25,7 +25,7 @@ struct SampledFrame {
   std::optional<Quaternion> cam_from_first;
 };
 
-using FoundHorizon = std::optional<horizon::HorizonFinder::Found>;
+using FoundHorizon = std::optional<horizon::HorizonEdge>;
 
 struct Horizons {
   // One entry for each sampled frame, empty if its horizon is not accepted.

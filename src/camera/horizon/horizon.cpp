@@ -6,8 +6,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "camera/horizon/horizon_edge.h"
-
 namespace airtruth::horizon {
 namespace {
 
@@ -15,7 +13,7 @@ namespace {
 // at every attitude, and a block holds too few pixels for its texture.
 constexpr int kAcross = 56;
 // Both limits are chosen by judgement; a line that passes them must also be sharp
-// (HorizonFinder::kSharp).
+// (HorizonEdge::kSharp).
 // The least share of the blocks on either side of the plane.
 constexpr double kMinSideShare = 0.06;
 // The least distance between the mean features of the two sides, in standard deviations.
@@ -175,7 +173,7 @@ HorizonFinder::HorizonFinder(const lens::Lens& lens, const image::Mask* own_airc
     }
 }
 
-std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& picture) const {
+std::optional<HorizonEdge> HorizonFinder::find(const image::Picture& picture) const {
   Samples samples;
   samples.rays.resize(static_cast<Eigen::Index>(blocks_.size()), 3);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -187,15 +185,14 @@ std::optional<HorizonFinder::Found> HorizonFinder::find(const image::Picture& pi
   if (std::sqrt(best.value) < kMinSeparationSigmas) return std::nullopt;
   Vector3 up = up_of(best.pitch, best.roll);
   if (!is_sky(samples, up)) up = -up;
-  const HorizonEdge edge = horizon_edge({picture, lens_, mask()}, up);
-  return Found{
-      edge.sharpness >= kSharp ? edge.up_in_cam : up, std::sqrt(best.value), edge.sharpness};
+  HorizonEdge edge = horizon_edge({picture, lens_, mask()}, up);
+  if (!edge.is_sharp()) edge.up_in_cam = up;
+  return edge;
 }
 
-HorizonFinder::Found HorizonFinder::follow(const image::Picture& picture,
-                                           const Vector3& expected_up_in_cam) const {
-  const HorizonEdge edge = horizon_edge_beside({picture, lens_, mask()}, expected_up_in_cam);
-  return {edge.up_in_cam, 0, edge.sharpness};
+HorizonEdge HorizonFinder::follow(const image::Picture& picture,
+                                  const Vector3& expected_up_in_cam) const {
+  return horizon_edge_beside({picture, lens_, mask()}, expected_up_in_cam);
 }
 
 float share_below(const lens::Lens& lens,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "camera/horizon/horizon_edge.h"
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/layer.h"
@@ -26,27 +27,11 @@ class HorizonFinder {
  public:
   HorizonFinder(const lens::Lens& lens, const image::Mask* own_aircraft);
 
-  // The least sharpness of a horizon. 92 % of the frames of two real flights over hills and fields
-  // have more. Virtual flights have more in clear air, and 0.6 to 0.75 in haze of 13 km visibility.
-  // Clear and cloudy skies without a horizon have 0.4 at most, rows of trees 0.36 to 0.65.
-  static constexpr double kSharp = 0.6;
-  struct Found {
-    // A unit vector.
-    Vector3 up_in_cam{0, -1, 0};
-    // The distance between the colours of sky and ground, in standard deviations; follow() leaves
-    // it at 0.
-    double separation = 0;
-    // The share of the line, 0..1, across which luma steps as at an edge (horizon_edge.h). Below
-    // kSharp the plane only separates two colours, as a coast, a bank of clouds or a sky that
-    // brightens downwards do, and is no horizon.
-    double sharpness = 0;
-    bool is_sharp() const { return sharpness >= kSharp; }
-  };
   // The result is empty where no plane separates the picture clearly (by 2.2 standard deviations),
   // or where less than 6 % of the picture lies on one side of the best plane.
-  std::optional<Found> find(const image::Picture& picture) const;
+  std::optional<HorizonEdge> find(const image::Picture& picture) const;
   // Searches within 1.5 degrees of an expected direction only, which takes a twentieth of the time.
-  Found follow(const image::Picture& picture, const Vector3& expected_up_in_cam) const;
+  HorizonEdge follow(const image::Picture& picture, const Vector3& expected_up_in_cam) const;
 
  private:
   struct Block {

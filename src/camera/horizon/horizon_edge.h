@@ -16,10 +16,19 @@ struct Sight {
 };
 
 struct HorizonEdge {
+  // A unit vector.
   Vector3 up_in_cam{0, -1, 0};
   // The share of the line, 0..1, across which luma steps in the same direction by a code value more
   // than the slope of the sky above explains. A slope alone is no edge, however steep it is.
   double sharpness = 0;
+
+  // The least sharpness of a horizon. 92 % of the frames of two real flights over hills and fields
+  // have more. Virtual flights have more in clear air, and 0.6 to 0.75 in haze of 13 km visibility.
+  // Clear and cloudy skies without a horizon have 0.4 at most, rows of trees 0.36 to 0.65. Below it
+  // the plane only separates two colours, as a coast, a bank of clouds or a sky that brightens
+  // downwards do, and is no horizon.
+  static constexpr double kSharp = 0.6;
+  bool is_sharp() const { return sharpness >= kSharp; }
 };
 
 // Finds the plane near a first guess along which luma steps most. The picture is resampled to

@@ -40,7 +40,7 @@ class HorizonWatch {
   }
 
  private:
-  std::optional<horizon::HorizonFinder::Found> look(const image::Picture& picture,
+  std::optional<horizon::HorizonEdge> look(const image::Picture& picture,
                                                     const Quaternion& cam_from_reference) const {
     const auto expected = hold_.expected_up(cam_from_reference);
     if (expected && hold_.uncertainty_rad() < kLostRad) return finder_.follow(picture, *expected);
