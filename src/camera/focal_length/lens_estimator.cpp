@@ -52,18 +52,15 @@ constexpr double kMaxMisfitRatio = 1.02;
 constexpr double kMaxSigmaShare = 0.12;
 constexpr double kMaxExcessShare = 0.25;
 
-struct Match {
-  Pixel before, after;  // pixels with the corner origin
-};
-using Pair = std::vector<Match>;
+using Pair = std::vector<motion::Step>;
 
 // The mean squared residual of a pair's points, px^2, each cut off at kOutlierPx.
 double miss_of(const Pair& pair, const lens::Lens& lens) {
   std::vector<motion::Bearings> bearings;
-  std::vector<const Match*> known;
-  for (const Match& m : pair) {
-    const auto a = lens.ray_from_pixel(m.before);
-    const auto b = lens.ray_from_pixel(m.after);
+  std::vector<const motion::Step*> known;
+  for (const motion::Step& m : pair) {
+    const auto a = lens.ray_from_pixel(m.from);
+    const auto b = lens.ray_from_pixel(m.to);
     if (a && b) bearings.push_back({*a, *b}), known.push_back(&m);
   }
   // The squared residual at which a corner is cut off, px^2.
@@ -74,7 +71,7 @@ double miss_of(const Pair& pair, const lens::Lens& lens) {
   double sum = kCut * double(pair.size() - known.size());
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto pixel = lens.pixel_from_cam(fit->cam_from_reference * bearings[i].in_reference);
-    sum += pixel ? std::min(kCut, (*pixel - known[i]->after).squaredNorm()) : kCut;
+    sum += pixel ? std::min(kCut, (*pixel - known[i]->to).squaredNorm()) : kCut;
   }
   return sum / double(pair.size());
 }
