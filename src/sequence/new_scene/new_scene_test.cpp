@@ -16,7 +16,6 @@
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/new_scene/first_encounter.h"
-#include "sequence/new_scene/lens_hint.h"
 #include "sequence/preview/preview.h"
 #include "sequence/setup/from_scene.h"
 #include "support/temporary_folder.h"
