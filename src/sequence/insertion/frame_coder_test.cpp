@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequence/insertion/frame_coder.h"
+#include "sequence/insertion/paint.h"
 
 #include <cmath>
 
