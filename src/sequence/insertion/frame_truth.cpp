@@ -10,7 +10,6 @@
 #include "foundation/image/contrast_to_noise.h"
 #include "labels/projection/bearing.h"
 #include "labels/projection/spot_box.h"
-#include "sequence/setup/lens_marks.h"
 
 namespace airtruth::insertion {
 namespace {

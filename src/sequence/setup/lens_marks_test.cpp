@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequence/setup/lens_marks.h"
+#include "sequence/setup/moment.h"
 
 #include <cmath>
 

@@ -9,6 +9,7 @@
 #include "foundation/geometry/within_frame.h"
 #include "foundation/image/spot.h"
 #include "labels/projection/exact_box.h"
+#include "scene/scene/distractor.h"
 #include "scene/trajectory/path.h"
 
 // Where everything is at one time of a clip.
@@ -33,6 +34,19 @@ Twist twist_of(const trajectory::Path& path,
 
 // True where a part of the box is in the picture.
 bool meets_frame(const Box& box, const lens::ImageSize& size);
+
+// The spot that a mark on the lens draws at a time of the clip; empty before its beginning and
+// after its end. A glint that follows the sun has its place in each frame from the sun's pixel; it
+// is empty where the sun is behind the camera or beyond the lens's field. `seed` is that of the
+// scene: with the mark's id it gives dirt its shape.
+std::optional<image::Spot> spot_of(const scene::LensMark& mark,
+                                   const projection::Sight& sight,
+                                   const Vector3& to_sun_in_world,
+                                   double time_s,
+                                   std::uint64_t seed);
+
+// True from the mark's beginning to its end.
+bool is_there(const scene::LensMark& mark, double time_s);
 
 // The geometry of one frame, without its pixels.
 struct Moment {
