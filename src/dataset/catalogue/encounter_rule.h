@@ -8,7 +8,7 @@
 
 #include "camera/lens/lens.h"
 #include "dataset/catalogue/drawn_rule.h"
-#include "encounter/pairing/geometric.h"
+#include "encounter/pairing/pair.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "scene/scene/scene.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/pairing/geometric.h"
+#include "encounter/pairing/pair.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,7 +13,6 @@
 #include <airtruth/encounters.h>
 
 #include "encounter/encounter_model/sampler.h"
-#include "encounter/pairing/geometric.h"
 #include "encounter/pairing/pair.h"
 #include "encounter/track/track.h"
 
