@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/placement/near_miss.h"
+#include "encounter/placement/by_approach.h"
 
 #include <cmath>
 #include <string>
@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "encounter/passage/passage.h"
-#include "encounter/placement/by_approach.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 #include "foundation/geometry/units.h"

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "encounter/placement/near_miss.h"
+#include "encounter/placement/by_approach.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
 #include "labels/projection/exact_box.h"
