@@ -189,17 +189,13 @@ Lens parse_calibration(std::string_view text,
   const Calibration c = parsed(text, name);
   for (const std::string& unread : c.unread) airtruth::warn(warn, unread);
   if (has_size(c) && !same_aspect(c.size, size))
-    throw Error(refusal(c, size) + "; expected the same aspect ratio", {name.string()});
+    throw Error(refusal(c, size) + profiles_that_fit(name, c, size) + how_to_crop(name, c, size),
+                {name.string()});
   return lens_from(c, name.string(), size);
 }
 
 Lens read_calibration(const std::filesystem::path& path, ImageSize size, const Warn& warn) {
-  const Calibration c = parsed(read_file(path, kMaxBytes), path);
-  for (const std::string& unread : c.unread) airtruth::warn(warn, unread);
-  if (has_size(c) && !same_aspect(c.size, size))
-    throw Error(refusal(c, size) + profiles_that_fit(path, c, size) + how_to_crop(path, c, size),
-                {path.string()});
-  return lens_from(c, path.string(), size);
+  return parse_calibration(read_file(path, kMaxBytes), path, size, warn);
 }
 
 Lens read_calibration(const std::filesystem::path& path) {
