@@ -2,7 +2,6 @@
 #include "camera/motion/estimator.h"
 
 #include "camera/horizon/horizon.h"
-#include "camera/horizon/horizon_hold.h"
 #include "camera/motion/corners.h"
 #include "camera/motion/follower.h"
 #include "foundation/base/error.h"
@@ -41,14 +40,14 @@ class HorizonWatch {
 
  private:
   std::optional<horizon::HorizonEdge> look(const image::Picture& picture,
-                                                    const Quaternion& cam_from_reference) const {
+                                           const Quaternion& cam_from_reference) const {
     const auto expected = hold_.expected_up(cam_from_reference);
     if (expected && hold_.uncertainty_rad() < kLostRad) return finder_.follow(picture, *expected);
     return finder_.find(picture);
   }
 
   // The time between two detections of the horizon, s. Chosen by judgement: the error of a
-  // detection is nearly the same within half a second (horizon_hold.cpp), so that more would tell
+  // detection is nearly the same within half a second (horizon.cpp), so that more would tell
   // little. While the rotation is uncertain, the pause is a third of it.
   static constexpr double kPause_s = 0.5;
   static constexpr double kPauseWhenLost_s = 0.15;

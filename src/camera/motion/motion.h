@@ -26,7 +26,7 @@
 // rotation of the camera alone. RANSAC and robust least squares fit one rotation per frame; near
 // ground and the own aircraft become outliers (rotation_fit.h). The model is exact for any lens,
 // whereas a homography is exact for a pinhole alone. Detected horizons correct the drift of pitch
-// and roll (horizon_hold.h).
+// and roll (horizon.h).
 //
 // Example: a pinhole of 1920 x 1080 pixels and a focal length of 1662.8 px turns right by 1 degree.
 // The far point at the image's centre (960, 540) moves by 1662.8 tan(1 deg) = 29.0 px to the left,

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "camera/gyro/gyro.h"
-#include "camera/horizon/horizon_hold.h"
+#include "camera/horizon/horizon.h"
 #include "camera/motion/motion.h"
 #include "camera/motion/rotation_fit.h"
 #include "camera/motion/shake.h"
