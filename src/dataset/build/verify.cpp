@@ -23,7 +23,6 @@
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
-#include "sequence/replay/recompose.h"
 
 namespace airtruth::build {
 namespace {

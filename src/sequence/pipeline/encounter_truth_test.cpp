@@ -15,7 +15,6 @@
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
-#include "sequence/replay/recompose.h"
 #include "sequence/setup/from_scene.h"
 #include "support/temporary_folder.h"
 

@@ -16,7 +16,6 @@
 #include "picture/video/still.h"
 #include "sequence/demo/virtual_flight.h"
 #include "sequence/replay/finished.h"
-#include "sequence/replay/recompose.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::pipeline {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -56,5 +57,15 @@ image::Rgb8 inspect(const Finished& sequence,
                     std::int64_t frame,
                     const std::string& intruder_id,
                     int zoom);
+
+// Renders every n-th frame of a finished sequence again, from its record, its background and the
+// motion in its truth, and compares the results. The truth line must be equal; a lossless video
+// must be equal sample by sample; a lossy video may differ around the intruder no more than its
+// codec's error elsewhere. Each fault is one line. `compared` counts the compared frames.
+struct Recomposition {
+  std::int64_t compared = 0;
+  std::vector<std::string> faults;
+};
+Recomposition recompose(const Finished& sequence, std::int64_t every, const std::stop_token& stop);
 
 }  // namespace airtruth::replay

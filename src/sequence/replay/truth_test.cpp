@@ -17,7 +17,6 @@
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
-#include "sequence/replay/recompose.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
 #include "support/temporary_folder.h"
