@@ -2,6 +2,7 @@
 #include "sequence/insertion/ambient.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -155,6 +156,12 @@ Rgb exposure_change(const std::vector<Rgb>& before, const std::vector<Rgb>& now)
   return change;
 }
 
+// 0 where there is nothing to divide by.
+Rgb divided(Rgb sum, float by) {
+  for (float& c : sum) c = by > 0 ? c / by : 0.0f;
+  return sum;
+}
+
 // Weighted mean of those of the sorted blocks whose share of the total weight lies in [from, to).
 Rgb mean(const std::vector<Block>& blocks, float from, float to) {
   float total = 0;
@@ -169,8 +176,7 @@ Rgb mean(const std::vector<Block>& blocks, float from, float to) {
     for (std::size_t c = 0; c < 3; ++c) sum[c] += block.linear[c] * block.weight;
     weight += block.weight;
   }
-  for (float& c : sum) c = weight > 0 ? c / weight : 0.0f;
-  return sum;
+  return divided(sum, weight);
 }
 
 float smoothstep(float low, float high, float value) {
@@ -223,16 +229,8 @@ struct Sums {
     expected += by * expected_here;
   }
   // Of the level irradiance (over pi) of the sky that is seen.
-  Rgb level() const {
-    Rgb result{};
-    for (std::size_t c = 0; c < 3; ++c) result[c] = expected > 0 ? colour[c] / expected : 0.0f;
-    return result;
-  }
-  Rgb mean() const {
-    Rgb result{};
-    for (std::size_t c = 0; c < 3; ++c) result[c] = weight > 0 ? colour[c] / weight : 0.0f;
-    return result;
-  }
+  Rgb level() const { return divided(colour, expected); }
+  Rgb mean() const { return divided(colour, weight); }
 };
 
 // The visible sky and ground.
@@ -352,9 +350,13 @@ Ambient measure(const std::vector<Block>& blocks, const Skies& skies, double ele
   return ambient;
 }
 
-void blend(std::array<float, 3>& into, const std::array<float, 3>& from) {
+void blend(Rgb& into, const Rgb& from) {
   for (std::size_t c = 0; c < 3; ++c) into[c] += kSmoothing * (from[c] - into[c]);
 }
+
+// What is smoothed over time.
+constexpr std::array kSmoothed = {
+    &Ambient::sun, &Ambient::blue, &Ambient::cloud, &Ambient::ground, &Ambient::airlight};
 
 std::array<float, 3> floats(const std::array<double, 3>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
@@ -407,11 +409,7 @@ Ambient AmbientEstimator::next(const Glance& glance,
   std::ranges::stable_sort(blocks, {}, &Block::brightness);
   const Ambient now = measure(blocks, skies_, light_.sun_elevation_deg);
   if (!smooth_ || smooth_->is_assumed != now.is_assumed) smooth_ = now;
-  blend(smooth_->sun, now.sun);
-  blend(smooth_->blue, now.blue);
-  blend(smooth_->cloud, now.cloud);
-  blend(smooth_->ground, now.ground);
-  blend(smooth_->airlight, now.airlight);
+  for (const auto light : kSmoothed) blend((*smooth_).*light, now.*light);
   return with_scene(*smooth_);
 }
 
@@ -430,9 +428,7 @@ void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
   if (!smooth_) return;
   for (std::size_t c = 0; c < 3; ++c) {
     if (!is_jump(change[c])) continue;
-    for (auto* light :
-         {&smooth_->sun, &smooth_->blue, &smooth_->cloud, &smooth_->ground, &smooth_->airlight})
-      (*light)[c] *= change[c];
+    for (const auto light : kSmoothed) ((*smooth_).*light)[c] *= change[c];
   }
 }
 
