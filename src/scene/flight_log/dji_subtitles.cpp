@@ -147,61 +147,11 @@ void add_block(FlightLog& log, std::string_view block, double time_s, const Wher
   if (const auto gimbal = gimbal_of(block)) add_record(log, Attitude{time_s, *gimbal}, where);
 }
 
-class SubtitleReader {
- public:
-  SubtitleReader(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
-    log_.format = Format::kDjiSubtitles;
-    log_.is_on_video_clock = true;
-  }
-
-  FlightLog read() {
-    std::string block;
-    std::optional<double> time_s;
-    int line_of_time = 0;
-    for (int number = 1; !text_.empty(); ++number) {
-      const std::size_t end = std::min(text_.find('\n'), text_.size());
-      const std::string_view line = text_.substr(0, end);
-      text_.remove_prefix(std::min(end + 1, text_.size()));
-      if (const std::size_t arrow = line.find("-->"); arrow != std::string_view::npos) {
-        add(block, time_s, line_of_time);
-        block.clear();
-        line_of_time = number;
-        time_s = time_of(line.substr(0, arrow));
-        if (!time_s)
-          throw Error(fmt::format("time is '{}'; expected one such as 00:01:02,033",
-                                  printable(line.substr(0, arrow))),
-                      {file_, number});
-      } else if (is_counter(line)) {
-        add(block, time_s, line_of_time);
-        block.clear();
-        line_of_time = number;
-        time_s.reset();
-      } else {
-        block.append(line).push_back(' ');
-      }
-    }
-    add(block, time_s, line_of_time);
-    return std::move(log_);
-  }
-
- private:
-  void add(std::string_view block, std::optional<double> time_s, int line) {
-    if (time_s)
-      add_block(log_, block, *time_s, {file_, line});
-    else if (fix_of_keys(block) || fix_of_gps(block))
-      leave_out(log_, "the block has no line with -->, which states its time", {file_, line});
-  }
-
-  // The number with which a block begins.
-  static bool is_counter(std::string_view line) {
-    line = trimmed(line);
-    return !line.empty() && line.find_first_not_of("0123456789") == std::string_view::npos;
-  }
-
-  std::string_view text_;
-  std::string file_;
-  FlightLog log_;
-};
+// The number with which a block begins.
+bool is_counter(std::string_view line) {
+  line = trimmed(line);
+  return !line.empty() && line.find_first_not_of("0123456789") == std::string_view::npos;
+}
 
 }  // namespace
 
@@ -218,7 +168,40 @@ void add_dji_subtitle(FlightLog& log,
 }
 
 FlightLog from_dji_subtitles(std::string_view text, const std::string& file) {
-  return SubtitleReader(text, file).read();
+  FlightLog log;
+  log.format = Format::kDjiSubtitles;
+  log.is_on_video_clock = true;
+  std::string block;
+  std::optional<double> time_s;
+  int line_of_block = 0;
+  const auto begin_block = [&](int line) {
+    const Where where{file, line_of_block};
+    if (time_s)
+      add_block(log, block, *time_s, where);
+    else if (fix_of_keys(block) || fix_of_gps(block))
+      leave_out(log, "the block has no line with -->, which states its time", where);
+    block.clear();
+    time_s.reset();
+    line_of_block = line;
+  };
+  for (int number = 1; !text.empty(); ++number) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (const std::size_t arrow = line.find("-->"); arrow != std::string_view::npos) {
+      begin_block(number);
+      time_s = time_of(line.substr(0, arrow));
+      if (!time_s)
+        throw Error(fmt::format("time is '{}'; expected one such as 00:01:02,033",
+                                printable(line.substr(0, arrow))),
+                    {file, number});
+    } else if (is_counter(line)) {
+      begin_block(number);
+    } else {
+      block.append(line).push_back(' ');
+    }
+  }
+  begin_block(0);
+  return log;
 }
 
 }  // namespace airtruth::flight_log
