@@ -47,75 +47,50 @@ std::optional<double> seconds_of(std::string_view text) {
   return 86400.0 * static_cast<double>(days) + 3600.0 * *hour + 60.0 * (*minute - *zone) + *second;
 }
 
-class GpxReader {
- public:
-  GpxReader(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
-    log_.format = Format::kGpx;
+// The elements of a name, with or without a prefix of its namespace (gpx:trkpt).
+std::vector<pugi::xml_node> children(const pugi::xml_node& node, std::string_view name) {
+  std::vector<pugi::xml_node> found;
+  for (const pugi::xml_node& child : node.children()) {
+    std::string_view local = child.name();
+    local.remove_prefix(local.find(':') == std::string_view::npos ? 0 : local.find(':') + 1);
+    if (local == name) found.push_back(child);
   }
+  return found;
+}
 
-  FlightLog read() {
-    pugi::xml_document document;
-    const auto parsed = document.load_buffer(text_.data(), text_.size());
-    if (!parsed)
-      throw Error(fmt::format("is no XML: {}", parsed.description()),
-                  {file_, line_of(text_, parsed.offset), 0});
-    for (const pugi::xml_node& track : children(document.document_element(), "trk"))
-      for (const pugi::xml_node& segment : children(track, "trkseg"))
-        for (const pugi::xml_node& point : children(segment, "trkpt")) add(point);
-    return from_first_record(std::move(log_));
-  }
+std::string_view text_of(const pugi::xml_node& point, const char* name) {
+  const auto found = children(point, name);
+  return found.empty() ? std::string_view() : trimmed(found.front().text().get());
+}
 
- private:
-  Where where(const pugi::xml_node& node) const {
-    return {file_, line_of(text_, node.offset_debug()), 0};
-  }
-
-  // The elements of a name, with or without a prefix of its namespace (gpx:trkpt).
-  static std::vector<pugi::xml_node> children(const pugi::xml_node& node, std::string_view name) {
-    std::vector<pugi::xml_node> found;
-    for (const pugi::xml_node& child : node.children()) {
-      std::string_view local = child.name();
-      local.remove_prefix(local.find(':') == std::string_view::npos ? 0 : local.find(':') + 1);
-      if (local == name) found.push_back(child);
-    }
-    return found;
-  }
-
-  static std::string_view text_of(const pugi::xml_node& point, const char* name) {
-    const auto found = children(point, name);
-    return found.empty() ? std::string_view() : trimmed(found.front().text().get());
-  }
-
-  // A point without height or time says where, but not when or how high: it is left out.
-  void add(const pugi::xml_node& point) {
-    std::string fault;
-    const auto number = [&](std::string_view text, const char* what) {
-      const auto value = number_from_text<double>(trimmed(text));
-      if (!value && fault.empty())
-        fault = fmt::format("{} is '{}'; expected a number", what, printable(trimmed(text)));
-      return value.value_or(0);
-    };
-    Fix fix;
-    fix.latitude_deg = number(point.attribute("lat").value(), "lat");
-    fix.longitude_deg = number(point.attribute("lon").value(), "lon");
-    fix.altitude_m = number(text_of(point, "ele"), "<ele>");
-    const std::string_view time = text_of(point, "time");
-    const auto seconds = seconds_of(time);
-    if (!seconds && fault.empty())
-      fault = fmt::format("<time> is '{}'; expected a time such as 2024-05-17T08:30:05Z",
-                          printable(time));
-    if (!fault.empty()) return leave_out(log_, fault, where(point));
-    // Times are kept from the first point on: seconds since 1970 would lose the microseconds.
-    if (!first_s_) first_s_ = *seconds;
-    fix.time_s = *seconds - *first_s_;
-    add_record(log_, fix, where(point));
-  }
-
-  std::string_view text_;
-  std::string file_;
-  FlightLog log_;
-  std::optional<double> first_s_;
-};
+// A point without height or time says where, but not when or how high: it is left out. `first_s`:
+// the time of the first point. Times are kept from there on: seconds since 1970 would lose the
+// microseconds.
+void add_point(FlightLog& log,
+               std::optional<double>& first_s,
+               const pugi::xml_node& point,
+               const Where& where) {
+  std::string fault;
+  const auto number = [&](std::string_view text, const char* what) {
+    const auto value = number_from_text<double>(trimmed(text));
+    if (!value && fault.empty())
+      fault = fmt::format("{} is '{}'; expected a number", what, printable(trimmed(text)));
+    return value.value_or(0);
+  };
+  Fix fix;
+  fix.latitude_deg = number(point.attribute("lat").value(), "lat");
+  fix.longitude_deg = number(point.attribute("lon").value(), "lon");
+  fix.altitude_m = number(text_of(point, "ele"), "<ele>");
+  const std::string_view time = text_of(point, "time");
+  const auto seconds = seconds_of(time);
+  if (!seconds && fault.empty())
+    fault = fmt::format("<time> is '{}'; expected a time such as 2024-05-17T08:30:05Z",
+                        printable(time));
+  if (!fault.empty()) return leave_out(log, fault, where);
+  if (!first_s) first_s = *seconds;
+  fix.time_s = *seconds - *first_s;
+  add_record(log, fix, where);
+}
 
 }  // namespace
 
@@ -127,7 +102,19 @@ bool is_gpx(std::string_view content) {
 }
 
 FlightLog from_gpx(std::string_view text, const std::string& file) {
-  return GpxReader(text, file).read();
+  pugi::xml_document document;
+  const auto parsed = document.load_buffer(text.data(), text.size());
+  if (!parsed)
+    throw Error(fmt::format("is no XML: {}", parsed.description()),
+                {file, line_of(text, parsed.offset), 0});
+  FlightLog log;
+  log.format = Format::kGpx;
+  std::optional<double> first_s;
+  for (const pugi::xml_node& track : children(document.document_element(), "trk"))
+    for (const pugi::xml_node& segment : children(track, "trkseg"))
+      for (const pugi::xml_node& point : children(segment, "trkpt"))
+        add_point(log, first_s, point, {file, line_of(text, point.offset_debug()), 0});
+  return from_first_record(std::move(log));
 }
 
 }  // namespace airtruth::flight_log
