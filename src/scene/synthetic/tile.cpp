@@ -84,9 +84,42 @@ class Painter {
         sun_north_(static_cast<float>(sun_in_world.x())),
         sun_east_(static_cast<float>(sun_in_world.y())),
         sun_up_(static_cast<float>(std::max(-sun_in_world.z(), 0.3))) {}
-  void paint(const Land& land);
-  void plant(const Land& land, std::uint32_t seed);
-  void build(std::uint32_t seed);
+
+  void paint(const Land& land) {
+    const int size = tile_.size;
+    tbb::parallel_for(0, size, [&](int y) {
+      Places places;
+      for (int first = 0; first < size; first += kBatch) {
+        places.count = std::min(kBatch, size - first);
+        for (int k = 0; k < places.count; ++k) {
+          places.north_m[k] = (static_cast<float>(first + k) + 0.5F) * tile_.texel_m;
+          places.east_m[k] = (static_cast<float>(y) + 0.5F) * tile_.texel_m;
+        }
+        land.cover(places);
+        for (int k = 0; k < places.count; ++k)
+          tile_.texel(first + k, y) =
+              pack(linear_rgb(places.red[k], places.green[k], places.blue[k]), 0);
+      }
+    });
+  }
+
+  // Plants woods, riverside trees, trees along tracks, and single holm oaks in the fields. All
+  // shadows come before the trees.
+  void plant(const Land& land, std::uint32_t seed) {
+    const auto rows = trees_on(land, seed);
+    for (const auto& row : rows)
+      for (const Tree& tree : row) darken(tree);
+    for (const auto& row : rows)
+      for (const Tree& tree : row) draw(tree);
+  }
+
+  // Builds villages of tiled roofs around a few streets, and single barns.
+  void build(std::uint32_t seed) {
+    // Numbers on the whole land.
+    constexpr int kVillages = 6, kBarns = 40;
+    for (int k = 0; k < kVillages; ++k) build_village(k, seed);
+    for (int k = 0; k < kBarns; ++k) build_barn(hash(k, 2, seed));
+  }
 
  private:
   // Calls draw(x, y, texel) for the texels around a place; x and y are its centre's, in texels.
@@ -97,132 +130,90 @@ class Painter {
       for (int i = floor_int((north_m - reach_m) / t); i <= floor_int((north_m + reach_m) / t); ++i)
         draw(static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F, tile_.texel(i, j));
   }
-  void darken(const Tree& tree);
-  void draw(const Tree& tree);
-  void house(float north_m, float east_m, float angle, const Size& size, const LinearRgb& roof);
-  void build_village(int k, std::uint32_t seed);
-  void build_barn(std::uint32_t id);
+
+  // Draws the shadow of a tree.
+  void darken(const Tree& tree) {
+    const float shift = -0.75F * tree.height_m / sun_up_;
+    const float north_m = tree.north_m + shift * sun_north_;
+    const float east_m = tree.east_m + shift * sun_east_;
+    const float radius_m = 1.05F * tree.radius_m;
+    const float r = radius_m / tile_.texel_m;
+    around(north_m, east_m, radius_m, [&](float x, float y, std::uint32_t& t) {
+      const float dx = x - north_m / tile_.texel_m;
+      const float dy = y - east_m / tile_.texel_m;
+      if (dx * dx + dy * dy > r * r) return;
+      const auto dim = [&](int shift_bits) {
+        return static_cast<std::uint32_t>(static_cast<float>((t >> shift_bits) & 255) * 0.62F)
+               << shift_bits;
+      };
+      t = dim(0) | dim(8) | dim(16) | (t & 0xFF000000U);
+    });
+  }
+
+  void draw(const Tree& tree) {
+    const float r = std::max(tree.radius_m / tile_.texel_m, 0.5F);
+    around(tree.north_m, tree.east_m, r * tile_.texel_m, [&](float x, float y, std::uint32_t& t) {
+      const float dx = (x - tree.north_m / tile_.texel_m) / r;
+      const float dy = (y - tree.east_m / tile_.texel_m) / r;
+      const float square = dx * dx + dy * dy;
+      if (square > 1) return;
+      const float top = tree.height_m * std::sqrt(1 - 0.8F * square);
+      if (top / Tile::kHighest_m * 255 < static_cast<float>(t >> 24)) return;
+      t = pack(tree.colour * (0.85F + 0.75F * (dx * sun_north_ + dy * sun_east_)), top);
+    });
+  }
+
+  void house(float north_m, float east_m, float angle, const Size& size, const LinearRgb& roof) {
+    const float c = std::cos(angle);
+    const float s = std::sin(angle);
+    const float facing = -s * sun_north_ + c * sun_east_;
+    around(north_m, east_m, size.length_m + size.width_m, [&](float x, float y, std::uint32_t& t) {
+      const float dx = x * tile_.texel_m - north_m;
+      const float dy = y * tile_.texel_m - east_m;
+      const float u = c * dx + s * dy;
+      const float v = -s * dx + c * dy;
+      if (std::abs(u) > size.length_m / 2 || std::abs(v) > size.width_m / 2) return;
+      const float ridge = 1 - 2 * std::abs(v) / size.width_m;
+      const float slope = v > 0 ? facing : -facing;
+      t = pack(roof * (0.85F + 0.45F * slope), size.height_m + 0.22F * size.width_m * ridge);
+    });
+  }
+
+  void build_village(int k, std::uint32_t seed) {
+    // A village has a third of this number of houses to four thirds of it.
+    constexpr int kHouses = 90;
+    const std::uint32_t village = hash(k, 1, seed);
+    const float north = kLand_m * unit(village);
+    const float east = kLand_m * unit(mix(village));
+    const float street = 3.14F * unit(mix(village + 1));
+    const int houses = kHouses / 3 + static_cast<int>(kHouses * unit(mix(village + 2)));
+    for (int i = 0; i < houses; ++i) {
+      const std::uint32_t id = hash(i, k, seed + 1);
+      const float far_m = 30 + 150 * std::sqrt(unit(id)) * (0.4F + 0.6F * unit(mix(id + 1)));
+      const float angle = 6.2832F * unit(mix(id + 2));
+      // The houses stand along a grid of lanes 26 m apart.
+      const float u = 26 * std::round(far_m * std::cos(angle) * 1.5F / 26) + 5 * unit(mix(id + 3));
+      const float v = 17 * std::round(far_m * std::sin(angle) / 17);
+      const float x = north + std::cos(street) * u - std::sin(street) * v;
+      const float y = east + std::sin(street) * u + std::cos(street) * v;
+      const Size size{
+          11 + 9 * unit(mix(id + 4)), 8 + 4 * unit(mix(id + 5)), 4.5F + 3 * unit(mix(id + 6))};
+      house(x, y, street + (id % 3 == 0 ? 1.571F : 0.0F), size, roof_of(id));
+    }
+    house(north, east, street, {9, 9, 12}, roof_of(3));
+  }
+
+  void build_barn(std::uint32_t id) {
+    const float angle = 3.14F * unit(mix(id + 1));
+    const float x = kLand_m * unit(mix(id + 2));
+    const float y = kLand_m * unit(mix(id + 3));
+    house(x, y, angle, {30 + 35 * unit(mix(id + 4)), 13, 5}, roof_of(id % 3));
+    house(x + 30, y + 12, angle + 1.571F, {18, 10, 4.5F}, roof_of(id));
+  }
 
   Tile& tile_;
   float sun_north_, sun_east_, sun_up_;
 };
-
-void Painter::paint(const Land& land) {
-  const int size = tile_.size;
-  tbb::parallel_for(0, size, [&](int y) {
-    Places places;
-    for (int first = 0; first < size; first += kBatch) {
-      places.count = std::min(kBatch, size - first);
-      for (int k = 0; k < places.count; ++k) {
-        places.north_m[k] = (static_cast<float>(first + k) + 0.5F) * tile_.texel_m;
-        places.east_m[k] = (static_cast<float>(y) + 0.5F) * tile_.texel_m;
-      }
-      land.cover(places);
-      for (int k = 0; k < places.count; ++k)
-        tile_.texel(first + k, y) =
-            pack(linear_rgb(places.red[k], places.green[k], places.blue[k]), 0);
-    }
-  });
-}
-
-// Plants woods, riverside trees, trees along tracks, and single holm oaks in the fields. All
-// shadows come before the trees.
-void Painter::plant(const Land& land, std::uint32_t seed) {
-  const auto rows = trees_on(land, seed);
-  for (const auto& row : rows)
-    for (const Tree& tree : row) darken(tree);
-  for (const auto& row : rows)
-    for (const Tree& tree : row) draw(tree);
-}
-
-// Draws the shadow of a tree.
-void Painter::darken(const Tree& tree) {
-  const float shift = -0.75F * tree.height_m / sun_up_;
-  const float north_m = tree.north_m + shift * sun_north_;
-  const float east_m = tree.east_m + shift * sun_east_;
-  const float radius_m = 1.05F * tree.radius_m;
-  const float r = radius_m / tile_.texel_m;
-  around(north_m, east_m, radius_m, [&](float x, float y, std::uint32_t& t) {
-    const float dx = x - north_m / tile_.texel_m;
-    const float dy = y - east_m / tile_.texel_m;
-    if (dx * dx + dy * dy > r * r) return;
-    const auto dim = [&](int shift_bits) {
-      return static_cast<std::uint32_t>(static_cast<float>((t >> shift_bits) & 255) * 0.62F)
-             << shift_bits;
-    };
-    t = dim(0) | dim(8) | dim(16) | (t & 0xFF000000U);
-  });
-}
-
-void Painter::draw(const Tree& tree) {
-  const float r = std::max(tree.radius_m / tile_.texel_m, 0.5F);
-  around(tree.north_m, tree.east_m, r * tile_.texel_m, [&](float x, float y, std::uint32_t& t) {
-    const float dx = (x - tree.north_m / tile_.texel_m) / r;
-    const float dy = (y - tree.east_m / tile_.texel_m) / r;
-    const float square = dx * dx + dy * dy;
-    if (square > 1) return;
-    const float top = tree.height_m * std::sqrt(1 - 0.8F * square);
-    if (top / Tile::kHighest_m * 255 < static_cast<float>(t >> 24)) return;
-    t = pack(tree.colour * (0.85F + 0.75F * (dx * sun_north_ + dy * sun_east_)), top);
-  });
-}
-
-void Painter::house(
-    float north_m, float east_m, float angle, const Size& size, const LinearRgb& roof) {
-  const float c = std::cos(angle);
-  const float s = std::sin(angle);
-  const float facing = -s * sun_north_ + c * sun_east_;
-  around(north_m, east_m, size.length_m + size.width_m, [&](float x, float y, std::uint32_t& t) {
-    const float dx = x * tile_.texel_m - north_m;
-    const float dy = y * tile_.texel_m - east_m;
-    const float u = c * dx + s * dy;
-    const float v = -s * dx + c * dy;
-    if (std::abs(u) > size.length_m / 2 || std::abs(v) > size.width_m / 2) return;
-    const float ridge = 1 - 2 * std::abs(v) / size.width_m;
-    const float slope = v > 0 ? facing : -facing;
-    t = pack(roof * (0.85F + 0.45F * slope), size.height_m + 0.22F * size.width_m * ridge);
-  });
-}
-
-// Builds villages of tiled roofs around a few streets, and single barns.
-void Painter::build(std::uint32_t seed) {
-  // Numbers on the whole land.
-  constexpr int kVillages = 6, kBarns = 40;
-  for (int k = 0; k < kVillages; ++k) build_village(k, seed);
-  for (int k = 0; k < kBarns; ++k) build_barn(hash(k, 2, seed));
-}
-
-void Painter::build_village(int k, std::uint32_t seed) {
-  // A village has a third of this number of houses to four thirds of it.
-  constexpr int kHouses = 90;
-  const std::uint32_t village = hash(k, 1, seed);
-  const float north = kLand_m * unit(village);
-  const float east = kLand_m * unit(mix(village));
-  const float street = 3.14F * unit(mix(village + 1));
-  const int houses = kHouses / 3 + static_cast<int>(kHouses * unit(mix(village + 2)));
-  for (int i = 0; i < houses; ++i) {
-    const std::uint32_t id = hash(i, k, seed + 1);
-    const float far_m = 30 + 150 * std::sqrt(unit(id)) * (0.4F + 0.6F * unit(mix(id + 1)));
-    const float angle = 6.2832F * unit(mix(id + 2));
-    // The houses stand along a grid of lanes 26 m apart.
-    const float u = 26 * std::round(far_m * std::cos(angle) * 1.5F / 26) + 5 * unit(mix(id + 3));
-    const float v = 17 * std::round(far_m * std::sin(angle) / 17);
-    const float x = north + std::cos(street) * u - std::sin(street) * v;
-    const float y = east + std::sin(street) * u + std::cos(street) * v;
-    const Size size{
-        11 + 9 * unit(mix(id + 4)), 8 + 4 * unit(mix(id + 5)), 4.5F + 3 * unit(mix(id + 6))};
-    house(x, y, street + (id % 3 == 0 ? 1.571F : 0.0F), size, roof_of(id));
-  }
-  house(north, east, street, {9, 9, 12}, roof_of(3));
-}
-
-void Painter::build_barn(std::uint32_t id) {
-  const float angle = 3.14F * unit(mix(id + 1));
-  const float x = kLand_m * unit(mix(id + 2));
-  const float y = kLand_m * unit(mix(id + 3));
-  house(x, y, angle, {30 + 35 * unit(mix(id + 4)), 13, 5}, roof_of(id % 3));
-  house(x + 30, y + 12, angle + 1.571F, {18, 10, 4.5F}, roof_of(id));
-}
 
 // Colours are stored as square roots of light and averaged as light. The height is averaged
 // directly.
