@@ -88,8 +88,8 @@ struct Background {
 struct Lens {
   lens::ModelKind model = lens::ModelKind::kPinhole;
   std::optional<double> vertical_fov_deg;
-  std::optional<std::array<double, 2>> focal_px;
-  std::optional<std::array<double, 2>> principal_point_px;
+  std::optional<Pixel> focal_px;
+  std::optional<Pixel> principal_point_px;
   std::vector<double> distortion;
   std::optional<fs::path> file;
   Where where;

@@ -65,9 +65,8 @@ Lens lens_in(const TableReader& parent) {
   lens.model = table.choice<lens::ModelKind>("model").value_or(lens.model);
   lens.vertical_fov_deg = table.number(
       "vertical_fov_deg", lens.model == lens::ModelKind::kFisheye ? kFisheyeView : kPinholeView);
-  lens.focal_px = table.tuple<std::array<double, 2>>("focal_px", kFocal);
-  lens.principal_point_px =
-      table.tuple<std::array<double, 2>>("principal_point_px", kPrincipalPoint);
+  lens.focal_px = table.tuple<Pixel>("focal_px", kFocal);
+  lens.principal_point_px = table.tuple<Pixel>("principal_point_px", kPrincipalPoint);
   lens.distortion = table.numbers("distortion", kDistortion).value_or(std::vector<double>{});
   check_distortion(table, lens.model, lens.distortion.size());
   if (!lens.vertical_fov_deg && !lens.focal_px)

@@ -60,7 +60,7 @@ class Text {
   static std::string toml(const std::string& text) { return toml_string(text); }
   template <typename Range>
   requires requires(const Range& r) {
-    r.front();
+    r.begin();
   } &&(!std::same_as<Range, fs::path>)&&(!std::same_as<Range, std::string>)static std::string
       toml(const Range& values) {
     std::string result = "[";
@@ -156,7 +156,7 @@ void add_encounter(Text& text, const Encounter& encounter, std::string_view tabl
 void add_seen(Text& text, const Seen& seen, std::string_view table) {
   text.heading(fmt::format("[[{}.seen]]", table));
   text.add("time_s", seen.time_s);
-  text.add("pixel", std::array<double, 2>{seen.pixel.x(), seen.pixel.y()});
+  text.add("pixel", seen.pixel);
   text.add("range_m", seen.range_m);
   text.add("width_px", seen.width_px);
 }
@@ -216,15 +216,13 @@ void add_distractor(Text& text, const Intruder& intruder) {
   add_path(text, intruder, "distractor");
 }
 
-std::array<double, 2> pair_of(const Pixel& pixel) { return {pixel.x(), pixel.y()}; }
-
 void add_mark(Text& text, const LensMark& mark) {
   text.heading("[[distractor]]");
   text.add("kind", mark.kind);
   text.add("id", mark.id);
   if (mark.pixel) {
-    text.add("pixel", pair_of(*mark.pixel));
-    text.add("velocity_px_s", pair_of(mark.velocity_px_s));
+    text.add("pixel", *mark.pixel);
+    text.add("velocity_px_s", mark.velocity_px_s);
   } else {
     text.add("along", mark.along);
   }

@@ -29,17 +29,14 @@ std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
 }
 
 lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
-  Pixel focal{0, 0};
-  if (lens.focal_px) focal = {(*lens.focal_px)[0], (*lens.focal_px)[1]};
+  Pixel focal = lens.focal_px.value_or(Pixel(0, 0));
   if (lens.vertical_fov_deg) {
     const lens::Lens plain = lens.model == lens::ModelKind::kFisheye
                                  ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
                                  : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
     focal = {plain.focal_px(), plain.focal_px()};
   }
-  Pixel centre{size.width / 2.0, size.height / 2.0};
-  if (lens.principal_point_px)
-    centre = {(*lens.principal_point_px)[0], (*lens.principal_point_px)[1]};
+  const Pixel centre = lens.principal_point_px.value_or(Pixel(size.width / 2.0, size.height / 2.0));
   if (lens.model == lens::ModelKind::kPinhole)
     return lens::Lens(lens::Pinhole{focal, centre}, size);
   if (lens.model == lens::ModelKind::kFisheye)
