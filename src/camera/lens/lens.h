@@ -26,6 +26,10 @@ namespace airtruth::lens {
 struct ImageSize {
   int width = 0;
   int height = 0;
+  // True where the position lies in the picture.
+  bool holds(const Pixel& p) const {
+    return p.x() >= 0 && p.y() >= 0 && p.x() < width && p.y() < height;
+  }
   bool operator==(const ImageSize&) const = default;
 };
 

@@ -373,7 +373,6 @@ std::vector<std::int64_t> frames_in_view(const scene::Intruder& intruder,
                                          const Views& views) {
   const trajectory::Path own = setup::camera_path(camera);
   const trajectory::Path path = setup::path_of(intruder, own);
-  const lens::ImageSize size = views.lens.size();
   std::vector<std::int64_t> frames;
   for (std::int64_t i = 0; i < views.frames; i += look_step(views)) {
     const double time_s = static_cast<double>(i) / views.frame_rate_hz;
@@ -382,9 +381,7 @@ std::vector<std::int64_t> frames_in_view(const scene::Intruder& intruder,
     if (!from || !to) continue;
     const projection::Sight sight = setup::sight_of(views.lens, {}, own, *from, time_s, {});
     const auto pixel = views.lens.pixel_from_cam(sight.cam_from_world * to->position_in_world);
-    if (pixel && pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() < size.width &&
-        pixel->y() < size.height)
-      frames.push_back(i);
+    if (pixel && views.lens.size().holds(*pixel)) frames.push_back(i);
   }
   return frames;
 }

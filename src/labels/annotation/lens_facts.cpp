@@ -35,9 +35,7 @@ bool is_in_view(const Frame& frame, const Intruder& intruder, const lens::Lens& 
   if (!nominal) return false;
   const Vector3 h = frame.shake.frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
   if (!(h.z() > 0)) return false;
-  const Pixel pixel = h.head<2>() / h.z();
-  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < lens.size().width &&
-         pixel.y() < lens.size().height;
+  return lens.size().holds(h.head<2>() / h.z());
 }
 
 bool lacks_box(const Frame& frame, const Intruder& intruder, const lens::Lens& lens) {

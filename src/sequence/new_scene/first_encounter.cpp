@@ -41,10 +41,6 @@ scene::Encounter encounter_of(const Candidate& candidate, double duration_s) {
           .speed_mps = candidate.speed_mps};
 }
 
-bool is_in_picture(const Pixel& pixel, lens::ImageSize size) {
-  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < size.width && pixel.y() < size.height;
-}
-
 // At how many of the moments the intruder's reference point is in the picture; -1 where no path has
 // that closest approach.
 int moments_in_view(const scene::Encounter& encounter,
@@ -61,7 +57,7 @@ int moments_in_view(const scene::Encounter& encounter,
       if (!camera || !state) continue;
       const auto sight = setup::sight_of(lens, {}, own, *camera, time_s, shake_at(time_s));
       const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
-      if (pixel && is_in_picture(*pixel, lens.size())) ++count;
+      if (pixel && lens.size().holds(*pixel)) ++count;
     }
     return count;
   } catch (const Error&) {

@@ -51,7 +51,6 @@ void FrameMaker::locate(Work& work, const Shake& shake) {
 
 void FrameMaker::draw(Work& work) const {
   work.painted = painter_.draw(work.frame.picture, work.moment, work.ambient);
-  work.horizon_is_assumed = work.painted.horizon_is_assumed;
 }
 
 void FrameMaker::compose(Work& work) {
@@ -65,7 +64,8 @@ void FrameMaker::describe(Work& work) const {
       resolved_.world, work.frame, state, work.moved.shake, work.moment, work.painted);
   if (resolved_.scene.output.masks)
     work.masks = insertion::mask_files(work.truth, work.painted.layer, resolved_.world.lens.size());
-  work.painted = {};
+  work.painted.layer = {};
+  work.painted.visible = {};
 }
 
 }  // namespace airtruth::pipeline

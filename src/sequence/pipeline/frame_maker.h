@@ -30,7 +30,6 @@ struct Work {
   setup::Moment moment;                    // locate
   insertion::Ambient ambient;              // locate
   insertion::Painted painted;              // draw, compose
-  bool horizon_is_assumed = false;         // draw
   annotation::Frame truth;                 // describe
   std::vector<insertion::MaskFile> masks;  // describe
 };

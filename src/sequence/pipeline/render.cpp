@@ -259,7 +259,7 @@ void add_frame(Tally& tally, const Work& work) {
   tally.frames_turned += motion == motion::State::kTurnedAway ? 1 : 0;
   tally.frames_damaged += frame.damaged ? 1 : 0;
   tally.frames_black += work.ambient.is_assumed ? 1 : 0;
-  tally.frames_without_horizon += work.horizon_is_assumed ? 1 : 0;
+  tally.frames_without_horizon += work.painted.horizon_is_assumed ? 1 : 0;
   if (frame.begins_shot) tally.cuts.push_back(frame.index);
 }
 
