@@ -57,17 +57,6 @@ struct Checksum {
   std::string sha256;
 };
 
-video::WriterOptions writer_options(const scene::Output& output, int threads) {
-  video::WriterOptions options;
-  options.format = output.video;
-  options.quality = output.quality;
-  options.keyframe_s = output.keyframe_s;
-  options.threads = threads;
-  options.encoder = output.encoder;
-  options.encoder_where = output.encoder_where;
-  return options;
-}
-
 annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
                                        const annotation::Intruder& intruder) {
   annotation::EvisionFrame frame;
@@ -110,8 +99,14 @@ class Outputs {
           int threads)
       : folder_(folder),
         lens_(annotation::facts_of(lens)),
-        video_(folder / (scene.name + video::extension(scene.output.video))),
-        writer_(video_, info, writer_options(scene.output, threads)),
+        writer_(folder / (scene.name + video::extension(scene.output.video)),
+                info,
+                {.format = scene.output.video,
+                 .quality = scene.output.quality,
+                 .keyframe_s = scene.output.keyframe_s,
+                 .threads = threads,
+                 .encoder = scene.output.encoder,
+                 .encoder_where = scene.output.encoder_where}),
         truth_(folder / "truth.jsonl", std::ios::binary),
         aircraft_(aircraft_of(scene)),
         sheet_(scene.name, info.frame_count_estimate) {
@@ -189,7 +184,6 @@ class Outputs {
 
   fs::path folder_;
   annotation::LensFacts lens_;
-  fs::path video_;
   video::Writer writer_;
   std::ofstream truth_;
   std::size_t aircraft_ = 0;  // of the scene's intruders, which they are the first of

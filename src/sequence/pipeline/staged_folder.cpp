@@ -84,12 +84,10 @@ void StagedFolder::remove_part() const {
 
 void StagedFolder::commit() {
   std::error_code ignored;
-  {
-    const Unfinished removing = Unfinished::path(old_);
-    unfinished_->finish([this] { move_into_place(); });
-    committed_ = true;
-    fs::remove_all(old_, ignored);
-  }
+  const Unfinished removing = Unfinished::path(old_);
+  unfinished_->finish([this] { move_into_place(); });
+  committed_ = true;
+  fs::remove_all(old_, ignored);
 }
 
 // Swapped in one step where the file system can, so that a kill at any instant leaves either what
