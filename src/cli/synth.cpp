@@ -9,7 +9,7 @@
 #include "foundation/base/files.h"
 #include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/insertion/masks.h"
 
 namespace airtruth::cli {

@@ -3,7 +3,7 @@
 
 #include "foundation/base/files.h"
 #include "scene/synthetic/flight.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 
 // For tests: a small video without the own aircraft in view.
 namespace airtruth::test_support {

@@ -12,7 +12,7 @@
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"

@@ -24,7 +24,7 @@
 #include "labels/annotation/truth.h"
 #include "scene/scene/table_reader.h"
 #include "scene/trajectory/path.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "support/temporary_folder.h"
 

@@ -18,7 +18,7 @@
 #include "labels/annotation/truth.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/render.h"
 #include "support/error_of.h"

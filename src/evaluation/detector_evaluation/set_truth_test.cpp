@@ -17,7 +17,7 @@
 #include "foundation/base/files.h"
 #include "runners/results/results_folder.h"
 #include "scene/scene/scene.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
 

@@ -10,7 +10,7 @@
 #include "camera/lens/calibration_file.h"
 #include "camera/lens/lens.h"
 #include "foundation/base/files.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 
 namespace airtruth {
 namespace {

@@ -9,7 +9,7 @@
 #include "foundation/base/files.h"
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 
 namespace airtruth {

@@ -14,7 +14,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/new_scene/first_encounter.h"
 #include "sequence/preview/preview.h"
 #include "sequence/setup/from_scene.h"

@@ -12,7 +12,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
 #include "sequence/setup/from_scene.h"

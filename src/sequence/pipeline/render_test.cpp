@@ -14,7 +14,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/replay/finished.h"
 #include "support/temporary_folder.h"
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
 #include "sequence/setup/from_scene.h"

@@ -7,7 +7,7 @@
 
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
 #include "support/temporary_folder.h"

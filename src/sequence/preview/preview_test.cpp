@@ -7,7 +7,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/annotation/truth.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/preview/rows.h"

@@ -13,7 +13,7 @@
 #include "labels/projection/bearing.h"
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
-#include "sequence/demo/virtual_flight.h"
+#include "sequence/demo/demo.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
