@@ -16,14 +16,6 @@ namespace {
 
 // The arithmetic of the three lens models.
 
-// The valid field of a model: the largest angle from the axis, and an upper bound on the distorted
-// radius (distance from the principal point in pixels over the focal length) of any ray within that
-// angle.
-struct Field {
-  double max_angle_rad = 0;
-  double max_radius = 0;
-};
-
 // The least slope, per radian, of a curve that still rises. At a lower slope an angle cannot be
 // recovered from its pixel within 1e-9 rad in double precision.
 constexpr double kFlat = 1e-4;
@@ -375,20 +367,16 @@ Lens::Lens(Model model, ImageSize size) : model_(std::move(model)), size_(size) 
   if (auto* fisheye = std::get_if<Fisheye>(&model_);
       fisheye != nullptr && fisheye->distortion.size() < 4)
     fisheye->distortion.resize(4, 0.0);
-  const Field field = std::visit(Validate{size}, model_);
-  max_angle_rad_ = field.max_angle_rad;
-  max_radius_ = field.max_radius;
+  field_ = std::visit(Validate{size}, model_);
 }
 
 std::optional<Pixel> Lens::pixel_from_cam(const Vector3& p_in_cam) const {
-  const Field field{max_angle_rad_, max_radius_};
-  return std::visit([&](const auto& lens) { return project(lens, p_in_cam, field); }, model_);
+  return std::visit([&](const auto& lens) { return project(lens, p_in_cam, field_); }, model_);
 }
 
 std::optional<Vector3> Lens::ray_from_pixel(const Pixel& pixel) const {
   if (!finite(pixel)) return std::nullopt;
-  const Field field{max_angle_rad_, max_radius_};
-  return std::visit([&](const auto& lens) { return unproject(lens, pixel, field); }, model_);
+  return std::visit([&](const auto& lens) { return unproject(lens, pixel, field_); }, model_);
 }
 
 double Lens::focal_px() const {

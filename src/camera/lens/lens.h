@@ -72,6 +72,14 @@ constexpr auto enum_names(ModelKind) {
                                              {ModelKind::kFisheye, "fisheye"}});
 }
 
+// The valid field of a model: the largest angle from the axis, and an upper bound on the distorted
+// radius (distance from the principal point in pixels over the focal length) of any ray within that
+// angle.
+struct Field {
+  double max_angle_rad = 0;
+  double max_radius = 0;
+};
+
 // A lens with the size of the image for which it was calibrated. A Lens is immutable, and threads
 // may share it.
 class Lens {
@@ -92,7 +100,7 @@ class Lens {
   const Model& model() const { return model_; }
   ImageSize size() const { return size_; }
   // The largest angle between a ray and the axis for which the model is valid.
-  double max_angle_rad() const { return max_angle_rad_; }
+  double max_angle_rad() const { return field_.max_angle_rad; }
   // Pixels per radian on the axis: the mean of fx and fy.
   double focal_px() const;
   // "pinhole", "brown_conrady" or "fisheye".
@@ -104,9 +112,7 @@ class Lens {
  private:
   Model model_;
   ImageSize size_;
-  double max_angle_rad_ = 0;
-  // An upper bound on the distorted radius: a pixel beyond it is rejected without inversion.
-  double max_radius_ = 0;
+  Field field_;
 };
 
 // What every model has; a pinhole's distortion is empty.
