@@ -309,42 +309,27 @@ void validate(const Pixel& focal_px, const Pixel& centre_px, ImageSize size) {
   if (!finite(centre_px)) throw Error("principal_point_px is not finite; expected two numbers");
 }
 
-void validate_distortion(const std::vector<double>& distortion,
-                         bool allowed,
-                         const char* expected) {
-  if (!allowed)
-    throw Error("distortion has " + std::to_string(distortion.size()) + " numbers; expected " +
+template <typename Distorting>
+Field checked_field(const Distorting& lens, bool has_right_number, const char* expected) {
+  if (!has_right_number)
+    throw Error("distortion has " + std::to_string(lens.distortion.size()) + " numbers; expected " +
                 expected);
-  for (double k : distortion)
+  for (double k : lens.distortion)
     if (!std::isfinite(k)) throw Error("distortion holds a number that is not finite");
-}
-
-template <typename AModel>
-Field checked_field(const AModel& lens) {
   const Field field = field_of(lens);
   if (!(field.max_angle_rad >= radians(0.5)))
     throw Error("distortion makes the radial curve fall from the axis on; expected one that rises");
   return field;
 }
 
-struct Validate {
-  ImageSize size;
-  Field operator()(const Pinhole& lens) const {
-    validate(lens.focal_px, lens.principal_point_px, size);
-    return field_of(lens);
-  }
-  Field operator()(const BrownConrady& lens) const {
-    validate(lens.focal_px, lens.principal_point_px, size);
-    const std::size_t n = lens.distortion.size();
-    validate_distortion(lens.distortion, n == 4 || n == 5 || n == 8, "4, 5 or 8");
-    return checked_field(lens);
-  }
-  Field operator()(const Fisheye& lens) const {
-    validate(lens.focal_px, lens.principal_point_px, size);
-    validate_distortion(lens.distortion, lens.distortion.size() == 4, "4");
-    return checked_field(lens);
-  }
-};
+Field validated(const Pinhole& lens) { return field_of(lens); }
+Field validated(const BrownConrady& lens) {
+  const std::size_t n = lens.distortion.size();
+  return checked_field(lens, n == 4 || n == 5 || n == 8, "4, 5 or 8");
+}
+Field validated(const Fisheye& lens) {
+  return checked_field(lens, lens.distortion.size() == 4, "4");
+}
 
 void check_fov(double fov_deg, double limit_deg, const char* model, bool limit_allowed) {
   if (!(fov_deg > 0) || fov_deg > limit_deg || (fov_deg == limit_deg && !limit_allowed))
@@ -367,7 +352,12 @@ Lens::Lens(Model model, ImageSize size) : model_(std::move(model)), size_(size) 
   if (auto* fisheye = std::get_if<Fisheye>(&model_);
       fisheye != nullptr && fisheye->distortion.size() < 4)
     fisheye->distortion.resize(4, 0.0);
-  field_ = std::visit(Validate{size}, model_);
+  field_ = std::visit(
+      [&](const auto& lens) {
+        validate(lens.focal_px, lens.principal_point_px, size);
+        return validated(lens);
+      },
+      model_);
 }
 
 std::optional<Pixel> Lens::pixel_from_cam(const Vector3& p_in_cam) const {
