@@ -20,6 +20,23 @@ namespace {
 // recovered from its pixel within 1e-9 rad in double precision.
 constexpr double kFlat = 1e-4;
 
+// The largest angle up to `limit_rad` before the first at which `ends` is true. That one is looked
+// for in equal steps, and then by bisection.
+template <typename Ends>
+double last_before(double limit_rad, int steps, int halvings, const Ends& ends) {
+  for (int i = 1; i <= steps; ++i) {
+    if (!ends(limit_rad * i / steps)) continue;
+    double low = limit_rad * (i - 1) / steps;
+    double high = limit_rad * i / steps;
+    for (int n = 0; n < halvings; ++n) {
+      const double middle = 0.5 * (low + high);
+      (ends(middle) ? high : low) = middle;
+    }
+    return low;
+  }
+  return limit_rad;
+}
+
 Field field_of(const Pinhole&) { return {kPi / 2, std::numeric_limits<double>::infinity()}; }
 
 std::optional<Pixel> project(const Pinhole& lens, const Vector3& p, const Field&) {
@@ -108,20 +125,9 @@ bool folds(const Coefficients& k, double angle_rad) {
 }
 
 double max_angle(const Coefficients& k) {
-  // Steps of 0.4 mrad in which the first fold is looked for, before bisection.
-  constexpr int kSteps = 4000;
   constexpr double kLimit = kPi / 2 - 1e-3;  // chosen: no image reaches a larger angle
-  for (int i = 1; i <= kSteps; ++i) {
-    if (!folds(k, kLimit * i / kSteps)) continue;
-    double low = kLimit * (i - 1) / kSteps;
-    double high = kLimit * i / kSteps;
-    for (int n = 0; n < 50; ++n) {
-      const double middle = 0.5 * (low + high);
-      (folds(k, middle) ? high : low) = middle;
-    }
-    return low;
-  }
-  return kLimit;
+  // Steps of 0.4 mrad.
+  return last_before(kLimit, 4000, 50, [&](double angle_rad) { return folds(k, angle_rad); });
 }
 
 // The undistorted radius from which the radial terms alone reach `target`: bisection.
@@ -250,20 +256,8 @@ double inverse(const Fisheye& lens, double radius, double limit) {
 
 // The largest angle up to which the curve rises everywhere.
 double max_angle(const Fisheye& lens) {
-  // Steps of 0.16 mrad in which the first bend is looked for, before bisection.
-  constexpr int kSteps = 20000;
-  for (int i = 1; i <= kSteps; ++i) {
-    const double theta = kPi * i / kSteps;
-    if (slope(lens, theta) > kFlat) continue;
-    double low = kPi * (i - 1) / kSteps;
-    double high = theta;
-    for (int n = 0; n < 60; ++n) {
-      const double middle = 0.5 * (low + high);
-      (slope(lens, middle) > kFlat ? low : high) = middle;
-    }
-    return low;
-  }
-  return kPi;
+  // Steps of 0.16 mrad.
+  return last_before(kPi, 20000, 60, [&](double theta) { return !(slope(lens, theta) > kFlat); });
 }
 
 Field field_of(const Fisheye& lens) {
