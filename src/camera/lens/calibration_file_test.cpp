@@ -39,7 +39,8 @@ TEST(Gyroflow, ScalesToAnotherSizeOfTheSameShapeAlone) {
   const Lens lens = parse_calibration(profile(), "a.json", {640, 480});
   EXPECT_EQ(std::get<Fisheye>(lens.model()).focal_px, Pixel(280, 280.5));
   EXPECT_EQ(std::get<Fisheye>(lens.model()).principal_point_px, Pixel(320, 240));
-  EXPECT_THAT(error_of(profile(), "a.json", {1280, 720}), testing::HasSubstr("another aspect ratio"));
+  EXPECT_THAT(error_of(profile(), "a.json", {1280, 720}),
+              testing::HasSubstr("another aspect ratio"));
 }
 
 // A camera crops 1280x720 from the middle of its 1280x960 picture: a ray moves up by 120 rows.

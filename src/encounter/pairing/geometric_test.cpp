@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/pairing/pair.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "encounter/pairing/pair.h"
 #include "foundation/base/error.h"
 
 namespace airtruth::pairing {

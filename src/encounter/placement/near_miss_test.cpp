@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "encounter/placement/by_approach.h"
-
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "encounter/passage/passage.h"
+#include "encounter/placement/by_approach.h"
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 #include "foundation/geometry/units.h"

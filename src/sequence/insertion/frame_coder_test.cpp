@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequence/insertion/paint.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "sequence/insertion/paint.h"
 
 namespace airtruth::insertion {
 namespace {

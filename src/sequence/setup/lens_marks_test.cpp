@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequence/setup/moment.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
+#include "sequence/setup/moment.h"
 
 namespace airtruth::setup {
 namespace {
