@@ -11,16 +11,11 @@
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
+// The times of a shutter: for how long a row is exposed, and from the first row to the last.
 namespace airtruth::sensor {
 
 using measured::Measured;
 using measured::NotMeasured;
-
-// The derivative of evenly spaced samples at index k, in pixels per sample. The filter is the ideal
-// differentiator (-1)^(j + 1) / j under a Hann window, which is accurate to near the Nyquist
-// frequency. A plain difference would lose half of the speed of a camera shake at 10 Hz in a video
-// of 30 frames/s. Empty within 12 samples of either end.
-std::optional<Pixel> rate_at(const std::vector<Pixel>& places, std::size_t k);
 
 // Measures the exposure time as a share of the frame interval, 0 to 1, from motion blur. A frame
 // taken in motion has lost detail along the motion and none across it. A neighbouring frame taken
@@ -54,5 +49,17 @@ class BlurMeter {
   std::vector<Shot> shots_ = std::vector<Shot>(1);
   std::size_t frames_ = 0;
 };
+
+// The motion of each frame of one shot from the frame before it (frame k from frame k - 1), in
+// pixels. An entry is empty if the motion is not known, as for the first frame of a shot.
+using Steps = std::vector<std::optional<Homography>>;
+
+// The readout time of a rolling shutter as a share of the frame interval, positive if the sensor is
+// read downwards. A rolling shutter shears and stretches the picture when the speed changes between
+// frames: between neighbouring frames the shear is readout / height times the change of the
+// horizontal speed, and the stretch is readout / height times the change of the vertical speed.
+// `shots` has the steps of each shot. Not measured where too few motions are known, where the speed
+// changes too little, and where the shear is larger than a readout over a whole frame would cause.
+Measured<Estimate> readout_share(const std::vector<Steps>& shots, int width, int height);
 
 }  // namespace airtruth::sensor
