@@ -12,7 +12,7 @@
 
 #include "calibration/camera_file/quantities.h"
 #include "calibration/measured/measured.h"
-#include "calibration/optics/edge_profile.h"
+#include "calibration/optics/step_response.h"
 #include "calibration/sensor/noise.h"
 #include "camera/lens/lens.h"
 #include "foundation/base/files.h"

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calibration/measured/measured.h"
-#include "calibration/optics/edge_profile.h"
 #include "calibration/optics/step_response.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/layer.h"

@@ -52,19 +52,31 @@ struct StepResponse {
 StepResponse fit_step_response(const std::vector<const StepEdge*>& edges,
                                const image::ToneCurve& tone);
 
-// The heights, 0 to 1, that `response` gives at `places_px` for a step between two levels of coded
-// luma.
-std::vector<double> step_heights(const StepResponse& response,
-                                 double low,
-                                 double high,
-                                 const std::vector<double>& places_px,
-                                 const image::ToneCurve& tone);
-
-// The distance in px between the last place below 10 % of the height of that step and the first
-// place above 90 %.
+// The distance in px between the last place below 10 % of the height that `response` gives to
+// a step between two levels of coded luma, and the first place above 90 %.
 double edge_spread_px(const StepResponse& response,
                       double low,
                       double high,
                       const image::ToneCurve& tone);
+
+// The mean profile across the sharpest edges of a clip, with the fitted step response.
+struct EdgeProfile {
+  // Signed distances from the middle of the edge, px. The three vectors have one size.
+  std::vector<double> place_px;
+  // Measured and fitted height at each place, 0 on the dark side and 1 on the bright side.
+  std::vector<double> height;
+  std::vector<double> fitted;
+  // The distance between 10 % and 90 % of the height of the fitted response, px.
+  double spread_px = 0;
+  // The number of edges that were fitted. The profile shows only those whose spread is nearest to
+  // the spread of the camera.
+  int edges = 0;
+};
+
+// The profile of the edges whose spread is nearest to the camera's. `response` must be the fit to
+// these edges.
+EdgeProfile edge_profile(const std::vector<const StepEdge*>& edges,
+                         const StepResponse& response,
+                         const image::ToneCurve& tone);
 
 }  // namespace airtruth::optics
