@@ -9,7 +9,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/optics/chroma.h"
-#include "calibration/optics/straight_step.h"
 #include "camera/motion/corners.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
@@ -87,7 +86,9 @@ void EdgeMeter::add(const image::Picture& frame,
     // Edges of the own aircraft are as useful for sharpness as others; the mask shows that they do
     // not move.
     const bool own = own_aircraft_ != nullptr && !own_aircraft_->is_free(at.x, at.y);
-    Edge edge = edge_of(std::move(*found), dark, unit);
+    Edge edge{std::move(*found)};
+    edge.height = edge.step.high - edge.step.low;
+    for (double* level : {&edge.step.low, &edge.step.high}) *level = (*level - dark) / unit;
     edge.moved_px = own                 ? 0
                     : frame_from_before ? moved_across(edge.line, *frame_from_before)
                                         : std::numeric_limits<double>::quiet_NaN();
@@ -99,17 +100,6 @@ void EdgeMeter::add(const image::Picture& frame,
   }
   most_at_once_ = std::max(most_at_once_, count);
   most_chroma_at_once_ = std::max(most_chroma_at_once_, with_chroma);
-}
-
-EdgeMeter::Edge EdgeMeter::edge_of(StraightStep found, double dark, double unit) {
-  Edge edge;
-  edge.line = found.line;
-  edge.width_px = found.width_px;
-  edge.asymmetry = found.asymmetry;
-  edge.height = found.high - found.low;
-  edge.is_long = found.line.half_length_px == kLongEdgePx;
-  edge.step = {(found.low - dark) / unit, (found.high - dark) / unit, std::move(found.samples)};
-  return edge;
 }
 
 bool EdgeMeter::is_known(const Edge& edge) const {
@@ -132,7 +122,7 @@ std::vector<const EdgeMeter::Edge*> EdgeMeter::usable(double codec_step) const {
   if (slow.size() < kMinEdges) return all;
   const std::vector<const Edge*>& chosen = clear.size() >= kMinSymmetric ? clear : slow;
   std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(long_ones), [](const Edge* edge) {
-    return edge->is_long;
+    return edge->line.half_length_px == kLongEdgePx;
   });
   return long_ones.size() >= kMinLong ? long_ones : chosen;
 }

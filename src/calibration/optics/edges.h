@@ -6,14 +6,13 @@
 
 #include "calibration/measured/measured.h"
 #include "calibration/optics/step_response.h"
+#include "calibration/optics/straight_step.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 #include "foundation/image/tone_curve.h"
 
 namespace airtruth::optics {
-
-struct StraightStep;
 
 // Measures the camera's step response from the sharp straight edges of a clip. It samples the
 // profiles across them to a fraction of a pixel (the slanted-edge method of ISO 12233). The width
@@ -46,19 +45,12 @@ class EdgeMeter {
   const EdgeProfile& profile() const { return profile_; }
 
  private:
-  struct Edge {
-    EdgeLine line;
-    double width_px = 0;   // standard deviation of the derivative of the profile
-    double asymmetry = 0;  // rms difference between the two halves of the profile, as heights
-    double height = 0;     // of the step, code values
-    double moved_px = 0;   // motion across the edge since the previous frame; NaN: not known
-    bool is_long = false;
-    StepEdge step;
-    std::vector<double> chroma;  // chroma_variances()
+  // A step whose levels are coded luma, 0 to 1.
+  struct Edge : StraightStep {
+    double height = 0;    // of the step, code values
+    double moved_px = 0;  // motion across the edge since the previous frame; NaN: not known
+    std::vector<double> chroma = {};  // chroma_variances()
   };
-  // The edge of a step, without its motion and chroma. `dark`, `unit`: luma of black, and of white
-  // above black, code values.
-  static Edge edge_of(StraightStep found, double dark, double unit);
   // Whether the edge was added before. An edge that stays at its place in the picture, such as one
   // of the own aircraft, is the same edge in all frames.
   bool is_known(const Edge& edge) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <opencv2/imgproc.hpp>
 
@@ -204,8 +205,9 @@ bool has_clean_levels(const Side& low, const Side& high) {
 std::optional<StraightStep> step_across(const cv::Mat& grey, const EdgeLine& line) {
   auto sampled = samples_across(grey, line);
   if (!sampled || !has_clean_levels(sampled->low, sampled->high)) return std::nullopt;
-  StraightStep step{line, sampled->low.mean(), sampled->high.mean(), 0, 0, {}};
-  step.samples = std::move(sampled->samples);
+  StraightStep found{line};
+  StepEdge& step = found.step;
+  step = {sampled->low.mean(), sampled->high.mean(), std::move(sampled->samples)};
   const double height = step.high - step.low;
   Profile profile;
   for (auto& [place, v] : step.samples) {
@@ -213,7 +215,7 @@ std::optional<StraightStep> step_across(const cv::Mat& grey, const EdgeLine& lin
     profile.add(place, v);
   }
   if (!profile.whole()) return std::nullopt;
-  step.width_px = profile.width_px();
+  found.width_px = profile.width_px();
   const double middle = profile.middle();
   if (std::abs(middle) > kMaxOffLinePx) return std::nullopt;
   Profile centred;
@@ -222,8 +224,8 @@ std::optional<StraightStep> step_across(const cv::Mat& grey, const EdgeLine& lin
     centred.add(place, v);
   }
   if (!centred.whole()) return std::nullopt;
-  step.asymmetry = centred.asymmetry();
-  return step;
+  found.asymmetry = centred.asymmetry();
+  return found;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -30,10 +29,9 @@ std::vector<SteepPlace> steep_places(const cv::Mat& grey);
 struct StraightStep {
   // Its normal points to the bright side.
   EdgeLine line;
-  double low = 0, high = 0;                        // code values
-  double width_px = 0;                             // standard deviation of the derivative
-  double asymmetry = 0;                            // rms difference of the two halves, heights
-  std::vector<std::pair<double, double>> samples;  // place, px from the middle; height 0 to 1
+  double width_px = 0;   // standard deviation of the derivative of the profile
+  double asymmetry = 0;  // rms difference between the two halves of the profile, as heights
+  StepEdge step = {};    // with its levels as code values
 };
 
 // The step at a place, over the longer of the two lengths over which it is clean and straight;
