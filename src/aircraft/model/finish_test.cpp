@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/model/finish.h"
+#include "aircraft/model/mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "aircraft/model/finish.h"
 #include "aircraft/texture_file/picture.h"
 #include "foundation/geometry/transform.h"
 
@@ -65,6 +65,20 @@ class SharedTexture {
 // The opacity from which on a surface counts as opaque: 250 / 255, because painting and packing
 // leave some code values less than 255 in the alpha of paint that hides all behind it.
 constexpr float kOpaque = 0.98f;
+
+// How a surface reflects light, apart from its colour.
+enum class Finish : std::uint8_t {
+  kPaint,  // diffuse under a clear coat that reflects
+  kGlass,  // reflects as the clear coat does, above a dark interior
+  kMetal,  // reflects, tinted by its colour, without a diffuse part
+  kMat,    // diffuse without a reflection
+};
+// The number of finishes.
+constexpr std::uint8_t kFinishes = 4;
+
+// The finish that the words of a material's name in its file state. A word is a run of letters in
+// any case. docs/aircraft.md lists the words for glass and metal. Other names are paint.
+Finish finish_named(std::string_view material);
 
 struct Material {
   std::array<float, 3> diffuse = {1, 1, 1};   // linear
