@@ -21,12 +21,24 @@ constexpr float kMetalRoughness = 0.3f;
 // Albedo, a ratio, of a cabin behind its windows.
 constexpr float kCabin = 0.05f;
 
-}  // namespace
-
+// GGX's alpha of the material's finish.
 float roughness_of(const model::Material& material) {
   return material.finish == model::Finish::kMetal ? kMetalRoughness : kCoatRoughness;
 }
 
+// The reflection of a surface, by its finish.
+struct Coat {
+  // Mirrored share of the light that arrives along the normal.
+  std::array<float, 3> at_normal{};
+  // True where the surface has a specular reflection.
+  bool mirrors = true;
+  // Share of the surface that mirrors, 0..1.
+  float cover = 1;
+  // Colour of the light that is scattered and not mirrored; premultiplied by opacity.
+  std::array<float, 3> scattered{};
+};
+
+// `texel`: the texture's value there, premultiplied; white for a material without a texture.
 Coat coat_of(const model::Material& material, const std::array<float, 4>& texel) {
   using model::Finish;
   Coat coat;
@@ -45,6 +57,17 @@ Coat coat_of(const model::Material& material, const std::array<float, 4>& texel)
   return coat;
 }
 
+// Mirrored share of the light by the cosine between the view (or the light) and the mirror's normal
+// (Schlick 1994). `at_normal`: the share along the normal.
+float mirror_share(float at_normal, float cosine) {
+  const float off = 1 - cosine;
+  const float squared = off * off;
+  return at_normal + (1 - at_normal) * squared * squared * off;
+}
+
+// The sun's glint on microfacets (Walter et al. 2007, eq. 20 and 33, with the shadowing of Hammon
+// 2017). `view` points from the camera to the surface. The strength is 0 where the sun or the
+// camera is behind the surface. roughness: GGX's alpha, above 0 and up to 1.
 Glint sun_glint(const Eigen::Vector3f& normal,
                 const Eigen::Vector3f& to_sun,
                 const Eigen::Vector3f& view,
@@ -62,6 +85,8 @@ Glint sun_glint(const Eigen::Vector3f& normal,
       0.5f / (2 * to_light * to_eye * (1 - roughness) + (to_light + to_eye) * roughness);
   return {facets * visibility * to_light, half.dot(to_sun)};
 }
+
+}  // namespace
 
 float opacity_at(const model::Mesh& mesh,
                  const Facet& facet,
