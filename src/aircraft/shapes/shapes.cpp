@@ -15,72 +15,51 @@ namespace {
 using Colour = std::array<float, 3>;
 using V = Eigen::Vector3f;
 
-// Linear RGB of the parts of a plumage.
-struct Feathers {
-  Colour back, belly, wing_above, wing_below, tip, tail, beak;
-};
-
-Feathers feathers_of(Plumage plumage) {
-  switch (plumage) {
-    case Plumage::kGull:
-      return {{0.55f, 0.56f, 0.58f},
-              {0.72f, 0.72f, 0.70f},
-              {0.30f, 0.32f, 0.35f},
-              {0.62f, 0.62f, 0.61f},
-              {0.05f, 0.05f, 0.05f},
-              {0.70f, 0.70f, 0.68f},
-              {0.60f, 0.38f, 0.05f}};
-    case Plumage::kDark:
-      return {{0.016f, 0.016f, 0.018f},
-              {0.018f, 0.018f, 0.019f},
-              {0.016f, 0.016f, 0.018f},
-              {0.026f, 0.026f, 0.028f},
-              {0.014f, 0.014f, 0.015f},
-              {0.015f, 0.015f, 0.016f},
-              {0.02f, 0.02f, 0.02f}};
-    case Plumage::kBrown:
-      return {{0.075f, 0.050f, 0.032f},
-              {0.16f, 0.115f, 0.075f},
-              {0.070f, 0.047f, 0.030f},
-              {0.19f, 0.15f, 0.11f},
-              {0.025f, 0.020f, 0.016f},
-              {0.11f, 0.075f, 0.050f},
-              {0.08f, 0.07f, 0.03f}};
-    case Plumage::kGrey:
-      break;
-  }
-  return {{0.15f, 0.17f, 0.20f},
-          {0.18f, 0.19f, 0.21f},
-          {0.22f, 0.24f, 0.26f},
-          {0.35f, 0.36f, 0.37f},
-          {0.08f, 0.09f, 0.10f},
-          {0.14f, 0.15f, 0.17f},
-          {0.05f, 0.05f, 0.05f}};
-}
-
-// How stout a bird of a plumage is: factors on the trunk's length and thickness, which below are a
-// herring gull's.
-struct Build {
-  float length, thickness;
-};
-
+// What a plumage decides: linear RGB of its parts, and how stout the bird is, as factors on the
+// trunk's length and thickness, which below are a herring gull's.
+//
 // The trunk's radius is that of its frontal area: 0.00813 m^0.666 (Pennycuick et al. 1988), of
 // passerines 0.0129 m^0.614 (Hedenstroem and Rosen 2003, "Body frontal area in passerine birds"),
 // in m^2 for a mass in kg. As shares of the span: herring gull of 1 kg and 1.34 m 0.038, carrion
 // crow of 0.55 kg and 0.93 m 0.057, common buzzard of 0.9 kg and 1.25 m 0.039, rock dove of 0.33 kg
 // and 0.65 m 0.054. Lengths over spans: 0.44, 0.50, 0.44 and 0.50 (Svensson et al. 2009).
-Build build_of(Plumage plumage) {
-  switch (plumage) {
-    case Plumage::kDark:
-      return {1.15f, 1.50f};
-    case Plumage::kGrey:
-      return {1.14f, 1.42f};
-    case Plumage::kGull:
-    case Plumage::kBrown:
-      break;
-  }
-  return {1, 1};
-}
+struct Feathers {
+  Colour back, belly, wing_above, wing_below, tip, tail, beak;
+  float length = 1, thickness = 1;
+};
+// By Plumage: gull, dark, brown, grey.
+constexpr std::array<Feathers, 4> kFeathers = {{{{0.55f, 0.56f, 0.58f},
+                                                 {0.72f, 0.72f, 0.70f},
+                                                 {0.30f, 0.32f, 0.35f},
+                                                 {0.62f, 0.62f, 0.61f},
+                                                 {0.05f, 0.05f, 0.05f},
+                                                 {0.70f, 0.70f, 0.68f},
+                                                 {0.60f, 0.38f, 0.05f}},
+                                                {{0.016f, 0.016f, 0.018f},
+                                                 {0.018f, 0.018f, 0.019f},
+                                                 {0.016f, 0.016f, 0.018f},
+                                                 {0.026f, 0.026f, 0.028f},
+                                                 {0.014f, 0.014f, 0.015f},
+                                                 {0.015f, 0.015f, 0.016f},
+                                                 {0.02f, 0.02f, 0.02f},
+                                                 1.15f,
+                                                 1.50f},
+                                                {{0.075f, 0.050f, 0.032f},
+                                                 {0.16f, 0.115f, 0.075f},
+                                                 {0.070f, 0.047f, 0.030f},
+                                                 {0.19f, 0.15f, 0.11f},
+                                                 {0.025f, 0.020f, 0.016f},
+                                                 {0.11f, 0.075f, 0.050f},
+                                                 {0.08f, 0.07f, 0.03f}},
+                                                {{0.15f, 0.17f, 0.20f},
+                                                 {0.18f, 0.19f, 0.21f},
+                                                 {0.22f, 0.24f, 0.26f},
+                                                 {0.35f, 0.36f, 0.37f},
+                                                 {0.08f, 0.09f, 0.10f},
+                                                 {0.14f, 0.15f, 0.17f},
+                                                 {0.05f, 0.05f, 0.05f},
+                                                 1.14f,
+                                                 1.42f}}};
 
 // Lengths below are shares of the span: choices. Shoulder and wrist, out from the middle and
 // forward.
@@ -164,14 +143,14 @@ void add_wing(MeshBuilder& builder,
 }
 
 // The body from beak to tail, and the tail's fan.
-void add_trunk(MeshBuilder& builder, float span, const Build& build, const Feathers& feathers) {
+void add_trunk(MeshBuilder& builder, float span, const Feathers& feathers) {
   const auto at = [&](float ahead, float out, float below) -> V {
-    return V(build.length * ahead, build.thickness * out, build.thickness * below) * span;
+    return V(feathers.length * ahead, feathers.thickness * out, feathers.thickness * below) * span;
   };
   const auto ring = [&](float ahead, float half_width, float half_height, float below) {
     return Ring{at(ahead, 0, below),
-                build.thickness * half_width * span,
-                build.thickness * half_height * span};
+                feathers.thickness * half_width * span,
+                feathers.thickness * half_height * span};
   };
   const std::uint32_t belly = builder.add_material(feathers.belly);
   const std::uint32_t back = builder.add_material(feathers.back);
@@ -221,9 +200,9 @@ double usual_strokes_per_s(double span_m) {
 
 model::Mesh bird(const BirdShape& shape) {
   check(shape.span_m > 0 && shape.aspect_ratio > 0, "a bird has a span and wings");
-  const Feathers feathers = feathers_of(shape.plumage);
+  const Feathers& feathers = kFeathers[static_cast<std::size_t>(shape.plumage)];
   MeshBuilder builder;
-  add_trunk(builder, static_cast<float>(shape.span_m), build_of(shape.plumage), feathers);
+  add_trunk(builder, static_cast<float>(shape.span_m), feathers);
   const WingMaterials materials{builder.add_material(feathers.wing_above),
                                 builder.add_material(feathers.wing_below),
                                 builder.add_material(feathers.tip),
