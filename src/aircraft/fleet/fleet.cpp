@@ -194,13 +194,9 @@ std::vector<Entry> list_aircraft() {
   std::vector<Entry> entries;
   for (const std::string& name : shapes::made_names()) entries.push_back({name, {}, {}});
   for (const fs::path& folder : folders()) list_folder(folder, entries);
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.name < b.name;
-  });
-  entries.erase(std::unique(entries.begin(),
-                            entries.end(),
-                            [](const Entry& a, const Entry& b) { return a.name == b.name; }),
-                entries.end());
+  std::ranges::stable_sort(entries, {}, &Entry::name);
+  const auto is_same = [](const Entry& a, const Entry& b) { return a.name == b.name; };
+  entries.erase(std::unique(entries.begin(), entries.end(), is_same), entries.end());
   return entries;
 }
 
@@ -237,12 +233,9 @@ fs::path aircraft_file(const std::string& name) {
   return name;
 }
 
-std::vector<std::string> aircraft_named_like(const std::string& word) {
-  return names_that([&](const std::string& name) { return is_named_like(name, word); });
-}
-
 std::vector<std::string> expect_aircraft_named_like(const std::string& word) {
-  std::vector<std::string> names = aircraft_named_like(word);
+  std::vector<std::string> names =
+      names_that([&](const std::string& name) { return is_named_like(name, word); });
   if (names.empty())
     throw Error(fmt::format(
         "no name among {} aircraft {} '{}'; the nearest are {}; `airtruth aircraft list` shows all",
@@ -449,9 +442,9 @@ Aircraft load_aircraft(const std::string& name,
   if (aircraft.catalogue_scale != 1) scale_mesh(aircraft.mesh, aircraft.catalogue_scale);
   if (wrapper::is_model_file(name) && wrapper::ending_of(name) != ".xml")
     warn_of_size(name, aircraft.mesh, warn_to);
-  std::sort(aircraft.sources.begin(), aircraft.sources.end());
-  aircraft.sources.erase(std::unique(aircraft.sources.begin(), aircraft.sources.end()),
-                         aircraft.sources.end());
+  std::vector<fs::path>& sources = aircraft.sources;
+  std::sort(sources.begin(), sources.end());
+  sources.erase(std::unique(sources.begin(), sources.end()), sources.end());
   return aircraft;
 }
 

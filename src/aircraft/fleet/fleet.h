@@ -44,10 +44,8 @@ std::filesystem::path data_root_of(const std::filesystem::path& catalogue_folder
 std::vector<Entry> list_aircraft();
 
 // The names that match a word, sorted. A word with * or ? is a pattern for the whole name; any
-// other word matches the names that contain it. Letter case does not matter. The result is empty
-// where no name matches.
-std::vector<std::string> aircraft_named_like(const std::string& word);
-// The same; throws Error with the nearest names where no name matches.
+// other word matches the names that contain it. Letter case does not matter. Throws Error with the
+// nearest names where no name matches.
 std::vector<std::string> expect_aircraft_named_like(const std::string& word);
 
 // The names that a pattern with * and ? matches as a whole, sorted. Letter case matters first; a
@@ -102,7 +100,7 @@ std::string configuration_of(const std::string& name, const model::LoadOptions& 
 // Names of Debian's catalogue that cannot be drawn, or are no aircraft, with the reason
 // (data/aircraft-left-out/README.md). They are not offered.
 const std::map<std::string, std::string>& left_out();
-// Those whose names match a word, as in aircraft_named_like(). Throws Error where none does.
+// Those whose names match a word, as in expect_aircraft_named_like(). Throws Error where none does.
 std::map<std::string, std::string> expect_left_out_named_like(const std::string& word);
 // data/aircraft-left-out/left-out.csv, which the build embeds in the program: the name and the
 // reason, a line each, below one heading.
