@@ -11,7 +11,6 @@
 #include "calibration/air/ground_track.h"
 #include "calibration/air/same_ground.h"
 #include "calibration/air/sky_curve.h"
-#include "calibration/air/sun.h"
 #include "calibration/measured/measured.h"
 #include "camera/horizon/horizon.h"
 #include "camera/lens/lens.h"
@@ -48,6 +47,12 @@ struct Air {
   std::optional<double> visibility_km;
 };
 
+// Direction of the sun, degrees: the azimuth from the world's north, -180 to 180, and the elevation
+// above the horizon, 1 to 89.
+struct Sun {
+  Estimate azimuth_deg, elevation_deg;
+};
+
 // Measures airlight, extinction and the direction of the sun from the light above and below the
 // horizon. Light is linear, per channel (red, green, blue). Views are added one by one; the
 // measurements are made from all of them together.
@@ -63,7 +68,15 @@ class AirMeter {
   void add(const image::Picture& picture, const Quaternion& cam_from_world);
 
   Air air(const std::stop_token& stop = {}) const;
-  // The direction of the sun (sun.h).
+  // The direction towards which the clear sky is brightest. For each direction on a grid a smooth
+  // sky is fitted: a polynomial in the height, a bright horizon, and lobes about the direction.
+  // Clouds are brighter than the clear sky behind them, so the fit follows the darker part of the
+  // sky (asymmetric least squares, Newey and Powell 1987). The direction with the best fit is
+  // refined; its error is half of the angle to the farthest direction that explains the sky nearly
+  // as well.
+  //
+  // Not measured with fewer than 2000 samples, where no direction brightens the sky, and where the
+  // directions that explain the sky nearly as well span more than 45 degrees.
   Measured<Sun> sun() const;
 
  private:
