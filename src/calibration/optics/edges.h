@@ -38,8 +38,14 @@ class EdgeMeter {
   // `codec_step`: step of the codec's quantiser in code values; 0 if it is not known. Quantisation
   // softens weak edges. Where enough edges are high compared with the step, only those are used.
   Measured<StepResponse> result(double codec_step = 0);
-  // The extra spread of chroma beyond luma (chroma.h) across edges that are as sharp as `response`.
-  // `response` must be the answer of result() with the same `codec_step`.
+  // The extra spread of chroma beyond luma, a standard deviation in luma pixels: the square root of
+  // the median difference between the variances of chroma and luma across the same edges, those
+  // that are nearly as sharp as `response`, the answer of result() with the same `codec_step`.
+  // Cameras and codecs keep less colour detail than the grid of chroma samples could hold: on the
+  // clips of data/camera-profiles, edges that luma crosses within 2 px are 6 to 9 px wide in Cb and
+  // Cr. The error is the scatter of the differences divided by the square root of the largest
+  // number of such edges in one frame: edges of other frames may be the same edges again. Not
+  // measured where there are fewer than 12 steps.
   Measured<Estimate> chroma(const StepResponse& response, double codec_step = 0) const;
   // The mean profile of the edges that the last result() used.
   const EdgeProfile& profile() const { return profile_; }
