@@ -11,12 +11,12 @@
 
 #include <fmt/format.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "aircraft/fleet/fleet.h"
 #include "comparison/appearance/background_shift.h"
 #include "comparison/appearance/looks.h"
 #include "comparison/appearance/segment.h"
-#include "comparison/comparison/figure.h"
 #include "comparison/comparison/measures.h"
 #include "comparison/match/place.h"
 #include "comparison/match/pose.h"
@@ -25,6 +25,8 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/median.h"
+#include "foundation/geometry/box.h"
+#include "foundation/image/colour.h"
 #include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
@@ -32,6 +34,7 @@
 #include "sequence/pipeline/staged_folder.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "show/drawing/draw.h"
 
 namespace airtruth::comparison {
 namespace {
@@ -78,6 +81,101 @@ scene::Scene scene_beside(const scene::Scene& given,
   intruder.roll_deg = attitude.roll_deg;
   scene.output.video = video::Format::kMkv;  // what is compared is not encoded once more
   return scene;
+}
+
+// The sizes of the figure are display choices.
+
+constexpr int kSmallPx = 44;    // of a crop at 1x, at most
+constexpr int kMinCropPx = 24;  // beyond it stands the other one of a pair
+constexpr int kLargePx = 352;   // of an enlarged crop
+// Gaps between pictures, and heights of a heading and of its letters.
+constexpr int kGapPx = 10;
+constexpr int kHeadingPx = 34;
+constexpr double kTextPx = 14;
+
+// A square crop of the frame around a box.
+struct Crop {
+  image::Rgb8 picture;
+  Box box;  // in pixels of the crop
+};
+
+struct FigureRow {
+  std::int64_t frame = 0;
+  Crop real, made;
+};
+
+Crop crop_of(const image::Picture& picture, const Box& box, int side) {
+  const int x = whole_pixels(box.x + box.width / 2) - side / 2;
+  const int y = whole_pixels(box.y + box.height / 2) - side / 2;
+  return {image::rgb8_from_picture(picture, x, y, side, side),
+          {box.x - x, box.y - y, box.width, box.height}};
+}
+
+image::Rgb8 tile_of(const image::Rgb8& crop, int side) {
+  return drawing::resized(crop, side, side, crop.width > side ? cv::INTER_AREA : cv::INTER_NEAREST);
+}
+
+void paste(cv::Mat& canvas, image::Rgb8 picture, int x, int y) {
+  drawing::view(picture).copyTo(canvas(cv::Rect(x, y, picture.width, picture.height)));
+}
+
+// Makes both crops of a pair with the same size: the larger box, with a margin of its own size
+// around it.
+FigureRow figure_row(const image::Picture& picture,
+                     std::int64_t frame,
+                     const Box& real,
+                     const Box& made) {
+  const double larger = std::max({real.width, real.height, made.width, made.height});
+  const int side = std::clamp(whole_pixels(2 * larger), kMinCropPx, picture.width);
+  return {frame, crop_of(picture, real, side), crop_of(picture, made, side)};
+}
+
+// Shows the real aircraft at 1x and enlarged with its box, and the inserted one likewise; one row
+// per frame, in two columns.
+image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
+  // Width of a pair of crops, each in two sizes.
+  constexpr int kPairPx = 4 * kGapPx + 2 * (kSmallPx + kLargePx);
+  const int columns = rows.size() > 1 ? 2 : 1;
+  const int lines = (static_cast<int>(rows.size()) + columns - 1) / columns;
+  cv::Mat canvas(kHeadingPx + lines * (kLargePx + kHeadingPx),
+                 columns * (kPairPx + 2 * kGapPx),
+                 CV_8UC3,
+                 drawing::kDarkPaper);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    int x = kGapPx + static_cast<int>(i) % columns * (kPairPx + 2 * kGapPx);
+    const int y = kHeadingPx + static_cast<int>(i) / columns * (kLargePx + kHeadingPx);
+    for (const Crop* one : {&rows[i].real, &rows[i].made}) {
+      const std::string name =
+          one == &rows[i].real ? fmt::format("real, frame {}", rows[i].frame) : "inserted";
+      drawing::text(canvas,
+                    fmt::format("{}, {:.0f} x {:.0f} px", name, one->box.width, one->box.height),
+                    x,
+                    y - 8,
+                    kTextPx,
+                    drawing::kWhite);
+      // At 1x as much as there is room for, from the middle.
+      const int small = std::min(kSmallPx, one->picture.width);
+      const int from = (one->picture.width - small) / 2;
+      image::Rgb8 copy = tile_of(one->picture, one->picture.width);
+      drawing::view(copy)(cv::Rect(from, from, small, small))
+          .copyTo(canvas(cv::Rect(x, y, small, small)));
+      x += kSmallPx + kGapPx;
+      paste(canvas, tile_of(one->picture, kLargePx), x, y);
+      cv::Mat large = canvas(cv::Rect(x, y, kLargePx, kLargePx));
+      drawing::outline(large, one->box, double(kLargePx) / one->picture.width, drawing::kGreen);
+      x += kLargePx + kGapPx;
+    }
+  }
+  return drawing::from_mat(canvas);
+}
+
+// Both crops of a pair as they are: the real aircraft at the left, the inserted one at the right.
+image::Rgb8 patches_of(const FigureRow& row) {
+  const int side = row.real.picture.width;
+  cv::Mat canvas(side, 2 * side, CV_8UC3);
+  paste(canvas, tile_of(row.real.picture, side), 0, 0);
+  paste(canvas, tile_of(row.made.picture, side), side, 0);
+  return drawing::from_mat(canvas);
 }
 
 class Comparing {

@@ -65,11 +65,11 @@ struct Comparison {
 
 // Renders the scene's first intruder beside the real one, in each frame that has a box, and leaves
 // in `out`: sequence/ (as `render` does), figure.png, comparison.json, comparison.md, and of each
-// frame patches/FRAME.png (patches_of(), figure.h) and its lines of patches.csv. The scene's own
-// path, camera path and motion are not used: the intruder goes where the real one goes, beside it
-// where that is free, as large as it by what stands out from the sky in both. The boxes may be
-// loose: the aircraft is found within them. Nothing runs across a cut of the clip: of its shots the
-// one with most boxes is taken. Error where no aircraft stands out within the boxes.
+// frame patches/FRAME.png (both crops, the real one at the left) and its lines of patches.csv. The
+// scene's own path, camera path and motion are not used: the intruder goes where the real one goes,
+// beside it where that is free, as large as it by what stands out from the sky in both. The boxes
+// may be loose: the aircraft is found within them. Nothing runs across a cut of the clip: of its
+// shots the one with most boxes is taken. Error where no aircraft stands out within the boxes.
 Comparison compare(const fs::path& real,
                    const match::RealBoxes& boxes,
                    const scene::Scene& scene,
