@@ -14,7 +14,6 @@
 #include <fmt/ranges.h>
 
 #include "aircraft/confined/child.h"
-#include "aircraft/confined/model_cache.h"
 #include "aircraft/fleet/scale.h"
 #include "aircraft/shapes/airframes.h"
 #include "aircraft/wrapper/model_files.h"
@@ -317,13 +316,8 @@ std::vector<std::string> liveries(const std::string& name) {
 
 namespace {
 
-// The place of a model: its files, and its own path below their folder.
-struct Source {
-  fs::path folder;
-  fs::path in_data_root;
-  fs::path file;
+struct Source : confined::ModelPlace {
   bool from_debian = false;
-  LetterCase letter_case = LetterCase::kMatters;
 };
 
 // Whether Debian's package installs the file. If so, `below` receives its path below the data root.
@@ -336,10 +330,10 @@ bool is_from_debian(const fs::path& file, fs::path& below) {
 }
 
 Source source_of(const fs::path& file, const fs::path& folder, const fs::path& in_data_root) {
-  Source source{folder, in_data_root, file.lexically_relative(folder), false};
+  Source source{{folder, in_data_root, file.lexically_relative(folder)}};
   if (folder.empty()) source.file = file;
   if (fs::path below; is_from_debian(file, below))
-    source = {data_root_of(kDebianAircraft), {}, below, true};
+    source = {{data_root_of(kDebianAircraft), {}, below}, true};
   return source;
 }
 
@@ -362,21 +356,9 @@ Source source_of_entry(const Entry& entry) {
 model::RawModel read_source(const Source& source,
                             const model::LoadOptions& options,
                             std::vector<fs::path>& sources) {
-  if (source.from_debian) {
-    wrapper::DiskFiles files(source.folder, source.in_data_root);
-    model::RawModel model = wrapper::read_model(files, source.file, options);
-    sources = files.sources();
-    return model;
-  }
-  wrapper::DiskFiles before(source.folder, source.in_data_root, true, source.letter_case);
-  const auto key = confined::model_key(before, source.file, options);
-  if (auto kept = key ? confined::cached_model(*key, before) : std::nullopt) {
-    sources = before.sources();
-    return std::move(*kept);
-  }
-  wrapper::DiskFiles files(source.folder, source.in_data_root, true, source.letter_case);
-  model::RawModel model = confined::read_in_child(files, source.file, options);
-  if (key) confined::keep_model(*key, files, model);
+  if (!source.from_debian) return confined::read_in_child(source, options, sources);
+  wrapper::DiskFiles files(source.folder, source.in_data_root);
+  model::RawModel model = wrapper::read_model(files, source.file, options);
   sources = files.sources();
   return model;
 }
