@@ -127,12 +127,10 @@ std::vector<DiskFiles::Asked> asked_from(WireReader& in) {
 // Repeats all requests in the same order and compares the answers with the recorded ones.
 bool still_answered(DiskFiles& files, const std::vector<DiskFiles::Asked>& asked) {
   for (const DiskFiles::Asked& question : asked) {
-    const bool by_content = question.answer.size() == kShaDigits;
-    if (by_content) {
+    if (question.answer.size() == kShaDigits)
       (void)files.read(question.path, model::kMaxModelBytes);
-    } else {
+    else
       (void)files.kind(question.path);
-    }
     if (files.asked().back() != question) return false;
   }
   return true;

@@ -100,11 +100,7 @@ ModelFiles::Kind DiskFiles::kind_below(const fs::path& path) {
                     : fs::is_regular_file(real, ignored) ? Kind::kFile
                     : fs::is_directory(real, ignored)    ? Kind::kFolder
                                                          : Kind::kNone;
-  if (hashes_)
-    asked_.push_back({path.string(),
-                      kind == Kind::kFile     ? "file"
-                      : kind == Kind::kFolder ? "folder"
-                                              : "none"});
+  if (hashes_) asked_.push_back({path.string(), std::to_string(static_cast<int>(kind))});
   return kind;
 }
 

@@ -50,7 +50,7 @@ class DiskFiles : public ModelFiles {
  public:
   struct Asked {
     std::string path;    // below the folder
-    std::string answer;  // "none", "file", "folder", or the SHA-256 of what was read
+    std::string answer;  // the number of its Kind, or the SHA-256 of what was read
     bool operator==(const Asked&) const = default;
   };
 

@@ -192,7 +192,7 @@ class Loader {
     append_file(assembly_, {file, folders, choose}, append_);
   }
 
-  int part_of(const Spin& spin) {
+  int part_of(const model::Part& spin) {
     auto& parts = assembly_.model().mesh.parts;
     for (std::size_t i = 1; i < parts.size(); ++i)
       if (parts[i].centre_in_body == spin.centre_in_body &&
@@ -201,8 +201,7 @@ class Loader {
         return static_cast<int>(i);
     if (parts.size() >= model::kMaxParts)
       throw Error("turns more than " + std::to_string(model::kMaxParts) + " parts by themselves");
-    parts.push_back(
-        {spin.name, {}, true, spin.axis_in_body, spin.centre_in_body, spin.revolutions_per_s});
+    parts.push_back(spin);
     return static_cast<int>(parts.size() - 1);
   }
 

@@ -38,13 +38,17 @@ double rpm_of(const Animation& animation) {
   return std::clamp(animation.value, -kFastestPropellerRpm, kFastestPropellerRpm);
 }
 
-std::optional<Spin> spin_of(const Animation& animation, const Eigen::Affine3d& body_from_model) {
+std::optional<model::Part> spin_of(const Animation& animation,
+                                   const Eigen::Affine3d& body_from_model) {
   const double rpm = rpm_of(animation);
   if (rpm == 0 || !(animation.axis.norm() > 1e-9)) return std::nullopt;
-  return Spin{animation.objects.empty() ? "spinning" : animation.objects.front(),
-              (body_from_model.linear() * animation.axis).normalized().cast<float>(),
-              (body_from_model * animation.centre).cast<float>(),
-              rpm / 60};
+  return model::Part{
+      .name = animation.objects.empty() ? "spinning" : animation.objects.front(),
+      .triangles = {},
+      .spins = true,
+      .axis_in_body = (body_from_model.linear() * animation.axis).normalized().cast<float>(),
+      .centre_in_body = (body_from_model * animation.centre).cast<float>(),
+      .revolutions_per_s = rpm / 60};
 }
 
 bool is_lamp(const std::string& type) {

@@ -6,22 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "aircraft/model/mesh.h"
 #include "aircraft/wrapper/wrapper.h"
 
 // The combined effect of the animations of a wrapper, and of the wrappers around it, on one object.
 namespace airtruth::wrapper {
 
-struct Spin {
-  std::string name;
-  Eigen::Vector3f axis_in_body;
-  Eigen::Vector3f centre_in_body;
-  double revolutions_per_s;
-};
-
 struct Animated {
   bool hidden = false;
   Eigen::Affine3d body_from_model = Eigen::Affine3d::Identity();
-  std::optional<Spin> spin;
+  std::optional<model::Part> spin;  // without triangles
   float opacity = 1;
   std::string texture;  // in place of the object's own
 };
