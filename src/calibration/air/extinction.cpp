@@ -124,17 +124,11 @@ double misfit(const std::vector<Cell>& cells,
   return yy - gy * gy / std::max(gg, 1e-12);
 }
 
-struct Fit {
-  // Extinction of each channel, per km.
-  std::array<double, 3> beta{};
-  double tilt_rad = 0;
-  // Error: the change at which the misfit has grown by the mean misfit per cell.
-  std::array<double, 3> sigma{};
-};
-
-// The extinction of one channel at one tilt, with its error and the misfit.
+// The extinction of one channel at one tilt, per km, and the misfit. The error is the change at
+// which the misfit has grown by the mean misfit per cell.
 struct ChannelFit {
-  double beta = 0, sigma = 0, misfit = 1e300;
+  Estimate beta;
+  double misfit = 1e300;
 };
 
 ChannelFit fit_channel(const std::vector<Cell>& cells,
@@ -148,30 +142,30 @@ ChannelFit fit_channel(const std::vector<Cell>& cells,
   for (double beta = kMinExtinctionPerKm; beta < kMaxExtinctionPerKm; beta *= kExtinctionRatio) {
     const double m = misfit(cells, c, sky, altitude_m, tilt_rad, beta);
     curve.push_back({beta, m});
-    if (m < best.misfit) best.misfit = m, best.beta = beta;
+    if (m < best.misfit) best.misfit = m, best.beta.value = beta;
   }
-  double low = best.beta, high = best.beta;
+  double low = best.beta.value, high = low;
   for (const auto& [beta, m] : curve)
     if (m <= best.misfit * (1 + 1 / freedom))
       low = std::min(low, beta), high = std::max(high, beta);
-  best.sigma = (high - low) / 2;
+  best.beta.sigma = (high - low) / 2;
   return best;
 }
 
-Fit fit(const std::vector<Cell>& cells, const SkyCurves& sky, double altitude_m) {
+Fading fit(const std::vector<Cell>& cells, const SkyCurves& sky, double altitude_m) {
   // Keeps the logarithm of a perfect fit finite.
   constexpr double kMinMisfit = 1e-12;
   const double freedom = std::max(1.0, double(cells.size()) - 4);
-  Fit best;
+  Fading best;
   double best_total = 1e300;
   for (double tilt_deg = -2 * kTiltPriorDeg; tilt_deg < 2.01 * kTiltPriorDeg;
        tilt_deg += kTiltStepDeg) {
-    Fit at;
-    at.tilt_rad = radians(tilt_deg);
+    Fading at;
+    at.horizon_rad = radians(tilt_deg);
     double total = tilt_deg * tilt_deg / (kTiltPriorDeg * kTiltPriorDeg);
     for (std::size_t c = 0; c < 3; ++c) {
-      const ChannelFit found = fit_channel(cells, c, sky, altitude_m, at.tilt_rad, freedom);
-      at.beta[c] = found.beta, at.sigma[c] = found.sigma;
+      const ChannelFit found = fit_channel(cells, c, sky, altitude_m, at.horizon_rad, freedom);
+      at.extinction_per_km[c] = found.beta;
       total += freedom * std::log(std::max(found.misfit, kMinMisfit));
     }
     if (total < best_total) best_total = total, best = at;
@@ -180,10 +174,10 @@ Fit fit(const std::vector<Cell>& cells, const SkyCurves& sky, double altitude_m)
 }
 
 // Separate fits to parts of the view, each with its own fields and woods.
-std::vector<Fit> fits_of_parts(const std::vector<Cell>& cells,
-                               const SkyCurves& sky,
-                               double altitude_m) {
-  std::vector<Fit> parts;
+std::vector<Fading> fits_of_parts(const std::vector<Cell>& cells,
+                                  const SkyCurves& sky,
+                                  double altitude_m) {
+  std::vector<Fading> parts;
   for (int part = 0; part < kParts; ++part) {
     std::vector<Cell> some;
     std::copy_if(cells.begin(), cells.end(), std::back_inserter(some), [&](const Cell& c) {
@@ -242,23 +236,23 @@ Measured<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
   std::erase_if(cells, [&](const Cell& c) { return !sky[static_cast<std::size_t>(c.sector)]; });
   if (cells.size() < kMinCells)
     return NotMeasured{"too little ground is seen at different distances"};
-  const Fit all = fit(cells, sky, altitude_m);
-  const std::vector<Fit> parts = fits_of_parts(cells, sky, altitude_m);
-  Fading result;
-  result.horizon_rad = all.tilt_rad;
+  Fading all = fit(cells, sky, altitude_m);
+  const std::vector<Fading> parts = fits_of_parts(cells, sky, altitude_m);
   for (std::size_t c = 0; c < 3; ++c) {
+    auto& [beta, sigma] = all.extinction_per_km[c];
     double squares = 0;
-    for (const Fit& p : parts) squares += (p.beta[c] - all.beta[c]) * (p.beta[c] - all.beta[c]);
+    for (const Fading& part : parts) {
+      const double off = part.extinction_per_km[c].value - beta;
+      squares += off * off;
+    }
     const double n = std::max<double>(2, double(parts.size()));
-    const double scatter = std::max(all.sigma[c], std::sqrt(squares / (n * (n - 1))));
-    const double sigma = std::hypot(scatter, kUnevenGroundError * all.beta[c]);
-    if (all.beta[c] < kMinOverWeakest * kMinExtinctionPerKm ||
-        all.beta[c] > kMaxExtinctionPerKm / kMinOverWeakest ||
-        sigma > kMaxRelativeError * all.beta[c])
+    const double scatter = std::max(sigma, std::sqrt(squares / (n * (n - 1))));
+    sigma = std::hypot(scatter, kUnevenGroundError * beta);
+    if (beta < kMinOverWeakest * kMinExtinctionPerKm ||
+        beta > kMaxExtinctionPerKm / kMinOverWeakest || sigma > kMaxRelativeError * beta)
       return NotMeasured{"the ground's colour does not go over into the airlight clearly enough"};
-    result.extinction_per_km[c] = {all.beta[c], sigma};
   }
-  return result;
+  return all;
 }
 
 std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& ground,
