@@ -81,21 +81,18 @@ struct Model {
   projection::SilhouettePoints silhouette;
   shade::Model rays;
 
-  Model(const std::string& name, double scale, const Warn& warn)
-      : Model(scaled(name, scale, warn)) {}
-  Model(const Model&) = delete;
-
- private:
   explicit Model(fleet::Aircraft loaded)
       : aircraft(std::move(loaded)),
         silhouette{&aircraft.mesh, model::silhouette_points(aircraft.mesh)},
         rays(aircraft.mesh) {}
-  static fleet::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
-    fleet::Aircraft loaded = fleet::load_aircraft(name, {.catalogue_scale = 1}, warn);
-    for (Eigen::Vector3f& p : loaded.mesh.positions) p *= static_cast<float>(scale);
-    return loaded;
-  }
+  Model(const Model&) = delete;
 };
+
+fleet::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
+  fleet::Aircraft loaded = fleet::load_aircraft(name, {.catalogue_scale = 1}, warn);
+  for (Eigen::Vector3f& p : loaded.mesh.positions) p *= static_cast<float>(scale);
+  return loaded;
+}
 
 // One frame of one sequence: where things are, and what was published.
 struct Frame {
@@ -284,8 +281,8 @@ std::vector<EvisionRow> evision_table(const fs::path& folder,
                                       const EvisionOptions& options,
                                       const Warn& warn) {
   const std::vector<fs::path> files = groundtruth_files(folder);
-  const Model airliner(options.airliner, options.scale, warn);
-  const Model light(options.light_aircraft, options.scale, warn);
+  const Model airliner(scaled(options.airliner, options.scale, warn));
+  const Model light(scaled(options.light_aircraft, options.scale, warn));
   std::vector<Sequence> sequences;
   for (const fs::path& file : files) {
     const bool is_light = file.stem().string().ends_with("C172");

@@ -100,15 +100,8 @@ void sort_triangles(osg::Geometry& geometry, const osg::Vec3f& eye_in_part) {
 
 double radius(const model::Mesh& mesh) {
   float result = 0;
-  for (const model::Part& part : mesh.parts) {
-    const Eigen::Vector3f centre =
-        part.moves() ? part.centre_in_body : Eigen::Vector3f::Zero().eval();
-    if (part.moves()) result = std::max(result, centre.norm() + model::reach_m(mesh, part));
-    for (const model::Triangle& triangle : part.triangles) {
-      for (std::uint32_t vertex : triangle.vertex)
-        result = std::max(result, centre.norm() + (mesh.positions[vertex] - centre).norm());
-    }
-  }
+  for (const model::Part& part : mesh.parts)
+    result = std::max(result, part.centre_in_body.norm() + model::reach_m(mesh, part));
   return static_cast<double>(result) * 1.0001;
 }
 
