@@ -11,9 +11,9 @@
 #include <utility>
 
 #include <assimp/BaseImporter.h>
-#include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -31,34 +31,18 @@ constexpr int kMaxNodeDepth = 256;     // bounds the recursion over a hostile fi
 constexpr std::array<float, 3> kBlack = {0, 0, 0};
 constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
 
-class MemoryStream : public Assimp::IOStream {
+// The bytes of a file as assimp reads them, also where it asks for values of no size.
+class MemoryStream : public Assimp::MemoryIOStream {
  public:
-  explicit MemoryStream(std::string bytes) : bytes_(std::move(bytes)) {}
-
+  using Assimp::MemoryIOStream::MemoryIOStream;
   std::size_t Read(void* target, std::size_t size, std::size_t count) override {
-    if (size == 0) return 0;
-    const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
-    if (whole > 0) std::memcpy(target, bytes_.data() + at_, whole * size);
-    at_ += whole * size;
-    return whole;
+    return size == 0 ? 0 : MemoryIOStream::Read(target, size, count);
   }
-  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
-  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
-    const std::size_t from = origin == aiOrigin_SET   ? 0
-                             : origin == aiOrigin_CUR ? at_
-                                                      : bytes_.size();
-    const std::size_t to = from + offset;  // modulo 2^64: an offset may be negative
-    if (to > bytes_.size()) return aiReturn_FAILURE;
-    at_ = to;
-    return aiReturn_SUCCESS;
+  static MemoryStream* of(std::string_view bytes) {
+    auto* own = new std::uint8_t[bytes.size()];
+    std::copy(bytes.begin(), bytes.end(), own);
+    return new MemoryStream(own, bytes.size(), true);
   }
-  std::size_t Tell() const override { return at_; }
-  std::size_t FileSize() const override { return bytes_.size(); }
-  void Flush() override {}
-
- private:
-  std::string bytes_;
-  std::size_t at_ = 0;
 };
 
 // Normalises a path as models spell it: "..\x.mtl", "./x.mtl".
@@ -79,7 +63,7 @@ class AssimpFiles : public Assimp::IOSystem {
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
-    if (Exists(path)) return new MemoryStream(files_.read(plain_path(path), model::kMaxModelBytes));
+    if (Exists(path)) return MemoryStream::of(files_.read(plain_path(path), model::kMaxModelBytes));
     missing_.insert(plain_path(path).string());
     return nullptr;
   }
