@@ -15,32 +15,24 @@
 namespace airtruth::texture_file {
 namespace {
 
-// libpng's own state, freed however the reading ends.
-class PngImage {
- public:
-  PngImage() { image_.version = PNG_IMAGE_VERSION; }
-  ~PngImage() { png_image_free(&image_); }
-  PngImage(const PngImage&) = delete;
-  PngImage& operator=(const PngImage&) = delete;
-  png_image* operator->() { return &image_; }
-  png_image* get() { return &image_; }
-  [[noreturn]] void fail() const {
-    throw Error(std::string("is a PNG file with a fault: ") + image_.message);
-  }
-
- private:
-  png_image image_{};
+struct FreePng {
+  void operator()(png_image* image) const { png_image_free(image); }
 };
 
+void expect_png(int is_sound, const png_image& image) {
+  if (is_sound == 0) throw Error(std::string("is a PNG file with a fault: ") + image.message);
+}
+
 Picture read_png(std::string_view bytes, const PictureLimits& limits) {
-  PngImage image;
-  if (png_image_begin_read_from_memory(image.get(), bytes.data(), bytes.size()) == 0) image.fail();
-  Picture picture = blank_picture(image->width, image->height, limits);
-  image->format = PNG_FORMAT_RGBA;
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  const std::unique_ptr<png_image, FreePng> freed(&image);  // however the reading ends
+  expect_png(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), image);
+  Picture picture = blank_picture(image.width, image.height, limits);
+  image.format = PNG_FORMAT_RGBA;
   // A negative stride: the last row of the file comes first.
   const auto stride = -static_cast<png_int_32>(4 * picture.width);
-  if (png_image_finish_read(image.get(), nullptr, picture.rgba.data(), stride, nullptr) == 0)
-    image.fail();
+  expect_png(png_image_finish_read(&image, nullptr, picture.rgba.data(), stride, nullptr), image);
   return picture;
 }
 
