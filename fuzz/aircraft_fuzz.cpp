@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "aircraft/wrapper/wrapper_text.h"
+#include "aircraft/wrapper/wrapper.h"
 #include "foundation/base/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

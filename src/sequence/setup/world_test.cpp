@@ -40,7 +40,7 @@ TEST(LoadWorld, TwoLiveriesAreTwoTypes) {
   EXPECT_NE(world.actors[0].type->model, world.actors[1].type->model);
 }
 
-// Below 500 ft the gear is down (aircraft/wrapper/wrapper_text.h), which is another mesh.
+// Below 500 ft the gear is down (aircraft/wrapper/wrapper.h), which is another mesh.
 TEST(LoadWorld, GearThatIsDownIsAnotherType) {
   scene::Intruder low = flying("low", "738/738-Ryanair", 70);
   low.waypoints_ned_m = {{100, 0, -60}, {400, 0, -60}};
