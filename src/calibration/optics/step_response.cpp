@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "calibration/optics/edge_fit.h"
-#include "calibration/optics/step_model.h"
 #include "foundation/base/error.h"
 #include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"

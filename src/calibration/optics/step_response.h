@@ -8,8 +8,8 @@
 #include "foundation/image/tone_curve.h"
 
 // The step response of a camera: a Gaussian point spread in linear light, the tone curve and an
-// unsharp mask on coded luma, each integrated over whole pixels (step_model.h). It is fitted to the
-// edges of a clip.
+// unsharp mask on coded luma, each integrated over whole pixels (StepModel, edge_fit.h). It is
+// fitted to the edges of a clip.
 namespace airtruth::optics {
 
 using measured::Measured;
