@@ -21,7 +21,6 @@
 #include <osgDB/Registry>
 
 #include "aircraft/ac3d/ac_mesh.h"
-#include "aircraft/ac3d/polygon.h"
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,5 +34,18 @@ struct Batch {
 // surfaces are flat. Both rules are those of OpenSceneGraph's AC3D reader, for which FlightGear's
 // models are made.
 std::vector<Batch> batches_of(const AcFile& file, const AcObject& object);
+
+// Twice the area of a polygon times its normal: the sum over the fan of its first corner.
+Eigen::Vector3f area_normal(std::span<const Eigen::Vector3f> corners);
+
+// Whether the polygon needs another triangulation than a fan, which is where two neighbouring
+// corners turn in opposite directions.
+bool is_concave(std::span<const Eigen::Vector3f> corners);
+
+// Triangulates a simple polygon by ear clipping (Meisters 1975) in the plane normal to `normal`.
+// Returns corners.size() - 2 triangles as indices into `corners`. Where the polygon crosses itself
+// and no ear exists, the corner that overlaps least is cut.
+std::vector<std::array<std::uint32_t, 3>> ear_clipped(std::span<const Eigen::Vector3f> corners,
+                                                      const Eigen::Vector3f& normal);
 
 }  // namespace airtruth::ac3d
