@@ -50,45 +50,31 @@ constexpr double kAssumedFovDeg = 60;
 // (extinction.h).
 constexpr double kClearKm = air::kVisibilityClassesKm.back();
 
-Quantity hazy_prior(const air::Air& air, bool height_known) {
-  const double per_km = air::kKoschmieder / *air.visibility_km;
-  const Estimate hazy{per_km, per_km};
-  Quantity quantity;
-  quantity.values = {hazy, hazy, hazy};
-  quantity.source = "a prior";
-  quantity.note = fmt::format(
-      "not measured; a prior by the horizon's look, which is that of {} km of visibility or "
-      "less{}: {}",
-      *air.visibility_km,
-      height_known ? "" : fmt::format(" from {} m above the ground", air::kAssumedHeightM),
-      air.extinction_per_km.why());
-  return quantity;
-}
-
-Quantity clear_air(const air::Air& air) {
-  const Estimate clear{0, air::kKoschmieder / kClearKm};
-  Quantity quantity;
-  quantity.values = {clear, clear, clear};
-  quantity.source = "assumed";
-  quantity.note = fmt::format("not measured, and drawn as clear air{}: {}",
-                              air.visibility_km ? ", as the horizon looks" : "",
-                              air.extinction_per_km.why());
-  return quantity;
-}
-
 // The extinction of a clip. One that is measured is stated as it is. One that is not measured is
 // not applied: air that may be clear is rendered clear. Its value is then 0, with the extinction of
 // exceptionally clear air as the error; or, where the horizon looks hazy, a prior from the
 // visibility that its look supports, with an error of the same size. A note says so.
 // `height_known`: the height above the ground was given and not assumed.
 Quantity extinction_quantity(const air::Air& air, bool height_known) {
+  Quantity quantity;
   if (air.extinction_per_km) {
-    Quantity quantity;
     put(quantity, air.extinction_per_km);
     return quantity;
   }
-  if (air.visibility_km && *air.visibility_km < kClearKm) return hazy_prior(air, height_known);
-  return clear_air(air);
+  const bool is_hazy = air.visibility_km && *air.visibility_km < kClearKm;
+  const double per_km = air::kKoschmieder / (is_hazy ? *air.visibility_km : kClearKm);
+  quantity.values.assign(3, {is_hazy ? per_km : 0, per_km});
+  quantity.source = is_hazy ? "a prior" : "assumed";
+  std::string stands = ", and drawn as clear air";
+  if (is_hazy)
+    stands =
+        fmt::format("; a prior by the horizon's look, which is that of {} km of visibility or less",
+                    *air.visibility_km);
+  if (is_hazy && !height_known)
+    stands += fmt::format(" from {} m above the ground", air::kAssumedHeightM);
+  if (!is_hazy && air.visibility_km) stands += ", as the horizon looks";
+  quantity.note = fmt::format("not measured{}: {}", stands, air.extinction_per_km.why());
+  return quantity;
 }
 
 class Session {

@@ -14,6 +14,7 @@
 #include "foundation/base/median.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 #include "picture/video/reader.h"
 
 namespace airtruth::own_aircraft {
@@ -376,9 +377,7 @@ cv::Mat refined(const cv::Mat& region,
 image::Mask mask_of(const cv::Mat& aircraft) {
   image::Mask mask{aircraft.cols, aircraft.rows, {}};
   mask.free.resize(aircraft.total());
-  for (int y = 0; y < aircraft.rows; ++y)
-    for (int x = 0; x < aircraft.cols; ++x)
-      mask.free[index_in(aircraft.cols, x, y)] = aircraft.at<unsigned char>(y, x) != 0 ? 0 : 255;
+  cv::Mat(aircraft == 0).copyTo(image::mat_of(mask));
   return mask;
 }
 
