@@ -35,6 +35,11 @@ struct Free {
 struct FreeScaler {
   void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
+// Options for a call of libav.
+struct Settings {
+  AVDictionary* entries = nullptr;
+  ~Settings() { av_dict_free(&entries); }
+};
 using InputPtr = std::unique_ptr<AVFormatContext, Free<avformat_close_input>>;
 using CodecPtr = std::unique_ptr<AVCodecContext, Free<avcodec_free_context>>;
 using FramePtr = std::unique_ptr<AVFrame, Free<av_frame_free>>;

@@ -37,11 +37,6 @@ std::string joined(std::span<const char* const> list) {
   return fmt::format("{}", fmt::join(list, ","));
 }
 
-struct Settings {
-  AVDictionary* entries = nullptr;
-  ~Settings() { av_dict_free(&entries); }
-};
-
 // The container of the file's bytes; never a guess from its name.
 const AVInputFormat* container_of(const std::string& url, const fs::path& path) {
   Settings settings;

@@ -47,15 +47,14 @@ class Loop {
     // quantiser 20 lower.
     constexpr float kFinestKeyPicture = 0.1F;
     encoder_->i_quant_factor = kFinestKeyPicture;
-    AVDictionary* settings = nullptr;
-    av_dict_set(&settings, "preset", "medium", 0);
-    av_dict_set(&settings, "tune", "zerolatency", 0);
-    av_dict_set(&settings, "forced-idr", "1", 0);
-    av_dict_set_int(&settings, "qp", quantiser, 0);
-    av_dict_set(&settings, "x264-params", "cpu-independent=1:scenecut=0:weightp=0", 0);
-    const int opened = avcodec_open2(encoder_.get(), encoder, &settings);
-    av_dict_free(&settings);
-    check_av(opened, "cannot encode with libx264");
+    Settings settings;
+    av_dict_set(&settings.entries, "preset", "medium", 0);
+    av_dict_set(&settings.entries, "tune", "zerolatency", 0);
+    av_dict_set(&settings.entries, "forced-idr", "1", 0);
+    av_dict_set_int(&settings.entries, "qp", quantiser, 0);
+    av_dict_set(&settings.entries, "x264-params", "cpu-independent=1:scenecut=0:weightp=0", 0);
+    check_av(avcodec_open2(encoder_.get(), encoder, &settings.entries),
+             "cannot encode with libx264");
     const AVCodec* decoder = decoder_by_id();
     decoder_.reset(avcodec_alloc_context3(decoder));
     decoder_->thread_count = 1;

@@ -200,10 +200,9 @@ Opened opened(const char* name,
   if (encoder == nullptr) return {nullptr, "is missing from this FFmpeg"};
   CodecPtr codec(avcodec_alloc_context3(encoder));
   describe(*codec, input, options);
-  AVDictionary* settings = nullptr;
-  int result = make_ready(*codec, &settings);
-  if (result >= 0) result = avcodec_open2(codec.get(), encoder, &settings);
-  av_dict_free(&settings);
+  Settings settings;
+  int result = make_ready(*codec, &settings.entries);
+  if (result >= 0) result = avcodec_open2(codec.get(), encoder, &settings.entries);
   if (result < 0) return {nullptr, "cannot be opened: " + reason(result)};
   return {std::move(codec), ""};
 }
@@ -400,11 +399,9 @@ struct Writer::State {
     stream->sample_aspect_ratio = codec->sample_aspect_ratio;
     if (const int opened = avio_open(&output->pb, url.c_str(), AVIO_FLAG_WRITE); opened < 0)
       fail("cannot create: " + reason(opened));
-    AVDictionary* settings = nullptr;
-    if (options.format == Format::kMp4) av_dict_set(&settings, "movflags", "+faststart", 0);
-    const int written = avformat_write_header(output.get(), &settings);
-    av_dict_free(&settings);
-    check_av(written, "cannot write");
+    Settings settings;
+    if (options.format == Format::kMp4) av_dict_set(&settings.entries, "movflags", "+faststart", 0);
+    check_av(avformat_write_header(output.get(), &settings.entries), "cannot write");
     packet.reset(av_packet_alloc());
   }
 
