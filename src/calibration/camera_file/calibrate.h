@@ -38,7 +38,7 @@ struct Options {
 };
 
 // Measures the clip in one pass over its frames. Throws Error if the file is not a video. What a
-// clip is too short or too still to show is not measured (quantities.h).
+// clip is too short or too still to show is not measured (Quantities).
 Calibration calibrate(const fs::path& video, const Options& options);
 
 // Measures the clips of one camera, joins them (join.h) and combines them with a profile

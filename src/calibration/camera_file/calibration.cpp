@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/camera_file/calibration.h"
 
+#include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <string_view>
 #include <type_traits>
 
@@ -12,6 +14,15 @@
 
 namespace airtruth::camera_file {
 namespace {
+
+const QuantityKey& key_of(std::string_view name) {
+  const auto found = std::find_if(kQuantityKeys.begin(),
+                                  kQuantityKeys.end(),
+                                  [&](const QuantityKey& key) { return key.name == name; });
+  if (found == kQuantityKeys.end())
+    throw std::out_of_range("no quantity has the key " + std::string(name));
+  return *found;
+}
 
 // A number as text, with four significant digits.
 std::string shown(double value) { return fmt::format("{:.4g}", value); }
@@ -70,6 +81,34 @@ std::string lines_of(const Calibration& c, const QuantityKey& key) {
 }
 
 }  // namespace
+
+void put(Quantity& quantity, const Measured<Estimate>& measured) {
+  if (measured)
+    quantity.values = {*measured};
+  else
+    quantity.missing = measured.why();
+}
+
+void put(Quantity& quantity, const Measured<ColourEstimate>& measured) {
+  if (measured)
+    quantity.values.assign(measured->begin(), measured->end());
+  else
+    quantity.missing = measured.why();
+}
+
+Quantity& Quantities::at(std::string_view key) { return this->*key_of(key).member; }
+
+const Quantity& Quantities::at(std::string_view key) const { return this->*key_of(key).member; }
+
+std::string_view QuantityKey::table() const {
+  const std::string_view whole(name);
+  return whole.substr(0, whole.find('.'));
+}
+
+std::string_view QuantityKey::key() const {
+  const std::string_view whole(name);
+  return whole.substr(whole.find('.') + 1);
+}
 
 std::string toml_from(const Calibration& c) {
   std::string text = head_of(c);

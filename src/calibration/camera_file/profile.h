@@ -31,8 +31,8 @@ namespace airtruth::camera_file {
 struct CameraProfile : airtruth::CameraProfile {
   // The tags by which its files are known, and how their values begin; empty: by none.
   std::map<std::string, std::string> tags;
-  // Values and errors by the keys of quantities.h. An error is that of one further clip of
-  // the camera, so it includes the differences between clips. The readout time is negative if the
+  // Values and errors by the names of kQuantityKeys. An error is that of one further clip of the
+  // camera, so it includes the differences between clips. The readout time is negative if the
   // sensor is read upwards.
   std::map<std::string, Estimate> values;
 

@@ -5,7 +5,6 @@
 
 #include "calibration/camera_file/calibrate.h"
 #include "calibration/camera_file/profile.h"
-#include "calibration/camera_file/quantities.h"
 
 namespace airtruth {
 Calibration calibrate(const std::vector<std::filesystem::path>& videos,

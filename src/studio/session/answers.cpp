@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "calibration/camera_file/quantities.h"
 #include "labels/annotation/truth.h"
 
 namespace airtruth::session {
