@@ -27,12 +27,10 @@ float drawn_out(float x, float squareness) {
 }  // namespace
 
 std::uint32_t MeshBuilder::add_material(const std::array<float, 3>& linear_rgb,
-                                        model::Finish finish,
-                                        float opacity) {
+                                        model::Finish finish) {
   model::Material material;
   material.diffuse = linear_rgb;
   material.finish = finish;
-  material.opacity = opacity;
   mesh_.materials.push_back(material);
   return static_cast<std::uint32_t>(mesh_.materials.size() - 1);
 }

@@ -34,8 +34,7 @@ class MeshBuilder {
  public:
   // Returns the index of the material.
   std::uint32_t add_material(const std::array<float, 3>& linear_rgb,
-                             model::Finish finish = model::Finish::kMat,
-                             float opacity = 1);
+                             model::Finish finish = model::Finish::kMat);
   // What is added next belongs to this part.
   void begin_part(model::Part part);
 
