@@ -2,29 +2,25 @@
 #include "dataset/set_report/film.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
-#include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
-#include "show/drawing/thumbnails.h"
 
 namespace airtruth::set_report {
 namespace {
 
 constexpr int kLoopSide = 96;            // px: chosen
 constexpr std::size_t kLoopFrames = 10;  // chosen
-// Quality setting of libav's mjpeg encoder; a still takes about 10 kB.
-constexpr int kStillQuality = 7;
+// Quality setting of libav's mjpeg encoder.
 constexpr int kLoopQuality = 5;
-// The enlarged square beside a still: its side on the page, and in the frame the least side and the
-// multiple of the box's longer side. Display choices.
-constexpr int kZoomSide = 192;
-constexpr int kLeastZoomPx = 48, kSurroundings = 4;
+// A still takes about 10 kB. Display choices.
+constexpr drawing::CutoutOptions kStill = {
+    .most_of_picture = std::numeric_limits<double>::infinity(), .side = 192, .whole_width = 640};
 
 int longer_side(const PixelBox& box) { return std::max(box.width, box.height); }
 
@@ -62,33 +58,17 @@ std::vector<Film::Marked> marked(const annotation::Frame& frame,
 }
 
 Film::Still still_of(const image::Picture& picture,
+                     std::size_t index,
                      const annotation::Frame& truth,
                      const std::vector<std::string>& ids) {
-  const image::Rgb8 small =
-      drawing::small_copy(image::rgb8_from_picture(picture), Film::kStillWidth);
-  Film::Still still{truth.frame, video::jpeg_of(small, kStillQuality), marked(truth, ids)};
+  const std::vector<Film::Marked> boxes = marked(truth, ids);
   const auto largest = std::ranges::max_element(
-      still.boxes, {}, [](const Film::Marked& one) { return longer_side(one.box); });
-  if (largest == still.boxes.end()) return still;
-  const PixelBox& box = largest->box;
-  still.zoom_px = std::max(kLeastZoomPx, kSurroundings * longer_side(box));
-  still.zoom_x = std::round(box.x + (box.width - still.zoom_px) / 2);
-  still.zoom_y = std::round(box.y + (box.height - still.zoom_px) / 2);
-  still.zoom_jpeg =
-      video::jpeg_of(drawing::square(picture, still.zoom_x, still.zoom_y, still.zoom_px, kZoomSide),
-                     kStillQuality);
-  return still;
+      boxes, {}, [](const Film::Marked& one) { return longer_side(one.box); });
+  const auto subject = largest == boxes.end() ? std::nullopt : std::optional(as_box(largest->box));
+  return {drawing::still_of(picture, index, subject, kStill), truth.frame, boxes};
 }
 
 }  // namespace
-
-std::vector<std::size_t> thinned(std::size_t n, std::size_t most) {
-  std::vector<std::size_t> indices;
-  const std::size_t count = std::min(n, most);
-  for (std::size_t k = 0; k < count; ++k)
-    indices.push_back(count == 1 ? 0 : k * (n - 1) / (count - 1));
-  return indices;
-}
 
 Film film_of(const replay::Finished& finished, std::size_t most, const std::stop_token& stop) {
   const auto& frames = finished.truth.frames;
@@ -96,9 +76,9 @@ Film film_of(const replay::Finished& finished, std::size_t most, const std::stop
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (first_box(frames[i])) seen.push_back(i);
   std::set<std::size_t> in_loop;
-  for (const std::size_t k : thinned(seen.size(), kLoopFrames)) in_loop.insert(seen[k]);
-  const std::vector<std::size_t> even = thinned(frames.size(), most);
-  std::set<std::size_t> shown(even.begin(), even.end());
+  for (const std::size_t k : drawing::spread_over(seen.size(), kLoopFrames))
+    in_loop.insert(seen[k]);
+  std::set<std::size_t> shown = drawing::spread_over(frames.size(), most);
   const std::optional<std::size_t> poster = largest_frame(frames);
   if (poster) shown.insert(*poster);
   const std::vector<std::string> ids = replay::intruder_ids(finished.truth);
@@ -114,7 +94,7 @@ Film film_of(const replay::Finished& finished, std::size_t most, const std::stop
     }
     if (shown.contains(i)) {
       if (i == poster) film.poster = film.stills.size();
-      film.stills.push_back(still_of(frame->picture, frames[i], ids));
+      film.stills.push_back(still_of(frame->picture, i, frames[i], ids));
     }
     if (!in_loop.contains(i)) continue;
     const PixelBox box = *first_box(frames[i]);

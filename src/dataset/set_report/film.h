@@ -8,6 +8,7 @@
 
 #include "foundation/geometry/box.h"
 #include "sequence/replay/finished.h"
+#include "show/drawing/thumbnails.h"
 
 namespace airtruth::set_report {
 
@@ -18,17 +19,11 @@ struct Film {
     std::size_t intruder = 0;  // index in replay::intruder_ids()
     PixelBox box;
   };
-  struct Still {
+  // Its subject is the largest box.
+  struct Still : drawing::Still {
     std::int64_t frame = 0;
-    std::string jpeg;  // at most kStillWidth pixels wide
     std::vector<Marked> boxes;
-    // The surroundings of the largest box, from (x, y) of the frame on, `px` wide; empty without
-    // one.
-    std::string zoom_jpeg;
-    double zoom_x = 0, zoom_y = 0, zoom_px = 0;
   };
-  // Pixels: a display choice.
-  static constexpr int kStillWidth = 640;
 
   std::vector<Still> stills;  // in frame order
   // Index in `stills` of the picture whose intruder is largest.
@@ -44,8 +39,5 @@ struct Film {
 // Reads the video once and keeps at most `most` stills. Throws Error where the video ends before
 // the last frame that shows an intruder.
 Film film_of(const replay::Finished& finished, std::size_t most, const std::stop_token& stop);
-
-// The indices 0 to n - 1, thinned to at most `most`, with the first and the last among them.
-std::vector<std::size_t> thinned(std::size_t n, std::size_t most);
 
 }  // namespace airtruth::set_report

@@ -57,8 +57,8 @@ Portrait portrait_of(const labelled::LabelledSet& set,
   return portrait;
 }
 
-std::vector<std::size_t> sampled_frames(const annotation::Truth& truth) {
-  return thinned(truth.frames.size(), 120);
+std::set<std::size_t> sampled_frames(const annotation::Truth& truth) {
+  return drawing::spread_over(truth.frames.size(), 120);
 }
 
 }  // namespace airtruth::set_report

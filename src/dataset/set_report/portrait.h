@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -52,6 +53,6 @@ Portrait portrait_of(const labelled::LabelledSet& set,
 
 // The frames of which the series of the page and the histograms are, by index: at most 120 of a
 // sequence, a display choice.
-std::vector<std::size_t> sampled_frames(const annotation::Truth& truth);
+std::set<std::size_t> sampled_frames(const annotation::Truth& truth);
 
 }  // namespace airtruth::set_report

@@ -21,7 +21,6 @@
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
-#include "foundation/base/text.h"
 #include "sequence/setup/from_scene.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
@@ -134,7 +133,8 @@ Json film_json(const Film& film) {
       return Json{one.intruder, one.box.x, one.box.y, one.box.width, one.box.height};
     };
     Json json{{"frame", still.frame}, {"boxes", column(still.boxes, box_of)}};
-    if (!still.zoom_jpeg.empty()) json["zoom"] = {still.zoom_x, still.zoom_y, still.zoom_px};
+    const drawing::Cutout& close = still.close;
+    if (!close.jpeg.empty()) json["zoom"] = {close.x, close.y, close.px};
     return json;
   });
 }
@@ -211,7 +211,7 @@ Gallery gallery_of(const labelled::LabelledSet& labelled,
                    const ReportOptions& options) {
   const std::size_t count = labelled.names().size();
   Gallery gallery{std::vector<Portrait>(count), std::vector<Json>(count), {}};
-  const std::vector<std::size_t> shown = thinned(count, options.max_shown);
+  const std::set<std::size_t> shown = drawing::spread_over(count, options.max_shown);
   const std::size_t stills =
       std::clamp(kMaxStills / std::max<std::size_t>(1, count), kMinStillsOfOne, kMaxStillsOfOne);
   std::mutex mutex;
@@ -219,7 +219,7 @@ Gallery gallery_of(const labelled::LabelledSet& labelled,
       count,
       options.jobs,
       [&](std::size_t i) {
-        const bool is_shown = std::ranges::binary_search(shown, i);
+        const bool is_shown = shown.contains(i);
         const std::string& name = labelled.names()[i];
         const replay::Finished finished = replay::open_finished(labelled.folder(name));
         Portrait portrait =
@@ -269,18 +269,15 @@ Json json_of(const Totals& totals) {
 }
 
 // The pictures of all films, under the names by which the page finds them.
-std::vector<html::PageBlob> pictures_of(const std::vector<const Portrait*>& portraits) {
-  std::vector<html::PageBlob> pictures;
+std::vector<html::PagePicture> pictures_of(const std::vector<const Portrait*>& portraits) {
+  std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < portraits.size(); ++i) {
     const Film& film = portraits[i]->film;
     for (std::size_t k = 0; k < film.stills.size(); ++k) {
-      const Film::Still& still = film.stills[k];
-      pictures.push_back({fmt::format("still-{}-{}", i, k), base64_of(still.jpeg)});
-      if (!still.zoom_jpeg.empty())
-        pictures.push_back({fmt::format("zoom-{}-{}", i, k), base64_of(still.zoom_jpeg)});
+      pictures.push_back({fmt::format("still-{}-{}", i, k), film.stills[k].whole});
+      pictures.push_back({fmt::format("zoom-{}-{}", i, k), film.stills[k].close.jpeg});
     }
-    if (!film.loop_jpeg.empty())
-      pictures.push_back({fmt::format("loop-{}", i), base64_of(film.loop_jpeg)});
+    pictures.push_back({fmt::format("loop-{}", i), film.loop_jpeg});
   }
   return pictures;
 }

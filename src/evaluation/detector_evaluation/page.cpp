@@ -21,6 +21,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/or_null.h"
+#include "show/drawing/thumbnails.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
 #include "show/plot/plot_json.h"
@@ -34,9 +35,9 @@ using Json = nlohmann::ordered_json;
 struct Film {
   // As scores::Assessment::truths. The subject of a still is the aircraft that counts and is
   // largest, else the strongest detection of the first detector.
-  std::vector<std::vector<report::Still>> sequences;
+  std::vector<std::vector<drawing::Still>> sequences;
   // As DetectorScore::false_alarms and misses of each detector.
-  std::vector<std::vector<report::Cutout>> false_alarms, misses;
+  std::vector<std::vector<drawing::Cutout>> false_alarms, misses;
 };
 
 // Stills of all sequences together, some 25 kB each, and of one sequence.
@@ -47,7 +48,7 @@ constexpr std::size_t kMostStills = 60;
 // A cutout to be made, and where it goes.
 struct Wanted {
   Box box;
-  report::Cutout* place = nullptr;
+  drawing::Cutout* place = nullptr;
 };
 
 // What is shown of each frame of one sequence.
@@ -89,7 +90,7 @@ std::vector<Plan> plans_of(const scores::Assessment& assessment, Film& film) {
       kMaxStills / std::max<std::size_t>(1, with_results.size()), kLeastStills, kMostStills);
   for (const std::size_t i : with_results) {
     const std::size_t frames = assessment.truths[i].frames.size();
-    plans[i].stills = report::spread_over(frames, of_one);
+    plans[i].stills = drawing::spread_over(frames, of_one);
     for (const auto& [frame, cutouts] : plans[i].cutouts)
       if (plans[i].stills.size() < 2 * of_one) plans[i].stills.insert(frame);
   }
@@ -118,12 +119,12 @@ std::optional<Box> subject_of(const scores::Assessment& assessment,
   return std::nullopt;
 }
 
-std::vector<report::Still> read_film(const scores::Assessment& assessment,
-                                     std::size_t truth,
-                                     const Plan& plan,
-                                     const std::stop_token& stop) {
+std::vector<drawing::Still> read_film(const scores::Assessment& assessment,
+                                      std::size_t truth,
+                                      const Plan& plan,
+                                      const std::stop_token& stop) {
   const scores::TruthSequence& sequence = assessment.truths[truth];
-  std::vector<report::Still> stills;
+  std::vector<drawing::Still> stills;
   if (sequence.media.empty()) return stills;
   report::ClipPictures pictures(sequence.media, sequence.name, stop);
   std::set<std::size_t> frames = plan.stills;
@@ -131,10 +132,10 @@ std::vector<report::Still> read_film(const scores::Assessment& assessment,
   for (const std::size_t i : frames) {
     const image::Picture& picture = pictures.at(sequence.frames[i].frame);
     if (plan.stills.contains(i))
-      stills.push_back(report::still_of(picture, i, subject_of(assessment, truth, i), {}));
+      stills.push_back(drawing::still_of(picture, i, subject_of(assessment, truth, i), {}));
     if (const auto cutouts = plan.cutouts.find(i); cutouts != plan.cutouts.end())
       for (const Wanted& wanted : cutouts->second)
-        *wanted.place = report::cutout_of(picture, wanted.box, {});
+        *wanted.place = drawing::cutout_of(picture, wanted.box, {});
   }
   return stills;
 }
@@ -269,13 +270,13 @@ Json ignored_in(const scores::TruthFrame& frame) {
   return json;
 }
 
-Json cutout_json(const report::Cutout& cutout) {
+Json cutout_json(const drawing::Cutout& cutout) {
   return cutout.jpeg.empty() ? Json() : Json{cutout.x, cutout.y, cutout.px};
 }
 
-Json stills_json(const scores::TruthSequence& truth, const std::vector<report::Still>& film) {
+Json stills_json(const scores::TruthSequence& truth, const std::vector<drawing::Still>& film) {
   Json stills = Json::array();
-  for (const report::Still& still : film) {
+  for (const drawing::Still& still : film) {
     const scores::TruthFrame& frame = truth.frames[still.index];
     stills.push_back({{"index", still.index},
                       {"frame", frame.frame},
@@ -300,7 +301,7 @@ Json encounters_json(const scores::TruthSequence& truth) {
 
 Json sequence_json(const scores::Assessment& assessment, const Film& film, std::size_t index) {
   const scores::TruthSequence& truth = assessment.truths[index];
-  const std::vector<report::Still>& stills = film.sequences[index];
+  const std::vector<drawing::Still>& stills = film.sequences[index];
   Json frame_numbers = Json::array();
   for (const scores::TruthFrame& frame : truth.frames) frame_numbers.push_back(frame.frame);
   Json detectors = Json::array();
@@ -309,7 +310,8 @@ Json sequence_json(const scores::Assessment& assessment, const Film& film, std::
     for (const scores::ScoredDetections& scored : detector.sequences) {
       if (scored.truth != index) continue;
       Json drawn = Json::array();
-      for (const report::Still& still : stills) drawn.push_back(detections_in(scored, still.index));
+      for (const drawing::Still& still : stills)
+        drawn.push_back(detections_in(scored, still.index));
       detectors.push_back({{"detector", k},
                            {"found", found_letters(truth, scored, point_score(detector))},
                            {"false_alarms", false_alarm_frames(scored, point_score(detector))},
@@ -329,7 +331,7 @@ Json sequence_json(const scores::Assessment& assessment, const Film& film, std::
 
 // Where the cutouts of the galleries lie in their frames, beside the entries of json_of.
 void add_cutouts(const Film& film, std::size_t k, Json& detector) {
-  const auto add = [](const std::vector<report::Cutout>& cutouts, Json& entries) {
+  const auto add = [](const std::vector<drawing::Cutout>& cutouts, Json& entries) {
     for (std::size_t i = 0; i < cutouts.size(); ++i) entries[i]["cutout"] = cutout_json(cutouts[i]);
   };
   add(film.false_alarms[k], detector["strongest_false_alarms"]);
@@ -337,18 +339,15 @@ void add_cutouts(const Film& film, std::size_t k, Json& detector) {
 }
 
 // All pictures, under the names by which the page finds them.
-std::vector<html::PageBlob> pictures_of(const Film& film) {
-  std::vector<html::PageBlob> pictures;
-  const auto add = [&](const std::string& name, const std::string& jpeg) {
-    report::add_picture(pictures, name, jpeg);
-  };
+std::vector<html::PagePicture> pictures_of(const Film& film) {
+  std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < film.sequences.size(); ++i)
     report::add_stills(pictures, i, film.sequences[i]);
   for (std::size_t k = 0; k < film.misses.size(); ++k) {
     for (std::size_t i = 0; i < film.false_alarms[k].size(); ++i)
-      add(fmt::format("alarm-{}-{}", k, i), film.false_alarms[k][i].jpeg);
+      pictures.push_back({fmt::format("alarm-{}-{}", k, i), film.false_alarms[k][i].jpeg});
     for (std::size_t i = 0; i < film.misses[k].size(); ++i)
-      add(fmt::format("miss-{}-{}", k, i), film.misses[k][i].jpeg);
+      pictures.push_back({fmt::format("miss-{}-{}", k, i), film.misses[k][i].jpeg});
   }
   return pictures;
 }

@@ -211,14 +211,14 @@ Json box_json(const std::optional<Box>& box) {
 std::vector<std::size_t> shown_frames(const TruthClip& truth, std::size_t step) {
   std::set<std::size_t> shown;
   for (std::size_t i = 0; i < truth.clip.frames.size(); i += step) shown.insert(i);
-  for (const report::Still& still : truth.stills) shown.insert(still.index);
+  for (const drawing::Still& still : truth.stills) shown.insert(still.index);
   return {shown.begin(), shown.end()};
 }
 
 Json stills_json(const TruthClip& truth, const std::vector<std::size_t>& shown) {
   Json stills = Json::array();
   for (std::size_t k = 0; k < truth.stills.size(); ++k) {
-    const report::Still& still = truth.stills[k];
+    const drawing::Still& still = truth.stills[k];
     const auto at = std::lower_bound(shown.begin(), shown.end(), still.index) - shown.begin();
     stills.push_back({{"number", k},
                       {"at", at},
@@ -285,8 +285,8 @@ Json trackers_json(const Assessment& assessment) {
 }
 
 // The pictures of all sequences, under the names by which the page finds them.
-std::vector<html::PageBlob> pictures_of(const Assessment& assessment) {
-  std::vector<html::PageBlob> pictures;
+std::vector<html::PagePicture> pictures_of(const Assessment& assessment) {
+  std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < assessment.truths.size(); ++i)
     report::add_stills(pictures, i, assessment.truths[i].stills);
   return pictures;
@@ -302,8 +302,8 @@ void write_film(const Assessment& assessment, std::size_t index, const fs::path&
   const TruthClip& truth = assessment.truths[index];
   if (truth.stills.empty()) return;
   std::vector<drawing::NamedPicture> pictures;
-  for (const std::size_t at : report::spread_over(truth.stills.size(), kFilmPictures)) {
-    const report::Still& still = truth.stills[at];
+  for (const std::size_t at : drawing::spread_over(truth.stills.size(), kFilmPictures)) {
+    const drawing::Still& still = truth.stills[at];
     std::vector<drawing::ColouredBox> boxes;
     if (const auto box = truth.box(still.index)) boxes.push_back({*box, kTruthOnPictures});
     for (std::size_t t = 0; t < assessment.trackers.size(); ++t)

@@ -47,13 +47,13 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& w
 void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop) {
   if (truth.clip.media.empty()) return;
   const std::size_t count = truth.clip.frames.size();
-  const std::set<std::size_t> wanted = report::spread_over(count, stills);
+  const std::set<std::size_t> wanted = drawing::spread_over(count, stills);
   report::ClipPictures pictures(truth.clip.media, truth.clip.name, stop);
   for (std::size_t i = 0; i < count; ++i) {
     const image::Picture& picture = pictures.at(truth.clip.frames[i].frame);
     const std::optional<Box> box = truth.box(i);
     if (box) truth.contrast[i] = drawing::contrast(picture, covered(*box));
-    if (wanted.contains(i)) truth.stills.push_back(report::still_of(picture, i, box, kClose));
+    if (wanted.contains(i)) truth.stills.push_back(drawing::still_of(picture, i, box, kClose));
   }
 }
 

@@ -33,7 +33,7 @@ struct TruthClip {
   // as range_m() and size_px() are.
   std::vector<std::optional<double>> contrast;
   // Some frames, for the page.
-  std::vector<report::Still> stills;
+  std::vector<drawing::Still> stills;
 
   std::optional<Box> box(std::size_t i) const { return results::box_of(clip.frames[i]); }
   std::optional<double> range_m(std::size_t i) const {
@@ -47,7 +47,7 @@ struct TruthClip {
   }
 };
 
-constexpr report::CutoutOptions kClose = {
+constexpr drawing::CutoutOptions kClose = {
     .surroundings = 3, .most_of_picture = 3, .side = 200, .whole_width = 400, .quality = 8};
 
 // Returns every object of every sequence, sorted by name, with its covered boxes

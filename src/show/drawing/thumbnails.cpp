@@ -13,6 +13,7 @@
 #include "foundation/base/median.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
+#include "picture/video/still.h"
 #include "show/drawing/draw.h"
 
 namespace airtruth::drawing {
@@ -75,6 +76,40 @@ image::Rgb8 strip(const std::vector<image::Rgb8>& pictures) {
                   pictures[i].at(0, y),
                   3 * static_cast<std::size_t>(width));
   return result;
+}
+
+Cutout cutout_of(const image::Picture& picture, const Box& box, const CutoutOptions& options) {
+  Cutout cutout;
+  const double largest = options.most_of_picture * std::max(picture.width, picture.height);
+  cutout.px = std::clamp(std::round(options.surroundings * std::max(box.width, box.height)),
+                         options.least_px,
+                         largest);
+  cutout.x = std::round(box.x + box.width / 2 - cutout.px / 2);
+  cutout.y = std::round(box.y + box.height / 2 - cutout.px / 2);
+  cutout.x = std::clamp(cutout.x, -cutout.px, static_cast<double>(picture.width));
+  cutout.y = std::clamp(cutout.y, -cutout.px, static_cast<double>(picture.height));
+  cutout.jpeg =
+      video::jpeg_of(square(picture, cutout.x, cutout.y, cutout.px, options.side), options.quality);
+  return cutout;
+}
+
+Still still_of(const image::Picture& picture,
+               std::size_t index,
+               const std::optional<Box>& subject,
+               const CutoutOptions& options) {
+  Still still{.index = index, .width = picture.width};
+  still.whole = video::jpeg_of(small_copy(image::rgb8_from_picture(picture), options.whole_width),
+                               options.quality);
+  if (subject) still.close = cutout_of(picture, *subject, options);
+  return still;
+}
+
+std::set<std::size_t> spread_over(std::size_t frames, std::size_t count) {
+  std::set<std::size_t> indices;
+  const std::size_t most = std::min(frames, count);
+  for (std::size_t n = 0; n < most; ++n)
+    indices.insert(most > 1 ? n * (frames - 1) / (most - 1) : 0);
+  return indices;
 }
 
 image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<ColouredBox>& boxes) {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +27,45 @@ image::Rgb8 square(const image::Picture& picture, double x, double y, double px,
 
 // Pictures of one size, side by side.
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);
+
+// A square cut out of a frame, as a JPEG.
+struct Cutout {
+  std::string jpeg;
+  // The square in the frame, px.
+  double x = 0, y = 0, px = 0;
+};
+
+struct CutoutOptions {
+  // Side of the square in the frame as a multiple of the box's longer side, and its least side.
+  double surroundings = 4;
+  double least_px = 48;
+  // Its largest side as a multiple of the longer side of the picture.
+  double most_of_picture = 2;
+  int side = 160;         // of the JPEG, px
+  int whole_width = 480;  // of a still's whole picture, px
+  int quality = 7;        // of libav's mjpeg encoder
+};
+
+// The surroundings of a box. A box may lie anywhere; a square far from the picture is black.
+Cutout cutout_of(const image::Picture& picture, const Box& box, const CutoutOptions& options);
+
+// A frame on a page, as JPEGs.
+struct Still {
+  std::size_t index = 0;  // of the frame in its sequence
+  int width = 0;          // of the video's picture, px
+  // The whole picture, at most CutoutOptions::whole_width pixels wide.
+  std::string whole;
+  // The surroundings of its subject; empty without one.
+  Cutout close;
+};
+
+Still still_of(const image::Picture& picture,
+               std::size_t index,
+               const std::optional<Box>& subject,
+               const CutoutOptions& options);
+
+// Indices of at most `count` of `frames` frames, spread evenly from the first to the last.
+std::set<std::size_t> spread_over(std::size_t frames, std::size_t count);
 
 struct ColouredBox {
   Box box;

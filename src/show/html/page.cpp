@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "foundation/base/text.h"
 #include "show/html/page_assets.h"
 
 namespace airtruth::html {
@@ -26,7 +27,7 @@ std::string in_script(std::string_view json) {
 std::string page_of(std::string_view title,
                     std::string_view body,
                     std::string_view json,
-                    const std::vector<PageBlob>& blobs,
+                    const std::vector<PagePicture>& pictures,
                     std::string_view script) {
   std::string page =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -36,8 +37,10 @@ std::string page_of(std::string_view title,
   page += "</style>\n</head>\n<body>\n";
   page += body;
   page += "<script type=\"application/json\" id=\"data\">" + in_script(json) + "</script>\n";
-  for (const PageBlob& blob : blobs)
-    page += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", blob.id, blob.text);
+  for (const auto& [id, jpeg] : pictures)
+    if (!jpeg.empty())
+      page +=
+          fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, base64_of(jpeg));
   for (const std::string_view part : {chart_js(), common_js(), script}) {
     page += "<script>\n";
     page += part;

@@ -7,19 +7,19 @@
 
 namespace airtruth::html {
 
-// Text, such as pictures in base64, that a page's script reads from the element with this id.
-struct PageBlob {
+// A picture that a page's script reads, in base64, from the element with this id.
+struct PagePicture {
   std::string id;
-  std::string text;
+  std::string jpeg;
 };
 
 // Builds one self-contained HTML page that needs no network: the common style sheet, `body`, `json`
-// in the element "data", the blobs, Chart.js, the common script (assets/common.js) and `script`.
-// `json` is escaped, so that a user's text cannot end its element.
+// in the element "data", the pictures but empty ones, Chart.js, the common script
+// (assets/common.js) and `script`. `json` is escaped, so that a user's text cannot end its element.
 std::string page_of(std::string_view title,
                     std::string_view body,
                     std::string_view json,
-                    const std::vector<PageBlob>& blobs,
+                    const std::vector<PagePicture>& pictures,
                     std::string_view script);
 
 }  // namespace airtruth::html
