@@ -21,6 +21,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/or_null.h"
+#include "picture/video/numbered_frames.h"
 #include "show/drawing/thumbnails.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
@@ -126,11 +127,12 @@ std::vector<drawing::Still> read_film(const scores::Assessment& assessment,
   const scores::TruthSequence& sequence = assessment.truths[truth];
   std::vector<drawing::Still> stills;
   if (sequence.media.empty()) return stills;
-  report::ClipPictures pictures(sequence.media, sequence.name, stop);
+  video::NumberedFrames pictures(sequence.media, {});
   std::set<std::size_t> frames = plan.stills;
   for (const auto& [frame, cutouts] : plan.cutouts) frames.insert(frame);
   for (const std::size_t i : frames) {
-    const image::Picture& picture = pictures.at(sequence.frames[i].frame);
+    const image::Picture& picture =
+        pictures.labelled(sequence.frames[i].frame, sequence.name, stop);
     if (plan.stills.contains(i))
       stills.push_back(drawing::still_of(picture, i, subject_of(assessment, truth, i), {}));
     if (const auto cutouts = plan.cutouts.find(i); cutouts != plan.cutouts.end())

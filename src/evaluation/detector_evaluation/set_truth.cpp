@@ -9,13 +9,13 @@
 
 #include "dataset/sequences/labels_of_truth.h"
 #include "encounter/separation/violation.h"
-#include "evaluation/report/film.h"
 #include "evaluation/scores/ignored_regions.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
 #include "foundation/image/contrast_to_noise.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/lens_facts.h"
+#include "picture/video/numbered_frames.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
@@ -423,10 +423,10 @@ SetTruth set_truth(const fs::path& folder,
 
 void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop) {
   if (truth.media.empty()) return;
-  report::ClipPictures pictures(truth.media, truth.name, stop);
+  video::NumberedFrames pictures(truth.media, {});
   for (scores::TruthFrame& frame : truth.frames) {
     if (frame.objects.empty()) continue;
-    const image::Picture& picture = pictures.at(frame.frame);
+    const image::Picture& picture = pictures.labelled(frame.frame, truth.name, stop);
     for (scores::TruthObject& object : frame.objects)
       object.contrast_to_noise = image::contrast_to_noise(picture, pixels_of(object.box_px));
   }

@@ -3,17 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "foundation/base/error.h"
-
 namespace airtruth::report {
-
-const image::Picture& ClipPictures::at(std::int64_t frame) {
-  if (stop_.stop_requested()) throw Interrupted();
-  const image::Picture* picture = frames_.at(frame);
-  if (picture == nullptr)
-    throw Error("ends before the labels of " + name_ + " do", {media_.string()});
-  return *picture;
-}
 
 void add_stills(std::vector<html::PagePicture>& pictures,
                 std::size_t sequence,

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/matching/boxes.h"
+#include "evaluation/report/film.h"
 #include "evaluation/report/plots.h"
 #include "evaluation/statistics/bins.h"
 #include "evaluation/tracker_evaluation/tables.h"
@@ -19,7 +20,6 @@
 #include "foundation/geometry/box.h"
 #include "picture/video/still.h"
 #include "show/drawing/pictures.h"
-#include "show/drawing/thumbnails.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
 #include "show/plot/plot_json.h"

@@ -6,8 +6,8 @@
 
 #include "labels/annotation/lens_facts.h"
 #include "labels/exchange/exchange.h"
+#include "picture/video/numbered_frames.h"
 #include "sequence/replay/finished.h"
-#include "show/drawing/thumbnails.h"
 
 namespace airtruth::tracker_evaluation {
 namespace {
@@ -48,9 +48,10 @@ void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop)
   if (truth.clip.media.empty()) return;
   const std::size_t count = truth.clip.frames.size();
   const std::set<std::size_t> wanted = drawing::spread_over(count, stills);
-  report::ClipPictures pictures(truth.clip.media, truth.clip.name, stop);
+  video::NumberedFrames pictures(truth.clip.media, {});
   for (std::size_t i = 0; i < count; ++i) {
-    const image::Picture& picture = pictures.at(truth.clip.frames[i].frame);
+    const image::Picture& picture =
+        pictures.labelled(truth.clip.frames[i].frame, truth.clip.name, stop);
     const std::optional<Box> box = truth.box(i);
     if (box) truth.contrast[i] = drawing::contrast(picture, covered(*box));
     if (wanted.contains(i)) truth.stills.push_back(drawing::still_of(picture, i, box, kClose));

@@ -12,9 +12,9 @@
 
 #include "camera/lens/lens.h"
 #include "dataset/labelled/labelled_set.h"
-#include "evaluation/report/film.h"
 #include "foundation/base/log.h"
 #include "runners/results/trajectories.h"
+#include "show/drawing/thumbnails.h"
 
 namespace airtruth::tracker_evaluation {
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "foundation/base/error.h"
+
 namespace airtruth::video {
 
 void NumberedFrames::open(std::int64_t first) {
@@ -39,6 +41,16 @@ const image::Picture* NumberedFrames::at(std::int64_t frame) {
   }
   first_ = frame - std::ssize(held_) + 1;
   return &held_.back().picture;
+}
+
+const image::Picture& NumberedFrames::labelled(std::int64_t frame,
+                                               const std::string& clip,
+                                               const std::stop_token& stop) {
+  if (stop.stop_requested()) throw Interrupted();
+  const image::Picture* picture = at(frame);
+  if (picture == nullptr)
+    throw Error("ends before the labels of " + clip + " do", {video_.string()});
+  return *picture;
 }
 
 }  // namespace airtruth::video

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stop_token>
+#include <string>
 #include <vector>
 
 #include "foundation/base/log.h"
@@ -22,6 +24,11 @@ class NumberedFrames {
 
   // Returns the frame, which is valid until the next call, or nullptr beyond the end.
   const image::Picture* at(std::int64_t frame);
+  // The same for a frame that a clip of this name has labels of: throws Error where the video ends
+  // before, and Interrupted.
+  const image::Picture& labelled(std::int64_t frame,
+                                 const std::string& clip,
+                                 const std::stop_token& stop);
   // Estimated number of frames; 0 where it is unknown, and before the first call of at().
   std::int64_t count_estimate() const { return reader_ ? reader_->info().frame_count_estimate : 0; }
 

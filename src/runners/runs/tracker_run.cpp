@@ -277,11 +277,7 @@ class TrackerRun {
   const image::Picture& picture_of(video::NumberedFrames& frames,
                                    const exchange::Clip& clip,
                                    std::size_t i) const {
-    if (options_.stop.stop_requested()) throw Interrupted();
-    const image::Picture* picture = frames.at(clip.frames[i].frame);
-    if (picture == nullptr)
-      throw Error("ends before the labels of " + clip.name + " do", {clip.media.string()});
-    return *picture;
+    return frames.labelled(clip.frames[i].frame, clip.name, options_.stop);
   }
 
   // Runs from an anchor to the clip's end, or backward to its beginning.
