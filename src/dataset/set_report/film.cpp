@@ -8,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
+#include "foundation/image/contrast_to_noise.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 
@@ -98,7 +99,7 @@ Film film_of(const replay::Finished& finished, std::size_t most, const std::stop
     }
     if (!in_loop.contains(i)) continue;
     const PixelBox box = *first_box(frames[i]);
-    film.contrasts.push_back(drawing::contrast(frame->picture, box));
+    film.contrasts.push_back(image::contrast(frame->picture, box));
     squares.push_back(drawing::enlarged(frame->picture, as_box(box), kLoopSide));
   }
   if (squares.empty()) return film;

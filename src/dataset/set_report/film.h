@@ -32,7 +32,7 @@ struct Film {
   std::string loop_jpeg;
   int loop_frames = 0;  // number of squares in loop_jpeg
   int loop_side = 0;    // side of one square, px
-  // Contrast of each frame of the loop (show/drawing/thumbnails.h).
+  // Contrast of each frame of the loop (foundation/image/contrast_to_noise.h).
   std::vector<double> contrasts;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "foundation/image/contrast_to_noise.h"
 #include "labels/annotation/lens_facts.h"
 #include "labels/exchange/exchange.h"
 #include "picture/video/numbered_frames.h"
@@ -53,7 +54,7 @@ void add_film(TruthClip& truth, std::size_t stills, const std::stop_token& stop)
     const image::Picture& picture =
         pictures.labelled(truth.clip.frames[i].frame, truth.clip.name, stop);
     const std::optional<Box> box = truth.box(i);
-    if (box) truth.contrast[i] = drawing::contrast(picture, covered(*box));
+    if (box) truth.contrast[i] = image::contrast(picture, covered(*box));
     if (wanted.contains(i)) truth.stills.push_back(drawing::still_of(picture, i, box, kClose));
   }
 }

@@ -28,9 +28,9 @@ struct TruthClip {
   std::map<std::string, double> weather;
   // Set for rendered sequences.
   std::optional<lens::Lens> lens;
-  // Contrast in grey levels (show/drawing/thumbnails.h) by frame of the clip, filled in by
-  // add_film(). Empty where the object is not visible or the value is unknown,
-  // as range_m() and size_px() are.
+  // Contrast in grey levels (foundation/image/contrast_to_noise.h) by frame of the clip, filled in
+  // by add_film(). Empty where the object is not visible or the value is unknown, as range_m() and
+  // size_px() are.
   std::vector<std::optional<double>> contrast;
   // Some frames, for the page.
   std::vector<drawing::Still> stills;

@@ -19,6 +19,10 @@ namespace airtruth::image {
 // fills half of its box: sqrt(12^2 / 2) / 1.5 = 5.7.
 std::optional<double> contrast_to_noise(const Picture& picture, const PixelBox& box);
 
+// The contrast of a box's luma to its surroundings, in levels: the root mean square difference from
+// the median of a ring that is as wide as the box's shorter side, at least kLeastRing_px.
+double contrast(const Picture& picture, const PixelBox& box);
+
 constexpr int kLeastRing_px = 4;
 constexpr std::size_t kLeastRingPixels =
     20;  // a deviation of fewer is uncertain by a sixth or more

@@ -10,7 +10,6 @@
 
 #include "aircraft/texture_file/picture.h"
 #include "foundation/base/error.h"
-#include "foundation/base/median.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
@@ -122,26 +121,6 @@ image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<Colou
             cv::Scalar(boxes[i].rgb[0], boxes[i].rgb[1], boxes[i].rgb[2]),
             i == 0 ? kRimmedPx : 1);
   return from_mat(picture);
-}
-
-double contrast(const image::Picture& picture, const PixelBox& box) {
-  const int ring = std::max(4, std::min(box.width, box.height));
-  const auto around = intersection(wider(box, ring), {0, 0, picture.width, picture.height});
-  if (!around) return 0;
-  std::vector<std::uint8_t> outside;
-  for (int y = around->y; y < around->bottom(); ++y)
-    for (int x = around->x; x < around->right(); ++x)
-      if (!box.contains(x, y)) outside.push_back(picture.luma().row(y)[x]);
-  const auto inside = intersection(box, *around);
-  if (outside.empty() || !inside) return 0;
-  const double background = median(std::move(outside));
-  double sum = 0;
-  for (int y = inside->y; y < inside->bottom(); ++y)
-    for (int x = inside->x; x < inside->right(); ++x) {
-      const double off = picture.luma().row(y)[x] - background;
-      sum += off * off;
-    }
-  return std::sqrt(sum / (double(inside->width) * inside->height));
 }
 
 }  // namespace airtruth::drawing

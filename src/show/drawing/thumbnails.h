@@ -77,8 +77,4 @@ struct ColouredBox {
 // are not a JPEG.
 image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<ColouredBox>& boxes);
 
-// The contrast of a box's luma to its surroundings, in levels: the root mean square difference from
-// the median of a ring that is as wide as the box's shorter side (at least 4 px).
-double contrast(const image::Picture& picture, const PixelBox& box);
-
 }  // namespace airtruth::drawing
