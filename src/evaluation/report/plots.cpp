@@ -8,7 +8,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "show/plot/gnuplot.h"
 #include "show/plot/plot_json.h"
 
 namespace airtruth::report {
@@ -20,9 +19,7 @@ constexpr double kPlotHeight = 9, kColumnHeight = 14;
 constexpr double kRankingHeight = 2.5, kRankingHeightOfOne = 0.7;
 
 plot::Format format_named(const std::string& name) {
-  if (name == "png") return plot::Format::kPng;
-  if (name == "pdf") return plot::Format::kPdf;
-  if (name == "svg") return plot::Format::kSvg;
+  if (const auto known = enum_named<plot::Format>(name)) return *known;
   throw Error("--figures is '" + name + "'; expected png, pdf or svg");
 }
 
@@ -63,15 +60,13 @@ plot::Plot ranking_plot(const std::string& measure, const std::vector<Ranked>& b
 }
 
 Figures::Figures(const fs::path& out, const std::string& prefix, const std::string& format)
-    : folder_(fs::absolute(out / "figures")), prefix_(prefix), format_(format) {
-  format_named(format);
+    : folder_(fs::absolute(out / "figures")), prefix_(prefix), format_(format_named(format)) {
   fs::create_directories(folder_);
 }
 
 void Figures::draw(const std::vector<NamedPlot>& plots) const {
   for (const auto& [name, plot] : plots)
-    plot::draw(
-        {.plots = {plot}, .height = kPlotHeight}, folder_, prefix_ + name, format_named(format_));
+    plot::draw({.plots = {plot}, .height = kPlotHeight}, folder_, prefix_ + name, format_);
 }
 
 void Figures::draw_ranking(const plot::Plot& ranking) const {
@@ -82,12 +77,11 @@ void Figures::draw_ranking(const plot::Plot& ranking) const {
               .legend = plot::Legend::kNone},
              folder_,
              prefix_ + "ranking",
-             format_named(format_));
+             format_);
 }
 
 void Figures::draw_column(const std::vector<plot::Plot>& plots, const std::string& name) const {
-  plot::draw(
-      {.plots = plots, .height = kColumnHeight}, folder_, prefix_ + name, format_named(format_));
+  plot::draw({.plots = plots, .height = kColumnHeight}, folder_, prefix_ + name, format_);
 }
 
 void check_figures(const std::string& format) {

@@ -10,6 +10,7 @@
 #include <airtruth/statistics.h>
 #include <nlohmann/json_fwd.hpp>
 
+#include "show/plot/gnuplot.h"
 #include "show/plot/plot.h"
 
 // What the plots of trackers and of detectors have in common. A page and the figures for a paper
@@ -55,7 +56,7 @@ class Figures {
  private:
   std::filesystem::path folder_;
   std::string prefix_;
-  std::string format_;
+  plot::Format format_;
 };
 
 // Throws Error for a format that Figures refuses, and where the program gnuplot is missing, before

@@ -8,11 +8,11 @@
 #include <sys/mman.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/memory_place.h"
 #include "foundation/image/colour.h"
 #include "runners/detector/detector.h"
 #include "runners/detector/protocol.h"
 #include "runners/process/child.h"
-#include "runners/process/memory_place.h"
 
 namespace airtruth::detector {
 namespace {
@@ -63,7 +63,7 @@ class SharedSamples {
   char* data() { return static_cast<char*>(memory_); }
 
  private:
-  process::MemoryPlace place_{PlaceKind::kFile, "a detector's frames"};
+  MemoryPlace place_{PlaceKind::kFile, "a detector's frames"};
   std::size_t bytes_;
   void* memory_ = nullptr;
 };

@@ -14,11 +14,11 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/memory_place.h"
 #include "foundation/base/text.h"
 #include "foundation/image/colour.h"
 #include "picture/video/still.h"
 #include "runners/process/child.h"
-#include "runners/process/memory_place.h"
 #include "runners/results/results_folder.h"
 
 namespace airtruth::tracking {
@@ -82,7 +82,7 @@ class Images {
 
  private:
   ImageKind kind_;
-  std::optional<process::MemoryPlace> folder_;
+  std::optional<MemoryPlace> folder_;
   std::int64_t count_ = 0;
 };
 

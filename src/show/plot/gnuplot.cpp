@@ -11,6 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/memory_place.h"
 #include "picture/video/still.h"
 
 namespace airtruth::plot {
@@ -56,10 +57,6 @@ std::string terminal(Format format, double height, bool is_shared) {
       return fmt::format("svg size 800,{:.0f} font 'sans,12' linewidth 1.5", 50 * height);
   }
   return {};
-}
-
-std::string ending(Format format) {
-  return format == Format::kPng ? ".png" : format == Format::kPdf ? ".pdf" : ".svg";
 }
 
 // The file of the picture in place of a plot.
@@ -267,35 +264,13 @@ std::size_t legend_letters(const Sheet& sheet) {
   return std::clamp(longest + kMark, kLeast, kMost);
 }
 
-// A folder that is removed at the end.
-struct TemporaryFolder {
-  fs::path path;
-
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "airtruth-plot-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw Error("cannot be created", {name});
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
-}  // namespace
-
-void check_gnuplot(const std::string& option) {
-  if (std::system("command -v gnuplot > /dev/null 2>&1") != 0)
-    throw Error(option + " needs the program gnuplot (Debian package gnuplot-nox)");
-}
-
+// The script that draws the sheet as NAME.png, NAME.pdf or NAME.svg. It contains all data but
+// pictures, which it reads from NAME-0.png, NAME-1.png and so on.
 std::string gnuplot_script(const Sheet& sheet, Format format, const std::string& name) {
   Script script;
   script.command("set terminal " + terminal(format, sheet.height, sheet.plots.size() > 1) +
                  " noenhanced");
-  script.command("set output " + quoted_path(name + ending(format)));
+  script.command("set output " + quoted_path(name + "." + enum_name(format)));
   script.command("set grid lc rgb '#dddddd'\nset border lc rgb '#555555'\nset style fill solid");
   if (sheet.legend == Legend::kBeside)
     script.command(
@@ -316,6 +291,13 @@ std::string gnuplot_script(const Sheet& sheet, Format format, const std::string&
   return script.text();
 }
 
+}  // namespace
+
+void check_gnuplot(const std::string& option) {
+  if (std::system("command -v gnuplot > /dev/null 2>&1") != 0)
+    throw Error(option + " needs the program gnuplot (Debian package gnuplot-nox)");
+}
+
 void draw(const Sheet& sheet, const fs::path& folder, const std::string& name, Format format) {
   const fs::path script = folder / (name + ".gnuplot");
   write_file(script, gnuplot_script(sheet, format, name), Flush::kLater);
@@ -326,9 +308,9 @@ void draw(const Sheet& sheet, const fs::path& folder, const std::string& name, F
 }
 
 image::Rgb8 picture_of(const Sheet& sheet) {
-  const TemporaryFolder folder;
-  draw(sheet, folder.path, "plot", Format::kPng);
-  return video::read_still(folder.path / "plot.png");
+  const MemoryPlace folder(PlaceKind::kFolder, "a plot's files");
+  draw(sheet, folder.path(), "plot", Format::kPng);
+  return video::read_still(folder.path() / "plot.png");
 }
 
 }  // namespace airtruth::plot

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "foundation/base/names.h"
 #include "foundation/image/picture.h"
 #include "show/plot/plot.h"
 
@@ -28,13 +30,13 @@ struct Sheet {
 
 // The format of a file.
 enum class Format { kPng, kPdf, kSvg };
+constexpr auto enum_names(Format) {
+  return std::to_array<EnumName<Format>>(
+      {{Format::kPng, "png"}, {Format::kPdf, "pdf"}, {Format::kSvg, "svg"}});
+}
 
 // Throws Error, which names `option`, if the program gnuplot cannot be found.
 void check_gnuplot(const std::string& option);
-
-// The gnuplot script that draws the sheet as NAME.png, NAME.pdf or NAME.svg. It contains all data
-// but pictures, which it reads from NAME-0.png, NAME-1.png and so on.
-std::string gnuplot_script(const Sheet& sheet, Format format, const std::string& name);
 
 // Writes folder/NAME.gnuplot and draws the file beside it. Throws Error if gnuplot fails.
 void draw(const Sheet& sheet,

@@ -8,7 +8,7 @@
 #include "foundation/base/file_state.h"
 #include "foundation/base/unfinished.h"
 
-namespace airtruth::process {
+namespace airtruth {
 
 // A file or folder in memory for another process: in /dev/shm, or in the temporary folder where
 // that does not exist, so that nothing is written to a disk. The destructor removes it. A lock on
@@ -31,4 +31,4 @@ class MemoryPlace {
   std::optional<Unfinished> unfinished_;
 };
 
-}  // namespace airtruth::process
+}  // namespace airtruth

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runners/process/memory_place.h"
+#include "foundation/base/memory_place.h"
 
 #include <cerrno>
 #include <cstring>
@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 
-namespace airtruth::process {
+namespace airtruth {
 namespace {
 
 constexpr const char* kBegins = "airtruth-run-";
@@ -41,4 +41,4 @@ MemoryPlace::~MemoryPlace() {
   fs::remove_all(path_, ignored);
 }
 
-}  // namespace airtruth::process
+}  // namespace airtruth
