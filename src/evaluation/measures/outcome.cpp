@@ -2,10 +2,9 @@
 #include "evaluation/measures/outcome.h"
 
 #include <cmath>
-#include <limits>
+#include <map>
 
 #include "evaluation/matching/boxes.h"
-#include "evaluation/statistics/bins.h"
 #include "foundation/geometry/box.h"
 
 namespace airtruth::measures {
@@ -46,7 +45,6 @@ std::vector<Outcome> outcomes(std::span<const evaluation::FramePair> frames,
 
 Bin mean_of(std::span<const Outcome> outcomes) {
   Bin bin;
-  bin.to = std::numeric_limits<double>::infinity();
   bin.frames = std::ssize(outcomes);
   if (outcomes.empty()) return bin;
   for (const Outcome& o : outcomes) {
@@ -63,18 +61,14 @@ Bin mean_of(std::span<const Outcome> outcomes) {
 }
 
 std::vector<Bin> breakdown(std::span<const Outcome> outcomes,
-                           std::span<const std::optional<double>> values,
-                           std::span<const double> edges) {
-  std::vector<std::vector<Outcome>> sorted(edges.size());
+                           std::span<const std::optional<statistics::Place>> places) {
+  std::map<statistics::Place, std::vector<Outcome>> sorted;
   for (std::size_t i = 0; i < outcomes.size(); ++i)
-    if (const auto bin = statistics::bin_of(values[i], edges)) sorted[*bin].push_back(outcomes[i]);
+    if (places[i]) sorted[*places[i]].push_back(outcomes[i]);
   std::vector<Bin> bins;
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    if (sorted[k].empty()) continue;
-    Bin bin = mean_of(sorted[k]);
-    bin.from = edges[k];
-    bin.to = statistics::end_of_bin(k, edges);
-    bins.push_back(bin);
+  for (const auto& [place, of_bin] : sorted) {
+    bins.push_back(mean_of(of_bin));
+    bins.back().place = place;
   }
   return bins;
 }

@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <airtruth/metrics.h>
 
 #include "camera/lens/lens.h"
+#include "evaluation/statistics/bins.h"
 
 // The quality of a tracker's answer frame by frame, and the frame where it lost its target.
 namespace airtruth::measures {
@@ -34,12 +34,7 @@ std::vector<Outcome> outcomes(std::span<const evaluation::FramePair> frames,
 
 // Mean values of the outcomes in one bin; errors are those of the frames that have one.
 struct Bin {
-  // Of a bin by name, whose ends are unused.
-  std::string name;
-  // Inclusive.
-  double from = 0;
-  // Exclusive; infinite for the last bin.
-  double to = 0;
+  statistics::Place place;
   std::int64_t frames = 0;
   double overlap = 0;
   // Share of frames with an overlap of more than 0.5.
@@ -51,12 +46,10 @@ struct Bin {
   std::optional<double> angle_mrad;
 };
 
-// Groups the outcomes by a quantity. values[i] belongs to outcomes[i]. An outcome without a value,
-// or with a value below the first edge, belongs to no bin. A bin extends from each edge to the
-// next, and the last one has no upper end. Bins without frames are omitted.
+// Groups the outcomes. places[i] belongs to outcomes[i]; one without a place is in no bin. Bins are
+// in the order of their places; those without frames are omitted.
 std::vector<Bin> breakdown(std::span<const Outcome> outcomes,
-                           std::span<const std::optional<double>> values,
-                           std::span<const double> edges);
+                           std::span<const std::optional<statistics::Place>> places);
 Bin mean_of(std::span<const Outcome> outcomes);
 
 }  // namespace airtruth::measures

@@ -43,15 +43,18 @@ TEST(Breakdown, SortsIntoItsBins) {
   std::vector<Outcome> all(4);
   all[0].overlap = 1;
   all[1].overlap = 0.5;
-  const std::vector<std::optional<double>> values = {10, 10, 25, std::nullopt};
-  const auto bins = breakdown(all, values, std::vector<double>{0, 10, 20});
+  const std::vector<double> edges = {0, 10, 20};
+  std::vector<std::optional<statistics::Place>> places;
+  for (const std::optional<double> value : {std::optional(10.0), {10.0}, {25.0}, {}})
+    places.push_back(statistics::place_of(value, edges));
+  const auto bins = breakdown(all, places);
   ASSERT_EQ(bins.size(), 2u);
-  EXPECT_EQ(bins[0].from, 10);
-  EXPECT_EQ(bins[0].to, 20);
+  EXPECT_EQ(bins[0].place.from, 10);
+  EXPECT_EQ(bins[0].place.to, 20);
   EXPECT_EQ(bins[0].frames, 2);
   EXPECT_EQ(bins[0].overlap, 0.75);
   EXPECT_EQ(bins[0].success_50, 0.5);
-  EXPECT_TRUE(std::isinf(bins[1].to));
+  EXPECT_TRUE(std::isinf(bins[1].place.to));
 }
 
 }  // namespace

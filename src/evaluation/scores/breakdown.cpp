@@ -3,8 +3,6 @@
 
 #include <map>
 
-#include "evaluation/statistics/bins.h"
-
 namespace airtruth::scores {
 namespace {
 
@@ -36,12 +34,6 @@ std::vector<Quantity> with_weather(std::vector<Quantity> quantities) {
 }
 
 }  // namespace
-
-std::optional<Place> place_of(const std::optional<double>& value, std::span<const double> edges) {
-  const auto bin = statistics::bin_of(value, edges);
-  if (!bin) return std::nullopt;
-  return Place{edges[*bin], statistics::end_of_bin(*bin, edges)};
-}
 
 std::vector<DetectionBin> detection_by(std::span<const AircraftInFrame> sightings,
                                        std::span<const std::optional<Place>> places,

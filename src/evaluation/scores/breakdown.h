@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "evaluation/scores/truth.h"
+#include "evaluation/statistics/bins.h"
 #include "evaluation/statistics/proportion.h"
 
 // Probability of detection by a quantity: of the aircraft in frames, the share that is found. With
@@ -27,20 +26,8 @@ struct AircraftInFrame {
   bool is_detected = false;
 };
 
-// Where a bin lies: in an interval of values, or at a name.
-struct Place {
-  // Inclusive; of bins by name both are unused.
-  double from = 0;
-  // Exclusive; infinite for the last bin.
-  double to = std::numeric_limits<double>::infinity();
-  // Of bins by name: "above", "below".
-  std::string name = {};
-
-  auto operator<=>(const Place&) const = default;
-};
-
-// Empty for a value that is unknown, or below the first edge (statistics/bins.h).
-std::optional<Place> place_of(const std::optional<double>& value, std::span<const double> edges);
+using statistics::Place;
+using statistics::place_of;
 
 struct DetectionBin {
   Place place;

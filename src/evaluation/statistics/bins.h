@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
+#include <compare>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -30,17 +31,25 @@ inline const std::map<std::string, std::vector<double>> kWeatherEdges = {
     {"noise", {0, 0.5, 0.75, 1, 1.5, 2, 3, 5}},
     {"sun_share", {0, 0.25, 0.5, 0.75}}};
 
-// The bin of a value; empty for an unknown one, and for one below the first edge.
-inline std::optional<std::size_t> bin_of(const std::optional<double>& value,
-                                         std::span<const double> edges) {
+// Where a bin lies: in an interval of values, or at a name.
+struct Place {
+  // Inclusive; of bins by name both are unused.
+  double from = 0;
+  // Exclusive; infinite for the last bin.
+  double to = std::numeric_limits<double>::infinity();
+  // Of bins by name: "above", "below".
+  std::string name = {};
+  auto operator<=>(const Place&) const = default;
+};
+
+// Empty for a value that is unknown, or below the first edge.
+inline std::optional<Place> place_of(const std::optional<double>& value,
+                                     std::span<const double> edges) {
   if (!value || !std::isfinite(*value) || *value < edges.front()) return std::nullopt;
   const auto above = std::upper_bound(edges.begin(), edges.end(), *value);
-  return static_cast<std::size_t>(above - edges.begin()) - 1;
-}
-
-// The upper end of a bin, which it does not hold.
-inline double end_of_bin(std::size_t bin, std::span<const double> edges) {
-  return bin + 1 < edges.size() ? edges[bin + 1] : std::numeric_limits<double>::infinity();
+  Place place{*std::prev(above)};
+  if (above != edges.end()) place.to = *above;
+  return place;
 }
 
 }  // namespace airtruth::statistics

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -90,35 +92,33 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
 
 void break_down(const std::vector<TruthClip>& truths, ScoredTracker& tracker) {
   std::vector<measures::Outcome> all;
-  std::map<std::string, std::vector<std::optional<double>>> values;
-  std::map<std::string, std::vector<measures::Outcome>> by_background;
+  std::map<std::string, std::vector<std::optional<statistics::Place>>> places;
   for (const ScoredSequence& sequence : tracker.sequences) {
     const TruthClip& truth = truths[sequence.truth];
     for (const measures::Outcome& outcome : sequence.outcomes) {
       all.push_back(outcome);
-      values["range_m"].push_back(truth.range_m(outcome.frame));
-      values["size_px"].push_back(truth.size_px(outcome.frame));
-      values["contrast"].push_back(truth.contrast[outcome.frame]);
-      by_background[truth.background].push_back(outcome);
+      const auto add = [&](const std::string& key,
+                           const std::optional<double>& value,
+                           std::span<const double> edges) {
+        places[key].push_back(statistics::place_of(value, edges));
+      };
+      add("range_m", truth.range_m(outcome.frame), statistics::kRangeEdges_m);
+      add("size_px", truth.size_px(outcome.frame), kSizeEdges_px);
+      add("contrast", truth.contrast[outcome.frame], kContrastEdges);
+      places[kBackground].push_back(statistics::Place{.name = truth.background});
       for (const auto& [key, edges] : statistics::kWeatherEdges) {
         const auto fact = truth.weather.find(key);
-        values[key].push_back(fact == truth.weather.end() ? std::nullopt
-                                                          : std::optional(fact->second));
+        add(key, fact == truth.weather.end() ? std::nullopt : std::optional(fact->second), edges);
       }
     }
   }
   tracker.angle_mrad = measures::mean_of(all).angle_mrad;
-  tracker.bins["range_m"] = measures::breakdown(all, values["range_m"], statistics::kRangeEdges_m);
-  tracker.bins["size_px"] = measures::breakdown(all, values["size_px"], kSizeEdges_px);
-  tracker.bins["contrast"] = measures::breakdown(all, values["contrast"], kContrastEdges);
-  for (const auto& [key, edges] : statistics::kWeatherEdges)
-    if (auto bins = measures::breakdown(all, values[key], edges); !bins.empty())
+  // Those of the weather are there where the set states it.
+  for (const char* key : {"range_m", "size_px", "contrast", kBackground})
+    tracker.bins.try_emplace(key);
+  for (const auto& [key, of_key] : places)
+    if (auto bins = measures::breakdown(all, of_key); !bins.empty())
       tracker.bins[key] = std::move(bins);
-  std::vector<measures::Bin>& backgrounds = tracker.bins[kBackground];
-  for (const auto& [name, outcomes] : by_background) {
-    backgrounds.push_back(measures::mean_of(outcomes));
-    backgrounds.back().name = name;
-  }
 }
 
 void summarise(const std::vector<TruthClip>& truths, ScoredTracker& tracker) {

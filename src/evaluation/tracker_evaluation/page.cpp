@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <span>
 
@@ -82,25 +83,24 @@ Plot bins_plot(const Assessment& assessment,
                const std::string& key,
                const std::string& x,
                plot::Mark mark = plot::Mark::kLineAndPoints) {
-  const auto place_of = [](const measures::Bin& bin) { return std::pair(bin.from, bin.name); };
-  // Of trackers that differ in their frames, the one with the most.
-  std::map<std::pair<double, std::string>, measures::Bin> places;
+  // Of trackers that differ in their frames, those of the one with the most.
+  std::map<statistics::Place, std::int64_t> frames;
   for (const ScoredTracker& tracker : assessment.trackers)
     if (const auto found = tracker.bins.find(key); found != tracker.bins.end())
       for (const measures::Bin& bin : found->second)
-        if (measures::Bin& most = places[place_of(bin)]; bin.frames > most.frames) most = bin;
+        frames[bin.place] = std::max(frames[bin.place], bin.frames);
   Plot plot{.x = {.label = x + " (frames)"}, .y = {.label = "mean overlap", .min = 0}};
-  for (const auto& [place, bin] : places)
-    plot.x.names.push_back(
-        report::counted_place(key == kBackground ? bin.name : plot::name_of_bin(bin.from, bin.to),
-                              static_cast<double>(bin.frames)));
+  for (const auto& [place, most] : frames)
+    plot.x.names.push_back(report::counted_place(
+        key == kBackground ? place.name : plot::name_of_bin(place.from, place.to),
+        static_cast<double>(most)));
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
     const auto found = assessment.trackers[k].bins.find(key);
     if (found == assessment.trackers[k].bins.end() || found->second.empty()) continue;
     Series series{.name = assessment.trackers[k].name, .mark = mark, .style = plot::style_of(k)};
     for (const measures::Bin& bin : found->second) {
       series.x.push_back(
-          static_cast<double>(std::distance(places.begin(), places.find(place_of(bin)))));
+          static_cast<double>(std::distance(frames.begin(), frames.find(bin.place))));
       series.y.push_back(bin.overlap);
     }
     plot.series.push_back(std::move(series));

@@ -67,7 +67,7 @@ Json breakdown_of(const ScoredTracker& tracker) {
     Json list = Json::array();
     for (const Bin& bin : bins) {
       // The last one's end is infinity, which is written as null.
-      Json one = {{"from", bin.from}, {"to", bin.to}};
+      Json one = {{"from", bin.place.from}, {"to", bin.place.to}};
       one.update(json_of(bin));
       list.push_back(one);
     }
@@ -76,7 +76,7 @@ Json breakdown_of(const ScoredTracker& tracker) {
   Json backgrounds = Json::object();
   // A tracker that has VOT's runs alone has no bins.
   if (const auto found = tracker.bins.find(kBackground); found != tracker.bins.end())
-    for (const Bin& bin : found->second) backgrounds[bin.name] = json_of(bin);
+    for (const Bin& bin : found->second) backgrounds[bin.place.name] = json_of(bin);
   json[kBackground] = backgrounds;
   return json;
 }
