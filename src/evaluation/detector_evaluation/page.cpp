@@ -17,7 +17,6 @@
 
 #include "evaluation/detector_evaluation/plots.h"
 #include "evaluation/detector_evaluation/tables.h"
-#include "evaluation/report/film.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/json/or_null.h"
@@ -344,7 +343,7 @@ void add_cutouts(const Film& film, std::size_t k, Json& detector) {
 std::vector<html::PagePicture> pictures_of(const Film& film) {
   std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < film.sequences.size(); ++i)
-    report::add_stills(pictures, i, film.sequences[i]);
+    drawing::add_stills(pictures, i, film.sequences[i]);
   for (std::size_t k = 0; k < film.misses.size(); ++k) {
     for (std::size_t i = 0; i < film.false_alarms[k].size(); ++i)
       pictures.push_back({fmt::format("alarm-{}-{}", k, i), film.false_alarms[k][i].jpeg});

@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/matching/boxes.h"
-#include "evaluation/report/film.h"
 #include "evaluation/report/plots.h"
 #include "evaluation/statistics/bins.h"
 #include "evaluation/tracker_evaluation/tables.h"
@@ -288,7 +287,7 @@ Json trackers_json(const Assessment& assessment) {
 std::vector<html::PagePicture> pictures_of(const Assessment& assessment) {
   std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < assessment.truths.size(); ++i)
-    report::add_stills(pictures, i, assessment.truths[i].stills);
+    drawing::add_stills(pictures, i, assessment.truths[i].stills);
   return pictures;
 }
 

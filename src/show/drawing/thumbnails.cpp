@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "aircraft/texture_file/picture.h"
@@ -101,6 +102,15 @@ Still still_of(const image::Picture& picture,
                                options.quality);
   if (subject) still.close = cutout_of(picture, *subject, options);
   return still;
+}
+
+void add_stills(std::vector<html::PagePicture>& pictures,
+                std::size_t sequence,
+                const std::vector<Still>& stills) {
+  for (std::size_t i = 0; i < stills.size(); ++i) {
+    pictures.push_back({fmt::format("whole-{}-{}", sequence, i), stills[i].whole});
+    pictures.push_back({fmt::format("close-{}-{}", sequence, i), stills[i].close.jpeg});
+  }
 }
 
 std::set<std::size_t> spread_over(std::size_t frames, std::size_t count) {

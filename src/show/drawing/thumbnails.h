@@ -11,6 +11,7 @@
 
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
+#include "show/html/page.h"
 
 // Small pictures for HTML pages, and the pages' JPEGs with boxes.
 namespace airtruth::drawing {
@@ -63,6 +64,11 @@ Still still_of(const image::Picture& picture,
                std::size_t index,
                const std::optional<Box>& subject,
                const CutoutOptions& options);
+
+// Adds the stills of the sequence with this number, under the names by which a page finds them.
+void add_stills(std::vector<html::PagePicture>& pictures,
+                std::size_t sequence,
+                const std::vector<Still>& stills);
 
 // Indices of at most `count` of `frames` frames, spread evenly from the first to the last.
 std::set<std::size_t> spread_over(std::size_t frames, std::size_t count);
