@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/detector_evaluation/tables.h"
 
+#include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <airtruth/version.h>
@@ -365,45 +365,24 @@ constexpr const char* kDetectorColumns =
     "in_time_*_95=tracks/declarations/in_time/interval_95,"
     "false_tracks_per_hour=tracks/false_tracks_per_hour,frames_per_second_median";
 
-// What one sequence has at the operating point.
-struct SequenceCounts {
-  std::int64_t aircraft = 0;
-  std::int64_t detected = 0;
-  std::int64_t false_alarms = 0;
-};
-
-SequenceCounts counts_of(const scores::ScoredDetections& scored,
-                         const scores::TruthSequence& truth,
-                         double score) {
-  SequenceCounts counts;
-  scored.each([&](std::size_t, const results::Detection& detection, const scores::Match& match) {
-    if (match.kind == scores::MatchKind::kFalseAlarm && detection.score >= score)
-      ++counts.false_alarms;
-  });
-  for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    counts.detected += std::ssize(scores::detected_in(scored, i, score));
-    for (const scores::TruthObject& object : truth.frames[i].objects)
-      counts.aircraft += object.is_aircraft() && object.counts ? 1 : 0;
-  }
-  return counts;
-}
-
 std::string sequences_csv(const scores::Assessment& assessment) {
   std::vector<Json> rows;
   for (const scores::DetectorScore& detector : assessment.detectors)
     for (const scores::ScoredDetections& scored : detector.sequences) {
       const scores::TruthSequence& truth = assessment.truths[scored.truth];
       const double score = detector.point ? detector.point->score : 0;
-      const SequenceCounts counts = counts_of(scored, truth, score);
-      rows.push_back({{"detector", detector.name},
-                      {"sequence", truth.name},
-                      {"background", truth.background},
-                      {"frames", truth.frames.size()},
-                      {"duration_s", truth.duration_s > 0 ? Json(truth.duration_s) : Json()},
-                      {"weight", truth.weight.value_or(1)},
-                      {"aircraft_in_frames", counts.aircraft},
-                      {"found", counts.detected},
-                      {"false_alarms", counts.false_alarms}});
+      const auto of_point = [&](const auto& one) { return one >= score; };
+      const evaluation::FrocSequence counted = scores::froc_sequence_of(truth, scored);
+      rows.push_back(
+          {{"detector", detector.name},
+           {"sequence", truth.name},
+           {"background", truth.background},
+           {"frames", truth.frames.size()},
+           {"duration_s", truth.duration_s > 0 ? Json(truth.duration_s) : Json()},
+           {"weight", truth.weight.value_or(1)},
+           {"aircraft_in_frames", counted.best_scores.size()},
+           {"found", std::ranges::count_if(counted.best_scores, of_point)},
+           {"false_alarms", std::ranges::count_if(counted.false_alarm_scores, of_point)}});
     }
   return report::csv_of(
       "detector,sequence,background,frames,duration_s,weight,aircraft_in_frames,found,false_alarms",

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openssl/evp.h>
 
 #include "foundation/base/names.h"
@@ -65,13 +66,11 @@ std::vector<std::size_t> places_of(const std::vector<std::string>& names,
   for (std::size_t i = 0; i < header.size(); ++i) {
     const std::string shown = header[i].substr(0, 40);
     const auto known = std::find(names.begin(), names.end(), header[i]);
-    if (known == names.end()) {
-      std::string expected;
-      for (const std::string& name : names) expected += (expected.empty() ? "" : ",") + name;
-      throw Error("unknown column '" + shown + "'" +
-                      did_you_mean(header[i], names, "; expected " + expected),
-                  where);
-    }
+    if (known == names.end())
+      throw Error(
+          "unknown column '" + shown + "'" +
+              did_you_mean(header[i], names, fmt::format("; expected {}", fmt::join(names, ","))),
+          where);
     std::size_t& place = places[static_cast<std::size_t>(known - names.begin())];
     if (place != kNoColumn)
       throw Error("the column '" + shown + "' is twice there; expected it once", where);

@@ -129,30 +129,20 @@ fs::path mot_file(const fs::path& folder, const std::string& name) {
 
 std::vector<std::string> mot_names(const fs::path& folder) {
   std::vector<std::string> names;
-  for (const fs::path& place : {folder, folder / "data"}) {
-    if (!fs::is_directory(place)) continue;
-    for (const auto& entry : fs::directory_iterator(place)) {
-      const fs::path& path = entry.path();
-      if (path.filename().string().starts_with(".")) continue;
-      if (entry.is_regular_file() && path.extension() == ".txt")
+  for (const fs::path& place : {folder, folder / "data"})
+    for (const fs::path& path : exchange::entries(place))
+      if (fs::is_regular_file(path) && path.extension() == ".txt")
         names.push_back(path.stem().string());
       else if (fs::is_regular_file(path / "det" / "det.txt"))
         names.push_back(path.filename().string());
-    }
-  }
   std::sort(names.begin(), names.end());
   return names;
 }
 
 // The one JSON file of a folder without text; empty: none, or several.
 fs::path only_json(const fs::path& folder) {
-  fs::path found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_regular_file() || entry.path().extension() != ".json") continue;
-    if (!found.empty()) return {};
-    found = entry.path();
-  }
-  return found;
+  const std::vector<fs::path> files = exchange::files_with(folder, ".json");
+  return files.size() == 1 ? files.front() : fs::path();
 }
 
 void expect_known(const std::vector<std::string>& names,
