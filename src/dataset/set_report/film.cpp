@@ -15,11 +15,11 @@
 namespace airtruth::set_report {
 namespace {
 
-constexpr int kLoopSide = 96;            // px: chosen
 constexpr std::size_t kLoopFrames = 10;  // chosen
-// Quality setting of libav's mjpeg encoder.
-constexpr int kLoopQuality = 5;
-// A still takes about 10 kB. Display choices.
+// Display choices.
+constexpr drawing::CutoutOptions kLoop = {
+    .surroundings = 2.2, .least_px = 24, .side = 96, .quality = 5};
+// A still takes about 10 kB.
 constexpr drawing::CutoutOptions kStill = {
     .most_of_picture = std::numeric_limits<double>::infinity(), .side = 192, .whole_width = 640};
 
@@ -100,12 +100,12 @@ Film film_of(const replay::Finished& finished, std::size_t most, const std::stop
     if (!in_loop.contains(i)) continue;
     const PixelBox box = *first_box(frames[i]);
     film.contrasts.push_back(image::contrast(frame->picture, box));
-    squares.push_back(drawing::enlarged(frame->picture, as_box(box), kLoopSide));
+    squares.push_back(drawing::enlarged(frame->picture, as_box(box), kLoop));
   }
   if (squares.empty()) return film;
   film.loop_frames = static_cast<int>(squares.size());
-  film.loop_side = kLoopSide;
-  film.loop_jpeg = video::jpeg_of(drawing::strip(squares), kLoopQuality);
+  film.loop_side = kLoop.side;
+  film.loop_jpeg = video::jpeg_of(drawing::strip(squares), kLoop.quality);
   return film;
 }
 

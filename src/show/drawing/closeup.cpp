@@ -32,13 +32,9 @@ image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
 
 // The change of each pixel, brightened fourfold.
 image::Rgb8 difference_picture(const image::Rgb8& a, const image::Rgb8& b) {
-  image::Rgb8 result = image::make_rgb8(a.width, a.height);
-  const std::size_t count =
-      static_cast<std::size_t>(a.width) * static_cast<std::size_t>(a.height) * 3;
-  for (std::size_t i = 0; i < count; ++i)
-    result.samples[i] = static_cast<std::uint8_t>(
-        std::min(255, 4 * std::abs(int(a.samples[i]) - int(b.samples[i]))));
-  return result;
+  cv::Mat change;
+  cv::absdiff(view(a), view(b), change);
+  return from_mat(change * 4);
 }
 
 void paste(cv::Mat& canvas, const image::Rgb8& small, int zoom, int x, int y) {

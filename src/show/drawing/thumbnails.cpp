@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,10 +20,6 @@ namespace {
 
 // The sizes of this file are display choices.
 
-// Side of the square, as a multiple of the box's longer side.
-constexpr double kSurroundings = 2.2;
-// Least side of the square, in pixels of the picture.
-constexpr int kSmallestPx = 24;
 // Thickness of the first box's line, in pixels.
 constexpr int kRimmedPx = 2;
 
@@ -40,6 +35,28 @@ cv::Mat decoded(const std::string& jpeg) {
   return rgb;
 }
 
+// Without its JPEG.
+Cutout place_of(const image::Picture& picture, const Box& box, const CutoutOptions& options) {
+  Cutout cutout;
+  const double largest = options.most_of_picture * std::max(picture.width, picture.height);
+  cutout.px = std::clamp(std::round(options.surroundings * std::max(box.width, box.height)),
+                         options.least_px,
+                         std::max(options.least_px, largest));
+  cutout.x = std::round(box.x + box.width / 2 - cutout.px / 2);
+  cutout.y = std::round(box.y + box.height / 2 - cutout.px / 2);
+  cutout.x = std::clamp(cutout.x, -cutout.px, static_cast<double>(picture.width));
+  cutout.y = std::clamp(cutout.y, -cutout.px, static_cast<double>(picture.height));
+  return cutout;
+}
+
+// The pixels of a cutout, scaled to `side` pixels. Those outside of the picture are black.
+image::Rgb8 square(const image::Picture& picture, const Cutout& cutout, int side) {
+  const int size = whole_pixels(cutout.px);
+  const image::Rgb8 square =
+      image::rgb8_from_picture(picture, whole_pixels(cutout.x), whole_pixels(cutout.y), size, size);
+  return resized(square, side, side, size > side ? cv::INTER_AREA : cv::INTER_CUBIC);
+}
+
 }  // namespace
 
 image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
@@ -50,46 +67,22 @@ image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
   return resized(picture, scaled(picture.width), scaled(picture.height), cv::INTER_AREA);
 }
 
-image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side) {
-  const int largest = 2 * std::max({picture.width, picture.height, kSmallestPx});
-  const int size = std::clamp(
-      whole_pixels(kSurroundings * std::max(box.width, box.height)), kSmallestPx, largest);
-  return square(
-      picture, box.x + box.width / 2 - size / 2.0, box.y + box.height / 2 - size / 2.0, size, side);
-}
-
-image::Rgb8 square(const image::Picture& picture, double left, double top, double px, int side) {
-  const int size = whole_pixels(px);
-  const image::Rgb8 square =
-      image::rgb8_from_picture(picture, whole_pixels(left), whole_pixels(top), size, size);
-  return resized(square, side, side, size > side ? cv::INTER_AREA : cv::INTER_CUBIC);
-}
-
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures) {
   check(!pictures.empty(), "a strip has pictures");
-  const int width = pictures.front().width;
-  image::Rgb8 result =
-      image::make_rgb8(width * static_cast<int>(pictures.size()), pictures.front().height);
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    for (int y = 0; y < result.height; ++y)
-      std::memcpy(result.at(static_cast<int>(i) * width, y),
-                  pictures[i].at(0, y),
-                  3 * static_cast<std::size_t>(width));
-  return result;
+  std::vector<cv::Mat> parts;
+  for (const image::Rgb8& picture : pictures) parts.push_back(view(picture));
+  cv::Mat whole;
+  cv::hconcat(parts, whole);
+  return from_mat(whole);
+}
+
+image::Rgb8 enlarged(const image::Picture& picture, const Box& box, const CutoutOptions& options) {
+  return square(picture, place_of(picture, box, options), options.side);
 }
 
 Cutout cutout_of(const image::Picture& picture, const Box& box, const CutoutOptions& options) {
-  Cutout cutout;
-  const double largest = options.most_of_picture * std::max(picture.width, picture.height);
-  cutout.px = std::clamp(std::round(options.surroundings * std::max(box.width, box.height)),
-                         options.least_px,
-                         largest);
-  cutout.x = std::round(box.x + box.width / 2 - cutout.px / 2);
-  cutout.y = std::round(box.y + box.height / 2 - cutout.px / 2);
-  cutout.x = std::clamp(cutout.x, -cutout.px, static_cast<double>(picture.width));
-  cutout.y = std::clamp(cutout.y, -cutout.px, static_cast<double>(picture.height));
-  cutout.jpeg =
-      video::jpeg_of(square(picture, cutout.x, cutout.y, cutout.px, options.side), options.quality);
+  Cutout cutout = place_of(picture, box, options);
+  cutout.jpeg = video::jpeg_of(square(picture, cutout, options.side), options.quality);
   return cutout;
 }
 

@@ -19,13 +19,6 @@ namespace airtruth::drawing {
 // The whole picture, at most `width` pixels wide.
 image::Rgb8 small_copy(const image::Rgb8& picture, int width);
 
-// A square around a box, `side` pixels large, with some of its surroundings. The parts of a square
-// that lie outside of the picture are black, here and in square().
-image::Rgb8 enlarged(const image::Picture& picture, const Box& box, int side);
-
-// The square that starts at (x, y) and is `px` pixels large, scaled to `side` pixels.
-image::Rgb8 square(const image::Picture& picture, double x, double y, double px, int side);
-
 // Pictures of one size, side by side.
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);
 
@@ -47,8 +40,9 @@ struct CutoutOptions {
   int quality = 7;        // of libav's mjpeg encoder
 };
 
-// The surroundings of a box. A box may lie anywhere; a square far from the picture is black.
+// The surroundings of a box. A box may lie anywhere; what lies outside of the picture is black.
 Cutout cutout_of(const image::Picture& picture, const Box& box, const CutoutOptions& options);
+image::Rgb8 enlarged(const image::Picture& picture, const Box& box, const CutoutOptions& options);
 
 // A frame on a page, as JPEGs.
 struct Still {
