@@ -27,6 +27,7 @@
 #include "foundation/base/median.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 #include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
@@ -116,7 +117,7 @@ image::Rgb8 tile_of(const image::Rgb8& crop, int side) {
 }
 
 void paste(cv::Mat& canvas, image::Rgb8 picture, int x, int y) {
-  drawing::view(picture).copyTo(canvas(cv::Rect(x, y, picture.width, picture.height)));
+  image::mat_of(picture).copyTo(canvas(cv::Rect(x, y, picture.width, picture.height)));
 }
 
 // Makes both crops of a pair with the same size: the larger box, with a margin of its own size
@@ -157,7 +158,7 @@ image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
       const int small = std::min(kSmallPx, one->picture.width);
       const int from = (one->picture.width - small) / 2;
       image::Rgb8 copy = tile_of(one->picture, one->picture.width);
-      drawing::view(copy)(cv::Rect(from, from, small, small))
+      image::mat_of(copy)(cv::Rect(from, from, small, small))
           .copyTo(canvas(cv::Rect(x, y, small, small)));
       x += kSmallPx + kGapPx;
       paste(canvas, tile_of(one->picture, kLargePx), x, y);
@@ -166,7 +167,7 @@ image::Rgb8 figure_of(const std::vector<FigureRow>& rows) {
       x += kLargePx + kGapPx;
     }
   }
-  return drawing::from_mat(canvas);
+  return image::rgb8_of(canvas);
 }
 
 // Both crops of a pair as they are: the real aircraft at the left, the inserted one at the right.
@@ -175,7 +176,7 @@ image::Rgb8 patches_of(const FigureRow& row) {
   cv::Mat canvas(side, 2 * side, CV_8UC3);
   paste(canvas, tile_of(row.real.picture, side), 0, 0);
   paste(canvas, tile_of(row.made.picture, side), side, 0);
-  return drawing::from_mat(canvas);
+  return image::rgb8_of(canvas);
 }
 
 class Comparing {

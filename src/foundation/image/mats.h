@@ -8,8 +8,8 @@
 
 namespace airtruth::image {
 
-// Planes and masks as matrices of OpenCV, which share their samples. OpenCV has no matrix of
-// constant samples: nothing may write to those of a constant plane or mask.
+// Planes, masks and packed pictures as matrices of OpenCV, which share their samples. OpenCV has no
+// matrix of constant samples: nothing may write to those of a constant plane, mask or picture.
 inline cv::Mat mat_of(const Plane& plane) {
   return {plane.height,
           plane.width,
@@ -19,6 +19,16 @@ inline cv::Mat mat_of(const Plane& plane) {
 }
 inline cv::Mat mat_of(const Mask& mask) {
   return {mask.height, mask.width, CV_8UC1, const_cast<unsigned char*>(mask.free.data())};
+}
+inline cv::Mat mat_of(const Rgb8& rgb) {
+  return {rgb.height, rgb.width, CV_8UC3, rgb.samples.get()};
+}
+
+// Copies the samples.
+inline Rgb8 rgb8_of(const cv::Mat& mat) {
+  Rgb8 rgb = make_rgb8(mat.cols, mat.rows);
+  mat.copyTo(mat_of(rgb));
+  return rgb;
 }
 
 }  // namespace airtruth::image

@@ -8,21 +8,10 @@
 
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::composite {
 namespace {
-
-// OpenCV uses the samples in place, as red, green, blue. None of its operations here depends on the
-// order.
-cv::Mat3b cv_view(const image::Rgb8& rgb) {
-  return {rgb.height, rgb.width, reinterpret_cast<cv::Vec3b*>(rgb.samples.get())};
-}
-
-image::Rgb8 rgb8_from_cv(const cv::Mat3b& mat) {
-  image::Rgb8 rgb = image::make_rgb8(mat.cols, mat.rows);
-  mat.copyTo(cv_view(rgb));
-  return rgb;
-}
 
 // OpenCV's pixel centres have integer coordinates; airtruth's have half-integer ones.
 cv::Matx33d cv_from_homography(const Homography& h) {
@@ -139,10 +128,10 @@ std::vector<unsigned char> composite_chroma_key(image::Picture& frame,
         "the own aircraft's mask is of the frame's size");
   const cv::Matx33d h = cv_from_homography(frame_from_reference);
   const image::Rgb8 background = image::rgb8_from_picture(frame);
-  const cv::Mat3b virtual_view = cv_view(virtual_image);
+  const cv::Mat3b virtual_view = image::mat_of(virtual_image);
   const cv::Size size(frame.width, frame.height);
   cv::Mat3b a, c, d;
-  cv::warpPerspective(cv_view(background),
+  cv::warpPerspective(image::mat_of(background),
                       a,
                       h,
                       size,
@@ -161,7 +150,7 @@ std::vector<unsigned char> composite_chroma_key(image::Picture& frame,
   std::vector<unsigned char> replaced = replaced_pixels(d, options);
   PlaneWriter(frame, c, replaced).write();
   if (images != nullptr)
-    *images = {rgb8_from_cv(a), rgb8_from_cv(b), rgb8_from_cv(c), rgb8_from_cv(d)};
+    *images = {image::rgb8_of(a), image::rgb8_of(b), image::rgb8_of(c), image::rgb8_of(d)};
   return replaced;
 }
 

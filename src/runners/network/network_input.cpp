@@ -71,8 +71,8 @@ cv::Mat samples_of(const image::Picture& picture, NetworkInput::Layout layout) {
     image::mat_of(picture.luma()).convertTo(samples, CV_8U, scale, is_full ? 0 : -16 * scale);
     return samples;
   }
-  image::Rgb8 rgb = image::rgb8_from_picture(picture);
-  const cv::Mat shared(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
+  const cv::Mat shared = image::mat_of(rgb);
   if (layout == NetworkInput::Layout::kRgb) return shared.clone();
   cv::cvtColor(shared, samples, is_grey ? cv::COLOR_RGB2GRAY : cv::COLOR_RGB2BGR);
   return samples;

@@ -18,6 +18,7 @@
 
 #include "camera/opencv_plugin/opencv_plugin.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 #include "runners/tracking/tracker.h"
 
 namespace airtruth::tracking {
@@ -27,10 +28,9 @@ namespace {
 constexpr double kMinHaarPx = 8;
 
 cv::Mat bgr_of(const image::Picture& picture) {
-  image::Rgb8 rgb = image::rgb8_from_picture(picture);
-  const cv::Mat shared(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture);
   cv::Mat bgr;
-  cv::cvtColor(shared, bgr, cv::COLOR_RGB2BGR);
+  cv::cvtColor(image::mat_of(rgb), bgr, cv::COLOR_RGB2BGR);
   return bgr;
 }
 

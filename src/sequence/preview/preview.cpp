@@ -211,7 +211,7 @@ class Previewer {
                                           scaled_px(rgb.width),
                                           scaled_px(rgb.height),
                                           scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
-    cv::Mat canvas = drawing::view(scaled).clone();
+    cv::Mat canvas = image::mat_of(scaled).clone();
     for (std::size_t i = 0; i < parties_.size(); ++i) draw_path(canvas, i, scale);
     draw_ticks(canvas, scale);
     return canvas;
@@ -299,8 +299,8 @@ class Previewer {
     image::Rgb8 height = drawing::height_view(lines, kSideWidthPx, height_px - plan_px);
     cv::Mat canvas(height_px, kWidthPx, CV_8UC3, drawing::kDarkPaper);
     main.copyTo(canvas(cv::Rect(0, 0, main.cols, main.rows)));
-    drawing::view(plan).copyTo(canvas(cv::Rect(kWidthPx - kSideWidthPx, 0, kSideWidthPx, plan_px)));
-    drawing::view(height).copyTo(
+    image::mat_of(plan).copyTo(canvas(cv::Rect(kWidthPx - kSideWidthPx, 0, kSideWidthPx, plan_px)));
+    image::mat_of(height).copyTo(
         canvas(cv::Rect(kWidthPx - kSideWidthPx, plan_px, kSideWidthPx, height_px - plan_px)));
     return canvas;
   }
@@ -318,7 +318,7 @@ class Previewer {
       sheet.add(frame.picture, truth);
     }
     image::Rgb8 picture = sheet.sheet();
-    return drawing::view(picture).clone();
+    return image::mat_of(picture).clone();
   }
 
   cv::Mat table(const std::vector<PreviewRow>& rows) const {
@@ -326,7 +326,7 @@ class Previewer {
     for (const PreviewRow& row : rows)
       shown.push_back({drawing::intruder_colour(row.party), table_cells(row)});
     image::Rgb8 picture = drawing::table_picture(table_heading(), shown, kWidthPx);
-    return drawing::view(picture).clone();
+    return image::mat_of(picture).clone();
   }
 
   cv::Mat title(const std::vector<std::string>& lines) const {
@@ -369,7 +369,7 @@ class Previewer {
       part(cv::Rect(0, 0, width, part.rows)).copyTo(canvas(cv::Rect(0, y, width, part.rows)));
       y += part.rows + 6;
     }
-    return drawing::from_mat(canvas);
+    return image::rgb8_of(canvas);
   }
 
   const pipeline::Options& options_;

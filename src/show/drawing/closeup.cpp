@@ -33,13 +33,13 @@ image::Rgb8 alpha_picture(const image::Layer& layer, const PixelBox& area) {
 // The change of each pixel, brightened fourfold.
 image::Rgb8 difference_picture(const image::Rgb8& a, const image::Rgb8& b) {
   cv::Mat change;
-  cv::absdiff(view(a), view(b), change);
-  return from_mat(change * 4);
+  cv::absdiff(image::mat_of(a), image::mat_of(b), change);
+  return image::rgb8_of(change * 4);
 }
 
 void paste(cv::Mat& canvas, const image::Rgb8& small, int zoom, int x, int y) {
   image::Rgb8 large = resized(small, small.width * zoom, small.height * zoom, cv::INTER_NEAREST);
-  view(large).copyTo(canvas(cv::Rect(x, y, large.width, large.height)));
+  image::mat_of(large).copyTo(canvas(cv::Rect(x, y, large.width, large.height)));
 }
 
 void draw_boxes(cv::Mat& panel, const annotation::Frame& truth, const PixelBox& area, int zoom) {
@@ -116,7 +116,7 @@ image::Rgb8 closeup(const Closeup& what,
   }
   const double shrink = std::min(1.0, kMostPx / double(std::max(canvas.cols, canvas.rows)));
   if (shrink < 1) cv::resize(canvas, canvas, {}, shrink, shrink, cv::INTER_AREA);
-  return from_mat(canvas);
+  return image::rgb8_of(canvas);
 }
 
 }  // namespace airtruth::drawing

@@ -95,7 +95,7 @@ void draw_inset(cv::Mat& tile,
   image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
   image::Rgb8 large = resized(
       crop, place.width, place.height, place.width > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
-  view(large).copyTo(tile(cv::Rect(place.x, place.y, place.width, place.height)));
+  image::mat_of(large).copyTo(tile(cv::Rect(place.x, place.y, place.width, place.height)));
   cv::rectangle(
       tile, cv::Rect(place.x - 1, place.y - 1, place.width + 2, place.height + 2), colour, 1);
   // Distance of the words from the inset's corner.
@@ -170,10 +170,10 @@ image::Rgb8 tile_of(const image::Picture& picture, const annotation::Frame& trut
   const int width =
       std::clamp(static_cast<int>(std::lround(picture.width * scale)), 1, kTileWidthPx);
   image::Rgb8 paper = dark_paper(kTileWidthPx, height + kCaptionPx);
-  cv::Mat tile = view(paper);
+  cv::Mat tile = image::mat_of(paper);
   image::Rgb8 small = small_copy(picture, width, height);
   cv::Mat canvas = tile(cv::Rect(0, 0, width, height));
-  view(small).copyTo(canvas);
+  image::mat_of(small).copyTo(canvas);
   const std::vector<PixelBox> boxes = outline_intruders(canvas, truth, scale);
   draw_insets(canvas, picture, truth, boxes);
   text(tile,
@@ -208,7 +208,7 @@ image::Rgb8 tiles_under(
   const int rows = std::max(1, (count + columns - 1) / columns);
   image::Rgb8 paper = dark_paper(kTileGapPx + columns * (tile.width + kTileGapPx),
                                  kSheetHeaderPx + rows * (tile.height + kTileGapPx));
-  cv::Mat canvas = view(paper);
+  cv::Mat canvas = image::mat_of(paper);
   text(canvas, fitted(title, 20, canvas.cols - 2 * kTileGapPx), kTileGapPx, 36, 20, kWhite);
   for (int i = 0; i < count; ++i) {
     const cv::Point corner(kTileGapPx + i % columns * (tile.width + kTileGapPx),
@@ -228,7 +228,7 @@ image::Rgb8 tiled(const std::string& title,
   const cv::Size size(pictures[0].picture.width, pictures[0].picture.height);
   const auto count = static_cast<int>(pictures.size());
   return tiles_under(title, size, count, columns, [&](std::size_t i, cv::Mat& place) {
-    view(pictures[i].picture).copyTo(place);
+    image::mat_of(pictures[i].picture).copyTo(place);
     text(place, fitted(pictures[i].name, 12, size.width - 20), 10, size.height - 12, 12, kWhite);
   });
 }
@@ -257,9 +257,9 @@ image::Rgb8 ContactSheet::sheet() const {
   image::Rgb8 paper =
       tiles_under(title_, tile, layout.tiles, layout.columns, [&](std::size_t i, cv::Mat& place) {
         // Spread evenly over all chosen frames, including the first and the last.
-        view(chosen_[i * (chosen_.size() - 1) / last].picture).copyTo(place);
+        image::mat_of(chosen_[i * (chosen_.size() - 1) / last].picture).copyTo(place);
       });
-  cv::Mat canvas = view(paper);
+  cv::Mat canvas = image::mat_of(paper);
   if (chosen_.empty()) text(canvas, "no frames", kTileGapPx, kSheetHeaderPx + 40, 16, kGrey);
   return paper;
 }

@@ -41,30 +41,19 @@ Corners corners_of(const Box& box, double scale) {
 
 }  // namespace
 
-cv::Mat view(const image::Rgb8& picture) {
-  return {picture.height, picture.width, CV_8UC3, picture.samples.get()};
-}
-
 image::Rgb8 dark_paper(int width, int height) {
   image::Rgb8 picture = image::make_rgb8(width, height);
-  cv::Mat canvas = view(picture);
+  cv::Mat canvas = image::mat_of(picture);
   canvas.row(0) = kDarkPaper;  // OpenCV fills three channels pixel by pixel
   for (int y = 1; y < height; ++y)
     std::memcpy(picture.at(0, y), picture.at(0, 0), static_cast<std::size_t>(width) * 3);
   return picture;
 }
 
-image::Rgb8 from_mat(const cv::Mat& rgb) {
-  image::Rgb8 picture = image::make_rgb8(rgb.cols, rgb.rows);
-  for (int y = 0; y < rgb.rows; ++y)
-    std::memcpy(picture.at(0, y), rgb.ptr(y), static_cast<std::size_t>(rgb.cols) * 3);
-  return picture;
-}
-
 image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int interpolation) {
   cv::Mat target;
-  cv::resize(view(picture), target, cv::Size(width, height), 0, 0, interpolation);
-  return from_mat(target);
+  cv::resize(image::mat_of(picture), target, cv::Size(width, height), 0, 0, interpolation);
+  return image::rgb8_of(target);
 }
 
 void text(cv::Mat& canvas,

@@ -7,6 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "foundation/geometry/box.h"
+#include "foundation/image/mats.h"
 #include "foundation/image/picture.h"
 
 // OpenCV's drawing functions for packed sRGB pictures. Colours are red, green, blue.
@@ -28,11 +29,6 @@ cv::Scalar intruder_colour(std::size_t index);
 // A picture of kDarkPaper alone.
 image::Rgb8 dark_paper(int width, int height);
 
-// Shares the samples with the picture. OpenCV has no matrix of constant samples: nothing may write
-// to those of a constant picture.
-cv::Mat view(const image::Rgb8& picture);
-// Copies the samples.
-image::Rgb8 from_mat(const cv::Mat& rgb);
 image::Rgb8 resized(const image::Rgb8& picture, int width, int height, int interpolation);
 
 // Draws text with a dark rim, which is legible on any background. (x, y) is the left end of the

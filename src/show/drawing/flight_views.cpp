@@ -177,7 +177,7 @@ image::Rgb8 plan_view(const std::vector<FlightLine>& lines,
   }
   join_seconds(canvas, lines, place);
   for (const FlightLine& flight : lines) draw_line(canvas, flight, place);
-  return from_mat(canvas);
+  return image::rgb8_of(canvas);
 }
 
 image::Rgb8 height_view(const std::vector<FlightLine>& lines, int width, int height) {
@@ -196,7 +196,7 @@ image::Rgb8 height_view(const std::vector<FlightLine>& lines, int width, int hei
     draw_line(canvas, flight, [&](const FlightLine& l, std::size_t i) {
       return axes.at(time(l, i), above(l, i));
     });
-  return from_mat(canvas);
+  return image::rgb8_of(canvas);
 }
 
 image::Rgb8 table_picture(const std::vector<std::string>& heading,
@@ -224,7 +224,7 @@ image::Rgb8 table_picture(const std::vector<std::string>& heading,
   draw_row(heading, 18, kGrey);
   for (std::size_t r = 0; r < rows.size(); ++r)
     draw_row(rows[r].cells, 18 + kRowPx * (static_cast<int>(r) + 1), rows[r].colour);
-  return from_mat(canvas);
+  return image::rgb8_of(canvas);
 }
 
 }  // namespace airtruth::drawing

@@ -88,7 +88,7 @@ image::Rgb8 overlay(const image::Picture& picture,
                     const annotation::Frame& truth,
                     const std::vector<std::string>& ids) {
   image::Rgb8 result = image::rgb8_from_picture(picture);
-  cv::Mat canvas = view(result);
+  cv::Mat canvas = image::mat_of(result);
   const double size_px = std::clamp(picture.height / 55.0, 11.0, 30.0);
   const std::vector<Marked> all = marked(truth, ids);
   Placing placing{{0, 0, picture.width, picture.height}, {}, {}};

@@ -70,10 +70,10 @@ image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures) {
   check(!pictures.empty(), "a strip has pictures");
   std::vector<cv::Mat> parts;
-  for (const image::Rgb8& picture : pictures) parts.push_back(view(picture));
+  for (const image::Rgb8& picture : pictures) parts.push_back(image::mat_of(picture));
   cv::Mat whole;
   cv::hconcat(parts, whole);
-  return from_mat(whole);
+  return image::rgb8_of(whole);
 }
 
 image::Rgb8 enlarged(const image::Picture& picture, const Box& box, const CutoutOptions& options) {
@@ -123,7 +123,7 @@ image::Rgb8 boxed(const std::string& jpeg, double scale, const std::vector<Colou
             scale,
             cv::Scalar(boxes[i].rgb[0], boxes[i].rgb[1], boxes[i].rgb[2]),
             i == 0 ? kRimmedPx : 1);
-  return from_mat(picture);
+  return image::rgb8_of(picture);
 }
 
 }  // namespace airtruth::drawing
