@@ -282,11 +282,7 @@ class Export {
 
   void write_images() {
     in_parallel(
-        set_.names().size(),
-        options_.jobs,
-        [this](std::size_t i) { write_images_of(set_.names()[i]); },
-        options_.progress,
-        options_.stop);
+        set_.names().size(), options_, [this](std::size_t i) { write_images_of(set_.names()[i]); });
   }
 
   static void check_has_video(const std::string& name, const exchange::Clip& clip) {

@@ -215,24 +215,18 @@ Gallery gallery_of(const labelled::LabelledSet& labelled,
   const std::size_t stills =
       std::clamp(kMaxStills / std::max<std::size_t>(1, count), kMinStillsOfOne, kMaxStillsOfOne);
   std::mutex mutex;
-  in_parallel(
-      count,
-      options.jobs,
-      [&](std::size_t i) {
-        const bool is_shown = shown.contains(i);
-        const std::string& name = labelled.names()[i];
-        const replay::Finished finished = replay::open_finished(labelled.folder(name));
-        Portrait portrait =
-            portrait_of(labelled, name, finished, is_shown ? stills : 0, options.stop);
-        if (is_shown) gallery.shown[i] = json_of(finished, portrait, page);
-        const std::lock_guard lock(mutex);
-        // Sums of whole numbers, the same in any order.
-        gallery.totals.add(finished, portrait);
-        portrait.centres = {};
-        gallery.portraits[i] = std::move(portrait);
-      },
-      options.progress,
-      options.stop);
+  in_parallel(count, options, [&](std::size_t i) {
+    const bool is_shown = shown.contains(i);
+    const std::string& name = labelled.names()[i];
+    const replay::Finished finished = replay::open_finished(labelled.folder(name));
+    Portrait portrait = portrait_of(labelled, name, finished, is_shown ? stills : 0, options.stop);
+    if (is_shown) gallery.shown[i] = json_of(finished, portrait, page);
+    const std::lock_guard lock(mutex);
+    // Sums of whole numbers, the same in any order.
+    gallery.totals.add(finished, portrait);
+    portrait.centres = {};
+    gallery.portraits[i] = std::move(portrait);
+  });
   return gallery;
 }
 

@@ -75,12 +75,9 @@ void add_films(std::vector<scores::TruthSequence>& truths,
   for (const auto& [name, results] : found)
     for (const scores::ScoredDetections& one : results) with_results.insert(one.truth);
   const std::vector<std::size_t> wanted(with_results.begin(), with_results.end());
-  in_parallel(
-      wanted.size(),
-      options.jobs,
-      [&](std::size_t i) { measure_contrast(truths[wanted[i]], options.stop); },
-      options.progress,
-      options.stop);
+  in_parallel(wanted.size(), options, [&](std::size_t i) {
+    measure_contrast(truths[wanted[i]], options.stop);
+  });
 }
 
 // Comparisons with a limit let NaN pass.

@@ -151,14 +151,9 @@ Film film_of(const scores::Assessment& assessment, const report::RunOptions& run
   std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i < plans.size(); ++i)
     if (!plans[i].stills.empty()) wanted.push_back(i);
-  in_parallel(
-      wanted.size(),
-      run.jobs,
-      [&](std::size_t i) {
-        film.sequences[wanted[i]] = read_film(assessment, wanted[i], plans[wanted[i]], run.stop);
-      },
-      run.progress,
-      run.stop);
+  in_parallel(wanted.size(), run, [&](std::size_t i) {
+    film.sequences[wanted[i]] = read_film(assessment, wanted[i], plans[wanted[i]], run.stop);
+  });
   return film;
 }
 

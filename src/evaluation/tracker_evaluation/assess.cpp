@@ -256,12 +256,9 @@ void add_films(std::vector<TruthClip>& truths,
       wanted.push_back(i);
   const std::size_t each = std::clamp(
       kMaxStills / std::max<std::size_t>(1, wanted.size()), kMinStillsOfOne, kMaxStillsOfOne);
-  in_parallel(
-      wanted.size(),
-      options.jobs,
-      [&](std::size_t i) { add_film(truths[wanted[i]], each, options.stop); },
-      options.progress,
-      options.stop);
+  in_parallel(wanted.size(), options, [&](std::size_t i) {
+    add_film(truths[wanted[i]], each, options.stop);
+  });
 }
 
 }  // namespace

@@ -22,4 +22,12 @@ void in_parallel(std::size_t count,
                  const std::function<void(std::int64_t done, std::int64_t total)>& progress,
                  const std::stop_token& stop);
 
+// The same with the jobs, the progress and the stop of these options.
+template <typename Options>
+void in_parallel(std::size_t count,
+                 const Options& options,
+                 const std::function<void(std::size_t)>& each) {
+  in_parallel(count, options.jobs, each, options.progress, options.stop);
+}
+
 }  // namespace airtruth

@@ -272,16 +272,11 @@ class DetectorRun {
     open();
     std::vector<DetectionClip> backgrounds;
     if (options_.backgrounds) backgrounds = backgrounds_of(set, names, options_.warn);
-    in_parallel(
-        names.size() + backgrounds.size(),
-        options_.jobs,
-        [&](std::size_t i) {
-          if (i < names.size()) return over("", names[i], [&] { return clip_of(set, names[i]); });
-          const DetectionClip& background = backgrounds[i - names.size()];
-          over(kBackgrounds, background.name, [&] { return background; });
-        },
-        options_.progress,
-        options_.stop);
+    in_parallel(names.size() + backgrounds.size(), options_, [&](std::size_t i) {
+      if (i < names.size()) return over("", names[i], [&] { return clip_of(set, names[i]); });
+      const DetectionClip& background = backgrounds[i - names.size()];
+      over(kBackgrounds, background.name, [&] { return background; });
+    });
     return summaries(sequences_of(set), "detections.json");
   }
 

@@ -145,16 +145,11 @@ class TrackerRun {
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
     open_folder();
     const dataset::Boxes boxes = set.usual_boxes(options_.warn);
-    in_parallel(
-        names.size(),
-        options_.jobs,
-        [&](std::size_t i) {
-          for (const exchange::Clip& clip :
-               exchange::arranged(exchange::Format::kOtb, set.clip(names[i], boxes)))
-            follow(clip);
-        },
-        options_.progress,
-        options_.stop);
+    in_parallel(names.size(), options_, [&](std::size_t i) {
+      for (const exchange::Clip& clip :
+           exchange::arranged(exchange::Format::kOtb, set.clip(names[i], boxes)))
+        follow(clip);
+    });
     return summary_;
   }
 
