@@ -193,7 +193,7 @@ std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   const int x = whole_pixels(box.x + box.width / 2) - side / 2;
   const int y = whole_pixels(box.y + box.height / 2) - side / 2;
   if (x < 0 || y < 0 || x + side > picture.width || y + side > picture.height) return std::nullopt;
-  image::Rgb8 crop = image::rgb8_from_picture(picture, x, y, side, side);
+  image::Rgb8 crop = image::rgb8_from_picture(picture, {x, y, side, side});
   Patch patch;
   patch.x = x;
   patch.y = y;

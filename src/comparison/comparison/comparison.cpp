@@ -108,7 +108,7 @@ struct FigureRow {
 Crop crop_of(const image::Picture& picture, const Box& box, int side) {
   const int x = whole_pixels(box.x + box.width / 2) - side / 2;
   const int y = whole_pixels(box.y + box.height / 2) - side / 2;
-  return {image::rgb8_from_picture(picture, x, y, side, side),
+  return {image::rgb8_from_picture(picture, {x, y, side, side}),
           {box.x - x, box.y - y, box.width, box.height}};
 }
 

@@ -66,7 +66,7 @@ cv::Mat contrast_in(const image::Picture& picture, const Box& box, const cv::Siz
   const PixelBox area = pixels_of(wider(box, margin));
   if (area.x < 0 || area.y < 0 || area.right() > picture.width || area.bottom() > picture.height)
     return {};
-  image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
+  image::Rgb8 crop = image::rgb8_from_picture(picture, area);
   cv::Mat colour;
   cv::Mat(area.height, area.width, CV_8UC3, crop.samples.get()).convertTo(colour, CV_32FC3);
   cv::Mat rim(colour.size(), CV_8UC1, cv::Scalar(0));

@@ -20,15 +20,6 @@ constexpr std::size_t kFramesOfDecoder = 20;
 // behind or ahead with.
 constexpr std::size_t kMostOpen = 2 * kLanes;
 
-std::size_t bytes_of(const image::Picture& picture) {
-  std::size_t bytes = 0;
-  for (int i = 0; i < picture.plane_count; ++i) {
-    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
-    bytes += static_cast<std::size_t>(plane.width) * static_cast<std::size_t>(plane.height);
-  }
-  return bytes;
-}
-
 // Counts frames and times from the first one, and finds its cuts, as a reader of these frames does.
 void count_from_first(std::vector<video::Frame>& frames, const video::Rational& time_base) {
   image::Differences difference;
@@ -68,7 +59,7 @@ std::shared_ptr<const Shot> Frames::at(const Wanted& wanted) {
     shot = run->shot;
   }
   keep_within_bounds(
-      *run, bytes_of(shot->frames.front().picture) * (kFramesOfDecoder + shot->frames.size()));
+      *run, shot->frames.front().picture.bytes() * (kFramesOfDecoder + shot->frames.size()));
   return shot;
 }
 

@@ -177,23 +177,23 @@ void mark_light(const std::uint8_t* red,
   mark_light_by_vectors(red, green, blue, least, count, target);
 }
 
-Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int height) {
+Rgb8 rgb8_from_picture(const Picture& picture, const PixelBox& part) {
   // The code value of grey in Cb and Cr.
   constexpr std::uint8_t kNoChroma = 128;
-  Rgb8 result = make_rgb8(width, height);
+  Rgb8 result = make_rgb8(part.width, part.height);
   const ColourCode code(picture.colour);
   const int sx = log2_chroma_width(picture.colour.chroma);
   const int sy = log2_chroma_height(picture.colour.chroma);
-  const int x_end = std::min(width, picture.width - x0);
+  const int x_end = std::min(part.width, picture.width - part.x);
   Block ycc, rgb;
   for (Codes* codes : {&ycc.a, &ycc.b, &ycc.c}) std::fill_n(*codes, kBlock, kNoChroma);
-  for (int y = std::max(0, -y0); y < std::min(height, picture.height - y0); ++y) {
-    for (int x = std::max(0, -x0); x < x_end; x += kBlock) {
+  for (int y = std::max(0, -part.y); y < std::min(part.height, picture.height - part.y); ++y) {
+    for (int x = std::max(0, -part.x); x < x_end; x += kBlock) {
       const auto count = static_cast<std::size_t>(std::min(kBlock, x_end - x));
-      spread(picture.planes[0], x0 + x, y0 + y, 0, count, ycc.a);
+      spread(picture.planes[0], part.x + x, part.y + y, 0, count, ycc.a);
       if (picture.plane_count == 3) {
-        spread(picture.planes[1], x0 + x, (y0 + y) >> sy, sx, count, ycc.b);
-        spread(picture.planes[2], x0 + x, (y0 + y) >> sy, sx, count, ycc.c);
+        spread(picture.planes[1], part.x + x, (part.y + y) >> sy, sx, count, ycc.b);
+        spread(picture.planes[2], part.x + x, (part.y + y) >> sy, sx, count, ycc.c);
       }
       rgb_from_ycc(ycc, code, rgb);
       interleave(rgb, count, result.at(x, y));
@@ -203,7 +203,7 @@ Rgb8 rgb8_from_picture(const Picture& picture, int x0, int y0, int width, int he
 }
 
 Rgb8 rgb8_from_picture(const Picture& picture) {
-  return rgb8_from_picture(picture, 0, 0, picture.width, picture.height);
+  return rgb8_from_picture(picture, {0, 0, picture.width, picture.height});
 }
 
 namespace {

@@ -70,9 +70,8 @@ Rgb linear_at(
 // block's chroma.
 Rgb8 rgb8_from_picture(const Picture& picture);
 
-// The part [x, x + width) x [y, y + height) of a picture as packed sRGB. Pixels outside the picture
-// are black.
-Rgb8 rgb8_from_picture(const Picture& picture, int x, int y, int width, int height);
+// A part of a picture as packed sRGB. Pixels outside the picture are black.
+Rgb8 rgb8_from_picture(const Picture& picture, const PixelBox& part);
 
 // A picture from packed sRGB. Chroma is the average over its block.
 Picture picture_from_rgb8(const Rgb8& rgb, const Colour& colour);

@@ -173,7 +173,7 @@ TEST(Rgb8, APartBeyondThePictureIsBlack) {
   Picture picture = make_picture(20, 6, {Chroma::k420, Matrix::kBt601, Range::kFull});
   for (Plane& plane : picture.planes)
     for (int y = 0; y < plane.height; ++y) std::fill_n(plane.row(y), plane.width, 128);
-  const Rgb8 part = rgb8_from_picture(picture, -3, -2, 30, 10);
+  const Rgb8 part = rgb8_from_picture(picture, {-3, -2, 30, 10});
   for (int y = 0; y < 10; ++y)
     for (int x = 0; x < 30; ++x)
       EXPECT_EQ(part.at(x, y)[1], x >= 3 && x < 23 && y >= 2 && y < 8 ? 128 : 0) << x << ' ' << y;

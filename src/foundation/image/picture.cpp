@@ -44,6 +44,12 @@ Picture make_picture(int width, int height, const Colour& colour) {
   return picture;
 }
 
+std::size_t Picture::bytes() const {
+  std::size_t bytes = 0;
+  for (const Plane& plane : planes) bytes += pixels_in(plane.stride, plane.height);
+  return bytes;
+}
+
 Picture Picture::clone() const { return crop(*this, {0, 0, width, height}); }
 
 namespace {

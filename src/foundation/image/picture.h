@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "foundation/geometry/box.h"
 #include "foundation/image/sample_memory.h"
@@ -53,6 +55,7 @@ struct Picture {
 
   const Plane& luma() const { return planes[0]; }  // for kRgb: the green plane
   Picture clone() const;
+  std::size_t bytes() const;  // of all planes
 };
 
 // 1 where this layout halves the width or height of chroma, else 0.
@@ -76,6 +79,9 @@ struct Rgb8 {
   int width = 0;
   int height = 0;
   std::unique_ptr<std::uint8_t[]> samples;  // width * height * 3
+  std::string_view bytes() const {
+    return {reinterpret_cast<const char*>(samples.get()), 3 * pixels_in(width, height)};
+  }
   std::uint8_t* at(int x, int y) {
     return samples.get() + 3 * (static_cast<std::ptrdiff_t>(y) * width + x);
   }

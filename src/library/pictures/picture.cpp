@@ -99,9 +99,7 @@ FramePicture public_picture(const image::Picture& picture) {
 
 std::vector<std::uint8_t> rgb_of(const FramePicture& picture) {
   const image::Rgb8 rgb = image::rgb8_from_picture(picture_of(picture));
-  const std::size_t count =
-      3 * static_cast<std::size_t>(rgb.width) * static_cast<std::size_t>(rgb.height);
-  return {rgb.samples.get(), rgb.samples.get() + count};
+  return {rgb.samples.get(), rgb.samples.get() + rgb.bytes().size()};
 }
 
 }  // namespace airtruth

@@ -25,14 +25,8 @@ constexpr double kEndS = 1;     // to end after it
 
 // Rows of samples without padding: red, green and blue, or luma alone as the video has it.
 std::string samples_of(const image::Picture& picture, SampleOrder samples) {
+  if (samples == SampleOrder::kRgb) return std::string(image::rgb8_from_picture(picture).bytes());
   std::string bytes;
-  if (samples == SampleOrder::kRgb) {
-    const image::Rgb8 rgb = image::rgb8_from_picture(picture);
-    const auto count =
-        3 * static_cast<std::size_t>(rgb.width) * static_cast<std::size_t>(rgb.height);
-    bytes.assign(reinterpret_cast<const char*>(rgb.samples.get()), count);
-    return bytes;
-  }
   const auto width = static_cast<std::size_t>(picture.width);
   for (int y = 0; y < picture.height; ++y)
     bytes.append(reinterpret_cast<const char*>(picture.luma().row(y)), width);
@@ -84,8 +78,7 @@ class External : public Detector {
       const auto deadline = process::in(limits_.start_s);
       hello_ = hello_of(child_->read(deadline));
       if (hello_.frames == FramesBy::kSharedMemory)
-        shared_.emplace(static_cast<std::size_t>(sequence.width) *
-                        static_cast<std::size_t>(sequence.height) *
+        shared_.emplace(pixels_in(sequence.width, sequence.height) *
                         static_cast<std::size_t>(hello_.bytes_per_pixel()));
       child_->write(begin_line(sequence, shared_ ? shared_->path() : ""), deadline);
     });

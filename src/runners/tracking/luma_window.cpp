@@ -78,8 +78,7 @@ image::Plane resampled(
   plane.width = width;
   plane.height = height;
   plane.stride = width;
-  plane.samples =
-      image::take_samples(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  plane.samples = image::take_samples(pixels_in(width, height));
   cv::Mat target(height, width, CV_8UC1, plane.samples.get());
   // Between centres of pixels.
   const cv::Matx23d source_from_target(scale / part.across,

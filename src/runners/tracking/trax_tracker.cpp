@@ -88,12 +88,8 @@ class Images {
 
 std::string Images::hand_over(const image::Picture& picture) {
   const image::Rgb8 rgb = image::rgb8_from_picture(picture);
-  if (kind_ == ImageKind::kMemory) {
-    const std::string_view samples(
-        reinterpret_cast<const char*>(rgb.samples.get()),
-        3 * static_cast<std::size_t>(rgb.width) * static_cast<std::size_t>(rgb.height));
-    return fmt::format("image:{};{};rgb;{}", rgb.width, rgb.height, base64_of(samples));
-  }
+  if (kind_ == ImageKind::kMemory)
+    return fmt::format("image:{};{};rgb;{}", rgb.width, rgb.height, base64_of(rgb.bytes()));
   const auto path = [this](std::int64_t number) {
     return folder_->path() / fmt::format("{:08d}.png", number);
   };

@@ -90,10 +90,8 @@ image::Rgb8 closeup(const Closeup& what,
       std::min(kMostPx / (3 * area.width), kMostPx / area.height), 1, std::max(1, largest_zoom));
   check(what.background != nullptr && what.result != nullptr && largest_zoom > 0,
         "a closeup has its pictures");
-  const image::Rgb8 before =
-      image::rgb8_from_picture(*what.background, area.x, area.y, area.width, area.height);
-  const image::Rgb8 after =
-      image::rgb8_from_picture(*what.result, area.x, area.y, area.width, area.height);
+  const image::Rgb8 before = image::rgb8_from_picture(*what.background, area);
+  const image::Rgb8 after = image::rgb8_from_picture(*what.result, area);
   const image::Rgb8 middle =
       what.layer != nullptr ? alpha_picture(*what.layer, area) : difference_picture(before, after);
   const int panel = area.width * zoom;

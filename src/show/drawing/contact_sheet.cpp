@@ -92,7 +92,7 @@ void draw_inset(cv::Mat& tile,
                 const PixelBox& place,
                 const cv::Scalar& colour) {
   const PixelBox area = around(*annotation::box_to_show(intruder));
-  image::Rgb8 crop = image::rgb8_from_picture(picture, area.x, area.y, area.width, area.height);
+  image::Rgb8 crop = image::rgb8_from_picture(picture, area);
   image::Rgb8 large = resized(
       crop, place.width, place.height, place.width > area.width ? cv::INTER_CUBIC : cv::INTER_AREA);
   image::mat_of(large).copyTo(tile(cv::Rect(place.x, place.y, place.width, place.height)));

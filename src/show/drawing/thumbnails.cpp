@@ -52,8 +52,8 @@ Cutout place_of(const image::Picture& picture, const Box& box, const CutoutOptio
 // The pixels of a cutout, scaled to `side` pixels. Those outside of the picture are black.
 image::Rgb8 square(const image::Picture& picture, const Cutout& cutout, int side) {
   const int size = whole_pixels(cutout.px);
-  const image::Rgb8 square =
-      image::rgb8_from_picture(picture, whole_pixels(cutout.x), whole_pixels(cutout.y), size, size);
+  const image::Rgb8 square = image::rgb8_from_picture(
+      picture, {whole_pixels(cutout.x), whole_pixels(cutout.y), size, size});
   return resized(square, side, side, size > side ? cv::INTER_AREA : cv::INTER_CUBIC);
 }
 

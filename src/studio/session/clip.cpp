@@ -27,15 +27,6 @@ constexpr std::int64_t kReadBefore = 60;
 constexpr std::size_t kMostGlances = 4000;
 constexpr std::size_t kMostThumbnails = 1000;
 
-std::size_t bytes_of(const image::Picture& picture) {
-  std::size_t bytes = 0;
-  for (int i = 0; i < picture.plane_count; ++i) {
-    const image::Plane& plane = picture.planes[static_cast<std::size_t>(i)];
-    bytes += static_cast<std::size_t>(plane.stride) * static_cast<std::size_t>(plane.height);
-  }
-  return bytes;
-}
-
 }  // namespace
 
 std::string text_of(const scene::Background& background) {
@@ -114,7 +105,7 @@ bool Clip::read_on() {
 void Clip::keep(std::int64_t k, std::shared_ptr<const video::Frame> frame) {
   if (places_.count(k) > 0) return;
   seen_[k] = {frame->time_s, frame->begins_shot};
-  bytes_ += bytes_of(frame->picture);
+  bytes_ += frame->picture.bytes();
   if (glances_.count(k) == 0) {
     if (glances_.size() >= kMostGlances) glances_.clear();
     glances_[k] = insertion::glance_at(frame->picture, tone_);
@@ -122,7 +113,7 @@ void Clip::keep(std::int64_t k, std::shared_ptr<const video::Frame> frame) {
   kept_.emplace_front(k, std::move(frame));
   places_[k] = kept_.begin();
   while (bytes_ > kMostBytes && kept_.size() > 1) {
-    bytes_ -= bytes_of(kept_.back().second->picture);
+    bytes_ -= kept_.back().second->picture.bytes();
     places_.erase(kept_.back().first);
     kept_.pop_back();
   }

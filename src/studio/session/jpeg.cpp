@@ -47,8 +47,7 @@ std::string jpeg_of(const image::Rgb8& rgb) {
 }
 
 std::string jpeg_of(const image::Picture& picture, const PixelBox& part, double scale) {
-  const image::Rgb8 rgb =
-      image::rgb8_from_picture(picture, part.x, part.y, part.width, part.height);
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture, part);
   if (scale >= 1) return jpeg_of(rgb);
   const auto scaled = [&](int px) {
     return std::max(1, static_cast<int>(std::lround(px * scale)));
