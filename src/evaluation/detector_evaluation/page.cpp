@@ -200,20 +200,13 @@ double point_score(const scores::DetectorScore& detector) {
 std::string found_letters(const scores::TruthSequence& truth,
                           const scores::ScoredDetections& scored,
                           double score) {
-  std::string letters;
-  for (std::size_t i = 0; i < truth.frames.size(); ++i) {
-    const std::set<std::int64_t> found = scores::detected_in(scored, i, score);
-    std::size_t aircraft = 0, found_aircraft = 0;
-    for (const scores::TruthObject& object : truth.frames[i].objects) {
-      if (!object.is_aircraft() || !object.counts) continue;
-      ++aircraft;
-      found_aircraft += found.count(object.id);
-    }
-    letters += aircraft == 0                ? '.'
-               : found_aircraft == aircraft ? 'f'
-               : found_aircraft > 0         ? 'p'
-                                            : 'm';
-  }
+  std::string letters(truth.frames.size(), '.');
+  scores::each_aircraft(
+      truth, scored, [&](std::size_t i, std::size_t, const results::Detection* best) {
+        const char own = best != nullptr && best->score >= score ? 'f' : 'm';
+        char& letter = letters[i];
+        letter = letter == '.' || letter == own ? own : 'p';
+      });
   return letters;
 }
 

@@ -76,6 +76,20 @@ struct ScoredDetections {
 // The detection of the highest score that finds each aircraft of a frame, by TruthObject::id.
 std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections& scored,
                                                           std::size_t frame);
+// Calls use(frame, index, best) for each aircraft of a sequence that counts. `index` is in
+// TruthFrame::objects; `best` is the detection of best_of(), or null.
+void each_aircraft(const TruthSequence& truth, const ScoredDetections& scored, const auto& use) {
+  for (std::size_t i = 0; i < scored.matches.size(); ++i) {
+    const auto best = best_of(scored, i);
+    for (std::size_t k = 0; k < truth.frames[i].objects.size(); ++k) {
+      const TruthObject& object = truth.frames[i].objects[k];
+      if (!object.is_aircraft() || !object.counts) continue;
+      const auto found = best.find(object.id);
+      use(i, k, found == best.end() ? nullptr : found->second);
+    }
+  }
+}
+
 // The aircraft that detections of this score or more detect in a frame, by TruthObject::id.
 std::set<std::int64_t> detected_in(const ScoredDetections& scored, std::size_t frame, double score);
 

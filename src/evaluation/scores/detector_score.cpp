@@ -57,15 +57,9 @@ std::vector<AircraftInFrame> sightings_of(std::size_t sequence,
                                           const ScoredDetections& scored,
                                           double score) {
   std::vector<AircraftInFrame> sightings;
-  for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    const auto best = best_of(scored, i);
-    for (std::size_t k = 0; k < truth.frames[i].objects.size(); ++k) {
-      const TruthObject& object = truth.frames[i].objects[k];
-      if (!object.is_aircraft() || !object.counts) continue;
-      const auto found = best.find(object.id);
-      sightings.push_back({sequence, i, k, found != best.end() && found->second->score >= score});
-    }
-  }
+  each_aircraft(truth, scored, [&](std::size_t i, std::size_t k, const results::Detection* best) {
+    sightings.push_back({sequence, i, k, best != nullptr && best->score >= score});
+  });
   return sightings;
 }
 
@@ -77,18 +71,14 @@ std::vector<measures::BearingSample> bearing_samples_of(std::size_t sequence,
                                                         double score) {
   std::vector<measures::BearingSample> samples;
   if (!truth.lens) return samples;
-  for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    const auto best = best_of(scored, i);
-    for (const TruthObject& object : truth.frames[i].objects) {
-      const auto found = best.find(object.id);
-      if (found == best.end() || found->second->score < score) continue;
-      auto sample = sample_of(*truth.lens, object, found->second->box_px);
-      if (!sample) continue;
-      sample->sequence = sequence;
-      sample->time_s = truth.frames[i].time_s;
-      samples.push_back(*sample);
-    }
-  }
+  each_aircraft(truth, scored, [&](std::size_t i, std::size_t k, const results::Detection* best) {
+    if (best == nullptr || best->score < score) return;
+    auto sample = sample_of(*truth.lens, truth.frames[i].objects[k], best->box_px);
+    if (!sample) return;
+    sample->sequence = sequence;
+    sample->time_s = truth.frames[i].time_s;
+    samples.push_back(*sample);
+  });
   return samples;
 }
 
@@ -311,15 +301,9 @@ evaluation::FrocSequence froc_sequence_of(const TruthSequence& truth,
   evaluation::FrocSequence sequence;
   sequence.images = std::ssize(scored.matches);
   sequence.duration_s = truth.duration_s;
-  for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    const auto best = best_of(scored, i);
-    for (const TruthObject& object : truth.frames[i].objects) {
-      if (!object.is_aircraft() || !object.counts) continue;
-      const auto found = best.find(object.id);
-      sequence.best_scores.push_back(found == best.end() ? std::nullopt
-                                                         : std::optional(found->second->score));
-    }
-  }
+  each_aircraft(truth, scored, [&](std::size_t, std::size_t, const results::Detection* best) {
+    sequence.best_scores.push_back(best == nullptr ? std::nullopt : std::optional(best->score));
+  });
   scored.each([&](std::size_t, const results::Detection& detection, const Match& match) {
     if (match.kind == MatchKind::kFalseAlarm)
       sequence.false_alarm_scores.push_back(detection.score);
