@@ -72,17 +72,13 @@ bool JsonObject::has(const std::string& key) const {
 
 bool JsonObject::is_empty(const std::string& key) const { return value(key).empty(); }
 
-const Json& JsonObject::value(const std::string& key) const {
-  const auto found = json_->find(key);
-  if (found == json_->end())
-    throw Error((place_.empty() ? "" : place_ + " ") + "has no " + key, where_);
-  return *found;
-}
+const Json& JsonObject::value(const std::string& key) const { return required(key, ""); }
 
 const Json& JsonObject::required(const std::string& key, const std::string& expected) const {
   const auto found = json_->find(key);
   if (found != json_->end()) return *found;
-  throw Error((place_.empty() ? "" : place_ + " ") + "has no " + key + "; expected " + expected,
+  throw Error((place_.empty() ? "" : place_ + " ") + "has no " + key +
+                  (expected.empty() ? "" : "; expected " + expected),
               where_);
 }
 

@@ -98,7 +98,7 @@ class JsonObject {
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
 
  private:
-  // The value of a key that must be there; `expected` is for the message where it is not.
+  // The value of a key that must be there; `expected` is for the message where it is not, or "".
   const nlohmann::ordered_json& required(const std::string& key, const std::string& expected) const;
   const nlohmann::ordered_json& list(const std::string& key, const std::string& expected) const;
   std::string path_of(const std::string& key) const;
