@@ -26,10 +26,7 @@ Plot noise_plot(const std::vector<sensor::NoisePoint>& points) {
             .x = {.label = "luma, 0 to 1", .min = 0, .max = 1},
             .y = {.label = "standard deviation, code values", .min = 0}};
   Series measured{.mark = plot::Mark::kPoints, .style = kMeasured};
-  for (const sensor::NoisePoint& p : points) {
-    measured.x.push_back(p.luma);
-    measured.y.push_back(p.sigma_codes);
-  }
+  for (const sensor::NoisePoint& p : points) measured.add(p.luma, p.sigma_codes);
   if (!points.empty()) plot.series.push_back(std::move(measured));
   return or_not_measured(std::move(plot), !points.empty());
 }
@@ -61,10 +58,8 @@ Plot horizon_plot(const Calibration& c) {
   Series pitch{.name = "pitch", .mark = plot::Mark::kPoints, .style = plot::style_of(0)};
   Series roll{.name = "roll", .mark = plot::Mark::kPoints, .style = plot::style_of(2)};
   for (const HorizonAttitude& h : c.horizons) {
-    pitch.x.push_back(double(h.frame));
-    pitch.y.push_back(h.pitch_deg);
-    roll.x.push_back(double(h.frame));
-    roll.y.push_back(h.roll_deg);
+    pitch.add(double(h.frame), h.pitch_deg);
+    roll.add(double(h.frame), h.roll_deg);
   }
   if (!c.horizons.empty()) plot.series = {std::move(pitch), std::move(roll)};
   return or_not_measured(std::move(plot), !c.horizons.empty());

@@ -16,10 +16,8 @@ plot::Plot bars(const std::string& of,
                 const std::vector<std::int64_t>& counts) {
   plot::Plot plot{.x = {.names = names}, .y = {.label = of, .min = 0}};
   plot::Series series{.mark = plot::Mark::kBars};
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    series.x.push_back(static_cast<double>(i));
-    series.y.push_back(static_cast<double>(counts[i]));
-  }
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    series.add(static_cast<double>(i), static_cast<double>(counts[i]));
   plot.series.push_back(std::move(series));
   return plot;
 }

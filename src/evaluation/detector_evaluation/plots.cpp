@@ -17,15 +17,8 @@ Series series_of(const scores::Assessment& assessment, std::size_t k, plot::Mark
   return {.name = assessment.detectors[k].name, .mark = mark, .style = plot::style_of(k)};
 }
 
-void add_point(Series& series, double x, double y, double low, double high) {
-  series.x.push_back(x);
-  series.y.push_back(y);
-  series.low.push_back(low);
-  series.high.push_back(high);
-}
-
 void add_point(Series& series, double x, const statistics::Proportion& share) {
-  add_point(series, x, share.value, share.low, share.high);
+  series.add(x, share.value, share.low, share.high);
 }
 
 Plot precision_plot(const scores::Assessment& assessment,
@@ -39,11 +32,10 @@ Plot precision_plot(const scores::Assessment& assessment,
     Series series = series_of(assessment, k, plot::Mark::kLine);
     for (std::size_t i = 0; i < evaluation::kRecallSteps; ++i) {
       const double precision = (ap.*curve)->precision[i];
-      add_point(series,
-                static_cast<double>(i) / (evaluation::kRecallSteps - 1),
-                precision,
-                ap.*band ? (ap.*band)->low[i] : precision,
-                ap.*band ? (ap.*band)->high[i] : precision);
+      series.add(static_cast<double>(i) / (evaluation::kRecallSteps - 1),
+                 precision,
+                 ap.*band ? (ap.*band)->low[i] : precision,
+                 ap.*band ? (ap.*band)->high[i] : precision);
     }
     report::keep(plot, std::move(series));
   }
@@ -98,7 +90,7 @@ Plot declaration_range_plot(const scores::Assessment& assessment) {
         if (!point.range_m) return;
         const scores::WeightedMean& range = *point.range_m;
         const auto interval = range.interval.value_or(evaluation::Interval{range.mean, range.mean});
-        add_point(series, x, range.mean, interval.low, interval.high);
+        series.add(x, range.mean, interval.low, interval.high);
       });
 }
 
@@ -184,8 +176,7 @@ Plot false_alarms_plot(const scores::Assessment& assessment) {
       plot::Mark::kBars,
       [](const scores::DetectorScore& detector) -> const auto& { return detector.false_alarms_by; },
       [](Series& series, double x, std::int64_t count) {
-        series.x.push_back(x);
-        series.y.push_back(static_cast<double>(count));
+        series.add(x, static_cast<double>(count));
       });
 }
 

@@ -49,10 +49,7 @@ plot::Plot ranking_plot(const std::string& measure, const std::vector<Ranked>& b
   plot::Series series{.mark = plot::Mark::kIntervals};
   for (auto row = best_first.rbegin(); row != best_first.rend(); ++row) {
     const auto interval = row->interval.value_or(evaluation::Interval{row->value, row->value});
-    series.x.push_back(row->value);
-    series.y.push_back(static_cast<double>(plot.y.names.size()));
-    series.low.push_back(interval.low);
-    series.high.push_back(interval.high);
+    series.add(row->value, static_cast<double>(plot.y.names.size()), interval.low, interval.high);
     plot.y.names.push_back(row->name);
   }
   keep(plot, std::move(series));

@@ -44,10 +44,8 @@ Plot curve(const Assessment& assessment, const std::string& x, double step, cons
     if (!tracker.overall) continue;
     Series series{.name = tracker.name, .style = plot::style_of(k)};
     const std::span<const double> values = of(*tracker.overall);
-    for (std::size_t j = 0; j < values.size(); ++j) {
-      series.x.push_back(static_cast<double>(j) * step);
-      series.y.push_back(values[j]);
-    }
+    for (std::size_t j = 0; j < values.size(); ++j)
+      series.add(static_cast<double>(j) * step, values[j]);
     plot.series.push_back(std::move(series));
   }
   return plot;
@@ -62,10 +60,7 @@ Plot eao_plot(const Assessment& assessment) {
                        std::size_t tracker,
                        plot::Dash dash) {
     Series series{.name = name, .style = {plot::style_of(tracker).colour, dash}};
-    for (std::size_t j = 1; j < values.size(); ++j) {
-      series.x.push_back(static_cast<double>(j));
-      series.y.push_back(values[j]);
-    }
+    for (std::size_t j = 1; j < values.size(); ++j) series.add(static_cast<double>(j), values[j]);
     report::keep(plot, std::move(series));
   };
   for (std::size_t k = 0; k < assessment.trackers.size(); ++k) {
@@ -97,11 +92,9 @@ Plot bins_plot(const Assessment& assessment,
     const auto found = assessment.trackers[k].bins.find(key);
     if (found == assessment.trackers[k].bins.end() || found->second.empty()) continue;
     Series series{.name = assessment.trackers[k].name, .mark = mark, .style = plot::style_of(k)};
-    for (const measures::Bin& bin : found->second) {
-      series.x.push_back(
-          static_cast<double>(std::distance(frames.begin(), frames.find(bin.place))));
-      series.y.push_back(bin.overlap);
-    }
+    for (const measures::Bin& bin : found->second)
+      series.add(static_cast<double>(std::distance(frames.begin(), frames.find(bin.place))),
+                 bin.overlap);
     plot.series.push_back(std::move(series));
   }
   return plot;
@@ -168,10 +161,8 @@ std::vector<Plot> sequence_plots(const Assessment& assessment, std::size_t index
   plots[2].x.label = "frame";
   const auto add = [&](std::size_t panel, const Series& style, const auto& value) {
     Series series = style;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      series.x.push_back(static_cast<double>(frames[i].frame));
-      series.y.push_back(value(i));
-    }
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      series.add(static_cast<double>(frames[i].frame), value(i));
     plots[panel].series.push_back(std::move(series));
   };
   for (const int side : {0, 1})

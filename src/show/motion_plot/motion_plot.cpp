@@ -78,12 +78,8 @@ std::size_t add_series(const Quantity& q, std::size_t index, const Limits& limit
   for (std::size_t i = 0; i < q.values.size(); ++i) {
     const double v = q.values[i];
     const bool is_above = v > limits.high, is_below = !is_above && !(v >= limits.low);
-    line.x.push_back(static_cast<double>(i));
-    line.y.push_back(is_above ? limits.high : is_below ? limits.low : v);
-    if (!is_above && !is_below) continue;
-    Series& beyond = is_above ? above : below;
-    beyond.x.push_back(line.x.back());
-    beyond.y.push_back(line.y.back());
+    line.add(static_cast<double>(i), is_above ? limits.high : is_below ? limits.low : v);
+    if (is_above || is_below) (is_above ? above : below).add(line.x.back(), line.y.back());
   }
   const std::size_t beyond = above.x.size() + below.x.size();
   for (Series* series : {&line, &above, &below})

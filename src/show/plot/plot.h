@@ -78,6 +78,16 @@ struct Series {
   std::vector<double> low = {}, high = {};
   // Of dots: they are rings.
   bool is_hollow = false;
+
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+  void add(double at, double value, double from, double to) {
+    add(at, value);
+    low.push_back(from);
+    high.push_back(to);
+  }
 };
 
 struct Axis {
