@@ -58,7 +58,7 @@ TEST_F(DrawnSet, TheExactBoxHasTheSizeThatWasDrawn) {
         std::max(seen.exact_box_px->width, seen.exact_box_px->height), *encounter.size_px, 0.01)
         << item.name;
     EXPECT_NEAR(*seen.azimuth_deg, encounter.azimuth_deg, 1e-3);
-    EXPECT_LT(seen.position_ned_m->z(), -30 + 1e-6);
+    EXPECT_LT(seen.position_ned_m->at(2), -30 + 1e-6);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/labelled/truth_table.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -30,17 +31,13 @@ struct Row {
   void add(const std::string& name, std::optional<double> value) {
     add(name, value ? exchange::number(*value) : std::string());
   }
-  void add(const std::string& name, const std::optional<Vector3>& v) {
-    const bool is_in_camera = name == "position_in_cam_m";
-    add(name,
-        is_in_camera ? "x y z" : "north east down",
-        v ? Numbers{v->x(), v->y(), v->z()} : Numbers());
-  }
-  void add(const std::string& name, const std::optional<YawPitchRoll>& a) {
-    add(name, "yaw pitch roll", a ? Numbers{a->yaw_deg, a->pitch_deg, a->roll_deg} : Numbers());
-  }
-  void add(const std::string& name, const std::optional<Pixel>& p) {
-    add(name, "x y", p ? Numbers{p->x(), p->y()} : Numbers());
+  template <std::size_t n>
+  void add(const std::string& name, const std::optional<std::array<double, n>>& v) {
+    const char* parts = name == "attitude_yaw_pitch_roll_deg" ? "yaw pitch roll"
+                        : name == "position_in_cam_m"         ? "x y z"
+                        : n == 3                              ? "north east down"
+                                                              : "x y";
+    add(name, parts, v ? Numbers(v->begin(), v->end()) : Numbers());
   }
   template <typename AnyBox>
   void add(const std::string& name, const std::optional<AnyBox>& b) {
@@ -75,7 +72,7 @@ Row row_of(const annotation::Intruder& intruder) {
       },
       intruder);
   const auto& encounter = intruder.encounter;
-  const auto measures = encounter ? encounter->measures : separation::Measures();
+  const auto measures = encounter.value_or(annotation::EncounterTruth());
   annotation::each_measure(
       [&](const char* key, std::optional<double> value) {
         row.add(key, encounter ? value : std::nullopt);

@@ -52,7 +52,8 @@ exchange::Label label_of(const annotation::Intruder& intruder,
   label.contrast_to_noise = intruder.contrast_to_noise;
   if (intruder.covered_area_px) label.area_px = static_cast<double>(*intruder.covered_area_px);
   if (intruder.position_ned_m)
-    label.above_horizon = is_above_horizon(*intruder.position_ned_m, frame.camera_position_ned_m);
+    label.above_horizon = is_above_horizon(vector_of(*intruder.position_ned_m),
+                                           vector_of(frame.camera_position_ned_m));
   return label;
 }
 

@@ -21,7 +21,7 @@ TEST(LabelsOfTruth, CarryTheClassAndADistractorsCategoryIsItsClass) {
   frame.intruders = {
       seen("738/738-Ryanair", "aircraft"), seen("bird", "bird"), seen("dirt", "dirt")};
   frame.intruders[1].range_m = 60;
-  frame.intruders[1].position_ned_m = Vector3(60, 0, -160);
+  frame.intruders[1].position_ned_m = {60, 0, -160};
   const exchange::LabelledFrame labelled = labels_of(frame, dataset::Boxes::kCovered, 640, 480);
   ASSERT_EQ(labelled.labels.size(), 3U);
   EXPECT_EQ(labelled.labels[0].category, "738");

@@ -97,9 +97,8 @@ std::optional<ClosestPlaces> closest_places(const std::vector<annotation::Frame>
   if (from == nullptr || to == nullptr) return std::nullopt;
   const double span_s = after->time_s - before->time_s;
   const double share = span_s > 0 ? (time_s - before->time_s) / span_s : 0;
-  const auto between = [&](const Vector3& a, const Vector3& b) {
-    const Vector3 at = a + share * (b - a);
-    return std::array{at.x(), at.y(), at.z()};
+  const auto between = [&](const auto& a, const auto& b) {
+    return numbers_of(Vector3(vector_of(a) + share * (vector_of(b) - vector_of(a))));
   };
   return ClosestPlaces{between(before->camera_position_ned_m, after->camera_position_ned_m),
                        between(*from->position_ned_m, *to->position_ned_m)};

@@ -17,7 +17,7 @@ replay::Finished passing() {
     frame.camera_position_ned_m = {2.0 * k, 0, -100};
     annotation::Intruder intruder;
     intruder.id = "one";
-    intruder.position_ned_m = Vector3(100 - 3.0 * k, 40, -95);
+    intruder.position_ned_m = {100 - 3.0 * k, 40, -95};
     frame.intruders.push_back(intruder);
     finished.truth.frames.push_back(frame);
   }

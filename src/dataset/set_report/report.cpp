@@ -2,6 +2,7 @@
 #include "dataset/set_report/report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -50,9 +51,9 @@ Json rounded(const std::optional<double>& value, double unit) {
 
 // The series are stored in columns because a page of a thousand sequences holds a hundred thousand
 // points.
-void add_place(const std::optional<Vector3>& ned_m, Json& series) {
+void add_place(const std::optional<std::array<double, 3>>& ned_m, Json& series) {
   for (const auto& [key, axis] :
-       {std::pair("north_m", 0), std::pair("east_m", 1), std::pair("down_m", 2)})
+       {std::pair("north_m", 0u), std::pair("east_m", 1u), std::pair("down_m", 2u)})
     series[key].push_back(ned_m ? Json(rounded((*ned_m)[axis], 0.1)) : Json());
 }
 
@@ -73,9 +74,9 @@ void add_point(const replay::Finished& finished,
 }
 
 void add_camera(const annotation::Frame& frame, const lens::ImageSize& size, Json& series) {
-  const Homography& h = frame.shake.frame_from_reference;
+  const Homography h = annotation::shake_of(frame).frame_from_reference;
   const Vector3 middle(size.width / 2.0, size.height / 2.0, 1);
-  const double yaw_deg = frame.camera_attitude_yaw_pitch_roll_deg.yaw_deg;
+  const double yaw_deg = frame.camera_attitude_yaw_pitch_roll_deg[0];
   series["frame"].push_back(frame.frame);
   add_place(frame.camera_position_ned_m, series);
   series["yaw_deg"].push_back(rounded(yaw_deg, 0.01));

@@ -118,10 +118,10 @@ std::vector<Vector3> own_velocities(const std::vector<annotation::Frame>& frames
     const annotation::Frame& before = frames[i == 0 ? 0 : i - 1];
     const annotation::Frame& after = frames[std::min(i + 1, frames.size() - 1)];
     const double seconds = after.time_s - before.time_s;
-    velocities.push_back(
-        seconds > 0
-            ? Vector3((after.camera_position_ned_m - before.camera_position_ned_m) / seconds)
-            : Vector3::Zero());
+    velocities.push_back(seconds > 0 ? Vector3((vector_of(after.camera_position_ned_m) -
+                                                vector_of(before.camera_position_ned_m)) /
+                                               seconds)
+                                     : Vector3::Zero());
   }
   return velocities;
 }
@@ -133,9 +133,10 @@ std::vector<PairState> states_of(const std::vector<annotation::Frame>& frames, s
     if (actor >= frames[i].intruders.size()) continue;
     const annotation::Intruder& intruder = frames[i].intruders[actor];
     if (!intruder.position_ned_m || !intruder.velocity_ned_mps) continue;
-    states.push_back({frames[i].time_s,
-                      {frames[i].camera_position_ned_m, velocities[i]},
-                      {*intruder.position_ned_m, *intruder.velocity_ned_mps}});
+    states.push_back(
+        {frames[i].time_s,
+         {vector_of(frames[i].camera_position_ned_m), velocities[i]},
+         {vector_of(*intruder.position_ned_m), vector_of(*intruder.velocity_ned_mps)}});
   }
   return states;
 }

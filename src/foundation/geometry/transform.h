@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include <Eigen/Geometry>
 
 // Rotations, rigid motions and plane maps. docs/conventions.md defines frames, axes and units:
@@ -57,6 +59,13 @@ struct YawPitchRoll {
   double pitch_deg = 0;
   double roll_deg = 0;
 };
+
+// Numbers as files and the public headers hold them, and as vectors.
+inline std::array<double, 3> numbers_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+inline std::array<double, 3> numbers_of(const YawPitchRoll& a) {
+  return {a.yaw_deg, a.pitch_deg, a.roll_deg};
+}
+inline Vector3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 // world_from_body for an attitude: Rz(yaw) Ry(pitch) Rx(roll).
 //   world_from_body({90, 0, 0}) * (1, 0, 0) = (0, 1, 0): the nose points east.

@@ -31,9 +31,9 @@ lens::Lens lens_of(const LensFacts& facts) {
 
 bool is_in_view(const Frame& frame, const Intruder& intruder, const lens::Lens& lens) {
   if (!intruder.position_in_cam_m) return false;
-  const auto nominal = lens.pixel_from_cam(*intruder.position_in_cam_m);
+  const auto nominal = lens.pixel_from_cam(vector_of(*intruder.position_in_cam_m));
   if (!nominal) return false;
-  const Vector3 h = frame.shake.frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
+  const Vector3 h = shake_of(frame).frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
   if (!(h.z() > 0)) return false;
   return lens.size().holds(h.head<2>() / h.z());
 }

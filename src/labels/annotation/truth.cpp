@@ -26,17 +26,15 @@ int pixels(const JsonObject& object, const char* key) {
 
 template <std::size_t n>
 std::array<double, n> tuple(const JsonObject& object, const char* key) {
-  const std::vector<double> numbers = object.numbers(key, n);
   std::array<double, n> result{};
-  std::ranges::copy(numbers, result.begin());
+  std::ranges::copy(object.numbers(key, n), result.begin());
   return result;
 }
 
-Homography homography(const JsonObject& object, const char* key) {
-  const std::vector<double> numbers = object.matrix(key, 3, 3);
-  Homography h;
-  for (int i = 0; i < 9; ++i) h(i / 3, i % 3) = numbers[static_cast<std::size_t>(i)];
-  return h;
+std::array<double, 9> homography(const JsonObject& object, const char* key) {
+  std::array<double, 9> result{};
+  std::ranges::copy(object.matrix(key, 3, 3), result.begin());
+  return result;
 }
 
 // Takes the values of members from an object: visit of truth_fields.h. An optional member may be
@@ -46,17 +44,9 @@ struct Reading {
 
   void operator()(const char* key, double& value) const { value = object.number(key); }
   void operator()(const char* key, std::int64_t& value) const { value = object.whole(key); }
-  void operator()(const char* key, Vector3& value) const {
-    const auto v = tuple<3>(object, key);
-    value = {v[0], v[1], v[2]};
-  }
-  void operator()(const char* key, YawPitchRoll& value) const {
-    const auto v = tuple<3>(object, key);
-    value = {v[0], v[1], v[2]};
-  }
-  void operator()(const char* key, Pixel& value) const {
-    const auto v = tuple<2>(object, key);
-    value = {v[0], v[1]};
+  template <std::size_t n>
+  void operator()(const char* key, std::array<double, n>& value) const {
+    value = tuple<n>(object, key);
   }
   void operator()(const char* key, Box& value) const {
     const auto v = tuple<4>(object, key);
@@ -74,7 +64,7 @@ struct Reading {
   }
   void operator()(const char* key, EncounterTruth& value) const {
     const JsonObject encounter = object.object(key);
-    each_measure(Reading{encounter}, value.measures);
+    each_measure(Reading{encounter}, value);
     for (const JsonObject& volume : encounter.objects("volumes"))
       value.volumes.push_back(
           {volume.text("name"), volume.truth("inside"), volume.maybe_number("to_violation_s")});
@@ -91,30 +81,24 @@ Intruder intruder_from(const JsonObject& object) {
   intruder.aircraft = object.text("aircraft");
   intruder.object_class = object.maybe_text("class").value_or(intruder.object_class);
   each_field(Reading{object}, intruder);
-  if (intruder.encounter) intruder.encounter->measures.range_m = intruder.range_m.value_or(0);
   return intruder;
 }
 
-Shake shake_from(const JsonObject& motion) {
-  Shake shake;
-  shake.frame_from_reference = homography(motion, "frame_from_reference");
-  if (motion.has("rotation")) {
-    const auto q = tuple<4>(motion, "rotation");
-    shake.rotation = Quaternion(q[0], q[1], q[2], q[3]);
-  }
-  if (motion.has("rate_radps")) Reading{motion}("rate_radps", shake.rate_radps);
+void read_shake(const JsonObject& motion, Frame& frame) {
+  frame.frame_from_reference = homography(motion, "frame_from_reference");
+  Reading{motion}("rotation", frame.rotation);
+  if (motion.has("rate_radps")) Reading{motion}("rate_radps", frame.rate_radps);
   if (motion.has("frame_from_reference_per_s"))
-    shake.frame_from_reference_per_s = homography(motion, "frame_from_reference_per_s");
-  return shake;
+    frame.frame_from_reference_per_s = homography(motion, "frame_from_reference_per_s");
 }
 
 // Older files have one bearing, which is the nominal camera's where motion is a homography. It is
 // moved to the nominal fields, so that no reader takes it for the real camera's.
-void place_old_bearing(const Shake& shake, Intruder& intruder) {
-  if (!intruder.azimuth_deg || intruder.nominal_azimuth_deg || shake.rotation) return;
+void place_old_bearing(const Frame& frame, Intruder& intruder) {
+  if (!intruder.azimuth_deg || intruder.nominal_azimuth_deg || frame.rotation) return;
   intruder.nominal_azimuth_deg = intruder.azimuth_deg;
   intruder.nominal_elevation_deg = intruder.elevation_deg;
-  if (shake.frame_from_reference == Homography::Identity()) return;
+  if (frame.frame_from_reference == Frame().frame_from_reference) return;  // no motion
   intruder.azimuth_deg.reset();
   intruder.elevation_deg.reset();
 }
@@ -129,10 +113,10 @@ Frame frame_from(const JsonObject& object) {
   Reading{camera}("attitude_yaw_pitch_roll_deg", frame.camera_attitude_yaw_pitch_roll_deg);
   const JsonObject motion = object.object("motion");
   frame.motion_state = motion.text("state");
-  frame.shake = shake_from(motion);
+  read_shake(motion, frame);
   for (const JsonObject& intruder : object.objects("intruders"))
     frame.intruders.push_back(intruder_from(intruder));
-  for (Intruder& intruder : frame.intruders) place_old_bearing(frame.shake, intruder);
+  for (Intruder& intruder : frame.intruders) place_old_bearing(frame, intruder);
   return frame;
 }
 
@@ -159,7 +143,34 @@ Line line_from(std::string_view text, const Where& where) {
   return line;
 }
 
+using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+std::array<double, 9> row_by_row(const Homography& h) {
+  std::array<double, 9> numbers{};
+  Eigen::Map<Rows>(numbers.data()) = h;
+  return numbers;
+}
+
 }  // namespace
+
+Shake shake_of(const Frame& frame) {
+  Shake shake;
+  shake.frame_from_reference = Eigen::Map<const Rows>(frame.frame_from_reference.data());
+  shake.frame_from_reference_per_s =
+      Eigen::Map<const Rows>(frame.frame_from_reference_per_s.data());
+  if (const auto& q = frame.rotation)
+    shake.rotation = Quaternion((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
+  shake.rate_radps = vector_of(frame.rate_radps);
+  return shake;
+}
+
+void take_shake(const Shake& shake, Frame& frame) {
+  frame.frame_from_reference = row_by_row(shake.frame_from_reference);
+  frame.frame_from_reference_per_s = row_by_row(shake.frame_from_reference_per_s);
+  frame.rotation.reset();
+  if (const auto& q = shake.rotation) frame.rotation = {q->w(), q->x(), q->y(), q->z()};
+  frame.rate_radps = numbers_of(shake.rate_radps);
+}
 
 Frame parse_jsonl_line(std::string_view line, const std::filesystem::path& file, int line_number) {
   return line_from(line, {file.string(), line_number, 0}).frame;
@@ -188,8 +199,7 @@ bool is_fraction(double value) { return value >= 0 && value <= 1; }
 
 bool is_below_0(const std::optional<double>& value) { return value && *value < 0; }
 
-std::optional<std::string> fault(const EncounterTruth& truth) {
-  const separation::Measures& m = truth.measures;
+std::optional<std::string> fault(const EncounterTruth& m) {
   if (m.horizontal_m < 0 || m.hmd_m < 0 || m.vmd_m < 0 || is_below_0(m.dcpa_m) ||
       is_below_0(m.line_of_sight_rate_dps))
     return "has an encounter with a distance or a rate of sight below 0";
@@ -200,7 +210,7 @@ std::optional<std::string> fault(const EncounterTruth& truth) {
   constexpr double kRounding = 1 + 1e-9;
   if (m.hmd_m > m.horizontal_m * kRounding || m.vmd_m > std::abs(m.above_m) * kRounding)
     return "has a miss distance above the distance of now";
-  for (const VolumeTruth& volume : truth.volumes)
+  for (const VolumeTruth& volume : m.volumes)
     if (is_below_0(volume.to_violation_s) || (volume.inside && volume.to_violation_s != 0.0))
       return fmt::format("is {} the volume '{}' with another time to its violation",
                          volume.inside ? "inside" : "outside",
@@ -263,7 +273,8 @@ std::optional<std::string> fault(const Intruder& i) {
 
 std::optional<std::string> fault(const Frame& frame) {
   if (frame.frame < 0) return "frame is below 0";
-  if (frame.shake.rotation && !(std::abs(frame.shake.rotation->norm() - 1) < 1e-6))
+  const auto& q = frame.rotation;
+  if (q && !(std::abs(Eigen::Map<const Eigen::Vector4d>(q->data()).norm() - 1) < 1e-6))
     return "has a rotation that is no unit quaternion";
   for (const Intruder& intruder : frame.intruders)
     if (const auto found = fault(intruder))
@@ -278,18 +289,15 @@ using OrderedJson = nlohmann::ordered_json;
 OrderedJson json(double value) { return value; }
 OrderedJson json(std::int64_t value) { return value; }
 OrderedJson json(State state) { return enum_name(state); }
-OrderedJson json(const Vector3& v) { return OrderedJson::array({v.x(), v.y(), v.z()}); }
-OrderedJson json(const Pixel& p) { return OrderedJson::array({p.x(), p.y()}); }
-OrderedJson json(const YawPitchRoll& a) {
-  return OrderedJson::array({a.yaw_deg, a.pitch_deg, a.roll_deg});
+template <std::size_t n>
+OrderedJson json(const std::array<double, n>& numbers) {
+  return numbers;
 }
 OrderedJson json(const Box& b) { return OrderedJson::array({b.x, b.y, b.width, b.height}); }
 OrderedJson json(const PixelBox& b) { return OrderedJson::array({b.x, b.y, b.width, b.height}); }
 
-OrderedJson json(const Homography& h) {
-  OrderedJson rows = OrderedJson::array();
-  for (int i = 0; i < 3; ++i) rows.push_back(OrderedJson::array({h(i, 0), h(i, 1), h(i, 2)}));
-  return rows;
+OrderedJson rows_of(const std::array<double, 9>& h) {
+  return {{h[0], h[1], h[2]}, {h[3], h[4], h[5]}, {h[6], h[7], h[8]}};
 }
 
 OrderedJson json(const EncounterTruth& truth);
@@ -311,7 +319,7 @@ struct Writing {
 
 OrderedJson json(const EncounterTruth& truth) {
   OrderedJson object;
-  each_measure(Writing{object}, truth.measures);
+  each_measure(Writing{object}, truth);
   OrderedJson volumes = OrderedJson::array();
   for (const VolumeTruth& volume : truth.volumes) {
     OrderedJson one = {{"name", volume.name}, {"inside", volume.inside}};
@@ -360,13 +368,12 @@ std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
       {"position_ned_m", json(frame.camera_position_ned_m)},
       {"attitude_yaw_pitch_roll_deg", json(frame.camera_attitude_yaw_pitch_roll_deg)}};
   object["motion"] = {{"state", frame.motion_state},
-                      {"frame_from_reference", json(frame.shake.frame_from_reference)}};
-  const auto& q = frame.shake.rotation;
-  object["motion"]["rotation"] = q ? OrderedJson{q->w(), q->x(), q->y(), q->z()} : OrderedJson();
-  if (!frame.shake.rate_radps.isZero(0))
-    object["motion"]["rate_radps"] = json(frame.shake.rate_radps);
-  if (!frame.shake.frame_from_reference_per_s.isZero(0))
-    object["motion"]["frame_from_reference_per_s"] = json(frame.shake.frame_from_reference_per_s);
+                      {"frame_from_reference", rows_of(frame.frame_from_reference)}};
+  Writing{object["motion"]}("rotation", frame.rotation);
+  if (frame.rate_radps != std::array<double, 3>{})
+    object["motion"]["rate_radps"] = json(frame.rate_radps);
+  if (frame.frame_from_reference_per_s != std::array<double, 9>{})
+    object["motion"]["frame_from_reference_per_s"] = rows_of(frame.frame_from_reference_per_s);
   OrderedJson intruders = OrderedJson::array();
   for (const Intruder& intruder : frame.intruders) intruders.push_back(json(intruder));
   object["intruders"] = std::move(intruders);

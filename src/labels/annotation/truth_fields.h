@@ -2,12 +2,12 @@
 #pragma once
 
 // The fields of a frame's truth with their keys in truth.jsonl, in the order of the file: the one
-// list from which a line is written, read and checked, by which the public records
-// (<airtruth/truth.h>) are copied, and by which a table of the truth has its columns. `visit(key,
-// member...)` gets the member of each of the given records, which name their members alike.
+// list from which a line is written and read, and by which a table of the truth has its columns.
+// `visit(key, member...)` gets the member of each of the given records, which name their members
+// alike.
 namespace airtruth::annotation {
 
-// Of EncounterTruth::measures, without the range, which is the intruder's.
+// Of an EncounterTruth and of separation::Measures, without the range, which is the intruder's.
 template <typename Visit, typename... Measures>
 void each_measure(const Visit& visit, Measures&... of) {
   visit("horizontal_m", of.horizontal_m...);
@@ -26,32 +26,32 @@ void each_measure(const Visit& visit, Measures&... of) {
 }
 
 // Of an intruder, after its id, its aircraft and its class.
-template <typename Visit, typename... Intruders>
-void each_field(const Visit& visit, Intruders&... of) {
-  visit("state", of.state...);
-  visit("position_ned_m", of.position_ned_m...);
-  visit("velocity_ned_mps", of.velocity_ned_mps...);
-  visit("attitude_yaw_pitch_roll_deg", of.attitude_yaw_pitch_roll_deg...);
-  visit("position_in_cam_m", of.position_in_cam_m...);
-  visit("range_m", of.range_m...);
-  visit("range_rate_mps", of.range_rate_mps...);
-  visit("azimuth_deg", of.azimuth_deg...);
-  visit("elevation_deg", of.elevation_deg...);
-  visit("nominal_azimuth_deg", of.nominal_azimuth_deg...);
-  visit("nominal_elevation_deg", of.nominal_elevation_deg...);
-  visit("encounter", of.encounter...);
-  visit("exact_box_px", of.exact_box_px...);
-  visit("covered_box_px", of.covered_box_px...);
-  visit("covered_area_px", of.covered_area_px...);
-  visit("visible_box_px", of.visible_box_px...);
-  visit("contrast_to_noise", of.contrast_to_noise...);
-  visit("visible_area_px", of.visible_area_px...);
-  visit("alpha_sum_px", of.alpha_sum_px...);
-  visit("centroid_px", of.centroid_px...);
-  visit("hidden_by_own_aircraft", of.hidden_by_own_aircraft...);
-  visit("hidden_by_occluder", of.hidden_by_occluder...);
-  visit("hidden_by_intruder", of.hidden_by_intruder...);
-  visit("cut_by_frame", of.cut_by_frame...);
+template <typename Visit, typename AnyIntruder>
+void each_field(const Visit& visit, AnyIntruder& of) {
+  visit("state", of.state);
+  visit("position_ned_m", of.position_ned_m);
+  visit("velocity_ned_mps", of.velocity_ned_mps);
+  visit("attitude_yaw_pitch_roll_deg", of.attitude_yaw_pitch_roll_deg);
+  visit("position_in_cam_m", of.position_in_cam_m);
+  visit("range_m", of.range_m);
+  visit("range_rate_mps", of.range_rate_mps);
+  visit("azimuth_deg", of.azimuth_deg);
+  visit("elevation_deg", of.elevation_deg);
+  visit("nominal_azimuth_deg", of.nominal_azimuth_deg);
+  visit("nominal_elevation_deg", of.nominal_elevation_deg);
+  visit("encounter", of.encounter);
+  visit("exact_box_px", of.exact_box_px);
+  visit("covered_box_px", of.covered_box_px);
+  visit("covered_area_px", of.covered_area_px);
+  visit("visible_box_px", of.visible_box_px);
+  visit("contrast_to_noise", of.contrast_to_noise);
+  visit("visible_area_px", of.visible_area_px);
+  visit("alpha_sum_px", of.alpha_sum_px);
+  visit("centroid_px", of.centroid_px);
+  visit("hidden_by_own_aircraft", of.hidden_by_own_aircraft);
+  visit("hidden_by_occluder", of.hidden_by_occluder);
+  visit("hidden_by_intruder", of.hidden_by_intruder);
+  visit("cut_by_frame", of.cut_by_frame);
 }
 
 }  // namespace airtruth::annotation

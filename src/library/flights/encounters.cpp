@@ -8,8 +8,6 @@
 namespace airtruth {
 namespace {
 
-std::array<double, 3> numbers_of(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
 void add_rows(SampledEncounters& result, const track::Track& track, std::int64_t aircraft) {
   const std::vector<Vector3> velocities = track::velocities_of(track);
   for (std::size_t i = 0; i < track.size(); ++i) {

@@ -42,9 +42,9 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 std::optional<RenderedFrame> Renderer::next() {
-  const auto made = state_->frames.next();
+  auto made = state_->frames.next();
   if (!made) return std::nullopt;
-  return RenderedFrame{public_picture(made->frame.picture), public_truth(made->truth)};
+  return RenderedFrame{public_picture(made->frame.picture), std::move(made->truth)};
 }
 
 VideoInfo Renderer::info() const { return public_info(state_->frames.info()); }

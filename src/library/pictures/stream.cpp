@@ -2,12 +2,12 @@
 #include "dataset/stream/stream.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <airtruth/stream.h>
 
 #include "dataset/catalogue/catalogue.h"
 #include "library/pictures/public_forms.h"
-#include "library/records/public_forms.h"
 
 namespace airtruth {
 
@@ -38,7 +38,7 @@ StreamSample Stream::sample(std::int64_t index) const {
   stream::Sample made = state_->stream.sample(index);
   StreamSample sample{index, made.background, made.first_frame, made.weight, made.crop, {}, {}};
   for (stream::Sample::Frame& frame : made.frames) {
-    sample.frames.push_back({public_picture(frame.picture), public_truth(frame.truth)});
+    sample.frames.push_back({public_picture(frame.picture), std::move(frame.truth)});
     if (!state_->stream.has_masks()) continue;
     std::vector<SamplePlane>& masks = sample.masks.emplace_back();
     for (std::vector<std::uint8_t>& mask : frame.masks)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <utility>
 
 #include <airtruth/dataset.h>
 #include <nlohmann/json.hpp>
@@ -61,9 +62,9 @@ Sequence rendered(const fs::path& folder, dataset::Boxes boxes) {
   sequence.folder = folder;
   sequence.name = name_in_record(folder, boxes);
   sequence.video = video_in(folder, sequence.name);
-  const annotation::Truth truth = annotation::read_truth(folder / "truth.jsonl");
+  annotation::Truth truth = annotation::read_truth(folder / "truth.jsonl");
   sequence.labels = labels_of(sequence, truth, boxes);
-  sequence.truth = public_truth(truth);
+  sequence.truth = public_truth(std::move(truth));
   return sequence;
 }
 

@@ -7,7 +7,7 @@
 #include "camera/lens/lens.h"
 #include "labels/annotation/truth.h"
 
-// The public forms of lenses and of the truth, whose vectors are arrays.
+// The public forms of lenses and of the truth of a sequence.
 namespace airtruth {
 
 // What a public Lens holds.
@@ -17,7 +17,6 @@ struct Lens::State {
 
 Lens public_lens(const lens::Lens& lens);
 
-FrameTruth public_truth(const annotation::Frame& frame);
-SequenceTruth public_truth(const annotation::Truth& truth);
+SequenceTruth public_truth(annotation::Truth truth);
 
 }  // namespace airtruth

@@ -8,6 +8,7 @@
 #include "encounter/passage/passage.h"
 #include "encounter/separation/violation.h"
 #include "foundation/image/contrast_to_noise.h"
+#include "labels/annotation/truth_fields.h"
 #include "labels/projection/bearing.h"
 #include "labels/projection/spot_box.h"
 
@@ -48,8 +49,10 @@ annotation::EncounterTruth encounter_of(const setup::World& world,
                                         const trajectory::State& state) {
   const separation::Mover own = passage::mover_of(own_state);
   const separation::Mover intruder = passage::mover_of(state);
+  const auto measures = separation::measures(own, intruder, {.lookahead_s = world.lookahead_s});
   annotation::EncounterTruth truth;
-  truth.measures = separation::measures(own, intruder, {.lookahead_s = world.lookahead_s});
+  annotation::each_measure(
+      [](const char*, const auto& value, auto& member) { member = value; }, measures, truth);
   for (const auto& [name, volume] : world.volumes) {
     const bool inside = separation::is_inside(volume, own, intruder);
     const auto violated = separation::violation(volume, own, intruder, world.lookahead_s);
@@ -71,10 +74,10 @@ void add_geometry(annotation::Intruder& truth,
   const Vector3 offset = state.position_in_world - moment.camera.position_in_world;
   const Vector3 p_in_cam = moment.sight.cam_from_world * state.position_in_world;
   const double range_m = offset.norm();
-  truth.position_ned_m = state.position_in_world;
-  truth.velocity_ned_mps = state.velocity_in_world_mps;
-  truth.attitude_yaw_pitch_roll_deg = yaw_pitch_roll(state.world_from_body);
-  truth.position_in_cam_m = p_in_cam;
+  truth.position_ned_m = numbers_of(state.position_in_world);
+  truth.velocity_ned_mps = numbers_of(state.velocity_in_world_mps);
+  truth.attitude_yaw_pitch_roll_deg = numbers_of(yaw_pitch_roll(state.world_from_body));
+  truth.position_in_cam_m = numbers_of(p_in_cam);
   truth.range_m = range_m;
   if (range_m > 0) {
     const Vector3 relative = state.velocity_in_world_mps - moment.camera.velocity_in_world_mps;
@@ -94,7 +97,7 @@ void add_pixels(annotation::Intruder& truth,
   }
   truth.visible_area_px = visible.pixels;
   truth.alpha_sum_px = visible.alpha_sum_px;
-  truth.centroid_px = visible.centroid;
+  if (const auto& centroid = visible.centroid) truth.centroid_px = {centroid->x(), centroid->y()};
   if (i >= layer.areas.size() || layer.areas[i].alone_px <= 0) return;
   const image::Areas& areas = layer.areas[i];
   const auto fraction = [&](double part) { return std::clamp(part / areas.alone_px, 0.0, 1.0); };
@@ -154,7 +157,7 @@ std::vector<annotation::Intruder> intruders_of(const setup::World& world,
       add_geometry(truth, moment, *moment.states[i]);
       truth.encounter = encounter_of(world, moment.camera, *moment.states[i]);
       const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
-      truth.state = state_of(moment, i, *truth.position_in_cam_m, layer, seen);
+      truth.state = state_of(moment, i, vector_of(*truth.position_in_cam_m), layer, seen);
       if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;
       if (seen != nullptr) add_pixels(truth, i, layer, *seen);
     }
@@ -178,9 +181,10 @@ annotation::Frame frame_truth(const setup::World& world,
   truth.time_s = frame.time_s;
   truth.damaged = frame.damaged;
   truth.motion_state = motion_state;
-  truth.shake = shake;
-  truth.camera_position_ned_m = moment.camera.position_in_world;
-  truth.camera_attitude_yaw_pitch_roll_deg = yaw_pitch_roll(moment.camera.world_from_body);
+  annotation::take_shake(shake, truth);
+  truth.camera_position_ned_m = numbers_of(moment.camera.position_in_world);
+  truth.camera_attitude_yaw_pitch_roll_deg =
+      numbers_of(yaw_pitch_roll(moment.camera.world_from_body));
   truth.intruders = intruders_of(world, moment, painted);
   for (annotation::Intruder& intruder : truth.intruders)
     if (const auto box = annotation::box_to_show(intruder))

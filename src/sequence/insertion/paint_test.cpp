@@ -117,8 +117,8 @@ TEST(Distractors, BoxesOfMultirotorsAndBalloonsAgree) {
     expect_boxes_agree(made.truth.intruders[0], *shutter ? 6 : 1);
     expect_boxes_agree(made.truth.intruders[1], 1);
     // It hangs upright although it rises.
-    EXPECT_NEAR(made.truth.intruders[1].attitude_yaw_pitch_roll_deg->pitch_deg, 0, 1e-9);
-    EXPECT_NEAR(made.truth.intruders[0].attitude_yaw_pitch_roll_deg->pitch_deg, -6.4, 1e-6);
+    EXPECT_NEAR(made.truth.intruders[1].attitude_yaw_pitch_roll_deg->at(1), 0, 1e-9);
+    EXPECT_NEAR(made.truth.intruders[0].attitude_yaw_pitch_roll_deg->at(1), -6.4, 1e-6);
   }
 }
 

@@ -55,8 +55,9 @@ TEST(BearingOnARealClip, AgreesWithThePixelAndNotWithTheNominalBoresight) {
       const Vector3 seen = cam_from_body() * unit_vector(*one.azimuth_deg, *one.elevation_deg);
       const Vector3 nominal =
           cam_from_body() * unit_vector(*one.nominal_azimuth_deg, *one.nominal_elevation_deg);
-      seen_px.push_back((*lens.pixel_from_cam(seen) - *one.centroid_px).norm());
-      const auto ray = lens.ray_from_pixel(*one.centroid_px);
+      const Pixel centroid((*one.centroid_px)[0], (*one.centroid_px)[1]);
+      seen_px.push_back((*lens.pixel_from_cam(seen) - centroid).norm());
+      const auto ray = lens.ray_from_pixel(centroid);
       nominal_deg.push_back(degrees(std::acos(std::clamp(ray->dot(nominal), -1.0, 1.0))));
       EXPECT_LT(seen_px.back(), 0.5 * std::hypot(one.exact_box_px->width, one.exact_box_px->height))
           << model << ' ' << frame.frame;

@@ -78,14 +78,16 @@ double bearing_of(const Vector3& offset) { return degrees(std::atan2(offset.y(),
 
 Observed observed(const std::vector<annotation::Frame>& frames, std::size_t k, std::size_t i) {
   const auto offset = [&](std::size_t n) -> Vector3 {
-    return *frames[n].intruders[i].position_ned_m - frames[n].camera_position_ned_m;
+    return vector_of(*frames[n].intruders[i].position_ned_m) -
+           vector_of(frames[n].camera_position_ned_m);
   };
   const double span_s = frames[k + 1].time_s - frames[k - 1].time_s;
   Observed o;
   o.offset = offset(k);
   o.velocity = (offset(k + 1) - offset(k - 1)) / span_s;
-  o.own_velocity =
-      (frames[k + 1].camera_position_ned_m - frames[k - 1].camera_position_ned_m) / span_s;
+  o.own_velocity = (vector_of(frames[k + 1].camera_position_ned_m) -
+                    vector_of(frames[k - 1].camera_position_ned_m)) /
+                   span_s;
   o.closing_mps = (offset(k - 1).norm() - offset(k + 1).norm()) / span_s;
   o.bearing_deg = bearing_of(o.offset);
   o.bearing_rate_dps =
@@ -104,7 +106,7 @@ TEST_F(EncounterTruth, EveryFrameIsWhatItsNeighboursPositionsSay) {
       SCOPED_TRACE(std::to_string(k) + " " + frames[k].intruders[i].id);
       const Observed o = observed(frames, k, i);
       ASSERT_TRUE(frames[k].intruders[i].encounter);
-      const separation::Measures& m = frames[k].intruders[i].encounter->measures;
+      const annotation::EncounterTruth& m = *frames[k].intruders[i].encounter;
       EXPECT_NEAR(m.horizontal_m, std::hypot(o.offset.x(), o.offset.y()), 1e-9);
       EXPECT_NEAR(m.above_m, -o.offset.z(), 1e-9);
       // Differences over 0.2 s are off by the third derivatives, which are large close by.

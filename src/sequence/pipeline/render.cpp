@@ -61,7 +61,7 @@ annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
                                        const annotation::Intruder& intruder) {
   annotation::EvisionFrame frame;
   frame.number = static_cast<int>(truth.frame) + 1;
-  frame.intruder_ned_m = *intruder.position_ned_m;
+  frame.intruder_ned_m = vector_of(*intruder.position_ned_m);
   frame.distance_m = *intruder.range_m;
   if (intruder.covered_box_px) frame.rect_px = *intruder.covered_box_px;
   return frame;
@@ -128,7 +128,7 @@ class Outputs {
     }
     truth_ << annotation::jsonl_line(truth, lens_) << '\n';
     check_truth("write");
-    const Vector3& camera_ned_m = truth.camera_position_ned_m;
+    const Vector3 camera_ned_m = vector_of(truth.camera_position_ned_m);
     // The format is one of aircraft, which come first.
     if (aircraft_ == 0) evision_[0].add(std::nullopt, camera_ned_m);
     for (std::size_t i = 0; i < aircraft_; ++i) {

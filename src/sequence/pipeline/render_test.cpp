@@ -365,9 +365,9 @@ TEST_F(Sequence, WithEverythingOnTheBackgroundKeepsItsSamplesAndTruthItsWord) {
     EXPECT_LE(exact.right(), seen.visible_box_px->right() + 1) << k;
     EXPECT_LT(exact.x - seen.visible_box_px->x, 14) << k;
     ASSERT_TRUE(seen.centroid_px);
-    EXPECT_TRUE(seen.visible_box_px->contains(static_cast<int>(seen.centroid_px->x()),
-                                              static_cast<int>(seen.centroid_px->y())));
-    EXPECT_TRUE(truth.shake.rotation);
+    EXPECT_TRUE(seen.visible_box_px->contains(static_cast<int>((*seen.centroid_px)[0]),
+                                              static_cast<int>((*seen.centroid_px)[1])));
+    EXPECT_TRUE(truth.rotation);
   }
   EXPECT_GT(visible, 3);
   // The record alone reproduces the frames, and the bytes do not depend on the number of threads.
@@ -451,11 +451,12 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
               testing::ElementsAre(
                   testing::StartsWith("[camera] has no attitude_yaw_pitch_roll_deg: pitch ")));
   const replay::Finished finished = replay::open_finished(summary.folder);
-  const YawPitchRoll found = finished.truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
+  const auto [yaw_deg, pitch_deg, roll_deg] =
+      finished.truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
   // A pixel is 0.37 degrees, and the visible horizon lies 0.4 degrees below level at 150 m.
-  EXPECT_NEAR(found.pitch_deg, expected.pitch_deg, 0.75);
-  EXPECT_NEAR(found.roll_deg, expected.roll_deg, 0.5);
-  EXPECT_NEAR(found.yaw_deg, 0, 1e-9);
+  EXPECT_NEAR(pitch_deg, expected.pitch_deg, 0.75);
+  EXPECT_NEAR(roll_deg, expected.roll_deg, 0.5);
+  EXPECT_NEAR(yaw_deg, 0, 1e-9);
   // What sequence.json holds is stated: the same frames are made from it.
   EXPECT_TRUE(finished.scene->camera.attitude_yaw_pitch_roll_deg.has_value());
   EXPECT_TRUE(replay::recompose(finished, 1, {}).faults.empty());
@@ -465,10 +466,9 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
              out_,
              {.overwrite = true});
   EXPECT_THAT(stated.notes, testing::IsEmpty());
-  EXPECT_EQ(replay::open_finished(stated.folder)
-                .truth.frames[0]
-                .camera_attitude_yaw_pitch_roll_deg.roll_deg,
-            0);
+  EXPECT_EQ(
+      replay::open_finished(stated.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg[2],
+      0);
 }
 
 // The pictures f0.png to f2.png of the folder as a clip, seen by a camera without an attitude.
@@ -504,10 +504,9 @@ TEST_F(Sequence, AHorizonThatStandsUpsideDownIsNone) {
   }
   const Summary summary = render_pictures(out_, crossing("a", "c172/news", 60));
   EXPECT_THAT(summary.notes, testing::Contains(testing::HasSubstr("stands upside down")));
-  EXPECT_EQ(replay::open_finished(summary.folder)
-                .truth.frames[0]
-                .camera_attitude_yaw_pitch_roll_deg.roll_deg,
-            0);
+  EXPECT_EQ(
+      replay::open_finished(summary.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg[2],
+      0);
 }
 
 TEST_F(Sequence, WithoutAHorizonTheCameraIsLevelAndItIsSaid) {
@@ -518,8 +517,8 @@ TEST_F(Sequence, WithoutAHorizonTheCameraIsLevelAndItIsSaid) {
   EXPECT_THAT(summary.notes, testing::Contains(testing::HasSubstr("it is level, since ")));
   const auto attitude =
       replay::open_finished(summary.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
-  EXPECT_EQ(attitude.pitch_deg, 0);
-  EXPECT_EQ(attitude.roll_deg, 0);
+  EXPECT_EQ(attitude[1], 0);
+  EXPECT_EQ(attitude[2], 0);
 }
 
 }  // namespace

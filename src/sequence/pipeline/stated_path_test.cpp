@@ -102,7 +102,7 @@ TEST_F(StatedPath, TheTrueCameraSeesItWithinHalfAPixelOfWhatIsStated) {
     const Box& box = *intruder.exact_box_px;
     EXPECT_NEAR(box.x + box.width / 2, seen.pixel.x(), 0.01) << frame;
     EXPECT_NEAR(box.y + box.height / 2, seen.pixel.y(), 0.01) << frame;
-    const Pixel pixel = true_pixel(frame, *truth.intruders[1].position_ned_m);
+    const Pixel pixel = true_pixel(frame, vector_of(*truth.intruders[1].position_ned_m));
     largest_px = std::max(largest_px, (pixel - seen.pixel).norm());
     EXPECT_LT((pixel - seen.pixel).norm(), 0.5) << frame;
     if (seen.range_m) {
@@ -142,7 +142,8 @@ TEST_F(StatedPath, AnEncounterIsWhereItWasSaidToBe) {
                         "cpa_time_s = 1\ncpa_right_m = 30\ncpa_above_m = 10\ncourse_deg = 180\n"
                         "speed_mps = 50\n"));
   const annotation::Frame& frame = finished.truth.frames.at(30);
-  const Vector3 offset = *frame.intruders[0].position_ned_m - frame.camera_position_ned_m;
+  const Vector3 offset =
+      vector_of(*frame.intruders[0].position_ned_m) - vector_of(frame.camera_position_ned_m);
   EXPECT_NEAR(offset.x(), 0, 1e-6);
   EXPECT_NEAR(offset.y(), 30, 1e-6);
   EXPECT_NEAR(offset.z(), -10, 1e-6);

@@ -182,7 +182,8 @@ image::Rgb8 inspect(const Finished& sequence,
   const video::Frame after = frame_at(sequence.video, frame);
   const setup::World world =
       setup::load_world(scene, {before.picture.width, before.picture.height}, {});
-  const setup::Moment moment = setup::moment_at(world, truth.frame, truth.time_s, truth.shake);
+  const setup::Moment moment =
+      setup::moment_at(world, truth.frame, truth.time_s, annotation::shake_of(truth));
   const bool matte = scene.composite.method == scene::CompositeMethod::kMatte;
   const auto mask = insertion::read_mask(scene, world.lens.size());
   const insertion::Occluders occluders(scene, world.lens, mask ? &*mask : nullptr, 0);
@@ -239,14 +240,15 @@ std::string picture_fault(const image::Picture& made,
 
 // Removes from a recomputed truth the fields that older sequences lack.
 void as_older_truth(annotation::Frame& truth) {
+  const Shake shake = annotation::shake_of(truth);
   for (annotation::Intruder& intruder : truth.intruders) {
     intruder.covered_box_px.reset();
     intruder.covered_area_px.reset();
-    if (!truth.shake.rotation && truth.shake.frame_from_reference != Homography::Identity()) {
+    if (!shake.rotation && shake.frame_from_reference != Homography::Identity()) {
       intruder.azimuth_deg.reset();
       intruder.elevation_deg.reset();
     }
-    if (truth.shake.rotation) {
+    if (shake.rotation) {
       intruder.nominal_azimuth_deg.reset();
       intruder.nominal_elevation_deg.reset();
     }
@@ -315,7 +317,7 @@ Recomposition recompose(const Finished& sequence, std::int64_t every, const std:
       fault(truth, again ? "is not in the video" : "is not in the background");
       break;
     }
-    maker.locate(*again, truth.shake);
+    maker.locate(*again, annotation::shake_of(truth));
     const bool is_compared = truth.frame % every == 0;
     if (!is_compared && !maker.composes_in_order()) continue;
     maker.draw(*again);

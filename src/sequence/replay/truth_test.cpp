@@ -149,7 +149,8 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
       ASSERT_TRUE(one.azimuth_deg && one.nominal_azimuth_deg && one.centroid_px);
       // Straight lines: north, east and down of the intruder from the camera are x forward, y
       // right.
-      const Vector3 offset = *one.position_ned_m - frame.camera_position_ned_m;
+      const Vector3 offset =
+          vector_of(*one.position_ned_m) - vector_of(frame.camera_position_ned_m);
       EXPECT_NEAR(*one.nominal_azimuth_deg, degrees(std::atan2(offset.y(), offset.x())), 1e-9);
       EXPECT_NEAR(*one.nominal_elevation_deg,
                   degrees(std::atan2(-offset.z(), std::hypot(offset.x(), offset.y()))),
@@ -169,7 +170,8 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
       const Box& exact = *one.exact_box_px;
       EXPECT_LT(std::abs(pixel->x() - (exact.x + exact.width / 2)), 0.5 * exact.width);
       EXPECT_LT(std::abs(pixel->y() - (exact.y + exact.height / 2)), 0.5 * exact.height + 0.5);
-      EXPECT_LT((*pixel - *one.centroid_px).norm(), 0.5 * exact.width);
+      const Pixel centroid((*one.centroid_px)[0], (*one.centroid_px)[1]);
+      EXPECT_LT((*pixel - centroid).norm(), 0.5 * exact.width);
     }
     EXPECT_GT(moved_deg, 1) << model;
   }
