@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <airtruth/truth.h>
 
 #include "foundation/geometry/transform.h"
 #include "foundation/geometry/units.h"
@@ -45,36 +45,10 @@ struct MeasureOptions {
   double tau_distance_m = 0.66 * kMetresOfNauticalMile;
 };
 
-// A measure that is not defined is empty; no measure is ever NaN or infinite.
-struct Measures {
-  // Distance in space, over the ground plane, and in height (the intruder is higher: positive).
+// The measures of a frame's truth without its volumes, and the distance in space. A measure that is
+// not defined is empty (docs/formats/truth.md); no measure is ever NaN or infinite.
+struct Measures : EncounterTruth {
   double range_m = 0;
-  double horizontal_m = 0;
-  double above_m = 0;
-  // The rate at which the range decreases; negative while it increases. Empty at range 0.
-  std::optional<double> closing_speed_mps;
-  // Direction of the intruder from the own aircraft, from north towards east, in [0, 360), and its
-  // rate. Empty for an intruder straight above or below.
-  std::optional<double> bearing_deg;
-  std::optional<double> bearing_rate_dps;
-  // The same direction from the own course, right positive, in (-180, 180]. Empty where the own
-  // aircraft does not move over the ground.
-  std::optional<double> relative_bearing_deg;
-  // Rate at which the direction to the intruder turns in space. Empty at range 0.
-  std::optional<double> line_of_sight_rate_dps;
-  // Time to the horizontal closest approach, and the horizontal distance there. Empty while the
-  // aircraft diverge, and where they keep their separation.
-  std::optional<double> tcpa_s;
-  std::optional<double> dcpa_m;
-  // The least horizontal distance and the least difference of height within the lookahead, each
-  // taken on its own.
-  double hmd_m = 0;
-  double vmd_m = 0;
-  // Modified tau: (DMOD^2 - horizontal^2) / (offset . velocity). Empty unless the aircraft converge
-  // over the ground, by more than kStillMps, from beyond DMOD.
-  std::optional<double> tau_mod_s;
-  // Time to the same height. Empty unless the aircraft converge in height.
-  std::optional<double> tcoa_s;
 };
 
 Measures measures(const Mover& own, const Mover& intruder, const MeasureOptions& options = {});

@@ -2,27 +2,26 @@
 #pragma once
 
 // The fields of a frame's truth with their keys in truth.jsonl, in the order of the file: the one
-// list from which a line is written and read, and by which a table of the truth has its columns.
-// `visit(key, member...)` gets the member of each of the given records, which name their members
-// alike.
+// list from which a line is written and read, and by which a table of the truth has its columns:
+// visit(key, member).
 namespace airtruth::annotation {
 
-// Of an EncounterTruth and of separation::Measures, without the range, which is the intruder's.
-template <typename Visit, typename... Measures>
-void each_measure(const Visit& visit, Measures&... of) {
-  visit("horizontal_m", of.horizontal_m...);
-  visit("above_m", of.above_m...);
-  visit("closing_speed_mps", of.closing_speed_mps...);
-  visit("bearing_deg", of.bearing_deg...);
-  visit("bearing_rate_dps", of.bearing_rate_dps...);
-  visit("relative_bearing_deg", of.relative_bearing_deg...);
-  visit("line_of_sight_rate_dps", of.line_of_sight_rate_dps...);
-  visit("tcpa_s", of.tcpa_s...);
-  visit("dcpa_m", of.dcpa_m...);
-  visit("hmd_m", of.hmd_m...);
-  visit("vmd_m", of.vmd_m...);
-  visit("tau_mod_s", of.tau_mod_s...);
-  visit("tcoa_s", of.tcoa_s...);
+// Of an encounter, without its volumes.
+template <typename Visit, typename AnyEncounter>
+void each_measure(const Visit& visit, AnyEncounter& of) {
+  visit("horizontal_m", of.horizontal_m);
+  visit("above_m", of.above_m);
+  visit("closing_speed_mps", of.closing_speed_mps);
+  visit("bearing_deg", of.bearing_deg);
+  visit("bearing_rate_dps", of.bearing_rate_dps);
+  visit("relative_bearing_deg", of.relative_bearing_deg);
+  visit("line_of_sight_rate_dps", of.line_of_sight_rate_dps);
+  visit("tcpa_s", of.tcpa_s);
+  visit("dcpa_m", of.dcpa_m);
+  visit("hmd_m", of.hmd_m);
+  visit("vmd_m", of.vmd_m);
+  visit("tau_mod_s", of.tau_mod_s);
+  visit("tcoa_s", of.tcoa_s);
 }
 
 // Of an intruder, after its id, its aircraft and its class.

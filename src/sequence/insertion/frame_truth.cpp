@@ -8,7 +8,6 @@
 #include "encounter/passage/passage.h"
 #include "encounter/separation/violation.h"
 #include "foundation/image/contrast_to_noise.h"
-#include "labels/annotation/truth_fields.h"
 #include "labels/projection/bearing.h"
 #include "labels/projection/spot_box.h"
 
@@ -49,10 +48,8 @@ annotation::EncounterTruth encounter_of(const setup::World& world,
                                         const trajectory::State& state) {
   const separation::Mover own = passage::mover_of(own_state);
   const separation::Mover intruder = passage::mover_of(state);
-  const auto measures = separation::measures(own, intruder, {.lookahead_s = world.lookahead_s});
-  annotation::EncounterTruth truth;
-  annotation::each_measure(
-      [](const char*, const auto& value, auto& member) { member = value; }, measures, truth);
+  annotation::EncounterTruth truth =
+      separation::measures(own, intruder, {.lookahead_s = world.lookahead_s});
   for (const auto& [name, volume] : world.volumes) {
     const bool inside = separation::is_inside(volume, own, intruder);
     const auto violated = separation::violation(volume, own, intruder, world.lookahead_s);
