@@ -245,10 +245,7 @@ Catalogue parse_catalogue(std::string_view text, const fs::path& file) {
   catalogue.name = root.file_name("name").value_or(file.stem().string());
   catalogue.seed = static_cast<std::uint64_t>(
       root.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
-  catalogue.truth = scene::truth_in(root);
-  catalogue.render = scene::render_in(root);
-  catalogue.composite = scene::composite_in(root);
-  catalogue.output = scene::output_in(root);
+  static_cast<scene::OutputTables&>(catalogue) = scene::output_tables_in(root);
   catalogue.stream = stream_in(root);
   catalogue.slurm = slurm_in(root);
   catalogue.negatives = root.number("negatives", scene::kShare).value_or(0);

@@ -25,7 +25,7 @@
 // catalogue describes 14 (expand.h).
 namespace airtruth::catalogue {
 
-struct Background {
+struct Background : scene::CameraTables {
   std::string name;
   // Either a virtual flight, which is made once in the data set's own folder with the sun and lens
   // below, or a video.
@@ -37,13 +37,6 @@ struct Background {
   std::optional<std::int64_t> frame_count;
   // Of numbered pictures, which state none.
   std::optional<double> frame_rate_hz;
-  scene::Lens lens;
-  scene::Camera camera;
-  scene::Motion motion;
-  scene::CameraModel camera_model;
-  scene::Realism realism;
-  scene::Light light;
-  std::vector<scene::Occluder> occluders;
   // How often rules draw it, relative to others.
   double weight = 1;
   Where where;
@@ -98,7 +91,7 @@ struct StreamTable {
 
 using Rule = std::variant<Product, Drawn, EncounterRule>;
 
-struct Catalogue {
+struct Catalogue : scene::OutputTables {
   std::string name;
   std::uint64_t seed = 1;
   std::vector<Background> backgrounds;
@@ -109,10 +102,6 @@ struct Catalogue {
   double negatives = 0;
   // Of all sequences.
   std::vector<DistractorRule> distractors;
-  scene::Truth truth;
-  scene::Render render;
-  scene::Composite composite;
-  scene::Output output;
   StreamTable stream;
   // Options "--name=value" for sbatch, from the table [slurm].
   std::vector<std::string> slurm;

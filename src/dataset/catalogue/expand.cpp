@@ -161,17 +161,8 @@ void check_length(const Item& item, const BackgroundFiles& files) {
 scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
   const Background& background = catalogue.backgrounds[place];
   scene::Scene scene;
-  scene.lens = background.lens;
-  scene.camera = background.camera;
-  scene.motion = background.motion;
-  scene.camera_model = background.camera_model;
-  scene.realism = background.realism;
-  scene.light = background.light;
-  scene.occluders = background.occluders;
-  scene.truth = catalogue.truth;
-  scene.render = catalogue.render;
-  scene.composite = catalogue.composite;
-  scene.output = catalogue.output;
+  static_cast<scene::CameraTables&>(scene) = background;
+  static_cast<scene::OutputTables&>(scene) = catalogue;
   scene.seed = catalogue.seed;
   scene.file = catalogue.file;
   scene.background.name = background.name;

@@ -93,10 +93,7 @@ Scene parse_scene(std::string_view text, const fs::path& file) {
         scene.intruders[kMaxThings].where);
   add_distractors(root, scene);
   scene.occluders = occluders_in(root);
-  scene.truth = truth_in(root);
-  scene.render = render_in(root);
-  scene.composite = composite_in(root);
-  scene.output = output_in(root);
+  static_cast<OutputTables&>(scene) = output_tables_in(root);
   return scene;
 }
 

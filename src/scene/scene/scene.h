@@ -336,30 +336,38 @@ struct Output {
   bool masks = false;
 };
 
+// The tables of a scene file that say what films it, which a background of a catalogue has as well.
+struct CameraTables {
+  Lens lens;
+  Camera camera;
+  Motion motion;
+  Light light;
+  CameraModel camera_model;
+  Realism realism;
+  std::vector<Occluder> occluders;
+};
+
+// Those that say what is made of it, which a catalogue has as well.
+struct OutputTables {
+  Truth truth;
+  Render render;
+  Composite composite;
+  Output output;
+};
+
 // A whole scene file.
-struct Scene {
+struct Scene : CameraTables, OutputTables {
   std::string name;
   std::uint64_t seed = 1;
   // How many encounters of real traffic the scene stands for, up to a factor that a data set
   // shares; empty where it is not drawn from a model of traffic.
   std::optional<double> weight;
   Background background;
-  Lens lens;
-  Camera camera;
-  Motion motion;
-  Light light;
-  CameraModel camera_model;
   Weather weather;
-  Realism realism;
   // The aircraft first, in the order of the file, then the distractors in the air.
   std::vector<Intruder> intruders;
   // The distractors on the lens.
   std::vector<LensMark> lens_marks;
-  std::vector<Occluder> occluders;
-  Truth truth;
-  Render render;
-  Composite composite;
-  Output output;
   fs::path file;
 };
 

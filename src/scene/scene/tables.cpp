@@ -264,8 +264,6 @@ TruthVolume truth_volume_from(const TableReader& table) {
   return volume;
 }
 
-}  // namespace
-
 Truth truth_in(const TableReader& parent) {
   const TableReader table = parent.table("truth", {"volumes", "volume", "lookahead_s"});
   Truth truth;
@@ -310,6 +308,12 @@ Composite composite_in(const TableReader& parent) {
   Composite composite;
   composite.method = table.choice<CompositeMethod>("method").value_or(composite.method);
   return composite;
+}
+
+}  // namespace
+
+OutputTables output_tables_in(const TableReader& parent) {
+  return {truth_in(parent), render_in(parent), composite_in(parent), output_in(parent)};
 }
 
 }  // namespace airtruth::scene

@@ -29,10 +29,7 @@ Weather weather_in(const TableReader& parent);
 Realism realism_in(const TableReader& parent);
 Light light_in(const TableReader& parent);
 std::vector<Occluder> occluders_in(const TableReader& parent);
-Truth truth_in(const TableReader& parent);
-Output output_in(const TableReader& parent);
-Render render_in(const TableReader& parent);
-Composite composite_in(const TableReader& parent);
+OutputTables output_tables_in(const TableReader& parent);
 
 // The keys of a table that holds the tables of a camera model: `before`, their names, `after`.
 TableReader::Keys with_camera_tables(TableReader::Keys before, const TableReader::Keys& after);
