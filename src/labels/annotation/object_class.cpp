@@ -3,49 +3,29 @@
 
 #include <cctype>
 #include <string>
-#include <utility>
 
 namespace airtruth::annotation {
 namespace {
 
-using Word = std::pair<std::string_view, std::string_view>;
+struct ClassWords {
+  std::string_view object_class;
+  std::string_view words;  // with ", " between
+};
 
 // Categories of public sets (AOT, COCO, VisDrone, Anti-UAV, DUT, NPS, FL-Drones) and of this
-// program, and words of the same kinds, by class.
-constexpr auto kWords = std::to_array<Word>({
-    {"aircraft", "aircraft"},
-    {"airplane", "aircraft"},
-    {"aeroplane", "aircraft"},
-    {"plane", "aircraft"},
-    {"fixed wing", "aircraft"},
-    {"helicopter", "aircraft"},
-    {"rotorcraft", "aircraft"},
-    {"jet", "aircraft"},
-    {"airliner", "aircraft"},
-    {"glider", "aircraft"},
-    {"sailplane", "aircraft"},
-    {"ultralight", "aircraft"},
-    {"bird", "bird"},
-    {"flock", "bird"},
-    {"flock of bird", "bird"},
-    {"drone", "multirotor"},
-    {"uav", "multirotor"},
-    {"uas", "multirotor"},
-    {"multirotor", "multirotor"},
-    {"multicopter", "multirotor"},
-    {"quadcopter", "multirotor"},
-    {"quadrotor", "multirotor"},
-    {"hexacopter", "multirotor"},
-    {"octocopter", "multirotor"},
-    {"balloon", "balloon"},
-    {"hot air balloon", "balloon"},
-    {"glint", "glint"},
-    {"dirt", "dirt"},
-    {"insect", "insect"},
-    {"ignore", "ignore"},
-    {"ignored", "ignore"},
-    {"ignored region", "ignore"},
-});
+// program, and words of the same kinds.
+constexpr auto kWords = std::to_array<ClassWords>(
+    {{"aircraft",
+      "aircraft, airplane, aeroplane, plane, fixed wing, helicopter, rotorcraft, jet, airliner, "
+      "glider, sailplane, ultralight"},
+     {"bird", "bird, flock, flock of bird"},
+     {"multirotor",
+      "drone, uav, uas, multirotor, multicopter, quadcopter, quadrotor, hexacopter, octocopter"},
+     {"balloon", "balloon, hot air balloon"},
+     {"glint", "glint"},
+     {"dirt", "dirt"},
+     {"insect", "insect"},
+     {"ignore", "ignore, ignored, ignored region"}});
 
 // "Hot-air_Balloons" as "hot air balloon".
 std::string plain(std::string_view category) {
@@ -66,8 +46,9 @@ std::string plain(std::string_view category) {
 std::optional<std::string_view> class_of_category(std::string_view category) {
   std::string text = plain(category);
   for (int attempt = 0; attempt < 2; ++attempt) {
-    for (const auto& [word, object_class] : kWords)
-      if (text == word) return object_class;
+    for (const auto& [object_class, words] : kWords)
+      if ((", " + std::string(words) + ", ").find(", " + text + ", ") != std::string::npos)
+        return object_class;
     if (!text.ends_with('s')) break;
     text.pop_back();
   }
