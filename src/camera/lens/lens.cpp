@@ -371,23 +371,36 @@ double Lens::focal_px() const {
 const char* Lens::name() const { return enum_name(static_cast<ModelKind>(model_.index())); }
 
 double Lens::horizontal_fov_deg() const {
-  const Pixel c = numbers_of(*this).principal_point_px;
+  const Pixel c = pixel_of(facts_of(*this).principal_point_px);
   return angle_between_pixels(*this, {0, c.y()}, {double(size_.width), c.y()}, c);
 }
 
 double Lens::vertical_fov_deg() const {
-  const Pixel c = numbers_of(*this).principal_point_px;
+  const Pixel c = pixel_of(facts_of(*this).principal_point_px);
   return angle_between_pixels(*this, {c.x(), 0}, {c.x(), double(size_.height)}, c);
 }
 
-Numbers numbers_of(const Lens& lens) {
-  return std::visit(
-      [](const auto& model) {
-        Numbers numbers{model.focal_px, model.principal_point_px, {}};
-        if constexpr (requires { model.distortion; }) numbers.distortion = model.distortion;
-        return numbers;
+Facts facts_of(const Lens& lens) {
+  Facts facts{.model = lens.name(), .width = lens.size().width, .height = lens.size().height};
+  std::visit(
+      [&](const auto& model) {
+        facts.focal_px = {model.focal_px.x(), model.focal_px.y()};
+        facts.principal_point_px = {model.principal_point_px.x(), model.principal_point_px.y()};
+        if constexpr (requires { model.distortion; }) facts.distortion = model.distortion;
       },
       lens.model());
+  return facts;
+}
+
+Lens lens_of(const Facts& facts) {
+  const Pixel focal = pixel_of(facts.focal_px);
+  const Pixel principal = pixel_of(facts.principal_point_px);
+  const ImageSize size{facts.width, facts.height};
+  const auto kind = enum_named<ModelKind>(facts.model);
+  if (kind == ModelKind::kFisheye) return Lens(Fisheye{focal, principal, facts.distortion}, size);
+  if (kind == ModelKind::kBrownConrady)
+    return Lens(BrownConrady{focal, principal, facts.distortion}, size);
+  return Lens(Pinhole{focal, principal}, size);
 }
 
 Lens undistorted(bool fisheye, double focal_px, ImageSize size) {

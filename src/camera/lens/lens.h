@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -115,13 +116,20 @@ class Lens {
   Field field_;
 };
 
-// What every model has; a pinhole's distortion is empty.
-struct Numbers {
-  Pixel focal_px;
-  Pixel principal_point_px;
+// A lens as files state it: lens_of(facts_of(lens)) maps each ray to the same pixel as the lens
+// does.
+struct Facts {
+  // "pinhole", "brown_conrady" or "fisheye".
+  std::string model;
+  std::array<double, 2> focal_px{};
+  std::array<double, 2> principal_point_px{};
+  // A pinhole's is empty.
   std::vector<double> distortion;
+  int width = 0;
+  int height = 0;
 };
-Numbers numbers_of(const Lens& lens);
+Facts facts_of(const Lens& lens);
+Lens lens_of(const Facts& facts);
 
 // A pinhole, or an equidistant fisheye (all distortion coefficients are 0), with square pixels,
 // whose axis passes through the centre of the image.

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "camera/lens/lens.h"
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -16,7 +17,7 @@
 #include "foundation/base/median.h"
 #include "foundation/image/contrast_to_noise.h"
 #include "foundation/json/json_object.h"
-#include "labels/annotation/lens_facts.h"
+#include "labels/annotation/truth.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
@@ -124,7 +125,7 @@ class Check {
       fault("the video has " + std::to_string(frames) + " frames and truth.jsonl " +
             std::to_string(finished.truth.frames.size()));
     contrast_of_all();
-    const lens::Lens lens = annotation::lens_of(finished.truth.lens);
+    const lens::Lens lens = lens::lens_of(finished.truth.lens);
     for (const annotation::Frame& frame : finished.truth.frames)
       for (const annotation::Intruder& intruder : frame.intruders) {
         box(frame, intruder, width, height);

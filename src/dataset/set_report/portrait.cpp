@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "labels/annotation/lens_facts.h"
+#include "camera/lens/lens.h"
 #include "labels/annotation/object_class.h"
+#include "labels/annotation/truth.h"
 
 namespace airtruth::set_report {
 namespace {
@@ -21,7 +22,7 @@ std::size_t cell_of(const PixelBox& box, int width, int height) {
 
 void count(const replay::Finished& finished, Portrait& portrait) {
   std::optional<lens::Lens> lens;
-  if (finished.scene) lens = annotation::lens_of(finished.truth.lens);
+  if (finished.scene) lens = lens::lens_of(finished.truth.lens);
   portrait.centres.assign(Portrait::kCellColumns * Portrait::kCellRows, 0);
   for (const annotation::Frame& frame : finished.truth.frames) {
     bool is_seen = false;

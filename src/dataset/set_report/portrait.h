@@ -33,7 +33,7 @@ struct Portrait {
   std::array<std::int64_t, 5> frames_by_state{};
   // Number of these visible states that have a covered box.
   std::int64_t covered_boxes = 0;
-  // Number of states that are in view by geometry and have no box (labels/annotation/lens_facts.h).
+  // Number of states that are in view by geometry and have no box (labels/annotation/truth.h).
   std::int64_t without_box = 0;
   // Frames for which a label describes an aircraft.
   std::int64_t frames_with_intruder = 0;

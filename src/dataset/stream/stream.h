@@ -10,7 +10,6 @@
 #include "dataset/catalogue/catalogue.h"
 #include "foundation/geometry/box.h"
 #include "foundation/image/picture.h"
-#include "labels/annotation/lens_facts.h"
 #include "labels/annotation/truth.h"
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/options.h"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "camera/lens/lens.h"
 #include "dataset/sequences/labels_of_truth.h"
 #include "encounter/separation/violation.h"
 #include "evaluation/scores/ignored_regions.h"
@@ -14,7 +15,7 @@
 #include "foundation/base/names.h"
 #include "foundation/image/contrast_to_noise.h"
 #include "foundation/json/json_object.h"
-#include "labels/annotation/lens_facts.h"
+#include "labels/annotation/truth.h"
 #include "picture/video/numbered_frames.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/pipeline/encounter_record.h"
@@ -94,7 +95,7 @@ scores::TruthObject object_of(const exchange::Label& label, const annotation::In
 // visible one.
 scores::TruthFrame frame_of(const annotation::Frame& truth,
                             dataset::Boxes boxes,
-                            const annotation::LensFacts& lens) {
+                            const lens::Facts& lens) {
   scores::TruthFrame frame;
   frame.frame = truth.frame;
   frame.time_s = truth.time_s;
@@ -219,7 +220,7 @@ scores::TruthSequence rendered_truth(const fs::path& folder,
                                      finished.scene->background.first_frame);
   truth.width = finished.truth.lens.width;
   truth.height = finished.truth.lens.height;
-  truth.lens = annotation::lens_of(finished.truth.lens);
+  truth.lens = lens::lens_of(finished.truth.lens);
   truth.weather = scene::weather_facts(*finished.scene);
   truth.weight = record.maybe_number("weight");
   if (truth.weight && *truth.weight < 0) record.fail("weight", "a number from 0 on");

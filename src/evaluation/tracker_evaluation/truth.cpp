@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "camera/lens/lens.h"
 #include "foundation/image/contrast_to_noise.h"
-#include "labels/annotation/lens_facts.h"
 #include "labels/exchange/exchange.h"
 #include "picture/video/numbered_frames.h"
 #include "sequence/replay/finished.h"
@@ -15,7 +15,7 @@ namespace {
 
 std::optional<lens::Lens> lens_of(const labelled::LabelledSet& set, const std::string& name) {
   if (set.is_imported(name)) return std::nullopt;
-  return annotation::lens_of(replay::open_finished(set.folder(name)).truth.lens);
+  return lens::lens_of(replay::open_finished(set.folder(name)).truth.lens);
 }
 
 PixelBox covered(const Box& box) {

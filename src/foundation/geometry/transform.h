@@ -82,6 +82,7 @@ Quaternion cam_from_body();
 // A position in the image, in pixels. (0, 0) is the top-left corner of the image; the centre of the
 // first pixel is (0.5, 0.5).
 using Pixel = Eigen::Vector2d;
+inline Pixel pixel_of(const std::array<double, 2>& numbers) { return {numbers[0], numbers[1]}; }
 
 // A 3x3 projective map b_from_a from pixels of image a to pixels of image b.
 using Homography = Eigen::Matrix3d;

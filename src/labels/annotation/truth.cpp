@@ -120,8 +120,8 @@ Frame frame_from(const JsonObject& object) {
   return frame;
 }
 
-LensFacts lens_from(const JsonObject& object) {
-  LensFacts lens;
+lens::Facts lens_from(const JsonObject& object) {
+  lens::Facts lens;
   lens.model = object.text("model");
   lens.width = pixels(object, "width");
   lens.height = pixels(object, "height");
@@ -133,7 +133,7 @@ LensFacts lens_from(const JsonObject& object) {
 
 struct Line {
   Frame frame;
-  LensFacts lens;
+  lens::Facts lens;
 };
 
 Line line_from(std::string_view text, const Where& where) {
@@ -170,6 +170,20 @@ void take_shake(const Shake& shake, Frame& frame) {
   frame.rotation.reset();
   if (const auto& q = shake.rotation) frame.rotation = {q->w(), q->x(), q->y(), q->z()};
   frame.rate_radps = numbers_of(shake.rate_radps);
+}
+
+bool is_in_view(const Frame& frame, const Intruder& intruder, const lens::Lens& lens) {
+  if (!intruder.position_in_cam_m) return false;
+  const auto nominal = lens.pixel_from_cam(vector_of(*intruder.position_in_cam_m));
+  if (!nominal) return false;
+  const Vector3 h = shake_of(frame).frame_from_reference * Vector3(nominal->x(), nominal->y(), 1);
+  if (!(h.z() > 0)) return false;
+  return lens.size().holds(h.head<2>() / h.z());
+}
+
+bool lacks_box(const Frame& frame, const Intruder& intruder, const lens::Lens& lens) {
+  return !intruder.visible_box_px && intruder.state != State::kHidden &&
+         is_in_view(frame, intruder, lens);
 }
 
 Frame parse_jsonl_line(std::string_view line, const std::filesystem::path& file, int line_number) {
@@ -340,7 +354,7 @@ OrderedJson json(const Intruder& intruder) {
   return object;
 }
 
-OrderedJson json(const LensFacts& lens) {
+OrderedJson json(const lens::Facts& lens) {
   return {{"model", lens.model},
           {"width", lens.width},
           {"height", lens.height},
@@ -356,7 +370,7 @@ bool is_finite(const OrderedJson& json) {
 
 }  // namespace
 
-std::string jsonl_line(const Frame& frame, const LensFacts& lens) {
+std::string jsonl_line(const Frame& frame, const lens::Facts& lens) {
   const std::string where = "truth of frame " + std::to_string(frame.frame) + ": ";
   if (const auto found = fault(frame)) check(false, where + *found);
   OrderedJson object;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include <airtruth/truth.h>
 
+#include "camera/lens/lens.h"
 #include "foundation/base/names.h"
 #include "foundation/geometry/within_frame.h"
 
@@ -46,24 +46,21 @@ inline std::optional<PixelBox> box_to_show(const Intruder& intruder) {
 Shake shake_of(const Frame& frame);
 void take_shake(const Shake& shake, Frame& frame);
 
-// The lens, as each line of truth.jsonl states it.
-struct LensFacts {
-  std::string model;
-  std::array<double, 2> focal_px{};
-  std::array<double, 2> principal_point_px{};
-  std::vector<double> distortion;
-  int width = 0;
-  int height = 0;
-};
+// True where the intruder's reference point lies in the picture. The answer follows from its
+// position through the stated lens and motion alone, without any pixel or box.
+bool is_in_view(const Frame& frame, const Intruder& intruder, const lens::Lens& lens);
+
+// True where the intruder is in view, nothing hides it, and the truth holds no box for it.
+bool lacks_box(const Frame& frame, const Intruder& intruder, const lens::Lens& lens);
 
 // One line of truth.jsonl, without the newline. Each number is the shortest text that parses to the
 // same double. NaN and infinity fail a check().
-std::string jsonl_line(const Frame& frame, const LensFacts& lens);
+std::string jsonl_line(const Frame& frame, const lens::Facts& lens);
 
 // Parses such a line. Errors carry file and line.
 Frame parse_jsonl_line(std::string_view line, const std::filesystem::path& file, int line_number);
 struct Truth {
-  LensFacts lens;
+  lens::Facts lens;
   std::vector<Frame> frames;
 };
 Truth read_truth(const std::filesystem::path& file);

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-const LensFacts kLens{"fisheye", {480, 480.5}, {640, 480}, {0.1, 0, 0, 0}, 1280, 960};
+const lens::Facts kLens{"fisheye", {480, 480.5}, {640, 480}, {0.1, 0, 0, 0}, 1280, 960};
 
 Intruder visible_intruder() {
   Intruder intruder;

@@ -3,13 +3,13 @@
 
 #include <utility>
 
-#include "labels/annotation/lens_facts.h"
+#include "camera/lens/lens.h"
 #include "library/records/public_forms.h"
 
 namespace airtruth {
 
 SequenceTruth public_truth(annotation::Truth truth) {
-  return {public_lens(annotation::lens_of(truth.lens)), std::move(truth.frames)};
+  return {public_lens(lens::lens_of(truth.lens)), std::move(truth.frames)};
 }
 
 SequenceTruth read_truth(const std::filesystem::path& file) {
@@ -17,7 +17,7 @@ SequenceTruth read_truth(const std::filesystem::path& file) {
 }
 
 std::string truth_line(const FrameTruth& truth, const Lens& lens) {
-  return annotation::jsonl_line(truth, annotation::facts_of(lens.state().lens));
+  return annotation::jsonl_line(truth, lens::facts_of(lens.state().lens));
 }
 
 }  // namespace airtruth

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "camera/lens/lens.h"
 #include "foundation/json/parse_json.h"
-#include "labels/annotation/lens_facts.h"
 
 namespace airtruth::detector {
 namespace {
@@ -91,7 +91,7 @@ Hello hello_of(std::string_view line) {
 }
 
 std::string begin_line(const SequenceInput& sequence, const std::string& shared_memory) {
-  const annotation::LensFacts lens = annotation::facts_of(sequence.lens);
+  const lens::Facts lens = lens::facts_of(sequence.lens);
   Json begin = {{"sequence", sequence.name},
                 {"width", sequence.width},
                 {"height", sequence.height},

@@ -10,9 +10,10 @@
 
 #include <fmt/format.h>
 
+#include "camera/lens/lens.h"
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
-#include "labels/annotation/lens_facts.h"
+#include "labels/annotation/truth.h"
 #include "picture/video/still.h"
 #include "scene/scene/scene.h"
 #include "sequence/replay/finished.h"
@@ -47,7 +48,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
   }
   const replay::Finished finished = replay::open_finished(set.folder(name));
   clip.media = finished.video;
-  clip.lens = annotation::lens_of(finished.truth.lens);
+  clip.lens = lens::lens_of(finished.truth.lens);
   if (finished.scene) clip.own_aircraft = finished.scene->background.mask;
   return clip;
 }
@@ -86,7 +87,7 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
     clip.reading.first_frame = background.first_frame;
     clip.reading.picture_rate_hz = background.frame_rate_hz;
     clip.reading.frame_count = background.frame_count;
-    clip.lens = annotation::lens_of(annotation::read_truth(set.folder(name) / "truth.jsonl").lens);
+    clip.lens = lens::lens_of(annotation::read_truth(set.folder(name) / "truth.jsonl").lens);
     clips.push_back(std::move(clip));
   }
   return clips;

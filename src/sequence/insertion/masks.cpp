@@ -54,7 +54,7 @@ std::vector<MaskFile> mask_files(const annotation::Frame& truth,
 }
 
 std::optional<composite::AlphaMask> read_alpha_mask(const std::filesystem::path& folder,
-                                                    const annotation::LensFacts& lens,
+                                                    const lens::Facts& lens,
                                                     const std::string& intruder_id,
                                                     std::int64_t frame) {
   // A manipulated truth.jsonl must not name files outside its folder.

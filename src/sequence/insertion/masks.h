@@ -43,7 +43,7 @@ std::vector<MaskFile> mask_files(const annotation::Frame& truth,
 // Reads the mask of an intruder back, over the whole frame; returns empty where the file does not
 // exist. Throws Error where the file is not a grey picture of the frame's size.
 std::optional<composite::AlphaMask> read_alpha_mask(const std::filesystem::path& folder,
-                                                    const annotation::LensFacts& lens,
+                                                    const lens::Facts& lens,
                                                     const std::string& intruder_id,
                                                     std::int64_t frame);
 

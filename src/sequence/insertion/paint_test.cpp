@@ -11,7 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "aircraft/shapes/shapes.h"
-#include "labels/annotation/lens_facts.h"
+#include "camera/lens/lens.h"
+#include "labels/annotation/truth.h"
 #include "picture/composite/cover.h"
 #include "picture/composite/matte.h"
 #include "scene/scene/scene.h"
@@ -62,7 +63,7 @@ Drawn drawn(const scene::Scene& scene, double time_s, const image::Mask* own = n
   result.truth = frame_truth(world, frame, "none", {}, moment, painted);
   result.after = std::move(frame.picture);
   // What the writer refuses fails here.
-  annotation::jsonl_line(result.truth, annotation::facts_of(world.lens));
+  annotation::jsonl_line(result.truth, lens::facts_of(world.lens));
   return result;
 }
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "labels/annotation/lens_facts.h"
+#include "camera/lens/lens.h"
 #include "labels/annotation/truth.h"
 #include "picture/video/reader.h"
 #include "scene/scene/scene.h"

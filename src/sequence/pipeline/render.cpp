@@ -28,7 +28,6 @@
 #include "foundation/json/or_null.h"
 #include "foundation/run_files/run_files.h"
 #include "labels/annotation/evision.h"
-#include "labels/annotation/lens_facts.h"
 #include "labels/annotation/object_class.h"
 #include "labels/annotation/truth.h"
 #include "picture/composite/cover.h"
@@ -98,7 +97,7 @@ class Outputs {
           const video::StreamInfo& info,
           int threads)
       : folder_(folder),
-        lens_(annotation::facts_of(lens)),
+        lens_(lens::facts_of(lens)),
         writer_(folder / (scene.name + video::extension(scene.output.video)),
                 info,
                 {.format = scene.output.video,
@@ -183,7 +182,7 @@ class Outputs {
   }
 
   fs::path folder_;
-  annotation::LensFacts lens_;
+  lens::Facts lens_;
   video::Writer writer_;
   std::ofstream truth_;
   std::size_t aircraft_ = 0;  // of the scene's intruders, which they are the first of

@@ -52,7 +52,7 @@ std::size_t intruder_index(const annotation::Frame& truth, const std::string& id
               "; expected a frame in which one is in view (see truth.jsonl)");
 }
 
-PixelBox area_around(const Box& box, const annotation::LensFacts& lens) {
+PixelBox area_around(const Box& box, const lens::Facts& lens) {
   const double margin = std::max(4.0, 0.25 * std::max(box.width, box.height));
   const double x0 = std::max(box.x, -8.0) - margin;
   const double y0 = std::max(box.y, -8.0) - margin;

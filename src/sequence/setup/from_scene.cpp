@@ -29,19 +29,21 @@ std::vector<double> filled(std::vector<double> distortion, std::size_t size) {
 }
 
 lens::Lens stated_lens(const scene::Lens& lens, lens::ImageSize size) {
-  Pixel focal = lens.focal_px.value_or(Pixel(0, 0));
+  const Pixel focal = lens.focal_px.value_or(Pixel(0, 0));
+  const Pixel centre = lens.principal_point_px.value_or(Pixel(size.width / 2.0, size.height / 2.0));
+  lens::Facts facts{enum_name(lens.model),
+                    {focal.x(), focal.y()},
+                    {centre.x(), centre.y()},
+                    filled(lens.distortion, 4),
+                    size.width,
+                    size.height};
   if (lens.vertical_fov_deg) {
     const lens::Lens plain = lens.model == lens::ModelKind::kFisheye
                                  ? lens::fisheye_from_vertical_fov(*lens.vertical_fov_deg, size)
                                  : lens::pinhole_from_vertical_fov(*lens.vertical_fov_deg, size);
-    focal = {plain.focal_px(), plain.focal_px()};
+    facts.focal_px = {plain.focal_px(), plain.focal_px()};
   }
-  const Pixel centre = lens.principal_point_px.value_or(Pixel(size.width / 2.0, size.height / 2.0));
-  if (lens.model == lens::ModelKind::kPinhole)
-    return lens::Lens(lens::Pinhole{focal, centre}, size);
-  if (lens.model == lens::ModelKind::kFisheye)
-    return lens::Lens(lens::Fisheye{focal, centre, filled(lens.distortion, 4)}, size);
-  return lens::Lens(lens::BrownConrady{focal, centre, filled(lens.distortion, 4)}, size);
+  return lens::lens_of(facts);
 }
 
 // An MP4 file has "ftyp" as its first box (ISO/IEC 14496-12, 4.3).

@@ -8,11 +8,11 @@
 #include <fmt/ranges.h>
 
 #include "camera/lens/calibration_file.h"
+#include "camera/lens/lens.h"
 #include "camera/motion/estimator.h"
 #include "camera/motion/shake.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "labels/annotation/lens_facts.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
@@ -86,7 +86,7 @@ void warn_of(const ClipMotion& found, bool has_gyro, const Warn& warn) {
 }  // namespace
 
 std::string words_of(const lens::Lens& lens) {
-  const annotation::LensFacts facts = annotation::facts_of(lens);
+  const lens::Facts facts = lens::facts_of(lens);
   return fmt::format("{} {} {} {}",
                      facts.model,
                      fmt::join(facts.focal_px, ","),
