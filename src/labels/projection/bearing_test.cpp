@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "labels/projection/bearing.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "labels/projection/exact_box.h"
 
 namespace airtruth::projection {
 namespace {

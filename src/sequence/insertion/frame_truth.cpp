@@ -8,7 +8,7 @@
 #include "encounter/passage/passage.h"
 #include "encounter/separation/violation.h"
 #include "foundation/image/contrast_to_noise.h"
-#include "labels/projection/bearing.h"
+#include "labels/projection/exact_box.h"
 #include "labels/projection/spot_box.h"
 
 namespace airtruth::insertion {

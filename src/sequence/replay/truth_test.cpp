@@ -10,7 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "labels/annotation/evision.h"
-#include "labels/projection/bearing.h"
+#include "labels/projection/exact_box.h"
 #include "picture/composite/cover.h"
 #include "picture/video/still.h"
 #include "sequence/demo/demo.h"

@@ -1,14 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "studio/session/answers.h"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <new>
 
+#include <opencv2/imgproc.hpp>
+#include <turbojpeg.h>
+
+#include "foundation/base/error.h"
+#include "foundation/image/colour.h"
 #include "labels/annotation/truth.h"
+#include "show/drawing/draw.h"
 
 namespace airtruth::session {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// Seams of crops cannot be seen from here on: chosen by looking.
+constexpr int kQuality = 92;
+
+struct Destroy {
+  void operator()(void* handle) const { tjDestroy(handle); }
+};
 
 }  // namespace
 
@@ -32,6 +48,36 @@ std::string framed(const Json& header, const std::string& jpeg) {
   std::string bytes;
   for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((size >> shift) & 0xFFU);
   return bytes + text + jpeg;
+}
+
+std::string jpeg_of(const image::Rgb8& rgb) {
+  const std::unique_ptr<void, Destroy> encoder(tjInitCompress());
+  if (!encoder) throw std::bad_alloc();
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  const int failed = tjCompress2(encoder.get(),
+                                 rgb.samples.get(),
+                                 rgb.width,
+                                 0,
+                                 rgb.height,
+                                 TJPF_RGB,
+                                 &bytes,
+                                 &size,
+                                 TJSAMP_420,
+                                 kQuality,
+                                 TJFLAG_FASTDCT);
+  const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owner(bytes, tjFree);
+  check(failed == 0, "a picture can be written as JPEG");
+  return {reinterpret_cast<const char*>(bytes), size};
+}
+
+std::string jpeg_of(const image::Picture& picture, const PixelBox& part, double scale) {
+  const image::Rgb8 rgb = image::rgb8_from_picture(picture, part);
+  if (scale >= 1) return jpeg_of(rgb);
+  const auto scaled = [&](int px) {
+    return std::max(1, static_cast<int>(std::lround(px * scale)));
+  };
+  return jpeg_of(drawing::resized(rgb, scaled(rgb.width), scaled(rgb.height), cv::INTER_AREA));
 }
 
 Json values_of(const camera_file::Calibration& found) {

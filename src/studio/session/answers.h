@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/camera_file/calibration.h"
+#include "foundation/geometry/box.h"
+#include "foundation/image/picture.h"
 
 // What a session says to its pages, as bytes. Text that is not UTF-8 has other letters in its
 // place.
@@ -23,6 +25,10 @@ double rounded(double value, double step);
 
 // A picture: 4 bytes with the length of its header, little end first; the header; the JPEG.
 std::string framed(const nlohmann::ordered_json& header, const std::string& jpeg);
+
+// A part of a picture as the bytes of a .jpg, `scale` times as large (0 < scale <= 1).
+std::string jpeg_of(const image::Picture& picture, const PixelBox& part, double scale);
+std::string jpeg_of(const image::Rgb8& rgb);
 
 // [{"key", "value", "error", "missing"}] of each quantity of a camera file; value and error are
 // null where it was not measured.

@@ -12,7 +12,7 @@
 #include "foundation/image/cuts.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "show/drawing/draw.h"
-#include "studio/session/jpeg.h"
+#include "studio/session/answers.h"
 
 namespace airtruth::session {
 namespace {

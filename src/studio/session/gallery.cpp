@@ -14,7 +14,7 @@
 #include "sequence/demo/aircraft_sheet.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "studio/session/jpeg.h"
+#include "studio/session/answers.h"
 
 namespace airtruth::session {
 namespace {

@@ -27,7 +27,6 @@
 #include "studio/messages/request.h"
 #include "studio/session/answers.h"
 #include "studio/session/gallery.h"
-#include "studio/session/jpeg.h"
 #include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
 #include "studio/session/stage.h"

@@ -19,7 +19,7 @@
 #include "scene/scene/scene.h"
 #include "sequence/pipeline/frame_by_frame.h"
 #include "sequence/pipeline/render.h"
-#include "studio/session/jpeg.h"
+#include "studio/session/answers.h"
 #include "support/flight_file.h"
 #include "support/temporary_folder.h"
 
