@@ -248,16 +248,16 @@ Lens cropped(const Lens& lens, ImageSize size) {
 }
 
 std::string opencv_calibration(const Lens& lens, const std::string& note) {
-  const Numbers n = numbers_of(lens);
-  std::vector<double> distortion = n.distortion;
+  const Facts facts = facts_of(lens);
+  std::vector<double> distortion = facts.distortion;
   if (distortion.empty()) distortion.assign(4, 0.0);
   const bool fisheye = std::holds_alternative<Fisheye>(lens.model());
   std::string line = note;
   std::replace_if(line.begin(), line.end(), is_control, ' ');
   // OpenCV's (0, 0) is the centre of the first pixel; airtruth's is its corner.
-  const Pixel centre = n.principal_point_px - Pixel::Constant(0.5);
+  const Pixel centre = pixel_of(facts.principal_point_px) - Pixel::Constant(0.5);
   const std::vector<double> matrix = {
-      n.focal_px.x(), 0, centre.x(), 0, n.focal_px.y(), centre.y(), 0, 0, 1};
+      facts.focal_px[0], 0, centre.x(), 0, facts.focal_px[1], centre.y(), 0, 0, 1};
   return fmt::format(
       "%YAML:1.0\n---\n# {}\nimage_width: {}\nimage_height: {}\nfisheye_model: "
       "{}\ncamera_matrix: {}distortion_coefficients: {}",
@@ -270,15 +270,15 @@ std::string opencv_calibration(const Lens& lens, const std::string& note) {
 }
 
 std::string scene_table(const Lens& lens) {
-  const Numbers n = numbers_of(lens);
+  const Facts facts = facts_of(lens);
   std::string text =
       fmt::format("[lens]\nmodel = \"{}\"\nfocal_px = [{}]\nprincipal_point_px = [{}]\n",
                   lens.name(),
-                  list_of({n.focal_px.x(), n.focal_px.y()}),
-                  list_of({n.principal_point_px.x(), n.principal_point_px.y()}));
+                  list_of({facts.focal_px[0], facts.focal_px[1]}),
+                  list_of({facts.principal_point_px[0], facts.principal_point_px[1]}));
   const bool any =
-      std::any_of(n.distortion.begin(), n.distortion.end(), [](double k) { return k != 0; });
-  if (any) text += fmt::format("distortion = [{}]\n", list_of(n.distortion));
+      std::any_of(facts.distortion.begin(), facts.distortion.end(), [](double k) { return k != 0; });
+  if (any) text += fmt::format("distortion = [{}]\n", list_of(facts.distortion));
   return text;
 }
 

@@ -221,8 +221,7 @@ class Work {
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<catalogue::BackgroundFiles> files_;
   // Aircraft are the same in every set: their ambient occlusion is kept where `render` keeps it.
-  std::shared_ptr<setup::SharedInputs> shared_ =
-      std::make_shared<setup::SharedInputs>(pipeline::cache_folder({}, "ambient_occlusion"));
+  std::shared_ptr<setup::SharedInputs> shared_ = pipeline::inputs_of({});
   std::mutex mutex_;
   std::set<std::pair<std::size_t, std::string>> said_;  // warnings, by background
   std::int64_t repeated_ = 0;                           // warnings that were said before

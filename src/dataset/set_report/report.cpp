@@ -22,6 +22,7 @@
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
+#include "foundation/json/or_null.h"
 #include "sequence/setup/from_scene.h"
 #include "show/html/page.h"
 #include "show/html/page_assets.h"
@@ -42,11 +43,6 @@ Json column(const std::vector<Row>& rows, const Value& value) {
   Json values = Json::array();
   for (const Row& row : rows) values.push_back(value(row));
   return values;
-}
-
-double rounded(double value, double unit) { return std::round(value / unit) * unit; }
-Json rounded(const std::optional<double>& value, double unit) {
-  return value ? Json(rounded(*value, unit)) : Json();
 }
 
 // The series are stored in columns because a page of a thousand sequences holds a hundred thousand

@@ -45,12 +45,6 @@ catalogue::Catalogue adapted(catalogue::Catalogue catalogue) {
   return catalogue;
 }
 
-std::shared_ptr<setup::SharedInputs> inputs_of(const pipeline::Options& options) {
-  return options.shared ? options.shared
-                        : std::make_shared<setup::SharedInputs>(
-                              pipeline::cache_folder(options, "ambient_occlusion"));
-}
-
 // An even offset from low to high, at a share from 0 to 1; where there is none, the one below high.
 int placed(double share, int low, int high) {
   const int first = (low + 1) / 2;
@@ -66,7 +60,7 @@ struct Stream::State {
       : catalogue(adapted(std::move(given))),
         seed(Seed(catalogue.seed).stream("stream", seed_value)()),
         options(std::move(wanted)),
-        shared(inputs_of(options)),
+        shared(pipeline::inputs_of(options)),
         planner(
             catalogue,
             seed,

@@ -160,12 +160,6 @@ Film film_of(const scores::Assessment& assessment, const report::RunOptions& run
 // Of one detector in one frame, the strongest are drawn.
 constexpr std::size_t kMaxDrawn = 30;
 
-double rounded(double value, double unit) { return std::round(value / unit) * unit; }
-
-Json rounded(const std::optional<double>& value, double unit) {
-  return value ? Json(rounded(*value, unit)) : Json();
-}
-
 // Boxes to hundredths, so that they print short.
 Json box_json(const Box& box) {
   Json json = Json::array();

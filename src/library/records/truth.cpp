@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include <airtruth/truth.h>
+
 #include "camera/lens/lens.h"
 #include "library/records/public_forms.h"
 

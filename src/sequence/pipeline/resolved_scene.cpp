@@ -51,13 +51,6 @@ disk_cache::Cache cache_of(const Options& options, const char* kind) {
   return folder.empty() ? disk_cache::Cache() : disk_cache::Cache(folder);
 }
 
-// The inputs of the process, else those of one run.
-std::shared_ptr<setup::SharedInputs> inputs_of(const Options& options) {
-  return options.shared
-             ? options.shared
-             : std::make_shared<setup::SharedInputs>(cache_folder(options, "ambient_occlusion"));
-}
-
 // Measures the whole clip, so that all scenes over one clip have the same camera.
 camera_file::Calibration measured_on(const scene::Scene& scene,
                                      const lens::ImageSize& size,
@@ -535,6 +528,12 @@ void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
   setup::motion_model(scene);
   insertion::check_method(scene, lens);
   setup::check_paths(with_camera.scene, info);
+}
+
+std::shared_ptr<setup::SharedInputs> inputs_of(const Options& options) {
+  return options.shared
+             ? options.shared
+             : std::make_shared<setup::SharedInputs>(cache_folder(options, "ambient_occlusion"));
 }
 
 }  // namespace airtruth::pipeline

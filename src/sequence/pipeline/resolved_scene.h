@@ -133,4 +133,7 @@ camera_file::Calibration calibration_of(const scene::Scene& scene, const Options
 // empty: none.
 fs::path cache_folder(const Options& options, const char* kind);
 
+// The aircraft and hashes of the process, else new ones for one run.
+std::shared_ptr<setup::SharedInputs> inputs_of(const Options& options);
+
 }  // namespace airtruth::pipeline

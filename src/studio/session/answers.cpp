@@ -40,8 +40,6 @@ std::string error(std::int64_t id, const std::string& line) {
   return text_of({{"id", id}, {"error", line}});
 }
 
-double rounded(double value, double step) { return std::round(value / step) * step; }
-
 std::string framed(const Json& header, const std::string& jpeg) {
   const std::string text = text_of(header);
   const auto size = static_cast<std::uint32_t>(text.size());

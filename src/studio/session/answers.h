@@ -20,9 +20,6 @@ std::string text_of(const nlohmann::ordered_json& json);
 std::string ok(std::int64_t id, const nlohmann::ordered_json& result);
 std::string error(std::int64_t id, const std::string& line);
 
-// A number to a whole multiple of a step: shorter, and as exact as its reader can use.
-double rounded(double value, double step);
-
 // A picture: 4 bytes with the length of its header, little end first; the header; the JPEG.
 std::string framed(const nlohmann::ordered_json& header, const std::string& jpeg);
 

@@ -10,10 +10,10 @@
 #include "encounter/placement/by_approach.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
+#include "foundation/json/or_null.h"
 #include "labels/projection/exact_box.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
-#include "studio/session/answers.h"
 #include "studio/session/plan.h"
 
 namespace airtruth::session {

@@ -13,12 +13,12 @@
 #include "encounter/passage/passage.h"
 #include "foundation/base/error.h"
 #include "foundation/geometry/box.h"
+#include "foundation/json/or_null.h"
 #include "labels/projection/exact_box.h"
 #include "sequence/preview/rows.h"
 #include "sequence/setup/flyable.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
-#include "studio/session/answers.h"
 
 namespace airtruth::session {
 namespace {

@@ -99,9 +99,7 @@ void begin_job(std::jthread& job, Work work) {
 
 // Aircraft and hashes are kept for all that the session does.
 Options with_inputs(Options options) {
-  if (!options.pipeline.shared)
-    options.pipeline.shared = std::make_shared<setup::SharedInputs>(
-        pipeline::cache_folder(options.pipeline, "ambient_occlusion"));
+  options.pipeline.shared = pipeline::inputs_of(options.pipeline);
   return options;
 }
 
