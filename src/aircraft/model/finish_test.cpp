@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "aircraft/model/mesh.h"
-
 #include <gtest/gtest.h>
+
+#include "aircraft/model/mesh.h"
 
 namespace airtruth::model {
 namespace {
