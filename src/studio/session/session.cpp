@@ -23,7 +23,6 @@
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
-#include "sequence/setup/shared_inputs.h"
 #include "studio/messages/request.h"
 #include "studio/session/answers.h"
 #include "studio/session/gallery.h"
