@@ -165,8 +165,7 @@ void add_show(CLI::App& group, Context& context) {
   command->add_option(
       "--forward", arguments->forward, "Model file: its axis that is the nose (x, -y, ...)");
   command->add_option("--up", arguments->up, "Model file: its axis that is up");
-  command->add_option("--scale", arguments->scale, "Model file: metres per unit")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--scale", arguments->scale, "Model file: metres per unit")->check(above_0());
 }
 
 }  // namespace

@@ -160,7 +160,7 @@ void add_known_facts(CLI::App* command, CalibrateArguments& arguments) {
   command->add_option("--mask", arguments.mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("--altitude", arguments.altitude_m)
       ->description("Height of the camera above the ground, m: for the extinction")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   add_number(*command, "--heading", arguments.heading_deg, -360.0, 360.0)
       ->description("Where the camera looks in the first frame, degrees from north: for the sun");
   command->add_option("--gamma", arguments.gamma)

@@ -59,6 +59,20 @@ inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
   command.add_option("--jobs,-j", jobs, about)->check(CLI::Range(1, 1024));
 }
 
+// The words of CLI11's own checks hold the largest number of a double.
+inline CLI::Validator number_check(bool zero_is_allowed) {
+  const char* expected = zero_is_allowed ? "0 or more" : "a number above 0";
+  return {[zero_is_allowed, expected](std::string& text) {
+            const auto number = number_from_text<double>(text);
+            return number && (zero_is_allowed ? *number >= 0 : *number > 0)
+                       ? std::string()
+                       : fmt::format("is '{}'; expected {}", text, expected);
+          },
+          zero_is_allowed ? "NONNEGATIVE" : "POSITIVE"};
+}
+inline CLI::Validator above_0() { return number_check(false); }
+inline CLI::Validator from_0_on() { return number_check(true); }
+
 // A number from `low` to `high`, whose default the help states.
 template <typename Number>
 CLI::Option* add_number(

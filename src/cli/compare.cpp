@@ -53,7 +53,7 @@ void add_match_options(CLI::App& command, CompareArguments& arguments) {
   add_number(command, "--pairs", arguments.pairs, 1, 40)->description("Pairs in the figure");
   command
       .add_option("--frames", arguments.most_frames, "At most so many frames from the first box on")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   command.add_flag(
       "--match,!--no-match",
       arguments.match,

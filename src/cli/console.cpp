@@ -59,7 +59,7 @@ std::string log_line(const char* level, const std::string& message, bool json) {
 // An interrupt is reported once: by the main thread, or by the thread that ends the process.
 std::atomic<bool> interrupt_reported{false};
 std::atomic<bool> interrupt_as_json{false};
-constexpr const char* kInterruptedWords = "interrupted; nothing half-made is left behind";
+constexpr const char* kInterruptedWords = "interrupted; no half-written file is left behind";
 
 }  // namespace
 

@@ -157,14 +157,14 @@ void add_export(CLI::App& group, Context& context) {
       "covered (default): the pixels that the aircraft covers, to train on; exact: its projected "
       "shape; visible: the pixels that changed, codec's ripple included");
   command->add_option("--every", out->options.every, "Take every n-th frame (default: 1)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   command->add_option("--split",
                       out->split,
                       "by-background (default): a video is in one part alone; by-sequence; "
                       "none");
   command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
       ->expected(3)
-      ->check(CLI::NonNegativeNumber);
+      ->check(from_0_on());
   command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
   command->add_flag(
       "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
@@ -222,7 +222,7 @@ void add_import(CLI::App& group, Context& context) {
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
   command->add_option("--frame-rate", in->options.frame_rate_hz)
       ->description("Frames a second of numbered pictures, where nothing says it")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   command->add_option("--class-of", in->classes_of_categories)
       ->description("CATEGORY=CLASS, for a category whose word states no class or another one");
   command->add_option("--class", in->classes)
@@ -510,10 +510,10 @@ void add_work(CLI::App& group, Context& context) {
   add_build_options(*command, *arguments);
   command->add_option("--index", arguments->build.share, "This worker's number, from 0")
       ->required()
-      ->check(CLI::NonNegativeNumber);
+      ->check(from_0_on());
   command->add_option("--of", arguments->build.shares, "How many workers there are")
       ->required()
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
 }
 
 void add_plan(CLI::App& group, Context& context) {
@@ -539,7 +539,7 @@ void add_verify(CLI::App& group, Context& context) {
       "--deep", arguments->deep, "Also draw sampled frames anew and compare them with the videos");
   command
       ->add_option("--every", arguments->deep_every, "With --deep: every n-th frame (default: 30)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   add_jobs(*command, arguments->verify_jobs, "Sequences at a time (default: one per core)");
 }
 

@@ -103,7 +103,7 @@ void add_options(CLI::App& command, Detect& arguments) {
                    "The videos that a set was made over as well, which show no intruder (default)");
   command.add_option("--frame-rate", options.frame_rate_hz)
       ->description("Frames a second of numbered pictures, where nothing states it")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   command.add_option("--lens", arguments.lens)
       ->description("Calibration file for what states no lens (default: a guess of 60 degrees)");
   command.add_option(

@@ -202,7 +202,7 @@ void add_convert(CLI::App& group, Context& context) {
       ->required();
   command->add_option("--encounter", arguments->number)
       ->description("Take this encounter alone, counted from 1; .daa and .txt hold one")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file if it exists");
 }
 

@@ -143,7 +143,7 @@ void add_motion(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--smoothing", arguments->smoothing_s)
       ->description("smoothed: width of the window in seconds")
-      ->check(CLI::PositiveNumber)
+      ->check(above_0())
       ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
 }

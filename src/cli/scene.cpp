@@ -55,7 +55,7 @@ void add_scene(CLI::App& app, Context& context) {
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
   command->add_option("--frame-rate", arguments->frame_rate_hz)
       ->description("Frames a second of numbered pictures, which state none")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
 }
 

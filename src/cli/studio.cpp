@@ -123,7 +123,7 @@ void add_studio(CLI::App& app, Context& context) {
       "--lens", arguments->lens, "For a video: calibration (OpenCV or Gyroflow) of its camera");
   command->add_option("--frame-rate", arguments->frame_rate_hz)
       ->description("Frames a second of numbered pictures, which state none")
-      ->check(CLI::PositiveNumber);
+      ->check(above_0());
   command->add_option("--port", arguments->port, "Port of 127.0.0.1; 0: any that is free [0]")
       ->check(CLI::Range(0, 65535));
   command->add_flag("--open", arguments->open, "Open the page in the browser");

@@ -166,7 +166,7 @@ def stop_in_a_read(airtruth, root, data):
         wait_for_reader(process, pipe)
         process.terminate()
         done = common.end(process, f"{words} on a pipe")
-        if done.code != 130 or common.errors_of(done) != ["airtruth: error: interrupted; nothing half-made is left behind"]:
+        if done.code != 130 or common.errors_of(done) != ["airtruth: error: interrupted; no half-written file is left behind"]:
             raise Broken(f"{words} on a pipe that nobody writes: exit code {done.code}: {done.err[-400:]}")
         if common.halves(out):
             raise Broken(f"{words}: half-made files are left: {common.halves(out)}")

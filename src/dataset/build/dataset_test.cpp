@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "dataset/build/build.h"
 #include "dataset/build/inputs.h"
@@ -233,6 +234,18 @@ TEST_F(Build, VerifyFindsWhatWasChanged) {
   EXPECT_FALSE(verify(root_ / "set", {}).faults.empty());
   write_file(truth, text);
   EXPECT_TRUE(verify(root_ / "set", {}).faults.empty());
+  // An input that was another file when this sequence was made.
+  const fs::path record_file = truth.parent_path() / "sequence.json";
+  auto record = nlohmann::json::parse(read_file(record_file));
+  record["inputs"][0]["sha256"] = std::string(64, '0');
+  write_file(record_file, record.dump());
+  const std::vector<std::string> faults = verify(root_ / "set", {}).faults;
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_THAT(faults[0], HasSubstr("was made of another"));
+  EXPECT_THAT(faults[0], HasSubstr("sky-across-b737"));
+  EXPECT_TRUE(build::status(root_ / "set").complete);
+  fs::remove_all(truth.parent_path());
+  EXPECT_FALSE(build::status(root_ / "set").complete);
 }
 
 TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {

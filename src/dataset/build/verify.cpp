@@ -94,6 +94,8 @@ class Check {
   void fault(const std::string& what) { result_.faults.push_back(name_ + ": " + what); }
 
   void files(const JsonObject& record) {
+    for (const JsonObject& input : record.objects("inputs"))
+      result_.inputs[input.text("name")] = {input.text("sha256"), name_};
     std::set<std::string> known = {"sequence.json"};
     for (const JsonObject& output : record.objects("outputs")) {
       const std::string name = output.text("name");
@@ -235,6 +237,12 @@ void add(const VerifyResult& one, VerifyResult& all) {
   all.recomposed += one.recomposed;
   all.in_view += one.in_view;
   all.in_view_without_box += one.in_view_without_box;
+  for (const auto& [name, input] : one.inputs) {
+    const auto first = all.inputs.try_emplace(name, input).first->second;
+    if (first.sha256 != input.sha256)
+      all.faults.push_back(fmt::format(
+          "{}: was made of another {} than {} (its SHA-256 differs)", input.of, name, first.of));
+  }
   if (one.not_there > 0 && all.not_there > kMaxMissingFaults) return;
   all.faults.insert(all.faults.end(), one.faults.begin(), one.faults.end());
 }
@@ -294,7 +302,7 @@ Status status(const fs::path& root) {
     if (fs::exists(place.parent_path() / ("." + item.name + ".part"))) ++status.half;
   }
   status.at_work = is_at_work(folder);
-  status.complete = fs::exists(folder.record());
+  status.complete = status.not_there == 0 && fs::exists(folder.record());
   return status;
 }
 

@@ -24,7 +24,7 @@ struct Status {
   std::int64_t half = 0;
   // True while a build is running.
   bool at_work = false;
-  bool complete = false;  // dataset.json exists
+  bool complete = false;  // dataset.json exists, and each sequence
   // By the name of each volume that [truth] asks for: whole sequences in which an intruder violates
   // it at any time, as their records say.
   std::map<std::string, std::int64_t> violated;
@@ -42,9 +42,9 @@ struct VerifyOptions {
 
 // The result of checking every file against its checksum, reading every line of truth (boxes lie
 // within the frame), comparing the number of video frames with the number of truth lines, and
-// comparing the manifest with the sequences. Each fault is one line; faults are in the order of the
-// catalogue, for any number of jobs. Of missing sequences the first ten are faults of their own,
-// and one fault counts the others.
+// comparing the manifest with the sequences, and the inputs of the sequences with one another. Each
+// fault is one line; faults are in the order of the catalogue, for any number of jobs. Of missing
+// sequences the first ten are faults of their own, and one fault counts the others.
 struct VerifyResult {
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
@@ -57,6 +57,13 @@ struct VerifyResult {
   std::int64_t in_view = 0;
   std::int64_t in_view_without_box = 0;
   std::vector<std::string> faults;
+  // The files that the sequences were made of, by name. One that was changed between two of them is
+  // a fault.
+  struct Input {
+    std::string sha256;
+    std::string of;  // the first sequence that was made of it
+  };
+  std::map<std::string, Input> inputs;
 };
 VerifyResult verify(const fs::path& root, const VerifyOptions& options);
 

@@ -16,6 +16,7 @@
 #include "foundation/run_files/run_files.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/pictures.h"
+#include "labels/exchange/text.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
@@ -70,6 +71,17 @@ void expect_size(exchange::Clip& clip, int width, int height, const fs::path& fi
                             clip.height),
                 {file.string()});
   }
+}
+
+// Formats that state no size of the picture leave it to the video to say what lies outside.
+void leave_out_outside(exchange::Clip& clip, exchange::LeftOut& left_out) {
+  for (exchange::LabelledFrame& frame : clip.frames)
+    std::erase_if(frame.labels, [&](const exchange::Label& label) {
+      const bool is_outside = !exchange::is_in_picture(label.box_px, clip.width, clip.height);
+      if (is_outside)
+        left_out.add(exchange::kOutside, fmt::format("frame {} of {}", frame.frame, clip.name));
+      return is_outside;
+    });
 }
 
 // Fills in sizes, rates and times that the labels lack and the video states.
@@ -177,6 +189,7 @@ void expect_one_line(const exchange::Clip& clip) {
 void complete(std::vector<exchange::Clip>& clips,
               const fs::path& source,
               const ImportOptions& options) {
+  exchange::LeftOut left_out(options.warn);
   std::set<std::string> taken;
   for (exchange::Clip& clip : clips) {
     auto video = options.videos.find(clip.name);
@@ -191,6 +204,7 @@ void complete(std::vector<exchange::Clip>& clips,
       expect_one_line(clip);
     }
     ask_video(clip, options.warn);
+    leave_out_outside(clip, left_out);
     if (!clip.frame_rate_hz) clip.frame_rate_hz = options.frame_rate_hz;
     clip.name = free_name(clip.name, taken);
     expect_rate(clip, source);

@@ -62,9 +62,6 @@ ReadFormat read_coco, read_yolo, read_mot, read_voc, read_cvat, read_aot, read_s
 // it are added.
 LabelledFrame& frame_at(Clip& clip, std::size_t number);
 
-// Why a label is left out whose box has no area or lies outside the picture.
-inline constexpr const char* kOutside = "boxes that are empty or outside their image";
-
 // Adds a label to those of a picture, whose size is that of the clip or the LabelledPicture (0:
 // unknown); `place` says where a label stands that is left out.
 template <typename Sized>

@@ -296,6 +296,22 @@ TEST(Errors, NameTheFileAndThePlace) {
   ends(error_of(Format::kYolo, folder.path() / "nowhere"), "nowhere: does not exist");
 }
 
+// "0,0,0,0" and "nan" state that there is no box; a box without width is left out with a warning.
+TEST(ReadFormats, ACsvSaysWhatItLeavesOut) {
+  const Folder folder;
+  const fs::path file =
+      folder.file("t.csv", "frame,x,y,w,h\n0,0,0,0,0\n1,nan,1,1,1\n2,5,5,0,9\n3,5,5,9,9\n");
+  std::vector<std::string> warnings;
+  const std::vector<Clip> clips = read_clips(
+      Format::kCsv, file, {}, [&](const std::string& text) { warnings.push_back(text); });
+  ASSERT_EQ(clips[0].frames.size(), 4u);
+  EXPECT_TRUE(clips[0].frames[2].labels.empty());
+  EXPECT_EQ(clips[0].frames[3].labels.size(), 1u);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].substr(0, 20), "left out: 1 boxes th");
+  EXPECT_TRUE(warnings[0].ends_with("t.csv:4)")) << warnings[0];
+}
+
 // A sequence of OTB with as many boxes as stated, box k at x = k, and pictures numbered from 1 (or
 // from `first`).
 void otb_sequence(

@@ -144,12 +144,13 @@ Clips read_csv(const Reading& in) {
       box.x -= in.options.origin_px;
       box.y -= in.options.origin_px;
       // "0,0,0,0" and "nan" mean no box.
-      if (!is_in_picture(box, clip.width, clip.height)) continue;
+      const bool is_stated = std::isfinite(box.x) && (box.width != 0 || box.height != 0);
+      if (!is_stated) continue;
       Label label;
       label.track = std::ssize(frame.labels) + 1;
       label.category = in.options.category;
       label.box_px = box;
-      frame.labels.push_back(label);
+      add_label(frame.labels, label, clip, in.left_out, to_string(where));
     }
     if (clip.frames.empty()) throw Error("holds no line of frame,x,y,w,h", {file.string()});
     clips.push_back(std::move(clip));

@@ -72,6 +72,9 @@ std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
 // readers omit other boxes with a warning.
 bool is_in_picture(const Box& box, int width, int height);
 
+// Why a label is left out whose box has no area or lies outside the picture.
+inline constexpr const char* kOutside = "boxes that are empty or outside their image";
+
 // The part of a box that lies in the picture (of unknown size: the whole box); empty where none
 // does.
 std::optional<Box> clipped(const Box& box, int width, int height);

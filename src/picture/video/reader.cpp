@@ -76,6 +76,8 @@ struct Reader::State {
   // One file for each frame; empty for a video.
   std::vector<std::filesystem::path> pictures;
   std::size_t next_picture = 0;
+  // The picture that the next frame is of.
+  std::size_t due_picture = 0;
   CodecPtr codec;
   PacketPtr packet;
   FramePtr frame;
@@ -155,7 +157,8 @@ struct Reader::State {
           input->streams[i]->codecpar->width, input->streams[i]->codecpar->height, path);
     const bool is_known = !options.with_timing && is_picture_file(*input);
     if (const int found = is_known ? 0 : find_streams(*input); found < 0)
-      fail("cannot be read as a video: " + reason(found));
+      throw Error("cannot be read as a video: " + reason(found),
+                  {pictures.empty() ? path.string() : pictures.front().string()});
     stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
     if (stream_index < 0) fail("holds no video stream; expected a video");
     const AVStream& stream = *input->streams[stream_index];
@@ -171,6 +174,8 @@ struct Reader::State {
     codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
     if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
     codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
+    // A picture is whole or none; frames of a video are damaged until the next key frame.
+    if (!pictures.empty()) codec->err_recognition |= AV_EF_EXPLODE;
     if (const int opened = avcodec_open2(codec.get(), nullptr, nullptr); opened < 0)
       fail(std::string("cannot be decoded (") + codec->codec->name + "): " + reason(opened));
     packet.reset(av_packet_alloc());
@@ -250,7 +255,8 @@ struct Reader::State {
   // Goes to `first_frame` without the frames before it; false where they have to be decoded.
   bool go_to_first_frame() {
     if (!pictures.empty()) {
-      next_picture = std::min(pictures.size(), static_cast<std::size_t>(options.first_frame));
+      due_picture = next_picture =
+          std::min(pictures.size(), static_cast<std::size_t>(options.first_frame));
       decoded = static_cast<std::int64_t>(next_picture);
       return true;
     }
@@ -304,7 +310,7 @@ struct Reader::State {
     avcodec_flush_buffers(codec.get());
     last_pts = AV_NOPTS_VALUE;
     if (!pictures.empty()) {
-      next_picture =
+      due_picture = next_picture =
           std::min(pictures.size() - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, pts)));
     } else if (av_seek_frame(input.get(), stream_index, pts, AVSEEK_FLAG_BACKWARD) < 0) {
       return false;
@@ -394,13 +400,22 @@ struct Reader::State {
     }
   }
 
+  // The packet of a picture has its number as time stamp. Without this check, a picture that is
+  // not decoded gives all after it the labels of those before them.
+  void check_pictures_before(std::int64_t picture) const {
+    if (static_cast<std::int64_t>(due_picture) < picture)
+      throw Error("cannot be decoded as a picture", {pictures[due_picture].string()});
+  }
+
   std::optional<Frame> next() {
     if (finished || (options.frame_count && handed >= *options.frame_count)) return std::nullopt;
     for (;;) {
       if (!std::exchange(is_pending, false) && !decode_one()) {
+        check_pictures_before(static_cast<std::int64_t>(next_picture));
         finished = true;
         return std::nullopt;
       }
+      if (!pictures.empty()) check_pictures_before(frame->pts), ++due_picture;
       Frame result = to_frame();
       make_plain();
       if (info.pixel_format.empty()) describe(*frame);

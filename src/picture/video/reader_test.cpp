@@ -14,6 +14,7 @@
 #include "picture/video/libav.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
+#include "support/error_of.h"
 #include "support/video_folder.h"
 
 namespace airtruth::video {
@@ -108,6 +109,28 @@ TEST_F(Video, PicturesAreReadInTheOrderOfTheirNamesWithGapsAndLongNumbers) {
     EXPECT_FALSE(reader.next());
     EXPECT_FALSE(reader.ends_early());
     EXPECT_EQ(warning.find("gaps between the numbers of its 3") != std::string::npos, set < 2);
+  }
+}
+
+// A picture that is passed over would give those after it the labels of those before them.
+TEST_F(Video, APictureThatCannotBeDecodedIsAnError) {
+  fs::create_directories(folder_ / "frames");
+  for (const std::string extension : {".png", ".jpg"}) {
+    ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=0.2 frames/%d" + extension);
+    const fs::path third = folder_ / "frames" / ("3" + extension);
+    const std::string whole = read_file(third);
+    for (const std::string& damaged :
+         {std::string(), std::string("no picture"), whole.substr(0, whole.size() / 2)}) {
+      write_file(third, damaged);
+      Reader reader(folder_ / ("frames/%d" + extension));
+      const std::string error = test_support::error_of([&] { all_planes(reader); });
+      EXPECT_EQ(error, third.string() + ": cannot be decoded as a picture") << damaged.size();
+    }
+    write_file(third, whole);
+    Reader later(folder_ / ("frames/%d" + extension), {.first_frame = 3});
+    int frames = 0;
+    all_planes(later, &frames);
+    EXPECT_EQ(frames, 2);
   }
 }
 

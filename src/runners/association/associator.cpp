@@ -42,10 +42,10 @@ constexpr double kUnknownTurn_radps = 0.3;
 
 void validate(const AssociationOptions& options) {
   if (options.declare_n < 1 || options.declare_n > 1000) {
-    out_of_range("N of M of N", options.declare_n, "1 to 1000");
+    out_of_range("N of M/N", options.declare_n, "1 to 1000");
   }
   if (options.declare_m < 1 || options.declare_m > options.declare_n) {
-    out_of_range("M of M of N", options.declare_m, fmt::format("1 to {}", options.declare_n));
+    out_of_range("M of M/N", options.declare_m, fmt::format("1 to {}", options.declare_n));
   }
   if (options.confident_score && !std::isfinite(*options.confident_score)) {
     out_of_range("the confident score", *options.confident_score, "a finite number");

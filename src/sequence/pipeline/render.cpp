@@ -290,9 +290,11 @@ void warn_never_seen(const scene::Intruder& intruder,
   const auto nearest = setup::nearest_approach(world, i, last_time_s);
   if (nearest && nearest->off_view_deg <= 0) {
     text += fmt::format(
-        "; it is in view at {:.2f} s, but changes no pixel there: something hides it, or it is as "
-        "bright as the picture behind it",
-        nearest->time_s);
+        "; it is in view at {:.2f} s, at a range of {:.0f} m, but changes no pixel there: it is "
+        "too "
+        "small, something hides it, or it is as bright as the picture behind it",
+        nearest->time_s,
+        nearest->range_m);
   } else if (nearest) {
     text += fmt::format(
         "; it comes nearest to the view's edge at {:.2f} s, {:.1f} degrees from it, at a range of "
