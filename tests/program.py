@@ -101,7 +101,7 @@ class Case(unittest.TestCase):
 
     def assert_stopped(self, outcome):
         """What a user sees after Ctrl-C."""
-        self.assertEqual(outcome, (130, "airtruth: error: interrupted; nothing half-made is left behind\n"))
+        self.assertEqual(outcome, (130, "airtruth: error: interrupted; no half-written file is left behind\n"))
 
     def assert_near(self, found, truth, share, what):
         """Within `share` of the true value."""

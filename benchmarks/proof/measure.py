@@ -20,7 +20,8 @@ CENTRE_PX = 10   # airtruth.evaluate's default: how far a detection may lie from
 FALSE_ALARMS = (0.1, 1)  # an image
 SIZES = ((0, 10), (10, 20), (20, 40), (40, math.inf))  # px of the longer side
 LARGE_PX = 40    # of a false alarm
-RATIOS = (("composites", "real"), ("mixed", "real"), ("composites", "matte"), ("composites", "cut-and-paste"))
+RATIOS = (("composites", "real"), ("matte", "real"), ("mixed", "real"), ("composites", "matte"), ("composites", "cut-and-paste"),
+          ("matte", "cut-and-paste"))
 SEED = 1         # of the bootstrap
 
 

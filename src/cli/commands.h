@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -64,7 +65,8 @@ inline CLI::Validator number_check(bool zero_is_allowed) {
   const char* expected = zero_is_allowed ? "0 or more" : "a number above 0";
   return {[zero_is_allowed, expected](std::string& text) {
             const auto number = number_from_text<double>(text);
-            return number && (zero_is_allowed ? *number >= 0 : *number > 0)
+            return number && std::isfinite(*number) &&
+                           (zero_is_allowed ? *number >= 0 : *number > 0)
                        ? std::string()
                        : fmt::format("is '{}'; expected {}", text, expected);
           },

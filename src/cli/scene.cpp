@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "foundation/run_files/run_files.h"
 #include "sequence/new_scene/new_scene.h"
 
@@ -22,6 +26,17 @@ struct NewArguments {
   std::optional<double> frame_rate_hz;
   bool overwrite = false;
 };
+
+// The name of a file as it can be pasted into a shell, where one that begins with a dash would be
+// an option.
+std::string pasted(const std::string& file) {
+  const std::string name = file.starts_with('-') ? "./" + file : file;
+  const bool is_plain = std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("._-/").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  return is_plain ? name : shell_word(name);
+}
 
 void new_scene(const NewArguments& arguments, Context& context) {
   const auto video = std::filesystem::absolute(arguments.video).lexically_normal();
@@ -37,7 +52,7 @@ void new_scene(const NewArguments& arguments, Context& context) {
   const std::string text = new_scene::scene_text(arguments.video, options);
   console.end_progress();
   write_file(out, text);
-  console.result(fmt::format("{}\nnext: airtruth preview {}", out, out));
+  console.result(fmt::format("{}\nnext: airtruth preview {}", out, pasted(out)));
 }
 
 }  // namespace

@@ -155,9 +155,10 @@ std::string profiles_that_fit(const std::filesystem::path& path,
   // names would not fit on its line.
   constexpr std::size_t kMaxFilesRead = 1000;
   constexpr std::size_t kMaxProfilesNamed = 3;
-  if (c.camera.empty()) return "";
-  std::vector<std::filesystem::path> files;
   std::error_code failed;
+  // A text that is no file has none beside it.
+  if (c.camera.empty() || !std::filesystem::exists(path, failed)) return "";
+  std::vector<std::filesystem::path> files;
   for (std::filesystem::directory_iterator at(path.has_parent_path() ? path.parent_path() : ".",
                                               failed);
        !failed && at != std::filesystem::directory_iterator() && files.size() < kMaxFilesRead;

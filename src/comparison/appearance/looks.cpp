@@ -16,6 +16,7 @@
 #include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::appearance {
 namespace {
@@ -193,11 +194,11 @@ std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   const int x = whole_pixels(box.x + box.width / 2) - side / 2;
   const int y = whole_pixels(box.y + box.height / 2) - side / 2;
   if (x < 0 || y < 0 || x + side > picture.width || y + side > picture.height) return std::nullopt;
-  image::Rgb8 crop = image::rgb8_from_picture(picture, {x, y, side, side});
+  const image::Rgb8 crop = image::rgb8_from_picture(picture, {x, y, side, side});
   Patch patch;
   patch.x = x;
   patch.y = y;
-  patch.rgb = cv::Mat(side, side, CV_8UC3, crop.samples.get()).clone();
+  patch.rgb = image::mat_of(crop).clone();
   patch.grey = luma_of(picture, {x, y, side, side});
   patch.silhouette = silhouette_of(patch.grey, kPatchReach * side);
   return patch;

@@ -10,6 +10,7 @@
 #include "comparison/appearance/segment.h"
 #include "foundation/base/error.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 #include "sequence/insertion/ambient.h"
 #include "sequence/insertion/paint.h"
 #include "sequence/setup/from_scene.h"
@@ -66,9 +67,9 @@ cv::Mat contrast_in(const image::Picture& picture, const Box& box, const cv::Siz
   const PixelBox area = pixels_of(wider(box, margin));
   if (area.x < 0 || area.y < 0 || area.right() > picture.width || area.bottom() > picture.height)
     return {};
-  image::Rgb8 crop = image::rgb8_from_picture(picture, area);
+  const image::Rgb8 crop = image::rgb8_from_picture(picture, area);
   cv::Mat colour;
-  cv::Mat(area.height, area.width, CV_8UC3, crop.samples.get()).convertTo(colour, CV_32FC3);
+  image::mat_of(crop).convertTo(colour, CV_32FC3);
   cv::Mat rim(colour.size(), CV_8UC1, cv::Scalar(0));
   cv::rectangle(rim, cv::Rect(0, 0, rim.cols, rim.rows), cv::Scalar(255));
   std::vector<cv::Mat> channels;

@@ -238,7 +238,7 @@ void add(const VerifyResult& one, VerifyResult& all) {
   all.in_view += one.in_view;
   all.in_view_without_box += one.in_view_without_box;
   for (const auto& [name, input] : one.inputs) {
-    const auto first = all.inputs.try_emplace(name, input).first->second;
+    const auto& first = all.inputs.try_emplace(name, input).first->second;
     if (first.sha256 != input.sha256)
       all.faults.push_back(fmt::format(
           "{}: was made of another {} than {} (its SHA-256 differs)", input.of, name, first.of));

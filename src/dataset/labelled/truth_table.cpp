@@ -71,13 +71,13 @@ Row row_of(const annotation::Intruder& intruder) {
           if (key != "range_m" && key != "contrast_to_noise") row.add(key, value);
       },
       intruder);
+  static const annotation::EncounterTruth kNone;
   const auto& encounter = intruder.encounter;
-  const auto measures = encounter.value_or(annotation::EncounterTruth());
   annotation::each_measure(
       [&](const char* key, std::optional<double> value) {
         row.add(key, encounter ? value : std::nullopt);
       },
-      measures);
+      encounter ? *encounter : kNone);
   return row;
 }
 

@@ -66,7 +66,6 @@ std::vector<std::vector<Match>> matches_of(const results::SequenceDetections& de
 std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections& scored,
                                                           std::size_t frame) {
   std::map<std::int64_t, const results::Detection*> best;
-  if (frame >= scored.matches.size()) return best;
   for (std::size_t k = 0; k < scored.matches[frame].size(); ++k) {
     const Match& match = scored.matches[frame][k];
     if (match.kind != MatchKind::kTruePositive) continue;
@@ -75,15 +74,6 @@ std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections
     if (found == nullptr || detection.score > found->score) found = &detection;
   }
   return best;
-}
-
-std::set<std::int64_t> detected_in(const ScoredDetections& scored,
-                                   std::size_t frame,
-                                   double score) {
-  std::set<std::int64_t> detected;
-  for (const auto& [object, detection] : best_of(scored, frame))
-    if (detection->score >= score) detected.insert(object);
-  return detected;
 }
 
 }  // namespace airtruth::scores

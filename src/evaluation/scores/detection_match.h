@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -76,6 +75,7 @@ struct ScoredDetections {
 // The detection of the highest score that finds each aircraft of a frame, by TruthObject::id.
 std::map<std::int64_t, const results::Detection*> best_of(const ScoredDetections& scored,
                                                           std::size_t frame);
+
 // Calls use(frame, index, best) for each aircraft of a sequence that counts. `index` is in
 // TruthFrame::objects; `best` is the detection of best_of(), or null.
 void each_aircraft(const TruthSequence& truth, const ScoredDetections& scored, const auto& use) {
@@ -89,8 +89,5 @@ void each_aircraft(const TruthSequence& truth, const ScoredDetections& scored, c
     }
   }
 }
-
-// The aircraft that detections of this score or more detect in a frame, by TruthObject::id.
-std::set<std::int64_t> detected_in(const ScoredDetections& scored, std::size_t frame, double score);
 
 }  // namespace airtruth::scores

@@ -123,11 +123,15 @@ std::vector<Miss> misses_of(std::size_t sequence,
   std::map<std::int64_t, Miss> open;  // that may go on
   std::vector<Miss> misses;
   for (std::size_t i = 0; i < scored.matches.size(); ++i) {
-    const std::set<std::int64_t> detected = detected_in(scored, i, score);
+    const auto best = best_of(scored, i);
+    const auto is_detected = [&](std::int64_t id) {
+      const auto found = best.find(id);
+      return found != best.end() && found->second->score >= score;
+    };
     std::map<std::int64_t, Miss> going_on;
     for (std::size_t k = 0; k < truth.frames[i].objects.size(); ++k) {
       const TruthObject& object = truth.frames[i].objects[k];
-      if (!object.is_aircraft() || !object.counts || detected.contains(object.id)) continue;
+      if (!object.is_aircraft() || !object.counts || is_detected(object.id)) continue;
       const auto before = open.extract(object.id);
       const Miss begun{.sequence = sequence, .object = object.id, .first_frame = i};
       Miss& miss = going_on.try_emplace(object.id, before ? before.mapped() : begun).first->second;

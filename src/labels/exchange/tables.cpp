@@ -144,7 +144,8 @@ Clips read_csv(const Reading& in) {
       box.x -= in.options.origin_px;
       box.y -= in.options.origin_px;
       // "0,0,0,0" and "nan" mean no box.
-      const bool is_stated = std::isfinite(box.x) && (box.width != 0 || box.height != 0);
+      const bool is_stated = std::isfinite(box.x + box.y + box.width + box.height) &&
+                             (box.width != 0 || box.height != 0);
       if (!is_stated) continue;
       Label label;
       label.track = std::ssize(frame.labels) + 1;

@@ -76,8 +76,6 @@ struct Reader::State {
   // One file for each frame; empty for a video.
   std::vector<std::filesystem::path> pictures;
   std::size_t next_picture = 0;
-  // The picture that the next frame is of.
-  std::size_t due_picture = 0;
   CodecPtr codec;
   PacketPtr packet;
   FramePtr frame;
@@ -174,8 +172,10 @@ struct Reader::State {
     codec->flags |= AV_CODEC_FLAG_OUTPUT_CORRUPT;
     if (options.with_quantiser) codec->export_side_data |= AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;
     codec->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER;
-    // A picture is whole or none; frames of a video are damaged until the next key frame.
-    if (!pictures.empty()) codec->err_recognition |= AV_EF_EXPLODE;
+    // A picture is whole or none; frames of a video are damaged until the next key frame. libav's
+    // reader of TIFF would also refuse each tag that it does not know, such as that of the unit.
+    if (!pictures.empty() && codec->codec_id != AV_CODEC_ID_TIFF)
+      codec->err_recognition |= AV_EF_EXPLODE;
     if (const int opened = avcodec_open2(codec.get(), nullptr, nullptr); opened < 0)
       fail(std::string("cannot be decoded (") + codec->codec->name + "): " + reason(opened));
     packet.reset(av_packet_alloc());
@@ -255,8 +255,7 @@ struct Reader::State {
   // Goes to `first_frame` without the frames before it; false where they have to be decoded.
   bool go_to_first_frame() {
     if (!pictures.empty()) {
-      due_picture = next_picture =
-          std::min(pictures.size(), static_cast<std::size_t>(options.first_frame));
+      next_picture = std::min(pictures.size(), static_cast<std::size_t>(options.first_frame));
       decoded = static_cast<std::int64_t>(next_picture);
       return true;
     }
@@ -310,8 +309,9 @@ struct Reader::State {
     avcodec_flush_buffers(codec.get());
     last_pts = AV_NOPTS_VALUE;
     if (!pictures.empty()) {
-      due_picture = next_picture =
+      next_picture =
           std::min(pictures.size() - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, pts)));
+      decoded = static_cast<std::int64_t>(next_picture);
     } else if (av_seek_frame(input.get(), stream_index, pts, AVSEEK_FLAG_BACKWARD) < 0) {
       return false;
     }
@@ -403,8 +403,9 @@ struct Reader::State {
   // The packet of a picture has its number as time stamp. Without this check, a picture that is
   // not decoded gives all after it the labels of those before them.
   void check_pictures_before(std::int64_t picture) const {
-    if (static_cast<std::int64_t>(due_picture) < picture)
-      throw Error("cannot be decoded as a picture", {pictures[due_picture].string()});
+    if (decoded < picture)
+      throw Error("cannot be decoded as a picture",
+                  {pictures[static_cast<std::size_t>(decoded)].string()});
   }
 
   std::optional<Frame> next() {
@@ -415,7 +416,7 @@ struct Reader::State {
         finished = true;
         return std::nullopt;
       }
-      if (!pictures.empty()) check_pictures_before(frame->pts), ++due_picture;
+      if (!pictures.empty()) check_pictures_before(frame->pts);
       Frame result = to_frame();
       make_plain();
       if (info.pixel_format.empty()) describe(*frame);

@@ -134,6 +134,15 @@ TEST_F(Video, APictureThatCannotBeDecodedIsAnError) {
   }
 }
 
+TEST_F(Video, TiffPicturesWithTagsThatLibavDoesNotKnowAreRead) {
+  fs::create_directories(folder_ / "frames");
+  ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=0.2 -pix_fmt rgb24 frames/%d.tif");
+  Reader reader(folder_ / "frames/%d.tif");
+  int frames = 0;
+  all_planes(reader, &frames);
+  EXPECT_EQ(frames, 5);
+}
+
 // The bytes of an mp4 with one track, which is shown turned clockwise: the track header's matrix
 // (ISO/IEC 14496-12, 8.3.2) has 16.16 fixed point numbers, highest byte first.
 std::string turned_clockwise(std::string mp4, int rotation_deg) {

@@ -8,8 +8,8 @@
 #include <sys/mman.h>
 
 #include "foundation/base/error.h"
-#include "foundation/base/memory_place.h"
 #include "foundation/image/colour.h"
+#include "foundation/run_files/memory_place.h"
 #include "runners/detector/detector.h"
 #include "runners/detector/protocol.h"
 #include "runners/process/child.h"

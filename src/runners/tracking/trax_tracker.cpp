@@ -14,9 +14,9 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/memory_place.h"
 #include "foundation/base/text.h"
 #include "foundation/image/colour.h"
+#include "foundation/run_files/memory_place.h"
 #include "picture/video/still.h"
 #include "runners/process/child.h"
 #include "runners/results/results_folder.h"

@@ -291,8 +291,7 @@ void warn_never_seen(const scene::Intruder& intruder,
   if (nearest && nearest->off_view_deg <= 0) {
     text += fmt::format(
         "; it is in view at {:.2f} s, at a range of {:.0f} m, but changes no pixel there: it is "
-        "too "
-        "small, something hides it, or it is as bright as the picture behind it",
+        "too small, something hides it, or it is as bright as the picture behind it",
         nearest->time_s,
         nearest->range_m);
   } else if (nearest) {

@@ -57,8 +57,7 @@ image::Rgb8 square(const image::Picture& picture, const Cutout& cutout, int side
   return resized(square, side, side, size > side ? cv::INTER_AREA : cv::INTER_CUBIC);
 }
 
-}  // namespace
-
+// The whole picture, at most `width` pixels wide.
 image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
   const double scale = std::min(1.0, static_cast<double>(width) / picture.width);
   const auto scaled = [&](int length) {
@@ -66,6 +65,8 @@ image::Rgb8 small_copy(const image::Rgb8& picture, int width) {
   };
   return resized(picture, scaled(picture.width), scaled(picture.height), cv::INTER_AREA);
 }
+
+}  // namespace
 
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures) {
   check(!pictures.empty(), "a strip has pictures");

@@ -16,9 +16,6 @@
 // Small pictures for HTML pages, and the pages' JPEGs with boxes.
 namespace airtruth::drawing {
 
-// The whole picture, at most `width` pixels wide.
-image::Rgb8 small_copy(const image::Rgb8& picture, int width);
-
 // Pictures of one size, side by side.
 image::Rgb8 strip(const std::vector<image::Rgb8>& pictures);
 

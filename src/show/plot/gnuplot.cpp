@@ -11,7 +11,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/memory_place.h"
+#include "foundation/run_files/memory_place.h"
 #include "picture/video/still.h"
 
 namespace airtruth::plot {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "foundation/base/memory_place.h"
+#include "foundation/run_files/memory_place.h"
 
 #include <cerrno>
 #include <cstring>
