@@ -47,7 +47,7 @@ void try_truth(std::string_view text) {
   } catch (const airtruth::Error&) {
     return;
   }
-  const lens::Facts lens{"pinhole", {480, 480}, {640, 480}, {}, 1280, 960};
+  const airtruth::lens::Facts lens{"pinhole", {480, 480}, {640, 480}, {}, 1280, 960};
   const std::string written = jsonl_line(frame, lens);
   if (jsonl_line(parse_jsonl_line(written, "again.jsonl", 1), lens) != written) std::abort();
 }
