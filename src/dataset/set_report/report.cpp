@@ -264,10 +264,8 @@ std::vector<html::PagePicture> pictures_of(const std::vector<const Portrait*>& p
   std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < portraits.size(); ++i) {
     const Film& film = portraits[i]->film;
-    for (std::size_t k = 0; k < film.stills.size(); ++k) {
-      pictures.push_back({fmt::format("still-{}-{}", i, k), film.stills[k].whole});
-      pictures.push_back({fmt::format("zoom-{}-{}", i, k), film.stills[k].close.jpeg});
-    }
+    for (std::size_t k = 0; k < film.stills.size(); ++k)
+      drawing::add_still(pictures, i, k, film.stills[k]);
     pictures.push_back({fmt::format("loop-{}", i), film.loop_jpeg});
   }
   return pictures;

@@ -325,7 +325,8 @@ void add_cutouts(const Film& film, std::size_t k, Json& detector) {
 std::vector<html::PagePicture> pictures_of(const Film& film) {
   std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < film.sequences.size(); ++i)
-    drawing::add_stills(pictures, i, film.sequences[i]);
+    for (std::size_t k = 0; k < film.sequences[i].size(); ++k)
+      drawing::add_still(pictures, i, k, film.sequences[i][k]);
   for (std::size_t k = 0; k < film.misses.size(); ++k) {
     for (std::size_t i = 0; i < film.false_alarms[k].size(); ++i)
       pictures.push_back({fmt::format("alarm-{}-{}", k, i), film.false_alarms[k][i].jpeg});

@@ -278,7 +278,8 @@ Json trackers_json(const Assessment& assessment) {
 std::vector<html::PagePicture> pictures_of(const Assessment& assessment) {
   std::vector<html::PagePicture> pictures;
   for (std::size_t i = 0; i < assessment.truths.size(); ++i)
-    drawing::add_stills(pictures, i, assessment.truths[i].stills);
+    for (std::size_t k = 0; k < assessment.truths[i].stills.size(); ++k)
+      drawing::add_still(pictures, i, k, assessment.truths[i].stills[k]);
   return pictures;
 }
 

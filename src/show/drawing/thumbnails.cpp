@@ -98,13 +98,12 @@ Still still_of(const image::Picture& picture,
   return still;
 }
 
-void add_stills(std::vector<html::PagePicture>& pictures,
-                std::size_t sequence,
-                const std::vector<Still>& stills) {
-  for (std::size_t i = 0; i < stills.size(); ++i) {
-    pictures.push_back({fmt::format("whole-{}-{}", sequence, i), stills[i].whole});
-    pictures.push_back({fmt::format("close-{}-{}", sequence, i), stills[i].close.jpeg});
-  }
+void add_still(std::vector<html::PagePicture>& pictures,
+               std::size_t sequence,
+               std::size_t number,
+               const Still& still) {
+  pictures.push_back({fmt::format("whole-{}-{}", sequence, number), still.whole});
+  pictures.push_back({fmt::format("close-{}-{}", sequence, number), still.close.jpeg});
 }
 
 std::set<std::size_t> spread_over(std::size_t frames, std::size_t count) {

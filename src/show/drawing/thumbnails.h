@@ -56,10 +56,12 @@ Still still_of(const image::Picture& picture,
                const std::optional<Box>& subject,
                const CutoutOptions& options);
 
-// Adds the stills of the sequence with this number, under the names by which a page finds them.
-void add_stills(std::vector<html::PagePicture>& pictures,
-                std::size_t sequence,
-                const std::vector<Still>& stills);
+// Adds the still with this number of a sequence with its own, under the names by which a page finds
+// them.
+void add_still(std::vector<html::PagePicture>& pictures,
+               std::size_t sequence,
+               std::size_t number,
+               const Still& still);
 
 // Indices of at most `count` of `frames` frames, spread evenly from the first to the last.
 std::set<std::size_t> spread_over(std::size_t frames, std::size_t count);

@@ -184,7 +184,7 @@
       asked += 1;
       const mine = asked;
       const still = sequence.stills[index];
-      const [whole, close] = await Promise.all([loaded(`still-${sequence.index}-${index}`), loaded(`zoom-${sequence.index}-${index}`)]);
+      const [whole, close] = await Promise.all([loaded(`whole-${sequence.index}-${index}`), loaded(`close-${sequence.index}-${index}`)]);
       if (mine !== asked) return;
       draw(canvas, whole, still.boxes, 0, 0, sequence.width);
       draw(zoom, close, still.boxes, ...(still.zoom || [0, 0, 1]));
