@@ -29,7 +29,7 @@ MAX_RISE = 1.10  # of a ratio over the stored one: medians of five rounds differ
 PAPER = "paper's method, flight, 40 px"
 PAPER_ROUNDS = 3  # it takes a minute, and is an order of magnitude away from the others
 MEMORY_SIZES = (300, 3000)  # frames
-ENCODER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "src", "picture", "video", "encoder.cpp")
+ENCODER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "src", "picture", "video", "writer.cpp")
 
 
 def own_encoder():

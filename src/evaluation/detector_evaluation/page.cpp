@@ -2,7 +2,6 @@
 #include "evaluation/detector_evaluation/page.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>

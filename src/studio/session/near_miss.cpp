@@ -2,7 +2,6 @@
 #include "studio/session/near_miss.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
