@@ -407,8 +407,8 @@ KeptFrames keep_frames(const fs::path& video,
     if (frame->index % every != 0 || frame->damaged ||
         kept.frames.size() >= std::size_t{2 * kKeptFrames})
       continue;
-    image::Rgb8 rgb = image::rgb8_from_picture(frame->picture);
-    const cv::Mat whole(rgb.height, rgb.width, CV_8UC3, rgb.samples.get());
+    const image::Rgb8 rgb = image::rgb8_from_picture(frame->picture);
+    const cv::Mat whole = image::mat_of(rgb);
     kept.sums.add(whole);
     kept.frames.push_back({reduced_grey(whole, scale), motion.frame_from_reference});
   }

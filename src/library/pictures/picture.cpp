@@ -64,8 +64,7 @@ image::Picture picture_of(const FramePicture& from) {
     const SamplePlane& plane = from.planes[i];
     image::Plane& to = picture.planes[i];
     if (plane.width != to.width || plane.height != to.height ||
-        plane.samples.size() !=
-            static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height))
+        plane.samples.size() != pixels_in(to.width, to.height))
       throw Error("a plane of the picture has the wrong size; expected " +
                   std::to_string(to.width) + "x" + std::to_string(to.height) + " samples");
     for (int y = 0; y < to.height; ++y) std::copy_n(plane.row(y), to.width, to.row(y));
@@ -89,8 +88,7 @@ FramePicture public_picture(const image::Picture& picture) {
     SamplePlane& to = result.planes.emplace_back();
     to.width = plane.width;
     to.height = plane.height;
-    to.samples.reserve(static_cast<std::size_t>(plane.width) *
-                       static_cast<std::size_t>(plane.height));
+    to.samples.reserve(pixels_in(plane.width, plane.height));
     for (int y = 0; y < plane.height; ++y)
       to.samples.insert(to.samples.end(), plane.row(y), plane.row(y) + plane.width);
   }

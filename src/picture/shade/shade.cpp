@@ -2,6 +2,7 @@
 #include "picture/shade/shade.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "picture/shade/texture.h"

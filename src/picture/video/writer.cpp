@@ -15,7 +15,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
-#include "foundation/base/names.h"
 #include "foundation/base/unfinished.h"
 #include "foundation/image/colour.h"
 #include "picture/video/libav.h"

@@ -5,6 +5,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include <fmt/format.h>
@@ -46,6 +47,15 @@ std::optional<double> plausible(std::optional<double> mm) {
   return mm && *mm >= kMinEquivalentMm && *mm <= kMaxEquivalentMm ? mm : std::nullopt;
 }
 
+// The focal length of the tags of a phone's or a camera's video, in millimetres for a picture of 35
+// mm film; empty where no tag states it.
+std::optional<double> equivalent_mm_in_tags(const std::map<std::string, std::string>& tags) {
+  for (const auto& [key, value] : tags)
+    if (key.find("focal") != std::string::npos && key.find("35mm") != std::string::npos)
+      if (const auto mm = plausible(number_in(value))) return mm;
+  return std::nullopt;
+}
+
 double half_diagonal_px(lens::ImageSize size) { return 0.5 * std::hypot(size.width, size.height); }
 
 }  // namespace
@@ -69,13 +79,6 @@ std::optional<double> diagonal_view_deg(std::span<const std::uint8_t> packet) {
     });
   });
   return view;
-}
-
-std::optional<double> equivalent_mm_in_tags(const std::map<std::string, std::string>& tags) {
-  for (const auto& [key, value] : tags)
-    if (key.find("focal") != std::string::npos && key.find("35mm") != std::string::npos)
-      if (const auto mm = plausible(number_in(value))) return mm;
-  return std::nullopt;
 }
 
 lens::Lens pinhole_from_equivalent(double equivalent_mm, lens::ImageSize size) {

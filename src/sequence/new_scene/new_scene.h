@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -54,10 +53,6 @@ std::optional<double> equivalent_mm_in_subtitles(std::string_view text);
 
 // The diagonal view in degrees that a GoPro's telemetry states (ZFOV); empty where it has none.
 std::optional<double> diagonal_view_deg(std::span<const std::uint8_t> packet);
-
-// The focal length of the tags of a phone's or a camera's video, in millimetres for a picture of 35
-// mm film; empty where no tag states it.
-std::optional<double> equivalent_mm_in_tags(const std::map<std::string, std::string>& tags);
 
 // A pinhole with the focal length that gives the same diagonal view on 35 mm film, whose diagonal
 // is 43.27 mm.

@@ -55,7 +55,7 @@ TEST(BearingOnARealClip, AgreesWithThePixelAndNotWithTheNominalBoresight) {
       const Vector3 seen = cam_from_body() * unit_vector(*one.azimuth_deg, *one.elevation_deg);
       const Vector3 nominal =
           cam_from_body() * unit_vector(*one.nominal_azimuth_deg, *one.nominal_elevation_deg);
-      const Pixel centroid((*one.centroid_px)[0], (*one.centroid_px)[1]);
+      const Pixel centroid = pixel_of(*one.centroid_px);
       seen_px.push_back((*lens.pixel_from_cam(seen) - centroid).norm());
       const auto ray = lens.ray_from_pixel(centroid);
       nominal_deg.push_back(degrees(std::acos(std::clamp(ray->dot(nominal), -1.0, 1.0))));

@@ -170,7 +170,7 @@ TEST_F(TruthOf, TheBearingIsInTheCameraAsItReallyLooked) {
       const Box& exact = *one.exact_box_px;
       EXPECT_LT(std::abs(pixel->x() - (exact.x + exact.width / 2)), 0.5 * exact.width);
       EXPECT_LT(std::abs(pixel->y() - (exact.y + exact.height / 2)), 0.5 * exact.height + 0.5);
-      const Pixel centroid((*one.centroid_px)[0], (*one.centroid_px)[1]);
+      const Pixel centroid = pixel_of(*one.centroid_px);
       EXPECT_LT((*pixel - centroid).norm(), 0.5 * exact.width);
     }
     EXPECT_GT(moved_deg, 1) << model;
