@@ -88,12 +88,6 @@ struct Model {
   Model(const Model&) = delete;
 };
 
-fleet::Aircraft scaled(const std::string& name, double scale, const Warn& warn) {
-  fleet::Aircraft loaded = fleet::load_aircraft(name, {.catalogue_scale = 1}, warn);
-  for (Eigen::Vector3f& p : loaded.mesh.positions) p *= static_cast<float>(scale);
-  return loaded;
-}
-
 // One frame of one sequence: where things are, and what was published.
 struct Frame {
   int number = 0;
@@ -281,8 +275,9 @@ std::vector<EvisionRow> evision_table(const fs::path& folder,
                                       const EvisionOptions& options,
                                       const Warn& warn) {
   const std::vector<fs::path> files = groundtruth_files(folder);
-  const Model airliner(scaled(options.airliner, options.scale, warn));
-  const Model light(scaled(options.light_aircraft, options.scale, warn));
+  const model::LoadOptions size{.catalogue_scale = options.scale};
+  const Model airliner(fleet::load_aircraft(options.airliner, size, warn));
+  const Model light(fleet::load_aircraft(options.light_aircraft, size, warn));
   std::vector<Sequence> sequences;
   for (const fs::path& file : files) {
     const bool is_light = file.stem().string().ends_with("C172");
