@@ -93,9 +93,9 @@ class EarlyErrors(unittest.TestCase):
             "a camera's path that begins late": (
                 scene(camera='path_file = "late.csv"').replace("position_ned_m = [0, 0, -150]\n", ""), "begins at 1.000 s"),
             "the intruder's path file": (scene(path='path_file = "bad.csv"'), "bad.csv"),
-            "a path file that is missing": (scene(path='path_file = "none.csv"'), "none.csv"),
+            "a path file that is missing": (scene(path='path_file = "none.csv"'), f"scene.toml:12:1: {path('none.csv')} does not exist"),
             "the mask's size": (scene(background='mask = "small.pgm"'), "16x12"),
-            "a mask that is missing": (scene(background='mask = "none.png"'), "none.png"),
+            "a mask that is missing": (scene(background='mask = "none.png"'), f"scene.toml:2:1: {path('none.png')} does not exist"),
             "the lens file": (scene(lens='file = "bad.yml"'), "bad.yml"),
             "the camera file": (scene(realism='[realism]\nauto = true\nfile = "bad.toml"'), "bad.toml"),
             "the aircraft": (scene(aircraft="c172/newz"), "c172/newz"),

@@ -393,9 +393,13 @@ std::string toml_from_camera_model(const CameraModel& model);
 CameraFile read_camera_file(const fs::path& file);
 CameraFile parse_camera_file(std::string_view text, const fs::path& file);
 
-// The files and folders that a scene names, its video first: what a run of it reads and must not
-// replace. Models of aircraft are not among them.
-std::vector<fs::path> stated_files(const Scene& scene);
+// The files and folders that a scene names, its video first, with the tables that name them: what a
+// run of it reads and must not replace. Models of aircraft are not among them.
+struct StatedFile {
+  fs::path path;
+  Where where;
+};
+std::vector<StatedFile> stated_files(const Scene& scene);
 
 // The effective scene as TOML: every key is written out and every path is absolute. parse_scene()
 // of the text gives the same value.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
 #include "scene/scene/camera_keys.h"
@@ -167,8 +168,10 @@ TEST(Scene, OccludersReadBackTheSame) {
   EXPECT_FALSE(again.occluders[0].beyond_horizon);
   EXPECT_EQ(again.occluders[1].range_m, 4000);
   EXPECT_TRUE(again.occluders[1].beyond_horizon && !again.occluders[1].mask);
-  const std::vector<fs::path> files = stated_files(scene);
-  EXPECT_NE(std::find(files.begin(), files.end(), "/data/hill/%05d.png"), files.end());
+  const std::vector<StatedFile> files = stated_files(scene);
+  const auto mask = std::ranges::find(files, fs::path("/data/hill/%05d.png"), &StatedFile::path);
+  ASSERT_NE(mask, files.end());
+  EXPECT_EQ(to_string(mask->where), to_string(scene.occluders[0].where));
 }
 
 // The shipped examples are valid scenes, and the first names every key that exists.

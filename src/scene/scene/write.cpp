@@ -262,18 +262,18 @@ void add_truth(Text& text, const Truth& truth) {
 
 }  // namespace
 
-std::vector<fs::path> stated_files(const Scene& scene) {
-  std::vector<fs::path> files = {scene.background.video};
-  const auto add = [&](const std::optional<fs::path>& file) {
-    if (file) files.push_back(*file);
+std::vector<StatedFile> stated_files(const Scene& scene) {
+  std::vector<StatedFile> files = {{scene.background.video, scene.background.where}};
+  const auto add = [&](const std::optional<fs::path>& file, const Where& where) {
+    if (file) files.push_back({*file, where});
   };
-  add(scene.background.mask);
-  add(scene.realism.file);
-  add(scene.lens.file);
-  add(scene.camera.path_file);
-  add(scene.camera.log);
-  for (const Intruder& intruder : scene.intruders) add(intruder.path_file);
-  for (const Occluder& occluder : scene.occluders) add(occluder.mask);
+  add(scene.background.mask, scene.background.where);
+  add(scene.realism.file, scene.realism.where);
+  add(scene.lens.file, scene.lens.where);
+  add(scene.camera.path_file, scene.camera.where);
+  add(scene.camera.log, scene.camera.where);
+  for (const Intruder& intruder : scene.intruders) add(intruder.path_file, intruder.where);
+  for (const Occluder& occluder : scene.occluders) add(occluder.mask, occluder.where);
   return files;
 }
 

@@ -215,7 +215,7 @@ std::vector<Checksum> input_files(const scene::Scene& scene,
   for (const scene::Occluder& occluder : scene.occluders)
     if (occluder.mask && masks.insert(*occluder.mask).second)
       result.push_back({occluder.mask->string(), setup::sha256_of_video(*occluder.mask, inputs)});
-  for (const fs::path& file : scene::stated_files(scene))
+  for (const auto& [file, where] : scene::stated_files(scene))
     if (file != scene.background.video && !masks.contains(file)) add(file);
   for (const fs::path& model : model_files(world)) add(model);
   return result;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -279,6 +280,14 @@ void expect_standard_range(const scene::Scene& scene, const video::StreamInfo& i
       {scene.background.video.string()});
 }
 
+// Throws Error at the table that names it for a file that is not there. The readers of numbered
+// pictures check their patterns.
+void expect_there(const scene::StatedFile& file) {
+  std::error_code ignored;
+  if (file.path.string().find('%') == std::string::npos && !fs::exists(file.path, ignored))
+    throw Error(file.path.string() + " does not exist; expected a file", file.where);
+}
+
 // A factor of [weather] has something to multiply, be it measured later.
 void check_weather(const scene::Scene& scene, const std::vector<std::string>& to_measure) {
   const auto is_known = [&](const std::optional<double>& value, const char* key) {
@@ -302,6 +311,9 @@ void check_weather(const scene::Scene& scene, const std::vector<std::string>& to
 }  // namespace
 
 StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
+  // The frames may come from elsewhere than the video.
+  const std::vector<scene::StatedFile> files = scene::stated_files(scene);
+  std::for_each(files.begin() + 1, files.end(), expect_there);
   StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
   refuse_with_chroma_key(scene);
   expect_standard_range(scene, info);
@@ -344,6 +356,7 @@ scene::Scene with_measured_camera(StatedScene stated,
 }
 
 video::Reader open_background(const scene::Scene& scene, const Options& options) {
+  expect_there(scene::stated_files(scene).front());
   video::Reader reader(scene.background.video,
                        {.first_frame = scene.background.first_frame,
                         .frame_count = scene.background.frame_count,
@@ -520,8 +533,8 @@ camera_file::Calibration calibration_of(const scene::Scene& scene, const Options
 
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
   const lens::ImageSize size{info.width, info.height};
-  const auto mask = insertion::read_mask(scene, size);
   const StatedScene with_camera = stated(scene, info);
+  const auto mask = insertion::read_mask(scene, size);
   const lens::Lens lens = setup::lens_of(scene.lens, size);
   insertion::Occluders(
       scene, lens, mask ? &*mask : nullptr, scene.background.frame_count.value_or(0));

@@ -34,8 +34,9 @@ struct StatedScene {
   bool sun_is_known = false;  // stated in the scene or in the camera file
 };
 
-// Reads no frame. Throws Error where the camera file cannot be read or is for another size or lens,
-// and where the method does not support a camera model.
+// Reads no frame. Throws Error where a file that the scene names beside its video does not exist,
+// where the camera file cannot be read or is for another size or lens, and where the method does
+// not support a camera model.
 StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info);
 
 // Returns the scene with its camera model complete, as sequence.json records it and as rendering a

@@ -177,6 +177,20 @@ TEST_F(Resolve, AutoTakesTheCodecsStepWhereTheDecoderTellsIt) {
   EXPECT_NE(warnings[0].find("no quantiser; it is left out"), std::string::npos) << warnings[0];
 }
 
+TEST_F(Resolve, AFileThatIsNotThereIsAnErrorAtTheTableThatNamesIt) {
+  const std::string none = (root_ / "none.png").string();
+  scene_.background.where = {"s.toml", 3, 1};
+  scene_.background.mask = none;
+  EXPECT_EQ(said_by([&] { stated(scene_, info_); }),
+            "s.toml:3:1: " + none + " does not exist; expected a file");
+  scene_.background.mask.reset();
+  scene_.occluders = {{800, root_ / "hill/%05d.png", false, {"s.toml", 9, 1}}};
+  EXPECT_EQ(said_by([&] { stated(scene_, info_); }), "");
+  scene_.background.video = none;
+  EXPECT_EQ(said_by([&] { open_background(scene_, options_); }),
+            "s.toml:3:1: " + none + " does not exist; expected a file");
+}
+
 TEST_F(Resolve, AProfileThatCannotServeIsRefusedBeforeAnythingIsMeasured) {
   scene_.realism.where = {"s.toml", 7, 1};
   scene_.realism.profile = "fixed-wing-nos";

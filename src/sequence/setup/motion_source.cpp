@@ -104,7 +104,8 @@ std::string sha256_of_video(const fs::path& video, SharedInputs& inputs) {
 }
 
 std::vector<fs::path> files_read(const scene::Scene& scene) {
-  std::vector<fs::path> files = scene::stated_files(scene);
+  std::vector<fs::path> files;
+  for (const scene::StatedFile& file : scene::stated_files(scene)) files.push_back(file.path);
   const auto add_series = [&](const fs::path& path) {
     if (const auto images = video::numbered_images(path))
       files.insert(files.end(), images->files.begin(), images->files.end());
