@@ -358,7 +358,9 @@ void run_evaluate(Evaluate arguments, Context& context) {
   if (!arguments.figures.empty()) report::check_figures(arguments.figures);
   if (!arguments.against.empty()) tracker_evaluation::check_evaluation(arguments.against);
   RunFiles files;
-  files.reads(arguments.against).reads(arguments.ignore).writes_into(arguments.out);
+  files.reads(arguments.against)
+      .reads(arguments.ignore)
+      .writes_into(arguments.out, {"evaluation.json", "detection.json"});
   for (const std::string& results : arguments.results)
     if (!fs::is_directory(results)) files.reads(results);
   files.begin();
@@ -411,7 +413,8 @@ void add_evaluate(CLI::App& app, Context& context) {
       ->required();
   command->add_option("--out,-o", arguments->out)
       ->description(
-          "Folder for evaluation.json, detection.json, the tables, report.html and detection.html")
+          "New folder, or one of an earlier evaluation, for evaluation.json, detection.json, the "
+          "tables, report.html and detection.html")
       ->required();
   add_measure_options(command, *arguments);
   add_detection_options(*command, *arguments);

@@ -316,6 +316,27 @@ class Track(Case):
         self.assert_refused(self.track(source="nothing"), "does not exist")
         self.assert_refused(self.track("--init", "1,2,3,4", source="text.mkv"), "text.mkv")
 
+    def see_refused_beside(self, name, refused, *words):
+        """The command that `refused` runs says that the folder is of others, and leaves the file in it alone."""
+        file = path(self.out, *name)
+        os.makedirs(os.path.dirname(file))
+        with open(file, "w", encoding="utf-8") as mine:
+            mine.write("60,40,30.5,20\n")
+        done = refused()
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertEqual(os.listdir(os.path.dirname(file)), [name[-1]])
+        os.remove(file)
+
+    def test_results_of_others_are_not_taken_for_its_own(self):
+        self.see_refused_beside(("results", "am3", "flight.txt"), lambda: self.track("--init", "60,40,30.5,20"), "holds no tracker.json")
+        self.assertEqual(self.track("--init", "60,40,30.5,20").returncode, 0)
+
+    def test_an_evaluation_replaces_no_page_of_others(self):
+        self.see_refused_beside(("evaluation", "report.html"), lambda: run("evaluate", "nothing", "results", "-o", path(self.out, "evaluation")),
+                                "holds no evaluation.json or detection.json")
+
     def test_what_evaluate_refuses(self):
         for arguments, word in ((["nothing", "results"], "nothing"), (["nothing", "results", "--figures", "gif"], "png, pdf or svg"),
                                 (["nothing", "results", "--eao-range", "9", "3"], "backward")):

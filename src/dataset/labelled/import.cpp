@@ -270,8 +270,6 @@ std::pair<std::string, std::string> class_of_category_from(const std::string& te
 ImportSummary import_set(const fs::path& source,
                          const fs::path& out,
                          const ImportOptions& options) {
-  if (fs::exists(out) && (!fs::is_directory(out) || !RunFiles::is_empty(out)))
-    throw Error("exists and is not empty; expected a new folder", {out.string()});
   RunFiles files;
   files.reads(source).writes_into(out);
   exchange::ReadOptions read = options.read;
@@ -301,8 +299,7 @@ ImportSummary import_set(const fs::path& source,
     flush_files(at);
   });
   // Another run may have come first.
-  if (!RunFiles::is_empty(out))
-    throw Error("is not empty any more; expected a new folder", {out.string()});
+  refuse_foreign(out);
   files.commit();
   flush_files(out);
   return summary;

@@ -23,6 +23,7 @@
 #include "foundation/base/names.h"
 #include "foundation/base/seed.h"
 #include "foundation/base/text.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth {
@@ -158,6 +159,25 @@ TEST_F(Files, WriteIntoMissingFolderIsAnErrorThatNamesTheFile) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr(file.string()));
   }
+}
+
+TEST_F(Files, AFolderThatHoldsOthersFilesIsRefused) {
+  const fs::path folder = folder_ / "made";
+  EXPECT_NO_THROW(refuse_foreign(folder, {"record.json"}));
+  fs::create_directory(folder);
+  write_file(folder / ".left", "by a run that was killed");
+  EXPECT_NO_THROW(refuse_foreign(folder, {"record.json"}));
+  write_file(folder / "report.html", "of somebody else");
+  EXPECT_EQ(test_support::error_of([&] {
+              refuse_foreign(folder, {"record.json", "other.json"});
+            }),
+            folder.string() +
+                ": exists and is not empty, and holds no record.json or other.json; expected a "
+                "new folder");
+  EXPECT_EQ(test_support::error_of([&] { refuse_foreign(folder); }),
+            folder.string() + ": exists and is not empty; expected a new folder");
+  write_file(folder / "record.json", "{}");
+  EXPECT_NO_THROW(refuse_foreign(folder, {"other.json", "record.json"}));
 }
 
 TEST_F(Files, ReadRefusesWhatIsMissingAFolderOrTooLarge) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/base/files.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
@@ -87,6 +88,21 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
 void refuse_existing(const fs::path& path, bool overwrite) {
   if (!overwrite && fs::exists(path))
     throw Error("exists already; give --overwrite to replace it", {path.string()});
+}
+
+void refuse_foreign(const fs::path& folder, std::initializer_list<const char*> records) {
+  if (!fs::is_directory(folder)) return;
+  const bool is_empty =
+      std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& entry) {
+        return entry.path().filename().string().starts_with('.');
+      });
+  const bool is_own = std::any_of(
+      records.begin(), records.end(), [&](const char* name) { return fs::exists(folder / name); });
+  if (!is_empty && !is_own)
+    throw Error(fmt::format("exists and is not empty{}{}; expected a new folder",
+                            records.size() > 0 ? ", and holds no " : "",
+                            fmt::join(records, " or ")),
+                {folder.string()});
 }
 
 void make_folders(const fs::path& folder, const fs::path& named) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,11 @@ void write_file(const fs::path& path,
 
 // Throws Error where the path exists and may not be replaced.
 void refuse_existing(const fs::path& path, bool overwrite);
+
+// Throws Error where a folder is there, is not empty, and holds none of `records`, the files by
+// which airtruth knows what it made. Names that begin with a dot do not count: runs that have not
+// finished leave such.
+void refuse_foreign(const fs::path& folder, std::initializer_list<const char*> records = {});
 
 // Everything that was written to the file system of `folder` is on the disk when this returns.
 void flush_files(const fs::path& folder);

@@ -28,7 +28,10 @@ void check_record(const std::filesystem::path& file) {
 }
 
 bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_json& settings) {
-  if (!std::filesystem::exists(file)) return false;
+  if (!std::filesystem::exists(file)) {
+    refuse_foreign(file.parent_path(), {file.filename().c_str()});
+    return false;
+  }
   try {
     const auto there = record_in(file);
     for (const auto& [key, value] : settings.items())

@@ -10,8 +10,9 @@ namespace airtruth {
 // A folder of results has a record, a JSON file, of the settings that decide its content, so that
 // only a run with the same settings goes on in it.
 //
-// Returns false where there is no such file. Throws Error where the file is no record, and where it
-// holds another value than `settings` for one of its keys; further keys of the file do not matter.
+// Returns false where there is no such file. Throws Error where its folder holds others without it,
+// where the file is no record, and where it holds another value than `settings` for one of its
+// keys; further keys of the file do not matter.
 bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_json& settings);
 
 // Throws Error where the file is there and is no record.

@@ -185,8 +185,18 @@ RunFiles& RunFiles::writes(const fs::path& output, bool overwrite) {
   return *this;
 }
 
-RunFiles& RunFiles::writes_into(const fs::path& folder) {
+RunFiles& RunFiles::writes_into(const fs::path& folder,
+                                std::initializer_list<const char*> records) {
   check_output_folder(folder);
+  // A run that is killed while it moves files into place leaves its hidden folder.
+  std::error_code missing;
+  const bool has_begun =
+      std::any_of(fs::directory_iterator(folder, missing),
+                  fs::directory_iterator(),
+                  [](const fs::directory_entry& entry) {
+                    return entry.path().filename().string().starts_with(kHiddenBegins);
+                  });
+  if (!has_begun || records.size() == 0) refuse_foreign(folder, records);
   outputs_.push_back({folder, true});
   return *this;
 }
@@ -194,14 +204,6 @@ RunFiles& RunFiles::writes_into(const fs::path& folder) {
 RunFiles& RunFiles::replaces(const fs::path& folder) {
   replaced_.push_back(folder);
   return *this;
-}
-
-bool RunFiles::is_empty(const fs::path& folder) {
-  return std::all_of(fs::directory_iterator(folder),
-                     fs::directory_iterator(),
-                     [](const fs::directory_entry& entry) {
-                       return entry.path().filename().string().starts_with(kHiddenBegins);
-                     });
 }
 
 void RunFiles::check() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <string>
@@ -37,13 +38,10 @@ class RunFiles {
   // A file to write. Throws Error as check_output_file() does. An empty path is none.
   RunFiles& writes(const fs::path& output, bool overwrite);
   // A folder into which files are written: those of the same names are replaced, others stay. It is
-  // made where it is missing. Throws Error as check_output_folder() does.
-  RunFiles& writes_into(const fs::path& folder);
+  // made where it is missing. Throws Error as check_output_folder() does, and as refuse_foreign().
+  RunFiles& writes_into(const fs::path& folder, std::initializer_list<const char*> records = {});
   // A folder that is replaced as a whole, by the caller.
   RunFiles& replaces(const fs::path& folder);
-
-  // True where a folder holds nothing but what runs have not finished.
-  static bool is_empty(const fs::path& folder);
 
   // Throws Error where an output is an input, lies in the place of one, replaces a file of a folder
   // that is read, or is another output: by name, through links, and by another name of one file.

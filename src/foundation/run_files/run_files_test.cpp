@@ -84,6 +84,15 @@ TEST_F(RunFilesTest, WithoutCommitNothingStays) {
   EXPECT_EQ(names(), 1);
 }
 
+TEST_F(RunFilesTest, AFolderOfOthersIsNotWrittenInto) {
+  const fs::path page = file("page.html");
+  const auto into = [&] { RunFiles().writes_into(folder_ / ".", {"record.json"}); };
+  EXPECT_THROW(into(), Error);
+  file(".airtruth.part-0");  // a run was killed while it moved the page into place
+  EXPECT_NO_THROW(into());
+  EXPECT_THROW(RunFiles().writes_into(folder_ / "."), Error);
+}
+
 TEST_F(RunFilesTest, AFaultNamesTheOutput) {
   RunFiles files;
   const fs::path a = folder_ / "a";
