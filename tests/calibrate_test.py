@@ -6,6 +6,7 @@ virtual flight, whose own aircraft is known.
 """
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -71,6 +72,14 @@ def make_inputs():
     made("synth", "-o", "free.mkv", "--width", "320", "--height", "240", "--frames", "60", "--no-own-aircraft")
     write("text.mkv", "This is a letter and not a video.\n")
     write("small.pgm", b"P5\n16 12\n255\n" + b"\xff" * (16 * 12))
+
+
+def copies_of(name, count=20):
+    """Names of copies of a clip, so that there is long work: a command takes each file once."""
+    names = [f"copy{i}-{name}" for i in range(count)]
+    for copy in names:
+        shutil.copyfile(path(name), path(copy))
+    return names
 
 
 def calibrated(video, name):
@@ -142,6 +151,7 @@ video = "mkv"
     def test_bad_input_is_refused_in_one_line_and_writes_nothing(self):
         cases = [(("none.mkv",), "none.mkv"), (("text.mkv",), "text.mkv"), (("panels.mkv", "--mask", "small.pgm"), "16x12"),
                  (("panels.mkv", "--lens", "none.yml"), "none.yml"), (("panels.mkv", "own.mkv"), "one size"),
+                 (("own.mkv", "./own.mkv"), "./own.mkv: is given twice, first as own.mkv"),
                  (("panels.mkv", "--gamma", "9"), "gamma")]
         for arguments, word in cases:
             with self.subTest(arguments):
@@ -149,7 +159,7 @@ video = "mkv"
                 self.assertFalse(os.path.exists(path("refused.toml")))
 
     def test_ctrl_c_leaves_nothing(self):
-        self.assert_stopped(program.interrupted(["calibrate", *["own.mkv"] * 50, "-o", "stopped.toml"], program.has_open("own.mkv")))
+        self.assert_stopped(program.interrupted(["calibrate", "own.mkv", *copies_of("own.mkv"), "-o", "stopped.toml"], program.has_open("own.mkv")))
         self.assertEqual([name for name in os.listdir(path()) if "stopped" in name], [])
 
     def test_ctrl_c_may_reach_a_thread_that_a_library_began_before_the_program(self):
@@ -157,7 +167,7 @@ video = "mkv"
         source = write("early.c", "#include <pthread.h>\n#include <unistd.h>\nstatic void *wait_on(void *p) { for (;;) pause(); return p; }\n"
                                   "__attribute__((constructor)) static void begin(void) { pthread_t t; pthread_create(&t, 0, wait_on, 0); }\n")
         subprocess.run(["cc", "-shared", "-fPIC", "-o", path("early.so"), source, "-lpthread"], check=True)
-        self.assert_stopped(program.interrupted(["calibrate", *["own.mkv"] * 50, "-o", "stopped.toml"], program.has_open("own.mkv"),
+        self.assert_stopped(program.interrupted(["calibrate", "own.mkv", *copies_of("own.mkv"), "-o", "stopped.toml"], program.has_open("own.mkv"),
                                                 LD_PRELOAD=path("early.so")))
 
 

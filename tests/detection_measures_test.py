@@ -346,6 +346,7 @@ class Classes(program.Case):
             run("evaluate", "wrong", *arguments, "-o", "no", "--no-page"), *words)
         again = write("again/wrong.json", program.read("wrong.json"))
         refused(results, again, words=["second set of results called 'wrong'"])
+        refused(results, results, words=["is given twice"])
         box = '"category_id":1,"bbox":[1,1,5,5]'
         for text, words in (('[{"image_id":1,%s,"score":NaN}]' % box, ["bad.json"]), ('[{"image_id":1,%s,"score":1e999}]' % box, ["bad.json"]),
                             ('[{"image_id":99,%s,"score":1}]' % box, ["99"]), ('[{"image_id":"other/000001.jpg",%s,"score":1}]' % box, ["other"]),

@@ -116,6 +116,7 @@ void calibrate(CalibrateArguments arguments, Context& context) {
   const std::vector<fs::path> clips(arguments.videos.begin(), arguments.videos.end());
   if (clips.size() > 1 && !arguments.plot.empty())
     throw Error("--plot draws one clip; expected one video beside it");
+  refuse_twice(clips);
   files.begin();
   follow(arguments, context, "measuring");
   const camera_file::Calibration found = camera_file::calibrate_camera(clips, arguments);

@@ -363,6 +363,7 @@ void run_evaluate(Evaluate arguments, Context& context) {
       .writes_into(arguments.out, {"evaluation.json", "detection.json"});
   for (const std::string& results : arguments.results)
     if (!fs::is_directory(results)) files.reads(results);
+  refuse_twice({arguments.results.begin(), arguments.results.end()});
   files.begin();
   set_options(arguments, context);
   std::vector<fs::path> of_trackers;

@@ -93,6 +93,14 @@ class CommitLock {
 
 }  // namespace
 
+void refuse_twice(const std::vector<fs::path>& inputs) {
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (is_same(inputs[i], inputs[k]))
+        throw Error("is given twice, first as " + inputs[k].string() + "; expected it once",
+                    {inputs[i].string()});
+}
+
 // A hidden folder of this run, locked as long as the run lives.
 class RunFiles::Hidden {
  public:

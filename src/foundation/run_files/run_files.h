@@ -24,6 +24,10 @@
 // write one file at the same time do not meet before commit(), which moves a whole set at a time.
 namespace airtruth {
 
+// Throws Error where two of a list of inputs are one: by name, through links, and by another name
+// of one file.
+void refuse_twice(const std::vector<fs::path>& inputs);
+
 class RunFiles {
  public:
   RunFiles();

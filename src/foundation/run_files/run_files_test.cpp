@@ -56,6 +56,15 @@ TEST_F(RunFilesTest, AFileOfANumberedPatternIsAnInput) {
   EXPECT_EQ(fault(RunFiles().reads(pattern).writes(other, true)), "");
 }
 
+TEST_F(RunFilesTest, OneInputOfAListIsGivenOnce) {
+  const fs::path a = file("a.mp4");
+  const fs::path b = file("b.mp4");
+  fs::create_symlink(a, folder_ / "link.mp4");
+  EXPECT_NO_THROW(refuse_twice({a, b, folder_ / "none.mp4"}));
+  for (const fs::path& again : {a, folder_ / "." / "a.mp4", folder_ / "link.mp4"})
+    EXPECT_THROW(refuse_twice({a, b, again}), Error) << again;
+}
+
 TEST_F(RunFilesTest, OutputsDiffer) {
   EXPECT_NE(fault(RunFiles().writes(folder_ / "x", false).writes(folder_ / "." / "x", false)), "");
   EXPECT_EQ(fault(RunFiles().writes(folder_ / "x", false).writes(folder_ / "y", false)), "");
