@@ -144,6 +144,30 @@ class EarlyErrors(unittest.TestCase):
         with open(path("there.txt")) as file:
             self.assertEqual(file.read(), "mine")
 
+    def test_options_without_an_effect(self):
+        faults = [
+            (("motion", "short.mkv", "-o", "m.csv", "--smoothing", "2"), "--smoothing has no effect without --reference smoothed"),
+            (("synth", "-o", "new.mkv", "--fov", "60", "--lens", "bad.yml"), "--fov has no effect with --lens"),
+            (("synth", "-o", "new.mkv", "--frames", "9", "--duration", "1"), "--frames has no effect with --duration"),
+            (("log", "align", "late.csv", "short.mkv", "--lens", "bad.yml", "--fov", "60"), "--fov has no effect with --lens"),
+            (("lens", "estimate", "short.mkv", "--uncertain"), "--uncertain has no effect without --out"),
+            (("track", "made/clip", "-t", "am3", "-o", "r", "--repetitions", "2"), "--repetitions has no effect without --protocol restart"),
+            (("track", "made/clip", "-t", "am3", "-o", "r", "--timeout", "2"), "--timeout has no effect without a tracker that speaks TraX"),
+            (("track", "short.mkv", "--init", "1,1,9,9", "-t", "am3", "-o", "r", "--only", "a"), "--only has no effect with --init"),
+            (("dataset", "verify", "made", "--every", "2"), "--every has no effect without --deep"),
+            (("dataset", "import", "bad.csv", "-f", "coco", "-o", "i", "--origin", "1"), "--origin has no effect without --format csv"),
+            (("evaluate", "made/clip", "nowhere", "-o", "e", "--score", "1"), "--score has no effect without results of a detector"),
+            (("evaluate", "made/clip", "none.json", "-o", "e", "--origin", "1"), "--origin has no effect without results of a tracker"),
+            (("studio", "scene.toml", "--lens", "bad.yml"), "--lens has no effect on a scene that is there"),
+            (("compare", "--real", "short.mkv", "--boxes", "late.csv", "--scene", "scene.toml", "-o", "c", "--no-match", "--helicopter"),
+             "--helicopter has no effect with --no-match"),
+        ]
+        before = sorted(os.listdir(ROOT))
+        for words, message in faults:
+            with self.subTest(" ".join(words)):
+                self.assert_says(run(*words), message)
+                self.assertEqual(sorted(os.listdir(ROOT)), before)
+
     def test_a_catalogue(self):
         catalogue = """name = "set"
 [[background]]

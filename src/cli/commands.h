@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -26,6 +28,8 @@ struct Context {
   // Exit code of a command that finished its work and has faults to report.
   int exit_code = 0;
   std::optional<Console> opened = {};
+  // Of options that need others, called before a command runs.
+  std::vector<std::function<void()>> checks = {};
 
   // Creates the console after parsing, when --quiet and --json-log are known.
   Console& console() { return opened ? *opened : opened.emplace(options); }
@@ -40,8 +44,23 @@ auto add_command(CLI::App& group,
                  void (*run)(Parameter, Context&)) {
   CLI::App* command = group.add_subcommand(name);
   auto arguments = std::make_shared<std::remove_cvref_t<Parameter>>();
-  command->callback([run, arguments, &context] { run(*arguments, context); });
+  command->callback([run, arguments, &context] {
+    for (const auto& check : context.checks) check();
+    run(*arguments, context);
+  });
   return std::pair(command, arguments.get());
+}
+
+// An option that is given has an effect. Otherwise the command ends with an Error: "--every has no
+// effect without --deep".
+inline void expect_effect(Context& context,
+                          const CLI::Option* option,
+                          std::function<bool()> has_effect,
+                          std::string without) {
+  context.checks.push_back([option, has_effect = std::move(has_effect), without] {
+    if (option->count() > 0 && !has_effect())
+      throw Error(fmt::format("{} has no effect {}; leave it out", option->get_name(), without));
+  });
 }
 
 // Shows the warnings of a stage and its progress, and lets an interrupt stop it.

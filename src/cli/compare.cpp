@@ -49,7 +49,7 @@ void compare(CompareArguments arguments, Context& context) {
 }
 
 // How many frames and pairs, and what is searched for.
-void add_match_options(CLI::App& command, CompareArguments& arguments) {
+void add_match_options(CLI::App& command, CompareArguments& arguments, Context& context) {
   add_number(command, "--pairs", arguments.pairs, 1, 40)->description("Pairs in the figure");
   command
       .add_option("--frames", arguments.most_frames, "At most so many frames from the first box on")
@@ -63,9 +63,14 @@ void add_match_options(CLI::App& command, CompareArguments& arguments) {
       command.add_option("--types", arguments.types)
           ->description("Aircraft to search among (`airtruth aircraft list`), with commas between")
           ->delimiter(',');
-  command.add_flag("--helicopter", arguments.helicopter)
-      ->description("The real aircraft is a helicopter: search among helicopters, not aeroplanes")
-      ->excludes(types);
+  const CLI::Option* helicopter =
+      command.add_flag("--helicopter", arguments.helicopter)
+          ->description(
+              "The real aircraft is a helicopter: search among helicopters, not aeroplanes")
+          ->excludes(types);
+  for (const CLI::Option* option : {static_cast<const CLI::Option*>(types), helicopter})
+    expect_effect(
+        context, option, [&arguments] { return arguments.match; }, "with --no-match");
   command.add_option("--camera-pitch", arguments.camera_pitch_deg)
       ->description(
           "Degrees that the camera looks up, which says where light comes from (without: "
@@ -93,7 +98,7 @@ void add_compare(CLI::App& app, Context& context) {
   command->add_option("--origin", arguments->origin_px)
       ->description("What the boxes' first pixel is called (MATLAB: 1)")
       ->capture_default_str();
-  add_match_options(*command, *arguments);
+  add_match_options(*command, *arguments, context);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the folder if it exists");
 }
 

@@ -215,9 +215,13 @@ void add_import(CLI::App& group, Context& context) {
                       "[CLIP=]N, of otb, got10k and vot: the number of the first box's picture, "
                       "where there are more pictures than boxes");
   command->add_option("--size", in->size, "WxH of the pictures, where nothing says it");
-  command->add_option("--origin", in->options.read.origin_px)
-      ->description("Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
-      ->check(CLI::Range(0, 1));
+  const CLI::Option* origin =
+      command->add_option("--origin", in->options.read.origin_px)
+          ->description("Of csv: what the first pixel is called, 0 (default) or 1 (MATLAB)")
+          ->check(CLI::Range(0, 1));
+  const std::string& format = in->format;
+  expect_effect(
+      context, origin, [&format] { return format == "csv"; }, "without --format csv");
   command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
   command->add_option("--frame-rate", in->options.frame_rate_hz)
@@ -537,9 +541,12 @@ void add_verify(CLI::App& group, Context& context) {
       ->description("First write the manifest, where several workers made the sequences");
   command->add_flag(
       "--deep", arguments->deep, "Also draw sampled frames anew and compare them with the videos");
-  command
-      ->add_option("--every", arguments->deep_every, "With --deep: every n-th frame (default: 30)")
-      ->check(above_0());
+  const CLI::Option* every = command->add_option("--every", arguments->deep_every)
+                                 ->description("With --deep: every n-th frame (default: 30)")
+                                 ->check(above_0());
+  const bool& is_deep = arguments->deep;
+  expect_effect(
+      context, every, [&is_deep] { return is_deep; }, "without --deep");
   add_jobs(*command, arguments->verify_jobs, "Sequences at a time (default: one per core)");
 }
 

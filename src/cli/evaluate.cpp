@@ -150,40 +150,41 @@ void print_false_alarms(const scores::DetectorScore& detector, Console& console)
   console.result(detector.name + ": false alarms on " + line);
 }
 
+constexpr const char* kOfDetectors = "Detectors' results";
+
 void add_detection_options(CLI::App& command, Evaluate& arguments) {
   detector_evaluation::AssessOptions& options = arguments.detections;
-  const auto group = "Detectors' results";
   command.add_option("--centre-px", options.centre_px)
       ->description(
           "A detection finds an aircraft where their centres are this near, or half of the "
           "aircraft's longer side (default: 10)")
       ->check(CLI::Range(0.1, 1000.0))
-      ->group(group);
+      ->group(kOfDetectors);
   command.add_option("--score", options.score)
       ->description("Detections with this score or more count at the operating point")
-      ->group(group);
+      ->group(kOfDetectors);
   command.add_option("--false-alarms", options.false_alarms_per_image)
       ->description(
           "Otherwise the least score with so many false alarms an image at most (default: "
           "0.1)")
       ->check(CLI::Range(0.0, 1e6))
-      ->group(group);
+      ->group(kOfDetectors);
   command.add_option("--volume", options.volume)
       ->description(
           "Volume to keep clear of: f3442, do365-non-cooperative and others, or the scenes' "
           "own")
-      ->group(group);
+      ->group(kOfDetectors);
   command.add_option("--manoeuvre-s", options.manoeuvre_s)
       ->description("Which encounters are declared this long before the volume is violated, s")
       ->check(CLI::Range(0.0, 3600.0))
-      ->group(group);
+      ->group(kOfDetectors);
   command.add_option("--ignore", arguments.ignore)
       ->description("CSV of regions that count neither way (default: DIR/ignore.csv)")
       ->check(CLI::ExistingFile)
-      ->group(group);
+      ->group(kOfDetectors);
   command.add_flag("--detections", arguments.is_detections)
       ->description("MOTChallenge text with tracks is a detector's, not a tracker's")
-      ->group(group);
+      ->group(kOfDetectors);
 }
 
 void print_detections(const scores::Assessment& assessment, Console& console) {
@@ -401,6 +402,23 @@ void add_measure_options(CLI::App* command, Evaluate& arguments) {
                     "trackers answer at once");
 }
 
+// Options of one kind of results have an effect with such results alone.
+void expect_results(CLI::App& command, const Evaluate& arguments, Context& context) {
+  const auto has = [&arguments](bool detections) {
+    return [&arguments, detections] {
+      return std::ranges::any_of(arguments.results, [&](const std::string& results) {
+        return detector_evaluation::holds_detections(results, arguments.is_detections) ==
+               detections;
+      });
+    };
+  };
+  for (const char* name : {"--origin", "--eao-range", "--speed-until-loss"})
+    expect_effect(context, command.get_option(name), has(false), "without results of a tracker");
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_group() == kOfDetectors)
+      expect_effect(context, option, has(true), "without results of a detector");
+}
+
 }  // namespace
 
 void add_evaluate(CLI::App& app, Context& context) {
@@ -419,6 +437,7 @@ void add_evaluate(CLI::App& app, Context& context) {
       ->required();
   add_measure_options(command, *arguments);
   add_detection_options(*command, *arguments);
+  expect_results(*command, *arguments, context);
   command->add_option("--against", arguments->against)
       ->description("Another evaluation.json: how far do the two rankings agree?");
   command->add_option(

@@ -164,8 +164,12 @@ void add_align(CLI::App& group, Context& context) {
   command->add_option("LOG", arguments->log, "Flight log with attitudes or turn rates")->required();
   command->add_option("VIDEO", arguments->video, "Video of the same flight")->required();
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
-  command->add_option("--fov", arguments->fov_deg, "Vertical view of a pinhole, degrees")
-      ->check(CLI::Range(1.0, 179.0));
+  const CLI::Option* view =
+      command->add_option("--fov", arguments->fov_deg, "Vertical view of a pinhole, degrees")
+          ->check(CLI::Range(1.0, 179.0));
+  const std::string& lens = arguments->lens;
+  expect_effect(
+      context, view, [&lens] { return lens.empty(); }, "with --lens");
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
   command->add_option("--first-frame", arguments->first_frame)
       ->description("First frame of the video that counts [0]")

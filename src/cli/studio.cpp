@@ -119,11 +119,20 @@ void add_studio(CLI::App& app, Context& context) {
       ->required();
   command->add_option(
       "-o,--out", arguments->out, "Folder of the videos that the page renders [out]");
-  command->add_option(
-      "--lens", arguments->lens, "For a video: calibration (OpenCV or Gyroflow) of its camera");
-  command->add_option("--frame-rate", arguments->frame_rate_hz)
-      ->description("Frames a second of numbered pictures, which state none")
-      ->check(above_0());
+  const CLI::Option* lens =
+      command->add_option("--lens", arguments->lens)
+          ->description("For a video: calibration (OpenCV or Gyroflow) of its camera");
+  const CLI::Option* rate =
+      command->add_option("--frame-rate", arguments->frame_rate_hz)
+          ->description("Frames a second of numbered pictures, which state none")
+          ->check(above_0());
+  const std::string& input = arguments->input;
+  for (const CLI::Option* option : {lens, rate})
+    expect_effect(
+        context,
+        option,
+        [&input] { return scene_file(input) != input && !fs::exists(scene_file(input)); },
+        "on a scene that is there");
   command->add_option("--port", arguments->port, "Port of 127.0.0.1; 0: any that is free [0]")
       ->check(CLI::Range(0, 65535));
   command->add_flag("--open", arguments->open, "Open the page in the browser");

@@ -82,17 +82,25 @@ void add_file_options(CLI::App& command, SynthArguments& arguments) {
   command.add_option("--mask", arguments.mask, "Write the own-aircraft mask here (.png)");
 }
 
-void add_camera_options(CLI::App& command, SynthArguments& arguments) {
+void add_camera_options(CLI::App& command, SynthArguments& arguments, Context& context) {
   synthetic::FlightOptions& flight = arguments.flight;
   add_number(command, "--width", flight.width, 64, 8192)->description("Pixels");
   add_number(command, "--height", flight.height, 64, 8192)->description("Pixels");
   add_number(command, "--rate", flight.frame_rate_hz, 1.0, 1000.0)->description("Frames a second");
-  add_number(command, "--frames", flight.frame_count, 1, kMaxFrames)
-      ->description("Number of frames");
+  expect_effect(
+      context,
+      add_number(command, "--frames", flight.frame_count, 1, kMaxFrames)
+          ->description("Number of frames"),
+      [&arguments] { return arguments.duration_s <= 0; },
+      "with --duration");
   command.add_option("--duration", arguments.duration_s, "Seconds, in place of --frames")
       ->check(CLI::Range(1e-6, 1e6));
-  add_number(command, "--fov", flight.vertical_fov_deg, 1.0, 150.0)
-      ->description("Pinhole: vertical view in degrees");
+  expect_effect(
+      context,
+      add_number(command, "--fov", flight.vertical_fov_deg, 1.0, 150.0)
+          ->description("Pinhole: vertical view in degrees"),
+      [&arguments] { return arguments.lens_file.empty(); },
+      "with --lens");
   command.add_option("--lens", arguments.lens_file, "A calibration file, in place of --fov");
 }
 
@@ -132,7 +140,7 @@ void add_synth(CLI::App& app, Context& context) {
   command->add_option("--seed", arguments->flight.seed)
       ->description("Of the random numbers: another world and another flight")
       ->capture_default_str();
-  add_camera_options(*command, *arguments);
+  add_camera_options(*command, *arguments, context);
   add_world_options(*command, *arguments);
   add_disturbance_options(*command, *arguments);
   add_number(*command, "--quality", arguments->quality, 0, 51)->description("H.264 CRF");

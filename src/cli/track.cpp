@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <memory>
 
@@ -126,20 +127,46 @@ void add_source_options(CLI::App& command, Track& arguments) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
 }
 
-void add_run_options(CLI::App& command, runs::TrackOptions& options) {
-  command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
+void add_run_options(CLI::App& command, Track& arguments, Context& context) {
+  runs::TrackOptions& options = arguments.options;
+  const auto is_over_set = [&arguments] { return arguments.init.empty(); };
+  const auto speaks_trax = [&arguments] {
+    return std::ranges::any_of(arguments.trackers, tracking::is_trax);
+  };
+  const auto is_of = [&](const char* protocol) {
+    return [&arguments, protocol] { return arguments.protocol == protocol; };
+  };
+  expect_effect(context,
+                command.add_option("--only", options.only, "Sequences whose name fits (* and ?)"),
+                is_over_set,
+                "with --init");
   command.add_option("--seed", options.seed, "Of the trackers' random numbers (default: 1)");
-  command.add_option("--repetitions", options.repetitions, "Of --protocol restart (default: 1)")
-      ->check(CLI::Range(1, 999));
-  command.add_option("--anchor-step", options.anchor_step)
-      ->description("Frames between the starts of --protocol multistart (default: 50)")
-      ->check(CLI::Range(1, 1'000'000));
-  command.add_option("--timeout", options.answer_s)
-      ->description("Longest that a TraX tracker may take for an answer, s (default: 30)")
-      ->check(CLI::Range(0.001, 86'400.0));
-  command.add_option("--start-timeout", options.start_s)
-      ->description("Longest that it may take to start, s (default: 30)")
-      ->check(CLI::Range(0.001, 86'400.0));
+  expect_effect(context,
+                command.add_option("--repetitions", options.repetitions)
+                    ->description("Of --protocol restart (default: 1)")
+                    ->check(CLI::Range(1, 999)),
+                is_of("restart"),
+                "without --protocol restart");
+  expect_effect(
+      context,
+      command.add_option("--anchor-step", options.anchor_step)
+          ->description("Frames between the starts of --protocol multistart (default: 50)")
+          ->check(CLI::Range(1, 1'000'000)),
+      is_of("multistart"),
+      "without --protocol multistart");
+  expect_effect(
+      context,
+      command.add_option("--timeout", options.answer_s)
+          ->description("Longest that a TraX tracker may take for an answer, s (default: 30)")
+          ->check(CLI::Range(0.001, 86'400.0)),
+      speaks_trax,
+      "without a tracker that speaks TraX");
+  expect_effect(context,
+                command.add_option("--start-timeout", options.start_s)
+                    ->description("Longest that it may take to start, s (default: 30)")
+                    ->check(CLI::Range(0.001, 86'400.0)),
+                speaks_trax,
+                "without a tracker that speaks TraX");
   add_jobs(
       command, options.jobs, "Sequences at a time (default: 1, so that times are a tracker's own)");
 }
@@ -150,7 +177,7 @@ void add_track(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "track", run_track);
   command->description("Run trackers over a data set or a video");
   add_source_options(*command, *arguments);
-  add_run_options(*command, arguments->options);
+  add_run_options(*command, *arguments, context);
 }
 
 }  // namespace airtruth::cli
