@@ -127,6 +127,20 @@ class Build : public testing::Test {
   fs::path root_ = temporary_.path();
 };
 
+TEST_F(Build, AFolderOfAnotherCatalogueSaysWhetherItHoldsAnything) {
+  const std::string text = test_support::kCatalogue;
+  const catalogue::Folder begun =
+      catalogue::open_folder(catalogue::parse_catalogue(text, "c.toml"), root_);
+  const catalogue::Catalogue mended = catalogue::parse_catalogue(text + "# mended\n", "c.toml");
+  const auto error = [&] {
+    return test_support::error_of([&] { catalogue::open_folder(mended, root_); });
+  };
+  EXPECT_THAT(error(), HasSubstr("holds no sequence; remove it to begin anew"));
+  fs::create_directory(begun.sequences() / "one");
+  write_file(begun.sequences() / "one" / "sequence.json", "{}");
+  EXPECT_THAT(error(), HasSubstr("; expected a new folder, or that catalogue"));
+}
+
 TEST_F(Build, GoesOnWhereItWasAndGivesTheSameBytesForAnyNumberOfJobs) {
   const catalogue::Catalogue catalogue =
       catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");

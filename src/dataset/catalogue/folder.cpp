@@ -37,8 +37,13 @@ Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_
     write_layout(folder.sequences(), folder.layout);
     write_file(folder.catalogue(), catalogue.text);
   } else if (read_file(folder.catalogue()) != catalogue.text) {
+    // A catalogue whose sequences all failed stays: tasks of a cluster may still be at work on it.
+    const bool has_sequences = !sequences::sequence_folders(root).names.empty();
     throw Error("was begun with another catalogue (its catalogue.toml differs from " +
-                    catalogue.file.string() + "); expected a new folder, or that catalogue",
+                    catalogue.file.string() + ")" +
+                    (has_sequences ? "; expected a new folder, or that catalogue"
+                                   : " and holds no sequence; remove it to begin anew, or give "
+                                     "a new folder"),
                 {root.string()});
   }
   keep_models(catalogue, folder);
