@@ -370,12 +370,15 @@ class Export {
       exchange::Clip clip = clip_of(name, options_.format == exchange::Format::kCoco);
       summary_.faint += sift(clip);
       const std::string& part = parts_.at(name);
-      count_boxes(clip, set_.is_imported(name));
       if (is_table()) read_truth(name);
-      ++summary_.sequences;
-      summary_.frames += std::ssize(clip.frames);
-      summary_.frames_of_part[part] += std::ssize(clip.frames);
       const auto clips = arranged(clip);
+      const std::int64_t frames = clips.empty() ? 0 : std::ssize(clip.frames);
+      if (!clips.empty()) {
+        count_boxes(clip, set_.is_imported(name));
+        ++summary_.sequences;
+      }
+      summary_.frames += frames;
+      summary_.frames_of_part[part] += frames;
       const std::size_t tracks = exchange::tracks_of(exchange::aircraft_alone(clip)).size();
       if (exchange::is_single_object(options_.format) && (clips.size() < tracks || tracks == 0))
         warn(

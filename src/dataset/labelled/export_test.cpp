@@ -302,6 +302,22 @@ TEST_F(Made, EveryNthFrameAndOneClass) {
       testing::StartsWith("0 " + std::to_string((box.x + box.width / 2) / 160).substr(0, 5)));
 }
 
+TEST_F(Made, SequencesThatAFormatLeavesOutAreNotCounted) {
+  std::vector<std::string> warnings;
+  ExportOptions options;
+  options.format = exchange::Format::kOtb;
+  options.images = Images::kNone;
+  options.every = 8;  // of 8 frames, which leaves one: no sequence for a toolkit of one object
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  const ExportSummary summary = export_set(set(), fresh(), options);
+  EXPECT_EQ(std::ranges::count_if(
+                warnings, [](const auto& text) { return text.ends_with("it is left out"); }),
+            4);
+  EXPECT_EQ(summary.sequences, 0);
+  EXPECT_EQ(summary.frames, 0);
+  for (const auto& [part, frames] : summary.frames_of_part) EXPECT_EQ(frames, 0) << part;
+}
+
 TEST_F(Made, LabelsAreTheBoxesThatAreAskedFor) {
   const LabelledSet set_of_boxes(set());
   const std::string name = "sky-across-b737";
