@@ -110,7 +110,8 @@ void calibrate(CalibrateArguments arguments, Context& context) {
   RunFiles files;
   for (const std::string& video : arguments.videos) files.reads(video);
   files.reads(arguments.lens).reads(arguments.mask);
-  files.writes(arguments.out, arguments.overwrite).writes(arguments.plot, arguments.overwrite);
+  files.writes(arguments.out, arguments.overwrite, {".toml"})
+      .writes(arguments.plot, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
   if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
   const std::vector<fs::path> clips(arguments.videos.begin(), arguments.videos.end());

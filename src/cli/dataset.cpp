@@ -129,7 +129,10 @@ struct Report {
 
 void run_report(Report arguments, Context& context) {
   Console& console = context.console();
-  RunFiles().reads(arguments.set).writes(arguments.out, arguments.options.overwrite).check();
+  RunFiles()
+      .reads(arguments.set)
+      .writes(arguments.out, arguments.options.overwrite, {".html", ".htm"})
+      .check();
   follow(arguments.options, context, "looking", "sequences");
   set_report::write_report(arguments.set, arguments.out, arguments.options);
   console.result(arguments.out);

@@ -58,7 +58,10 @@ std::string csv_line(const evision::EvisionFramePair& pair) {
 }
 
 void evision(EvisionArguments arguments, Context& context) {
-  RunFiles().reads(arguments.folder).writes(arguments.frames, arguments.overwrite).check();
+  RunFiles()
+      .reads(arguments.folder)
+      .writes(arguments.frames, arguments.overwrite, {".csv"})
+      .check();
   Console& console = context.console();
   arguments.options.bank = !arguments.level;
   arguments.options.recover_motion = !arguments.still;

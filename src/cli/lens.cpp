@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <initializer_list>
 #include <memory>
 
 #include <fmt/format.h>
@@ -14,6 +15,9 @@
 
 namespace airtruth::cli {
 namespace {
+
+// Of calibrations.
+constexpr std::initializer_list<const char*> kEndings = {".yml", ".yaml"};
 
 struct EstimateArguments {
   std::string video;
@@ -65,7 +69,7 @@ void estimate(const EstimateArguments& arguments, Context& context) {
   RunFiles()
       .reads(arguments.video)
       .reads(arguments.mask)
-      .writes(arguments.out, arguments.overwrite)
+      .writes(arguments.out, arguments.overwrite, kEndings)
       .check();
   Console& console = context.console();
   video::Reader reader(arguments.video, {.with_cuts = true}, console.warn());
@@ -93,7 +97,7 @@ struct CropArguments {
 };
 
 void crop(const CropArguments& arguments, Context& context) {
-  RunFiles().reads(arguments.file).writes(arguments.out, arguments.overwrite).check();
+  RunFiles().reads(arguments.file).writes(arguments.out, arguments.overwrite, kEndings).check();
   const auto [width, height] = size_from(arguments.size);
   const lens::Lens whole = lens::read_calibration(arguments.file);
   const lens::Lens lens = lens::cropped(whole, {width, height});

@@ -59,7 +59,8 @@ void stabilise(const MotionArguments& arguments,
 
 void check_files(const MotionArguments& arguments, RunFiles& files) {
   files.reads(arguments.video).reads(arguments.mask).reads(arguments.lens);
-  for (const std::string& file : {arguments.out, arguments.stabilised, arguments.plot})
+  files.writes(arguments.out, arguments.overwrite, {".csv"});
+  for (const std::string& file : {arguments.stabilised, arguments.plot})
     files.writes(file, arguments.overwrite);
   video::check_still_output(arguments.plot, arguments.overwrite);
   if (!arguments.plot.empty()) plot::check_gnuplot("--plot");

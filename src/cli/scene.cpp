@@ -42,7 +42,11 @@ void new_scene(const NewArguments& arguments, Context& context) {
   const auto video = std::filesystem::absolute(arguments.video).lexically_normal();
   const std::string stem = (video.has_filename() ? video : video.parent_path()).stem().string();
   const std::string out = !arguments.out.empty() ? arguments.out : stem + ".toml";
-  RunFiles().reads(arguments.video).reads(arguments.lens).writes(out, arguments.overwrite).check();
+  RunFiles()
+      .reads(arguments.video)
+      .reads(arguments.lens)
+      .writes(out, arguments.overwrite, {".toml"})
+      .check();
   Console& console = context.console();
   new_scene::NewSceneOptions options;
   if (!arguments.lens.empty()) options.lens = arguments.lens;

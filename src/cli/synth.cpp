@@ -46,7 +46,8 @@ int frames_of(const SynthArguments& arguments) {
 void synth(SynthArguments arguments, Context& context) {
   RunFiles files;
   files.reads(arguments.lens_file);
-  for (const std::string& file : {arguments.out, arguments.truth, arguments.mask})
+  files.writes(arguments.truth, arguments.overwrite, {".csv"});
+  for (const std::string& file : {arguments.out, arguments.mask})
     files.writes(file, arguments.overwrite);
   video::check_still_output(arguments.mask, arguments.overwrite);
   synthetic::FlightOptions& options = arguments.flight;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/base/file_state.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -11,6 +12,8 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -125,10 +128,18 @@ FileStamp file_stamp(const std::filesystem::path& file) {
           nanoseconds(facts.st_mtim)};
 }
 
-void check_output_file(const fs::path& path, bool overwrite) {
+void check_output_file(const fs::path& path,
+                       bool overwrite,
+                       std::initializer_list<const char*> endings) {
   if (path.empty()) return;
   refuse_existing(path, overwrite);
   if (fs::is_directory(path)) throw Error("is a folder; expected a file to write", {path.string()});
+  const std::string ending = path.extension().string();
+  if (endings.size() > 0 && std::find(endings.begin(), endings.end(), ending) == endings.end())
+    throw Error(fmt::format("has {}; expected {}",
+                            ending.empty() ? "no ending" : "the ending " + ending,
+                            fmt::join(endings, " or ")),
+                {path.string()});
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent))
     throw Error("cannot be written: there is no folder " + parent.string(), {path.string()});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <stop_token>
 #include <string_view>
@@ -94,8 +95,11 @@ FileStamp file_stamp(const std::filesystem::path& file);
 //
 // check_output_file() throws Error where write_file() would fail for a reason that exists already:
 // the path exists and may not be replaced, is a folder, or lies in a folder that is missing or not
-// writable. An empty path means that there is no output, and passes.
-void check_output_file(const std::filesystem::path& path, bool overwrite);
+// writable; or where its name has none of `endings` (".toml"), if there are any. An empty path
+// means that there is no output, and passes.
+void check_output_file(const std::filesystem::path& path,
+                       bool overwrite,
+                       std::initializer_list<const char*> endings = {});
 
 // The same for a folder that is created, with its parents, where it is missing. Throws Error where
 // the path is a file, or where the nearest existing folder is not writable.

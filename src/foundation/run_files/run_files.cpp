@@ -187,8 +187,10 @@ RunFiles& RunFiles::reads(const fs::path& input) {
   return *this;
 }
 
-RunFiles& RunFiles::writes(const fs::path& output, bool overwrite) {
-  check_output_file(output, overwrite);
+RunFiles& RunFiles::writes(const fs::path& output,
+                           bool overwrite,
+                           std::initializer_list<const char*> endings) {
+  check_output_file(output, overwrite, endings);
   if (!output.empty()) outputs_.push_back({output, false});
   return *this;
 }

@@ -40,7 +40,9 @@ class RunFiles {
   // An empty path is none.
   RunFiles& reads(const fs::path& input);
   // A file to write. Throws Error as check_output_file() does. An empty path is none.
-  RunFiles& writes(const fs::path& output, bool overwrite);
+  RunFiles& writes(const fs::path& output,
+                   bool overwrite,
+                   std::initializer_list<const char*> endings = {});
   // A folder into which files are written: those of the same names are replaced, others stay. It is
   // made where it is missing. Throws Error as check_output_folder() does, and as refuse_foreign().
   RunFiles& writes_into(const fs::path& folder, std::initializer_list<const char*> records = {});
