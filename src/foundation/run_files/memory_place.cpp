@@ -15,19 +15,18 @@ namespace {
 
 constexpr const char* kBegins = "airtruth-run-";
 
-fs::path memory_folder() {
-  std::error_code unknown;
-  const fs::path shared = "/dev/shm";
-  return fs::is_directory(shared, unknown) ? shared : fs::temp_directory_path();
+std::optional<LockedPlace> place_in(const fs::path& folder, PlaceKind kind) {
+  // Other users' places cannot be opened, or not removed.
+  remove_dead_places(folder, kBegins);
+  return make_locked_place(kind, folder, kBegins);
 }
 
 }  // namespace
 
-MemoryPlace::MemoryPlace(PlaceKind kind, const char* what_for) {
-  const fs::path folder = memory_folder();
-  // Other users' places cannot be opened, or not removed.
-  remove_dead_places(folder, kBegins);
-  auto made = make_locked_place(kind, folder, kBegins);
+MemoryPlace::MemoryPlace(PlaceKind kind, const char* what_for, const fs::path& memory) {
+  auto made = place_in(memory, kind);
+  const fs::path folder = made ? memory : fs::temp_directory_path();
+  if (!made) made = place_in(folder, kind);
   if (!made)
     throw Error(std::string("cannot create memory for ") + what_for + ": " + std::strerror(errno),
                 {folder.string()});

@@ -10,13 +10,15 @@
 
 namespace airtruth {
 
-// A file or folder in memory for another process: in /dev/shm, or in the temporary folder where
-// that does not exist, so that nothing is written to a disk. The destructor removes it. A lock on
-// it tells that its run lives: the constructor removes those of runs that were killed.
+// A file or folder in memory for another process: in /dev/shm, so that nothing is written to a
+// disk, or in the temporary folder where it cannot be made there. The destructor removes it. A lock
+// on it tells that its run lives: the constructor removes those of runs that were killed.
 class MemoryPlace {
  public:
   // Throws Error, which says what it is for, where it cannot be made.
-  MemoryPlace(PlaceKind kind, const char* what_for);
+  MemoryPlace(PlaceKind kind,
+              const char* what_for,
+              const std::filesystem::path& memory = "/dev/shm");
   MemoryPlace(const MemoryPlace&) = delete;
   MemoryPlace& operator=(const MemoryPlace&) = delete;
   ~MemoryPlace();

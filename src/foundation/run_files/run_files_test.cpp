@@ -10,6 +10,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/run_files/memory_place.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth {
@@ -160,6 +161,20 @@ TEST_F(RunFilesTest, WhatAKilledRunLeftIsRemovedAndALivingRunsIsNot) {
   living.write(a, [](const fs::path& at) { write_file(at, "whole"); });
   living.commit();
   EXPECT_EQ(read_file(a), "whole");
+}
+
+// Nobody makes a file in /proc, root neither.
+TEST(MemoryPlace, LiesInTheTemporaryFolderWhereThereIsNoMemoryToWrite) {
+  for (const PlaceKind kind : {PlaceKind::kFile, PlaceKind::kFolder}) {
+    fs::path at;
+    {
+      const MemoryPlace place(kind, "a test", "/proc");
+      at = place.path();
+      EXPECT_TRUE(fs::equivalent(at.parent_path(), fs::temp_directory_path())) << at;
+      EXPECT_TRUE(fs::exists(at));
+    }
+    EXPECT_FALSE(fs::exists(at));
+  }
 }
 
 }  // namespace
