@@ -198,6 +198,23 @@ TEST(Gpx, APointThatLacksSomethingIsLeftOut) {
               testing::StartsWith("a.gpx:3: is no XML: "));
 }
 
+// A day of points is read at once: the lines of all of them are counted in one go through the text.
+TEST(Gpx, ALongTrackNamesTheLineOfAFault) {
+  constexpr int kPoints = 86'400;
+  std::string text = "<gpx>\n<trk><trkseg>\n";
+  for (int i = 0; i < kPoints; ++i)
+    text += fmt::format(
+        "<trkpt lat=\"47\" lon=\"8\"><ele>{}</ele><time>2024-05-17T{:02}:{:02}:{:02}Z"
+        "</time></trkpt>\n",
+        i + 1 < kPoints ? "1" : "high",
+        i / 3600,
+        i / 60 % 60,
+        i % 60);
+  const FlightLog log = parse_flight_log(text + "</trkseg></trk></gpx>", "a.gpx");
+  EXPECT_EQ(log.fixes.size(), kPoints - 1u);
+  EXPECT_EQ(log.first_fault, "a.gpx:86402: <ele> is 'high'; expected a number");
+}
+
 TEST(Gpx, PrefixesOfTheNamespaceAreRead) {
   const FlightLog log = parse_flight_log(
       "<gpx:gpx xmlns:gpx=\"http://www.topografix.com/GPX/1/1\"><gpx:trk><gpx:trkseg>"

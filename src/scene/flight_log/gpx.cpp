@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // GPX 1.0 and 1.1 tracks. Source: Topografix, "GPX 1.1 Schema Documentation".
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -110,10 +113,20 @@ FlightLog from_gpx(std::string_view text, const std::string& file) {
   FlightLog log;
   log.format = Format::kGpx;
   std::optional<double> first_s;
+  // The points come in the order of the text, whose lines are counted once.
+  int line = 1;
+  std::ptrdiff_t counted = 0;
+  const auto next_line = [&](std::ptrdiff_t offset) {
+    if (offset > counted) {
+      line += line_of(text.substr(static_cast<std::size_t>(counted)), offset - counted) - 1;
+      counted = std::min(offset, std::ssize(text));
+    }
+    return line;
+  };
   for (const pugi::xml_node& track : children(document.document_element(), "trk"))
     for (const pugi::xml_node& segment : children(track, "trkseg"))
       for (const pugi::xml_node& point : children(segment, "trkpt"))
-        add_point(log, first_s, point, {file, line_of(text, point.offset_debug()), 0});
+        add_point(log, first_s, point, {file, next_line(point.offset_debug()), 0});
   return from_first_record(std::move(log));
 }
 
