@@ -63,10 +63,15 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
   check_record(folder / "tracker.json");
   std::vector<results::TrackerResults> results;
   std::size_t missing = 0;
+  std::int64_t negative = 0;
+  Where first_negative;
   std::set<std::string> known;
   for (const TruthClip& truth : truths) {
     results.push_back(results::read_results(folder, truth.clip, options.origin_px));
-    missing += results.back().empty() ? 1 : 0;
+    const results::TrackerResults& read = results.back();
+    missing += read.empty() ? 1 : 0;
+    if (negative == 0) first_negative = read.first_negative;
+    negative += read.negative_boxes;
     known.insert(truth.clip.name);
   }
   std::vector<std::string> unknown = results::tracked_sequences_in(folder);
@@ -81,6 +86,12 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                folder.string(),
                                unknown.size(),
                                unknown.front()));
+  if (negative > 0)
+    airtruth::warn(options.warn,
+                   fmt::format("{}: has a width or height below 0, as {} boxes of these results "
+                               "have, and counts as no answer; expected x,y,width,height",
+                               to_string(first_negative),
+                               negative));
   if (missing > 0)
     airtruth::warn(options.warn,
                    fmt::format("{}: has results for {} of {} sequences; its score is of those",

@@ -36,11 +36,25 @@ std::optional<Box> box_from(const std::vector<double>& n, std::size_t first, int
   return is_sound(box) ? std::optional(box) : std::nullopt;
 }
 
-Trajectory read_trajectory(const fs::path& file, int origin_px) {
+// Takes down a box of x, y, width, height with a side below 0.
+void see_sides(const std::vector<double>& n,
+               std::size_t first,
+               const Where& where,
+               TrackerResults& results) {
+  if (n.size() < first + 4 || !(n[first + 2] < 0 || n[first + 3] < 0)) return;
+  if (results.negative_boxes++ == 0) results.first_negative = where;
+}
+
+Trajectory read_trajectory(const fs::path& file, int origin_px, TrackerResults& results) {
   if (file.extension() == kBinary) return read_binary_trajectory(file, origin_px);
   Trajectory trajectory;
-  for (const exchange::Line& line : exchange::lines_of(file))
+  for (const exchange::Line& line : exchange::lines_of(file)) {
     trajectory.push_back(region_of(line, file, origin_px));
+    const VotFrame& frame = trajectory.back();
+    if (frame.mark != Mark::kAnswer || frame.box || line.text.starts_with('m')) continue;
+    const std::vector<double> numbers = exchange::numbers_of(line, file);
+    if (numbers.size() == 4) see_sides(numbers, 0, {file.string(), line.number}, results);
+  }
   return trajectory;
 }
 
@@ -86,7 +100,7 @@ std::optional<std::int64_t> overlapping_track(const Tracks& tracks, const exchan
 }
 
 // "frame,id,x,y,w,h,confidence,..." with frames of the video from 1.
-Trajectory read_mot(const fs::path& file, const exchange::Clip& clip) {
+Trajectory read_mot(const fs::path& file, const exchange::Clip& clip, TrackerResults& results) {
   Tracks tracks;
   for (const exchange::Line& line : exchange::lines_of(file)) {
     const std::vector<double> n = exchange::numbers_of(line, file);
@@ -97,7 +111,10 @@ Trajectory read_mot(const fs::path& file, const exchange::Clip& clip) {
     if (!frame || !id)
       throw Error("is no line of MOTChallenge; expected frame,id,x,y,width,height,...",
                   {file.string(), line.number});
-    if (const auto box = box_from(n, 2, 1)) tracks[*frame - 1][*id] = *box;
+    if (const auto box = box_from(n, 2, 1))
+      tracks[*frame - 1][*id] = *box;
+    else
+      see_sides(n, 2, {file.string(), line.number}, results);
   }
   const auto mine = overlapping_track(tracks, clip);
   Trajectory trajectory;
@@ -135,8 +152,12 @@ void expect_begun(const Trajectory& trajectory, const fs::path& file) {
     throw Error("does not begin with 1; expected a run of VOT", {file.string(), 1});
 }
 
-Trajectory one_pass_run(const fs::path& file, const exchange::Clip& clip, int origin_px) {
-  Trajectory run = is_mot(file) ? read_mot(file, clip) : read_trajectory(file, origin_px);
+Trajectory one_pass_run(const fs::path& file,
+                        const exchange::Clip& clip,
+                        int origin_px,
+                        TrackerResults& results) {
+  Trajectory run =
+      is_mot(file) ? read_mot(file, clip, results) : read_trajectory(file, origin_px, results);
   // VOT's unsupervised runs mark their start.
   for (VotFrame& frame : run)
     if (frame.mark != Mark::kAnswer) frame = {Mark::kAnswer, {}};
@@ -176,7 +197,7 @@ void add_vot_runs(const fs::path& folder,
   for (const fs::path& file : vot_files(folder)) {
     const auto number = number_of(file, clip.name);
     if (!number) continue;
-    Trajectory run = read_trajectory(file, origin_px);
+    Trajectory run = read_trajectory(file, origin_px, results);
     // No measure has the times of these runs; they are checked alone.
     read_times(times_file(file, Protocol::kRestart), run.size());
     expect_begun(run, file);
@@ -260,7 +281,7 @@ TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, 
   const fs::path& file = fs::exists(own) ? own : got10k;
   if (fs::exists(file)) {
     const fs::path times = file.parent_path() / (clip.name + "_time.txt");
-    results.one_pass = TrackerResults::OnePass{one_pass_run(file, clip, origin_px),
+    results.one_pass = TrackerResults::OnePass{one_pass_run(file, clip, origin_px, results),
                                                read_times(times, clip.frames.size())};
   }
   for (const char* place : kVotPlaces)

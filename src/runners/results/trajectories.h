@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <airtruth/error.h>
 #include <airtruth/labels.h>
 #include <airtruth/vot.h>
 
@@ -56,6 +57,9 @@ struct TrackerResults {
   std::optional<OnePass> one_pass;
   std::vector<evaluation::Trajectory> restart;
   std::vector<evaluation::AnchorRun> multistart;
+  // Boxes with a width or height below 0, which are answers without a box, and the first's place.
+  std::int64_t negative_boxes = 0;
+  Where first_negative;
   bool empty() const { return !one_pass && restart.empty() && multistart.empty(); }
 };
 

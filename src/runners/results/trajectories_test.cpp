@@ -170,6 +170,17 @@ TEST(VotRuns, ANanIsTheMarkZeroAndNoAreaIsAnAnswer) {
   const TrackerResults one_pass = read_results(folder.path(), clip(), 0);
   for (const evaluation::VotFrame& frame : one_pass.one_pass->frames)
     EXPECT_EQ(frame.mark, Mark::kAnswer);
+  // A side below 0 is a fault, which is told; one of 0 says that there is no answer.
+  EXPECT_EQ(one_pass.negative_boxes, 2);
+  EXPECT_EQ(to_string(one_pass.first_negative), (folder.path() / "a.txt").string() + ":5");
+}
+
+TEST(MotTracks, ASideBelow0IsTold) {
+  const ResultsFolder folder;
+  folder.file("a.txt", "1,1,5,5,9,9,1\n2,1,5,5,-9,9,1\n3,1,5,5,0,9,1\n");
+  const TrackerResults results = read_results(folder.path(), clip(), 0);
+  EXPECT_EQ(results.negative_boxes, 1);
+  EXPECT_EQ(to_string(results.first_negative), (folder.path() / "a.txt").string() + ":2");
 }
 
 TEST(VotRuns, ThatAreNoneSaySo) {
