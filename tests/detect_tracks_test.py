@@ -125,7 +125,7 @@ class Tracks(Case):
         self.assertEqual(len(set(declared)), 1)
 
     def test_options_are_checked(self):
-        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "y", "--declare", "3/5"), "--declare and --confident are for --associate")
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "y", "--declare", "3/5"), "--declare has no effect without --associate")
         for text, words in (("3", "expected M/N"), ("a/5", "expected M/N"), ("5/3", "expected 1 to 3"), ("1/2000", "expected 1 to 1000")):
             self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "y", "--associate", "--declare", text), words)
         self.assertFalse(os.path.exists(path("y")))

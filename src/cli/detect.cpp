@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -55,11 +57,7 @@ void read_declare(const std::string& text, association::AssociationOptions& asso
 }
 
 std::optional<association::AssociationOptions> association_of(const Detect& arguments) {
-  if (!arguments.associate) {
-    if (!arguments.declare.empty() || arguments.confident)
-      throw Error("--declare and --confident are for --associate");
-    return std::nullopt;
-  }
+  if (!arguments.associate) return std::nullopt;
   association::AssociationOptions association;
   if (!arguments.declare.empty()) read_declare(arguments.declare, association);
   association.confident_score = arguments.confident;
@@ -78,7 +76,7 @@ void run_detect(Detect arguments, Context& context) {
     tell(summary, context);
 }
 
-void add_options(CLI::App& command, Detect& arguments) {
+void add_options(CLI::App& command, Detect& arguments, Context& context) {
   runs::DetectOptions& options = arguments.options;
   command.add_option("DIR|VIDEO", arguments.source)
       ->description("A data set, made or imported; or a video or folder of images")
@@ -115,16 +113,29 @@ void add_options(CLI::App& command, Detect& arguments) {
           "Leave out what networks and programs detect by more than half on the own aircraft");
   command.add_flag(
       "--associate", arguments.associate, "Make tracks of the detections, by bearing and size");
-  command.add_option("--declare", arguments.declare)
-      ->description("M/N: a track is declared with M detections in N frames (default: 3/5)");
-  command.add_option("--confident", arguments.confident)
-      ->description("Least score that may begin a track (default: the detector's, else any)");
-  command.add_option("--timeout", options.answer_s)
-      ->description("Longest that a program may take for a frame, s (default: 30)")
-      ->check(CLI::Range(0.001, 86'400.0));
-  command.add_option("--start-timeout", options.start_s)
-      ->description("Longest that it may take to start, s (default: 30)")
-      ->check(CLI::Range(0.001, 86'400.0));
+  const CLI::Option* declare =
+      command.add_option("--declare", arguments.declare)
+          ->description("M/N: a track is declared with M detections in N frames (default: 3/5)");
+  const CLI::Option* confident =
+      command.add_option("--confident", arguments.confident)
+          ->description("Least score that may begin a track (default: the detector's, else any)");
+  for (const CLI::Option* option : {declare, confident})
+    expect_effect(
+        context, option, [&arguments] { return arguments.associate; }, "without --associate");
+  const CLI::Option* answer =
+      command.add_option("--timeout", options.answer_s)
+          ->description("Longest that a program may take for a frame, s (default: 30)")
+          ->check(CLI::Range(0.001, 86'400.0));
+  const CLI::Option* start = command.add_option("--start-timeout", options.start_s)
+                                 ->description("Longest that it may take to start, s (default: 30)")
+                                 ->check(CLI::Range(0.001, 86'400.0));
+  const auto has_program = [&options] {
+    return std::ranges::any_of(options.detectors, [](const std::string& text) {
+      return runs::named_detector(text).command.starts_with("exec:");
+    });
+  };
+  for (const CLI::Option* option : {answer, start})
+    expect_effect(context, option, has_program, "without a detector that is a program");
   add_jobs(command, options.jobs, "Sequences at a time (default: 1)");
 }
 
@@ -133,7 +144,7 @@ void add_options(CLI::App& command, Detect& arguments) {
 void add_detect(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "detect", run_detect);
   command->description("Run detectors over a data set or a video");
-  add_options(*command, *arguments);
+  add_options(*command, *arguments, context);
 }
 
 }  // namespace airtruth::cli

@@ -68,8 +68,6 @@ void refuse_mixed(const Track& arguments, bool is_video) {
   if (!is_video && !fs::is_directory(source))
     throw Error("is a video; give --init x,y,width,height to say what to follow",
                 {source.string()});
-  if (!is_video && arguments.first_frame != 0)
-    throw Error("--first-frame goes with --init; a data set's truth says where runs begin");
 }
 
 void run_track(Track arguments, Context& context) {
@@ -103,7 +101,7 @@ void run_track(Track arguments, Context& context) {
 }
 
 // What is followed, by which trackers, and where their results go.
-void add_source_options(CLI::App& command, Track& arguments) {
+void add_source_options(CLI::App& command, Track& arguments, Context& context) {
   command.add_option("DIR|VIDEO", arguments.source)
       ->description("A data set, made or imported; or a video or folder of images, with --init")
       ->required();
@@ -123,8 +121,13 @@ void add_source_options(CLI::App& command, Track& arguments) {
                      "multistart: begun at many frames, forward and backward");
   command.add_option(
       "--init", arguments.init, "x,y,width,height of what to follow in a video, pixels from 0");
-  command.add_option("--first-frame", arguments.first_frame, "Frame of --init (default: 0)")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
+  expect_effect(
+      context,
+      command.add_option("--first-frame", arguments.first_frame)
+          ->description("Frame of --init (default: 0)")
+          ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40)),
+      [&arguments] { return !arguments.init.empty(); },
+      "without --init");
 }
 
 void add_run_options(CLI::App& command, Track& arguments, Context& context) {
@@ -176,7 +179,7 @@ void add_run_options(CLI::App& command, Track& arguments, Context& context) {
 void add_track(CLI::App& app, Context& context) {
   auto [command, arguments] = add_command(app, context, "track", run_track);
   command->description("Run trackers over a data set or a video");
-  add_source_options(*command, *arguments);
+  add_source_options(*command, *arguments, context);
   add_run_options(*command, *arguments, context);
 }
 
