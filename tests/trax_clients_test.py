@@ -88,6 +88,15 @@ def expect_lost(root, run):
             sys.exit(f"trax_clients_test: {name}: {found}; {video.stderr}")
 
 
+def expect_negative_told(root, run):
+    """A box with a width below 0 is a frame without an answer, which one warning says for all sequences."""
+    with open(root + "/negative.sh", "w", encoding="utf-8") as out:
+        out.write(HELLO + "while read -r line; do case \"$line\" in @@TRAX:quit*) exit;; esac; echo '@@TRAX:state 45,30,-30,40'; done")
+    done = run("track", "set", "-o", "negative", "-t", f"negative=trax:sh {root}/negative.sh")
+    if done.returncode != 0 or done.stderr.count("width or height below 0") != 1:
+        sys.exit(f"trax_clients_test: negative: {done.returncode}: {done.stderr}")
+
+
 def main():
     airtruth, clients, example = sys.argv[1:4]
     airtruth = os.path.abspath(airtruth)
@@ -134,6 +143,7 @@ def main():
         if again.returncode != 0 or scored.returncode != 0 or "template" not in scored.stdout:
             sys.exit(f"trax_clients_test: {again.stderr} {scored.stderr}")
         expect_lost(root, run)
+        expect_negative_told(root, run)
         # What cannot be started is refused before anything is made.
         for command, word in (("trax:no_such_tracker_4711", "not found"), ("trax:exit 5", "status 5"),
                               ("trax:echo words", "ended with status 0"), ("trax:", "names no command"),

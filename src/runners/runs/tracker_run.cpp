@@ -71,6 +71,7 @@ class Follower {
       const double took_s = watch.seconds();
       seconds_ = answer.seconds.value_or(took_s);
       if (!answer.lost) box = answer.box_px;
+      negative_boxes_ += answer.has_negative_side ? 1 : 0;
       ++answers_;
       spent_s_ += seconds_;
     });
@@ -90,6 +91,8 @@ class Follower {
   const std::string& fault() const { return fault_; }
   std::string log() const { return log_ + (tracker_ ? tracker_->log() : ""); }
   std::int64_t answers() const { return answers_; }
+  // Of the answers without a box those with a width or height below 0.
+  std::int64_t negative_boxes() const { return negative_boxes_; }
   // Sum of the durations of all answers, in seconds.
   double spent_s() const { return spent_s_; }
 
@@ -116,6 +119,7 @@ class Follower {
   std::string fault_;
   std::string log_;
   std::int64_t answers_ = 0;
+  std::int64_t negative_boxes_ = 0;
   double spent_s_ = 0;
 };
 
@@ -245,6 +249,13 @@ class TrackerRun {
     ++summary_.made;
     summary_.frames += follower.answers();
     summary_.seconds += follower.spent_s();
+    if (follower.negative_boxes() > 0 && !std::exchange(negative_is_told_, true))
+      airtruth::warn(options_.warn,
+                     fmt::format("{} on {}: {} boxes have a width or height below 0, and count as "
+                                 "no answer, here and in other runs",
+                                 options_.tracker,
+                                 name,
+                                 follower.negative_boxes()));
     if (follower.fault().empty()) return;
     ++summary_.broken;
     airtruth::warn(
@@ -344,6 +355,7 @@ class TrackerRun {
   std::string command_;
   std::mutex mutex_;
   TrackSummary summary_;
+  bool negative_is_told_ = false;
   std::optional<RunLock> lock_;
 };
 

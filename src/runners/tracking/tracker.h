@@ -31,6 +31,8 @@ struct Answer {
   bool lost = false;
   // Time for this answer in seconds, where the tracker measures it better than its caller.
   std::optional<double> seconds;
+  // True where it is lost because it reports a box with a width or height below 0.
+  bool has_negative_side = false;
 };
 
 class Tracker {

@@ -159,6 +159,12 @@ std::optional<Box> box_of(std::string_view region) {
   return sound(results::bounds_of_polygon(n));
 }
 
+bool has_negative_side(std::string_view region) {
+  if (region.starts_with(kMask)) return false;
+  const std::vector<double> n = numbers_of(region);
+  return n.size() == 4 && (n[2] < 0 || n[3] < 0);
+}
+
 std::string rectangle_of(const Box& box) {
   return fmt::format("{},{},{},{}", box.x, box.y, box.width, box.height);
 }

@@ -44,6 +44,8 @@ std::string line_of(const Message& message);
 // Returns empty for one number, for numbers that are not finite, and for a region without area.
 // Throws process::Failure for any other text.
 std::optional<Box> box_of(std::string_view region);
+// True for "x,y,w,h" with a width or height below 0. Throws as box_of().
+bool has_negative_side(std::string_view region);
 
 std::string rectangle_of(const Box& box);
 std::string polygon_of(const Box& box);  // its corners

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -231,6 +232,20 @@ TEST(TraxTracker, OfVersionFour) {
   tracker->init({2, 2, 3, 4});
   EXPECT_EQ(tracker->update().box_px, (Box{5, 6, 7, 8}));
   EXPECT_THAT(tracker->log(), HasSubstr("chatter"));
+}
+
+TEST(TraxTracker, WithASideBelow0HasLostItsObjectAndTheAnswerSaysSo) {
+  for (const auto& [region, is_negative] :
+       {std::pair("5,6,-7,8", true), std::pair("5,6,7,-8", true), std::pair("5,6,0,8", false)}) {
+    const image::Picture one = picture();
+    const auto tracker = started(answering(std::string("echo '@@TRAX:state ") + region + "'"));
+    tracker->load(one);
+    tracker->init({1, 2, 3, 4});
+    tracker->load(one);
+    const Answer answer = tracker->update();
+    EXPECT_TRUE(answer.lost) << region;
+    EXPECT_EQ(answer.has_negative_side, is_negative) << region;
+  }
 }
 
 // Every version is begun by what it knows, and gets pictures and regions in the form it asked for.

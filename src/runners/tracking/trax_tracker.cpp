@@ -237,9 +237,10 @@ class TraxTracker : public Tracker {
     if (message.arguments.size() != 1)
       throw process::Failure("its state has " + std::to_string(message.arguments.size()) +
                              " regions; expected one");
-    const std::optional<Box> box = box_of(message.arguments.front());
+    const std::string& region = message.arguments.front();
+    const std::optional<Box> box = box_of(region);
     if (box) last_ = *box;
-    return {last_, confidence_of(message), !box, took};
+    return {last_, confidence_of(message), !box, took, !box && has_negative_side(region)};
   }
 
   void guarded(const auto& work) {
