@@ -114,8 +114,6 @@ Finished open_finished(const fs::path& folder) {
   if (finished.name.empty() || fs::path(finished.name).filename() != finished.name)
     throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
                 {record_file.string()});
-  finished.has_covered_boxes = record.has("covered_alpha");
-  finished.has_encounters = record.has("encounters");
   finished.encounters = pipeline::read_encounter_records(record);
   finished.scene = scene::parse_scene(record.text("scene_toml"), record_file);
   const auto format = finished.scene->output.video;
@@ -123,9 +121,6 @@ Finished open_finished(const fs::path& folder) {
   if (!fs::exists(finished.video))
     throw Error("is missing; the folder is not whole", {finished.video.string()});
   finished.truth = annotation::read_truth(folder / "truth.jsonl");
-  for (const annotation::Frame& frame : finished.truth.frames)
-    for (const annotation::Intruder& intruder : frame.intruders)
-      if (intruder.contrast_to_noise) finished.has_contrast = true;
   return finished;
 }
 
@@ -238,23 +233,6 @@ std::string picture_fault(const image::Picture& made,
   return "";
 }
 
-// Removes from a recomputed truth the fields that older sequences lack.
-void as_older_truth(annotation::Frame& truth) {
-  const Shake shake = annotation::shake_of(truth);
-  for (annotation::Intruder& intruder : truth.intruders) {
-    intruder.covered_box_px.reset();
-    intruder.covered_area_px.reset();
-    if (!shake.rotation && shake.frame_from_reference != Homography::Identity()) {
-      intruder.azimuth_deg.reset();
-      intruder.elevation_deg.reset();
-    }
-    if (shake.rotation) {
-      intruder.nominal_azimuth_deg.reset();
-      intruder.nominal_elevation_deg.reset();
-    }
-  }
-}
-
 // Masks whose bytes are not those of the frame drawn again, and masks that should not be there.
 std::vector<std::string> mask_faults(const Finished& sequence, const pipeline::Work& again) {
   std::vector<std::string> faults;
@@ -276,11 +254,6 @@ std::vector<std::string> frame_faults(const Finished& sequence,
                                       pipeline::Work& again) {
   // The measured motion is the input of both; all else is computed again.
   again.truth.motion_state = truth.motion_state;
-  if (!sequence.has_covered_boxes) as_older_truth(again.truth);
-  for (annotation::Intruder& intruder : again.truth.intruders) {
-    if (!sequence.has_encounters) intruder.encounter.reset();
-    if (!sequence.has_contrast) intruder.contrast_to_noise.reset();
-  }
   std::vector<std::string> faults;
   if (sequence.scene->output.masks) faults = mask_faults(sequence, again);
   if (annotation::jsonl_line(again.truth, sequence.truth.lens) !=

@@ -25,13 +25,7 @@ struct Finished {
   // Empty for an imported clip, whose truth holds only boxes and ranges.
   std::optional<scene::Scene> scene;
   annotation::Truth truth;
-  // True where the sequence was made with covered boxes. Older sequences have none.
-  bool has_covered_boxes = false;
-  // True where the truth states contrast to noise. Older sequences have none.
-  bool has_contrast = false;
-  // True where the truth has the measures of encounters. Older sequences have none.
-  bool has_encounters = false;
-  // In the order of the scene; empty for an imported clip and an older sequence.
+  // In the order of the scene; empty for an imported clip.
   std::vector<pipeline::EncounterRecord> encounters;
 };
 
