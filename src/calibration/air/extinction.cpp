@@ -50,13 +50,6 @@ struct Cell {
   std::array<double, 3> weight{};
 };
 
-double quantile(std::vector<float>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), at, values.end());
-  return double(*at);
-}
-
 std::vector<Cell> cells_of(const std::vector<SeenLight>& ground) {
   const double low = radians(kMinDepressionDeg);
   const double step = std::log(kMaxDepressionDeg / kMinDepressionDeg) / kDepressionBands;
@@ -269,7 +262,8 @@ std::optional<double> visibility_by_horizon_km(const std::vector<SeenLight>& gro
   if (!dark) return std::nullopt;
   std::vector<float> per_km = largest_extinctions_per_km(cells, sky, *dark, altitude_m);
   if (per_km.size() < kMinValues) return std::nullopt;
-  const double visibility_km = kKoschmieder / std::max(quantile(per_km, kQuantile), kMinPerKm);
+  const double visibility_km =
+      kKoschmieder / std::max<double>(quantile(per_km, kQuantile), kMinPerKm);
   for (const double class_km : kVisibilityClassesKm)
     if (visibility_km <= class_km) return class_km;
   return kVisibilityClassesKm.back();

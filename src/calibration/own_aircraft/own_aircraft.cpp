@@ -189,10 +189,7 @@ void add_pair(const cv::Mat& to,
 // The noise of the clip: the lower tenth of the differences at the same place.
 float noise_of(const cv::Mat& still) {
   std::vector<float> values(still.begin<float>(), still.end<float>());
-  const std::size_t tenth = values.size() / kNoiseQuantile;
-  std::nth_element(
-      values.begin(), values.begin() + static_cast<std::ptrdiff_t>(tenth), values.end());
-  return std::max(kMinNoise, values[tenth]);
+  return std::max(kMinNoise, nth_smallest(values, values.size() / kNoiseQuantile));
 }
 
 Stillness stillness_of(const std::vector<KeptFrame>& frames, double scale) {

@@ -12,6 +12,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/median.h"
 #include "foundation/base/text.h"
 #include "labels/annotation/evision.h"
 #include "labels/projection/exact_box.h"
@@ -170,9 +171,8 @@ double quantile(const std::vector<EvisionOffsets>& compared,
   if (compared.empty()) return 0;
   std::vector<double> values;
   for (const EvisionOffsets& one : compared) values.push_back(one.*of);
-  const auto k = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
-  return values[k];
+  return nth_smallest(
+      values, static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5));
 }
 
 Sequence read_sequence(const fs::path& groundtruth,

@@ -8,22 +8,34 @@
 
 namespace airtruth {
 
+// The value before which n others stand in order. It rearranges the values, of which there must be
+// more than n.
+template <class T>
+T nth_smallest(std::vector<T>& values, std::size_t n) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(n);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// The value before which this share of the others, below 1, stands in order.
+template <class T>
+T quantile(std::vector<T>& values, double share) {
+  return nth_smallest(values, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+}
+
 // The median; for an even number of values, the upper of the two middle values. There must be at
 // least one value.
 template <class T>
 T median(std::vector<T> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return nth_smallest(values, values.size() / 2);
 }
 
 // The median as statistics packages define it: for an even number of values, the mean of the two
 // middle values. There must be at least one value.
 inline double median_between(std::vector<double> values) {
-  const double upper = median(values);
+  const double upper = nth_smallest(values, values.size() / 2);
   if (values.size() % 2 == 1) return upper;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
   return (*std::max_element(values.begin(), middle) + upper) / 2;
 }
 

@@ -181,13 +181,6 @@ const double kLeastNoise = kGreyScale / std::sqrt(12.0);
 constexpr double kMedianOfResponse = 0.65;
 constexpr double kTailOfResponse = 1.6;
 
-double quantile_of(std::vector<float>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 bool is_ring_enough(std::size_t samples, int stride) {
   return static_cast<double>(samples) * stride * stride >= kLeastRing * kWholeRing;
 }
@@ -251,10 +244,10 @@ std::optional<Surroundings> surroundings_of(const Level& level,
   }
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] -= static_cast<float>(around.along_x * places[i].x + around.along_y * places[i].y);
-  around.middle = quantile_of(values, 0.5);
+  around.middle = quantile(values, 0.5);
   for (float& value : values) value = std::abs(value - static_cast<float>(around.middle));
-  const double median = quantile_of(values, 0.5);
-  const double tail = quantile_of(values, kTailQuantile);
+  const double median = quantile(values, 0.5);
+  const double tail = quantile(values, kTailQuantile);
   around.noise = std::max({kLeastNoise, kSigmaOfMad * median, kSigmaOfTail * tail});
   return around;
 }
@@ -268,8 +261,8 @@ std::optional<double> noise_of_responses(const Level& level,
     values.push_back(level.response.at<short>(sample));
   });
   if (!is_ring_enough(values.size(), 1)) return std::nullopt;
-  const double median = quantile_of(values, 0.5);
-  return std::max(median / kMedianOfResponse, quantile_of(values, kTailQuantile) / kTailOfResponse);
+  const double median = quantile(values, 0.5);
+  return std::max(median / kMedianOfResponse, quantile(values, kTailQuantile) / kTailOfResponse);
 }
 
 }  // namespace airtruth::classical

@@ -203,9 +203,7 @@ std::optional<float> cast_of(const Rgb& rgb) {
 float cast_of_grey(std::vector<float> casts) {
   // 1 - R/B, a ratio: 1 - 0.81/1.34.
   constexpr float kBluestOvercast = 0.4f;
-  const auto tenth = casts.begin() + static_cast<std::ptrdiff_t>(casts.size() / 10);
-  std::nth_element(casts.begin(), tenth, casts.end());
-  return std::clamp(*tenth, 0.0f, kBluestOvercast);
+  return std::clamp(nth_smallest(casts, casts.size() / 10), 0.0f, kBluestOvercast);
 }
 
 // Blueness: 0 for grey (cloud), 1 for a clear sky.
@@ -279,9 +277,7 @@ Seen seen_in(const std::vector<Block>& blocks, const Skies& skies) {
     clear.push_back(blue);
   }
   if (clear.size() < kFewest) return seen;
-  const auto high = clear.begin() + static_cast<std::ptrdiff_t>(clear.size() * 9 / 10);
-  std::nth_element(clear.begin(), high, clear.end());
-  seen.clearness = *high;
+  seen.clearness = nth_smallest(clear, clear.size() * 9 / 10);
   return seen;
 }
 
