@@ -9,8 +9,10 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "camera/lens/lens.h"
+#include "camera/motion/motion.h"
 #include "foundation/base/log.h"
 
 // A first scene for a video: what its files and its picture tell, and a first encounter.
@@ -60,5 +62,23 @@ lens::Lens pinhole_from_equivalent(double equivalent_mm, lens::ImageSize size);
 
 // An equidistant fisheye with a diagonal view.
 lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size);
+
+// Where a camera holds its direction: there an intruder on a straight path stays in view.
+
+struct Stretch {
+  std::size_t first = 0;  // index in the motion
+  std::size_t frames = 0;
+};
+
+// The longest stretch of at most `most` frames in which the camera's attitude stays within
+// `turn_rad` of that in the stretch's first frame, without a cut; the earliest of equally long
+// ones. `motion` is of the model rotation, against one reference.
+//
+// Example: a camera that turns by 1 degree in each of 100 frames, holds still for 50 and turns on:
+// with 10 degrees the stretch begins at frame 90, 10 degrees before it holds still, and has 60
+// frames. One that begins at frame 100 has 60 too, but is later.
+Stretch steady_stretch(const std::vector<motion::FrameMotion>& motion,
+                       double turn_rad,
+                       std::size_t most);
 
 }  // namespace airtruth::new_scene

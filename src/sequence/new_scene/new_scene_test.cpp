@@ -15,7 +15,6 @@
 #include "foundation/base/files.h"
 #include "picture/video/still.h"
 #include "sequence/demo/demo.h"
-#include "sequence/new_scene/first_encounter.h"
 #include "sequence/preview/preview.h"
 #include "sequence/setup/from_scene.h"
 #include "support/temporary_folder.h"
