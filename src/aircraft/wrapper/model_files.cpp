@@ -96,10 +96,9 @@ fs::path DiskFiles::resolved(const fs::path& path) const {
 ModelFiles::Kind DiskFiles::kind_below(const fs::path& path) {
   const fs::path real = resolved(path);
   std::error_code ignored;
-  const Kind kind = real.empty()                         ? Kind::kNone
-                    : fs::is_regular_file(real, ignored) ? Kind::kFile
-                    : fs::is_directory(real, ignored)    ? Kind::kFolder
-                                                         : Kind::kNone;
+  const Kind kind = fs::is_regular_file(real, ignored) ? Kind::kFile
+                    : fs::is_directory(real, ignored)  ? Kind::kFolder
+                                                       : Kind::kNone;
   if (hashes_) asked_.push_back({path.string(), std::to_string(static_cast<int>(kind))});
   return kind;
 }

@@ -28,7 +28,6 @@ class ModelFiles {
 
   // The form in which messages name a path below the folder.
   fs::path shown(const fs::path& path) const;
-  const fs::path& shown_folder() const { return shown_folder_; }
   // The position of the folder below FlightGear's data root ("AI/Aircraft/738"); empty where it is
   // the root, or unknown.
   const fs::path& in_data_root() const { return in_data_root_; }

@@ -118,13 +118,9 @@ model::LoadOptions load_options(const scene::Intruder& intruder,
         nearest_step(std::max(0.0, -state->position_in_world.z()) / kMetresOfFoot, kHeightStepFt);
   }
   options.catalogue_scale = intruder.catalogue_scale;
-  if (intruder.model_forward || intruder.model_up || intruder.model_scale) {
-    model::ModelAxes axes;
-    if (intruder.model_forward) axes.forward = *intruder.model_forward;
-    if (intruder.model_up) axes.up = *intruder.model_up;
-    if (intruder.model_scale) axes.scale = *intruder.model_scale;
-    options.axes = axes;
-  }
+  options.axes = model::stated_axes(intruder.model_forward.value_or(""),
+                                    intruder.model_up.value_or(""),
+                                    intruder.model_scale.value_or(0));
   return options;
 }
 
