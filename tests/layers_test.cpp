@@ -311,7 +311,6 @@ TEST(Modules, HaveTheNamespaceOfTheirFolder) {
 // command, a format, a method.
 TEST(Modules, HaveAHeaderForEachSource) {
   const std::multimap<std::string, std::string> interfaces = {
-      {"aircraft/texture_file", "picture_formats.h"},
       {"camera/lens", "calibration.h"},
       {"camera/motion", "follower.h"},
       {"cli", "commands.h"},
