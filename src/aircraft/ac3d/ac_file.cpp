@@ -11,6 +11,7 @@
 
 #include "aircraft/model/raw_model.h"
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 
 namespace airtruth::ac3d {
 namespace {
@@ -23,13 +24,8 @@ bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
 }
 
-// The word in a form that fits into a message of one line.
 std::string quoted_word(std::string_view word) {
-  if (word.empty()) return "the end of the file";
-  std::string text(word.substr(0, kQuotedBytes));
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) > '~') c = '?';
-  return "'" + text + (word.size() > kQuotedBytes ? "...'" : "'");
+  return word.empty() ? "the end of the file" : quoted_excerpt(word, kQuotedBytes);
 }
 
 // Like from_chars, but accepts a leading plus and reads a number too small for the type as zero.

@@ -22,6 +22,12 @@ std::vector<std::string> cells_of(std::string_view line, char between) {
   return cells;
 }
 
+std::string quoted_excerpt(std::string_view text, std::size_t most) {
+  std::string shown = "'";
+  for (const char c : text.substr(0, most)) shown += c >= ' ' && c <= '~' ? c : '?';
+  return shown + (text.size() > most ? "...'" : "'");
+}
+
 std::string csv_cell(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string quoted = "\"";

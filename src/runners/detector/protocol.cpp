@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "camera/lens/lens.h"
+#include "foundation/base/text.h"
 #include "foundation/json/parse_json.h"
 
 namespace airtruth::detector {
@@ -16,12 +17,7 @@ using Json = nlohmann::ordered_json;
 
 [[noreturn]] void fail(const std::string& what) { throw process::Failure(what); }
 
-std::string shown(std::string_view text) {
-  std::string plain;
-  for (const char c : text.substr(0, 60))
-    plain += static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126 ? '?' : c;
-  return "'" + plain + (text.size() > 60 ? "...'" : "'");
-}
+std::string shown(std::string_view text) { return quoted_excerpt(text, 60); }
 
 Json object_of(std::string_view line) {
   Json json = parse_json(line);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "runners/process/child.h"
 #include "runners/results/detections.h"
 #include "runners/results/vot_regions.h"
@@ -35,12 +36,6 @@ bool is_key(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](unsigned char c) {
            return std::isalnum(c) != 0 || c == '.' || c == '_';
          });
-}
-
-std::string excerpt(std::string_view text) {
-  std::string shown;
-  for (const char c : text.substr(0, 40)) shown += c >= ' ' && c <= '~' ? c : '?';
-  return shown + (text.size() > 40 ? "..." : "");
 }
 
 // One word from `rest` on, quotes and escapes taken off.
@@ -117,7 +112,7 @@ std::optional<Message> parse_line(std::string_view line) {
   const std::string word = lower_case(rest.substr(0, end));
   const auto* type = std::ranges::find(kTypes, word, [](const auto& one) { return one.first; });
   if (type == kTypes.end())
-    throw process::Failure("'" + excerpt(rest.substr(0, end)) + "' is no type of message");
+    throw process::Failure(quoted_excerpt(rest.substr(0, end), 40) + " is no type of message");
   rest.remove_prefix(end);
   Message message;
   message.type = type->second;
