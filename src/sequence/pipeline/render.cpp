@@ -50,12 +50,6 @@
 namespace airtruth::pipeline {
 namespace {
 
-// An input or output file with its SHA-256, for sequence.json.
-struct Checksum {
-  std::string name;
-  std::string sha256;
-};
-
 annotation::EvisionFrame evision_frame(const annotation::Frame& truth,
                                        const annotation::Intruder& intruder) {
   annotation::EvisionFrame frame;
@@ -70,21 +64,20 @@ std::size_t aircraft_of(const scene::Scene& scene) {
   return static_cast<std::size_t>(std::ranges::count_if(scene.intruders, scene::is_aircraft));
 }
 
-nlohmann::ordered_json json_of(const std::vector<Checksum>& files) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Checksum& file : files) list.push_back({{"name", file.name}, {"sha256", file.sha256}});
-  return list;
+// Adds an input or output file with its SHA-256 to a list of sequence.json.
+void add_file(nlohmann::ordered_json& list, const fs::path& name, const std::string& sha256) {
+  list.push_back({{"name", name.string()}, {"sha256", sha256}});
 }
 
 // Checksums of the files of a folder, and of the images in its sub-folders, by name.
-std::vector<Checksum> checksums_below(const fs::path& folder) {
+nlohmann::ordered_json checksums_below(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  std::vector<Checksum> result;
+  nlohmann::ordered_json result = nlohmann::ordered_json::array();
   for (const fs::path& file : files)
-    result.push_back({fs::relative(file, folder).string(), sha256_of_file(file)});
+    add_file(result, fs::relative(file, folder), sha256_of_file(file));
   return result;
 }
 
@@ -143,7 +136,7 @@ class Outputs {
   // Closes all files and writes the annotation, the preview and, last, sequence.json. `scene` is
   // the resolved scene.
   void finish(const scene::Scene& scene,
-              const std::vector<Checksum>& inputs,
+              const nlohmann::ordered_json& inputs,
               const std::vector<EncounterRecord>& encounters,
               const Summary& summary) {
     writer_.finish();
@@ -163,8 +156,8 @@ class Outputs {
     record["encoder"] = writer_.encoder();
     record["covered_alpha"] = composite::kCoveredAlpha / 255.0;
     record["scene_toml"] = scene::toml_from_scene(scene);
-    record["inputs"] = json_of(inputs);
-    record["outputs"] = json_of(checksums_below(folder_));
+    record["inputs"] = inputs;
+    record["outputs"] = checksums_below(folder_);
     record["summary"] = {{"frames", summary.frames},
                          {"frames_with_an_intruder_visible", summary.frames_visible},
                          {"frames_with_bridged_motion", summary.frames_bridged},
@@ -202,19 +195,19 @@ std::vector<fs::path> model_files(const setup::World& world) {
 // Every file that a run reads, with its SHA-256, for sequence.json: video, mask, camera file, lens
 // file, path files, masks of occluders, and the files of the aircraft's models by name. `scene` is
 // the one the user gave. An empty `video_sha256` is left out. A series of pictures has one SHA-256.
-std::vector<Checksum> input_files(const scene::Scene& scene,
-                                  const setup::World& world,
-                                  const std::string& video_sha256,
-                                  setup::SharedInputs& inputs) {
-  std::vector<Checksum> result;
-  if (!video_sha256.empty()) result.push_back({scene.background.video.string(), video_sha256});
+nlohmann::ordered_json input_files(const scene::Scene& scene,
+                                   const setup::World& world,
+                                   const std::string& video_sha256,
+                                   setup::SharedInputs& inputs) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::array();
+  if (!video_sha256.empty()) add_file(result, scene.background.video, video_sha256);
   const auto add = [&](const fs::path& file) {
-    result.push_back({file.string(), inputs.sha256_of_file(file)});
+    add_file(result, file, inputs.sha256_of_file(file));
   };
   std::set<fs::path> masks;
   for (const scene::Occluder& occluder : scene.occluders)
     if (occluder.mask && masks.insert(*occluder.mask).second)
-      result.push_back({occluder.mask->string(), setup::sha256_of_video(*occluder.mask, inputs)});
+      add_file(result, *occluder.mask, setup::sha256_of_video(*occluder.mask, inputs));
   for (const auto& [file, where] : scene::stated_files(scene))
     if (file != scene.background.video && !masks.contains(file)) add(file);
   for (const fs::path& model : model_files(world)) add(model);

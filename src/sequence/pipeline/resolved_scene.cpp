@@ -104,21 +104,17 @@ bool is_wanted(const scene::Scene& scene, const std::string& key) {
   return scene.realism.automatic || std::ranges::count(scene.camera_model.automatic, key) > 0;
 }
 
-// Fills in unstated values from the camera file. Returns whether a requested value is still
-// missing.
-bool fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
-  bool is_missing = false;
+// Fills in unstated values from the camera file.
+void fill_from_file(scene::Scene& scene, const scene::CameraFile& file) {
   scene::CameraModel& model = scene.camera_model;
   scene::for_each_camera_key(
-      [&](const char* key, auto& stated, const auto& filed) {
+      [](const char* /*key*/, auto& stated, const auto& filed) {
         if (!stated) stated = filed;
-        is_missing = is_missing || (!stated && is_wanted(scene, key));
       },
       model,
       file.model);
   if (!model.readout) model.readout = file.model.readout;
   if (!model.gamma) model.gamma = file.gamma;
-  return is_missing;
 }
 
 // The chroma-key method cannot model a camera and its air; modelling a part of them would be worse
@@ -515,11 +511,10 @@ fs::path cache_folder(const Options& options, const char* kind) {
 bool needs_calibration(const scene::Scene& scene) {
   if (scene.composite.method == scene::CompositeMethod::kChromaKey) return false;
   scene::Scene filled = scene;
-  scene::CameraFile file;
-  if (scene.realism.file) file = scene::read_camera_file(*scene.realism.file);
   // A shutter angle is an exposure, once the frame rate is known.
   if (filled.camera_model.angle_deg) filled.camera_model.exposure_s = 0;
-  return fill_from_file(filled, file);
+  if (scene.realism.file) fill_from_file(filled, scene::read_camera_file(*scene.realism.file));
+  return !left_to_measure(filled).empty();
 }
 
 camera_file::Calibration calibration_of(const scene::Scene& scene, const Options& options) {
