@@ -61,7 +61,7 @@ Pyramid::Pyramid(const image::Plane& luma, const PixelBox& part) {
   width_ = inside->width;
   height_ = inside->height;
   stride_ = width_ + 1;
-  sums_.resize(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_ + 1), 0);
+  sums_.resize(pixels_in(width_ + 1, height_ + 1), 0);
   for (int y = 0; y < height_; ++y) {
     const std::uint8_t* samples = luma.row(inside->y + y) + inside->x;
     const std::uint32_t* above = sums_.data() + offset(0, 1, y);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "foundation/base/seed.h"
+#include "foundation/geometry/box.h"
 #include "foundation/image/colour.h"
 #include "scene/synthetic/noise.h"
 #include "scene/synthetic/rays.h"
@@ -178,8 +179,7 @@ void Sensor::expose(int frame,
   const Codes above = developed(upper, 0);
   const Codes below = developed(lower, 3);
   float* grain = part(6);
-  std::uint16_t* luma =
-      exposure.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+  std::uint16_t* luma = exposure.data() + index_in(width_, 0, y);
   copy_grain(frame, y, 0, grain);
   expose_luma(above, grain, noise_, width_, luma);
   if (y + 1 < height_) {
@@ -198,8 +198,7 @@ void Sensor::expose(int frame,
 
 void Sensor::sharpen(const Exposure& exposure, int y, image::Picture& picture) const {
   const auto row = [&](int at) {
-    return exposure.data() + static_cast<std::size_t>(std::clamp(at, 0, height_ - 1)) *
-                                 static_cast<std::size_t>(width_);
+    return exposure.data() + index_in(width_, 0, std::clamp(at, 0, height_ - 1));
   };
   const Rows rows{row(y), row(y - 1), row(y + 1), row(y - 2), row(y + 2)};
   std::uint8_t* out = picture.planes[0].row(y);

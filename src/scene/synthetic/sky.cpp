@@ -302,8 +302,7 @@ void Clouds::add_cirrus(const Vector3& direction, LinearRgb& colour) const {
 }
 
 std::vector<float> Clouds::ground_shadow(int cells) const {
-  std::vector<float> shadow(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells),
-                            1.0F);
+  std::vector<float> shadow(pixels_in(cells, cells), 1.0F);
   if (cover_ <= 0) return shadow;
   const Vector3 sun = sky_.sun_in_world();
   const float up = static_cast<float>(std::max(-sun.z(), 0.15));
@@ -365,9 +364,8 @@ Panorama::Panorama(double texel_rad) : radius_(static_cast<float>(1 / texel_rad)
   blocks_ = static_cast<int>(2 * edge) / kBlock + 1;
   size_ = blocks_ * kBlock;
   centre_ = 0.5F * static_cast<float>(size_);
-  texels_.assign(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_),
-                 LinearRgb::Zero());
-  wanted_.assign(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(blocks_), 0);
+  texels_.assign(pixels_in(size_, size_), LinearRgb::Zero());
+  wanted_.assign(pixels_in(blocks_, blocks_), 0);
 }
 
 void Panorama::want(float north, float east, float up) {
@@ -395,8 +393,7 @@ void Panorama::draw(const Sky& sky, const Clouds& clouds, const Hills& hills, st
         const Vector3 direction(u * (1 + up), v * (1 + up), -up);
         LinearRgb colour = clouds.seen_through(direction, sky.at(direction));
         cover(direction, hills, texel_rad, sky, seed, colour);
-        texels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) +
-                static_cast<std::size_t>(x)] = colour;
+        texels_[index_in(size_, x, y)] = colour;
       }
   });
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "foundation/geometry/box.h"
 #include "foundation/geometry/transform.h"
 #include "scene/synthetic/noise.h"
 
@@ -102,8 +103,7 @@ class Panorama {
     const float y = centre_ + east * scale;
     const int ix = static_cast<int>(x);
     const int iy = static_cast<int>(y);
-    const LinearRgb* p = &texels_[static_cast<std::size_t>(iy) * static_cast<std::size_t>(size_) +
-                                  static_cast<std::size_t>(ix)];
+    const LinearRgb* p = &texels_[index_in(size_, ix, iy)];
     const float fx = x - static_cast<float>(ix);
     const float fy = y - static_cast<float>(iy);
     const LinearRgb upper = p[0] + (p[1] - p[0]) * fx;

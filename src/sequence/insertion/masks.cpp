@@ -23,19 +23,13 @@ std::vector<composite::AlphaMask> alpha_masks(const annotation::Frame& truth,
 }
 
 std::vector<std::uint8_t> samples_in(const composite::AlphaMask& mask, const PixelBox& part) {
-  const auto width = static_cast<std::size_t>(part.width);
-  std::vector<std::uint8_t> samples(width * static_cast<std::size_t>(part.height), 0);
+  std::vector<std::uint8_t> samples(pixels_in(part), 0);
   const auto both = mask.empty() ? std::nullopt : intersection(mask.patch, part);
   if (!both) return samples;
-  const auto offset = [](int y, std::size_t row, int x) {
-    return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row +
-                                       static_cast<std::size_t>(x));
-  };
-  const auto step = static_cast<std::size_t>(mask.patch.width);
   for (int y = both->y; y < both->bottom(); ++y)
-    std::copy_n(mask.alpha.begin() + offset(y - mask.patch.y, step, both->x - mask.patch.x),
+    std::copy_n(mask.alpha.data() + index_in(mask.patch, both->x, y),
                 both->width,
-                samples.begin() + offset(y - part.y, width, both->x - part.x));
+                samples.data() + index_in(part, both->x, y));
   return samples;
 }
 

@@ -10,6 +10,7 @@
 #include "camera/horizon/horizon.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/geometry/box.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
 
@@ -40,9 +41,7 @@ GreyPtr still_mask(const fs::path& file, const lens::ImageSize& size) {
 
 std::function<float(int, int)> cover_of(GreyPtr mask) {
   return [mask = std::move(mask)](int x, int y) {
-    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(mask->width) +
-                          static_cast<std::size_t>(x);
-    return static_cast<float>(mask->samples[i]) / 255.0F;
+    return static_cast<float>(mask->samples[index_in(mask->width, x, y)]) / 255.0F;
   };
 }
 
