@@ -10,6 +10,7 @@
 
 #include <airtruth/version.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "camera/lens/calibration_file.h"
@@ -22,13 +23,101 @@
 #include "foundation/base/names.h"
 #include "foundation/base/stopwatch.h"
 #include "foundation/json/settings_record.h"
+#include "foundation/lazy_library/lazy_library.h"
+#include "runners/classical/classical.h"
+#include "runners/detector/detector.h"
+#include "runners/network/model_description.h"
+#include "runners/network/network_detector.h"
 #include "runners/results/detections.h"
+#include "runners/results/results_folder.h"
 #include "runners/runs/clips.h"
 
 namespace airtruth::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kExec = "exec:";
+constexpr std::string_view kNetwork = "onnx:";
+constexpr const char* kShippedModel = "network-detector/aircraft.onnx";
+
+// "exec" for exec:COMMAND: two of them need names. "aircraft" for onnx:models/aircraft.onnx.
+std::string usual_name(const std::string& command) {
+  const std::string scheme = command.substr(0, command.find(':'));
+  if (!command.starts_with(kNetwork)) return scheme;
+  const std::string stem = fs::path(command.substr(kNetwork.size())).stem().string();
+  return stem.empty() ? scheme : stem;
+}
+
+struct DetectorName {
+  std::string name;  // a plain file name
+  std::string command;
+};
+
+// Throws Error for a name that is no file name.
+DetectorName named_detector(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t colon = text.find(':');
+  const bool is_named =
+      equals != std::string::npos && (colon == std::string::npos || equals < colon);
+  const std::string command = is_named ? text.substr(equals + 1) : text;
+  const std::string name = is_named ? text.substr(0, equals) : usual_name(command);
+  if (!results::is_results_name(name))
+    throw Error("'" + name.substr(0, 80) +
+                "' is no name for a detector's results; expected letters, digits, - _ .");
+  return {name, command};
+}
+
+fs::path shipped_model() {
+  std::error_code ignored;
+  for (const fs::path& place : lazy_library::data_places_of(kShippedModel))
+    if (fs::is_regular_file(place, ignored)) return place;
+  throw Error(
+      fmt::format("the network that ships, {}, is not there; install airtruth whole, or "
+                  "name another: onnx:MODEL.onnx",
+                  kShippedModel));
+}
+
+// Of a network, empty for other detectors.
+std::optional<fs::path> model_of(std::string_view command) {
+  if (command == kShippedDetector) return shipped_model();
+  if (!command.starts_with(kNetwork)) return std::nullopt;
+  return command.substr(kNetwork.size());
+}
+
+// The files beside the command that decide a detector's answers: a network and its description.
+std::vector<fs::path> files_of(std::string_view command) {
+  const auto model = model_of(command);
+  if (!model) return {};
+  return {*model, network::description_path(*model)};
+}
+
+// The one place where kinds of detectors plug in. Throws Error for what is no detector; it offers
+// the nearest.
+std::unique_ptr<detector::Detector> make_detector(std::string_view command,
+                                                  const process::Limits& limits,
+                                                  int threads_of_a_network) {
+  if (command.starts_with(kExec)) {
+    const std::string program(command.substr(kExec.size()));
+    if (program.find_first_not_of(' ') == std::string::npos)
+      throw Error("'" + std::string(command) + "' names no command");
+    return detector::make_external(program, limits);
+  }
+  if (auto classical = classical::make_classical(command)) return classical;
+  if (const auto model = model_of(command)) {
+    if (model->empty()) throw Error("'onnx:' names no file; expected onnx:MODEL.onnx");
+    return network::make_network_detector(*model, {threads_of_a_network, limits.stop});
+  }
+  const std::string scheme(command.substr(0, command.find(':')));
+  const bool has_scheme = scheme.size() < command.size();
+  throw Error(fmt::format(
+      "there is no detector '{}'{}",
+      command.substr(0, 80),
+      did_you_mean(has_scheme ? scheme + ":" : scheme,
+                   has_scheme ? std::vector<std::string>{"onnx:", "exec:"} : detector_names(),
+                   fmt::format("; expected {}, onnx:MODEL.onnx or exec:COMMAND",
+                               fmt::join(detector_names(), ", ")))));
+}
 
 constexpr const char* kRecord = "detector.json";
 
@@ -165,14 +254,11 @@ double hidden_share(const Box& box, const image::Mask& own_aircraft) {
 // One detector within one sequence.
 class Following {
  public:
-  Following(DetectorResults& results,
-            std::string part,
-            const DetectorOptions& options,
-            const DetectOptions& run)
+  Following(DetectorResults& results, std::string part, const DetectOptions& run, int threads)
       : results_(&results),
         part_(std::move(part)),
         run_(&run),
-        detector_(make_detector(results.command(), options)) {}
+        detector_(make_detector(results.command(), run, threads)) {}
 
   bool needs_motion() const { return run_->association || detector_->needs_motion(); }
   bool is_broken() const { return !detector_; }
@@ -246,8 +332,7 @@ class Following {
 class DetectorRun {
  public:
   DetectorRun(const fs::path& out, const DetectOptions& options)
-      : options_(options), detector_options_(options) {
-    detector_options_.threads = std::max(1, usable_processors() / options.jobs);
+      : options_(options), threads_(std::max(1, usable_processors() / options.jobs)) {
     if (options.association) association::validate(*options.association);
     if (options.min_score && !std::isfinite(*options.min_score))
       throw Error(fmt::format("--min-score is {}; expected a finite number", *options.min_score));
@@ -259,7 +344,7 @@ class DetectorRun {
         throw Error("two detectors are named '" + named.name +
                     "'; expected NAME=DETECTOR with a name for each");
       // An Error for what is no detector, before anything is made.
-      make_detector(named.command, detector_options_);
+      make_detector(named.command, options, threads_);
       results_.push_back(std::make_unique<DetectorResults>(named, out, options));
     }
   }
@@ -321,8 +406,7 @@ class DetectorRun {
             const Progress& progress = {}) {
     std::vector<Following> detectors;
     for (const auto& results : results_)
-      if (!results->keeps(part, name))
-        detectors.emplace_back(*results, part, detector_options_, options_);
+      if (!results->keeps(part, name)) detectors.emplace_back(*results, part, options_, threads_);
     if (detectors.empty()) return;
     const DetectionClip clip = with_facts(make_clip());
     const bool with_motion = std::ranges::any_of(detectors, &Following::needs_motion);
@@ -348,11 +432,22 @@ class DetectorRun {
   }
 
   const DetectOptions& options_;
-  DetectorOptions detector_options_;
+  int threads_;  // of a network
   std::vector<std::unique_ptr<DetectorResults>> results_;
 };
 
 }  // namespace
+
+std::vector<std::string> detector_names() {
+  std::vector<std::string> names = classical::classical_names();
+  names.insert(names.begin(), kShippedDetector);
+  return names;
+}
+
+std::vector<std::string> detector_forms() {
+  return {"onnx:MODEL.onnx for a network (docs/formats/detector-model.md)",
+          "exec:COMMAND for a program that speaks docs/detector-protocol.md"};
+}
 
 std::vector<DetectSummary> detect(const fs::path& source,
                                   const fs::path& out,

@@ -10,13 +10,23 @@
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "runners/association/associator.h"
-#include "runners/runs/make_detector.h"
+#include "runners/process/child.h"
 
 namespace airtruth::runs {
 
-// `threads` follow from `jobs`.
-struct DetectOptions : DetectorOptions {
-  // make_detector.h; each may be NAME=DETECTOR.
+// The network that ships in data/network-detector.
+inline constexpr const char* kShippedDetector = "network";
+
+// The names of the built-in detectors.
+std::vector<std::string> detector_names();
+// The forms of the others, with what they are, for --help and errors.
+std::vector<std::string> detector_forms();
+
+// The limits are for external programs.
+struct DetectOptions : process::Limits {
+  // "mine=exec:./mine --fast" is the command "exec:./mine --fast" whose results are named "mine";
+  // without a name they are named as the command up to its colon, and those of
+  // onnx:DIR/aircraft.onnx "aircraft".
   std::vector<std::string> detectors;
   // Pattern for the names of the sequences.
   std::string only = "*";
