@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prints the boxes of the first samples of a training stream: train_from_stream CATALOGUE COUNT
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
@@ -19,16 +20,10 @@ int main(int argc, char** argv) {
       const airtruth::RenderedFrame& frame = sample.frames.front();
       std::cout << i << ' ' << sample.background << ' ' << sample.first_frame << ' '
                 << frame.picture.width << 'x' << frame.picture.height << '\n';
-      for (const airtruth::IntruderTruth& intruder : frame.truth.intruders) {
-        if (!intruder.covered_box_px) continue;
-        const airtruth::PixelBox& whole = *intruder.covered_box_px;
-        const auto box = airtruth::in_crop(
-            {double(whole.x), double(whole.y), double(whole.width), double(whole.height)},
-            sample.crop);
-        if (box)
-          std::cout << "  " << intruder.object_class << ' ' << box->x << ' ' << box->y << ' '
-                    << box->width << ' ' << box->height << '\n';
-      }
+      for (std::size_t k = 0; k < frame.truth.intruders.size(); ++k)
+        if (const auto& box = sample.covered.front()[k])
+          std::cout << "  " << frame.truth.intruders[k].object_class << ' ' << box->x << ' '
+                    << box->y << ' ' << box->width << ' ' << box->height << '\n';
     }
   } catch (const airtruth::Error& error) {
     std::cerr << error.what() << '\n';

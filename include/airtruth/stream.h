@@ -52,6 +52,10 @@ struct StreamSample {
   // With the catalogue's [stream] masks: for each frame, for each intruder of its truth, a plane of
   // the crop's size that holds 255 alpha of its pixels, as the masks of `airtruth render` do.
   std::vector<std::vector<SamplePlane>> masks;
+  // For each frame, for each intruder of its truth: the bounds of what it covers of the crop, in
+  // the crop's pixels, as covered_box_px bounds it in the frame; empty where it covers nothing
+  // there. Where the crop cuts an intruder, they are tighter than in_crop() of its covered_box_px.
+  std::vector<std::vector<std::optional<PixelBox>>> covered;
 
   bool operator==(const StreamSample&) const = default;
 };

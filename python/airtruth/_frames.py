@@ -161,6 +161,7 @@ class Frame:
     truth: Optional[FrameTruth] = None  # in pixels of the whole frame of the video
     crop: Optional[NDArray[np.int64]] = None  # (4,): the part of that frame that the picture shows; None: all of it
     masks: Optional[Samples] = None  # (n, H, W): 255 alpha of each intruder's pixels, of a stream with masks = true
+    covered_in_crop: Optional[Numbers] = None  # (n, 4), with a crop: bounds of what each intruder covers of the picture, in its pixels; NaN: nothing
 
     @property
     def rgb(self) -> Samples:
@@ -195,7 +196,8 @@ class Frame:
 
     def boxes(self, kind: str = "covered") -> Numbers:
         """The boxes of the intruders in pixels of this picture, n x 4, of the kind "covered", "exact" or "visible". A row is NaN where
-        an intruder has no such box. With a crop, boxes are cut at its edges. ValueError for another kind.
+        an intruder has no such box. With a crop, the covered ones bound what the crop shows, and the others are cut at its edges.
+        ValueError for another kind.
 
         >>> frame = airtruth.DataSet("set")["across"].frame(3)
         >>> frame.boxes()
@@ -203,6 +205,8 @@ class Frame:
         """
         if kind not in ("covered", "exact", "visible"):
             raise ValueError(f"kind is {kind!r}; expected 'covered', 'exact' or 'visible'")
+        if kind == "covered" and self.covered_in_crop is not None:
+            return self.covered_in_crop.copy()
         found = [getattr(intruder, kind + "_box_px") for intruder in self.intruders]
         rows = np.array([[np.nan] * 4 if box is None else box for box in found], dtype=float).reshape(-1, 4)
         return rows if self.crop is None else _core.in_crop(rows, self.crop)

@@ -88,9 +88,10 @@ class Stream:
         number = _checked(index)
         background, first_frame, weight, crop, made = self._ready().sample(number)
         frames = []
-        for picture, fields, masks in made:
+        for picture, fields, masks, covered in made:
             truth = truth_of(fields)
-            frames.append(Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth, crop=crop, masks=masks))
+            shown = {"crop": crop, "masks": masks, "covered_in_crop": covered}
+            frames.append(Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth, **shown))
         return Sample(number, background, first_frame, crop, frames, weight)
 
     def __iter__(self) -> Iterator[Sample]:

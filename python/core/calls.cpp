@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calls.h"
 
+#include <atomic>
+#include <thread>
 #include <utility>
 
 #include <airtruth/error.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include "values.h"
@@ -15,6 +18,39 @@ bool Process::is_this() const { return id_ == ::getpid(); }
 void Process::expect_this(const char* what) const {
   if (!is_this())
     throw Error(std::string(what) + " was made before this process was forked; make it anew here");
+}
+
+namespace {
+
+std::atomic<int> taking_gil = 0;  // threads that are about to have it again
+std::atomic<bool> is_ending = false;
+std::thread::id ending_thread;
+
+// Threads that have asked for the GIL get it before the interpreter ends, and none asks later.
+void end_of_interpreter() {
+  ending_thread = std::this_thread::get_id();
+  is_ending = true;
+  PyThreadState* const thread = PyEval_SaveThread();
+  while (taking_gil > 0) std::this_thread::yield();
+  PyEval_RestoreThread(thread);
+}
+
+}  // namespace
+
+GilReleased::~GilReleased() {
+  ++taking_gil;
+  if (is_ending && std::this_thread::get_id() != ending_thread) {
+    --taking_gil;
+    while (true) pause();
+  }
+  PyEval_RestoreThread(thread_);
+  --taking_gil;
+}
+
+void watch_end_of_interpreter() {
+  // The other threads are not there after a fork.
+  pthread_atfork(nullptr, nullptr, [] { taking_gil = 0; });
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_of_interpreter));
 }
 
 int checked_threads(int threads) {
@@ -74,9 +110,11 @@ std::optional<py::error_already_set> await(
     const std::function<void()>& look) {
   constexpr std::chrono::milliseconds kLook{50};
   std::optional<py::error_already_set> raised;
-  const py::gil_scoped_release released;
-  while (!wait(kLook)) {
-    const py::gil_scoped_acquire held;
+  const auto is_over = [&] {
+    const GilReleased released;
+    return wait(kLook);
+  };
+  while (!is_over()) {
     if (raised) continue;
     raised = raised_by(look);
     if (raised && !goes_on()) return raised;

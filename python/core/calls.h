@@ -38,6 +38,23 @@ class Process {
   pid_t id_;
 };
 
+// Releases the GIL for a scope, so that other threads of Python run meanwhile. A daemon thread that
+// is in such a scope when the interpreter ends stays there: Python would end it, where it asks for
+// the GIL again, by unwinding its stack, which C++ answers by ending the process.
+class GilReleased {
+ public:
+  GilReleased() : thread_(PyEval_SaveThread()) {}
+  ~GilReleased();
+  GilReleased(const GilReleased&) = delete;
+  GilReleased& operator=(const GilReleased&) = delete;
+
+ private:
+  PyThreadState* thread_;
+};
+
+// Has `atexit` call what GilReleased needs to know of the interpreter's end.
+void watch_end_of_interpreter();
+
 // 0 (one for each core) to 256; ValueError for any other.
 int checked_threads(int threads);
 

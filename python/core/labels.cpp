@@ -75,7 +75,7 @@ void write(const std::string& format,
            const std::string& part,
            const PyClips& clips) {
   const exchange::Part written{part, clips.clips};
-  const py::gil_scoped_release released;
+  const GilReleased released;
   exchange::write_clips(exchange::format_from_name(format), folder, {&written, 1});
 }
 

@@ -7,6 +7,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "bindings.h"
+#include "calls.h"
 #include "values.h"
 
 namespace airtruth::python {
@@ -26,7 +27,7 @@ Doubles mapped(const py::handle& rows, const char* what, Map map) {
   double* target = to.mutable_data();
   for (py::ssize_t begin = 0; begin < from.shape(0); begin += kAtATime) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    const py::gil_scoped_release released;
+    const GilReleased released;
     for (py::ssize_t i = begin; i < std::min(begin + kAtATime, from.shape(0)); ++i) {
       std::array<double, From> point;
       std::copy_n(source + i * py::ssize_t{From}, From, point.begin());

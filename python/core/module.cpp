@@ -6,6 +6,7 @@
 #include <airtruth/version.h>
 
 #include "bindings.h"
+#include "calls.h"
 #include "values.h"
 
 namespace airtruth::python {
@@ -43,6 +44,7 @@ void translate(std::exception_ptr thrown) {
 PYBIND11_MODULE(_core, core) {
   py::register_exception_translator(&translate);
   core.attr("version") = kVersion;
+  watch_end_of_interpreter();
   bind_lens(core);
   bind_pictures(core);
   bind_stream(core);

@@ -132,7 +132,7 @@ class PyVideoReader {
     const Use use(*this);
     std::optional<VideoFrame> frame;
     {
-      const py::gil_scoped_release released;
+      const GilReleased released;
       frame = reader_->next();
     }
     warnings_->hand_over();
@@ -205,7 +205,7 @@ py::array rgb(const py::sequence& planes,
   const FramePicture picture = picture_of(planes, pixel_format, matrix, is_full_range);
   std::vector<std::uint8_t> samples;
   {
-    const py::gil_scoped_release released;
+    const GilReleased released;
     samples = rgb_of(picture);
   }
   return array_of(std::move(samples), {picture.height, picture.width, 3});

@@ -31,6 +31,27 @@ py::object masks_of(const StreamSample& sample, std::size_t frame) {
                   {std::ssize(sample.masks[frame]), sample.crop.height, sample.crop.width});
 }
 
+// n x 4: x, y, width, height; NaN for none.
+py::array rows_of_boxes(const std::vector<std::optional<Box>>& boxes) {
+  std::vector<double> rows;
+  for (const std::optional<Box>& box : boxes) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const Box row = box.value_or(Box{kNone, kNone, kNone, kNone});
+    rows.insert(rows.end(), {row.x, row.y, row.width, row.height});
+  }
+  return array_of(std::move(rows), {std::ssize(boxes), 4});
+}
+
+py::array covered_of(const StreamSample& sample, std::size_t frame) {
+  std::vector<std::optional<Box>> boxes;
+  for (const std::optional<PixelBox>& box : sample.covered[frame]) {
+    boxes.emplace_back();
+    if (box)
+      boxes.back() = {double(box->x), double(box->y), double(box->width), double(box->height)};
+  }
+  return rows_of_boxes(boxes);
+}
+
 // A stream whose samples are made by a thread of its own for Python's main thread, which sees
 // signals meanwhile, and by the callers themselves for all other threads.
 class PyStream {
@@ -61,15 +82,17 @@ class PyStream {
   PyStream(const PyStream&) = delete;
   PyStream& operator=(const PyStream&) = delete;
 
-  // (background, first_frame, weight, crop, [(picture, truth, masks)])
+  // (background, first_frame, weight, crop, [(picture, truth, masks, covered)])
   py::tuple sample(std::int64_t index) {
     StreamSample sample;
     run([&] { sample = stream_->sample(index); });
     py::list frames;
     for (std::size_t k = 0; k < sample.frames.size(); ++k) {
       RenderedFrame& frame = sample.frames[k];
-      frames.append(py::make_tuple(
-          picture_tuple(std::move(frame.picture)), truth_dict(frame.truth), masks_of(sample, k)));
+      frames.append(py::make_tuple(picture_tuple(std::move(frame.picture)),
+                                   truth_dict(frame.truth),
+                                   masks_of(sample, k),
+                                   covered_of(sample, k)));
     }
     return py::make_tuple(
         text(sample.background), sample.first_frame, sample.weight, python_of(sample.crop), frames);
@@ -89,7 +112,7 @@ class PyStream {
     if (is_main_thread()) {
       worker_->run(work);
     } else {
-      const py::gil_scoped_release released;
+      const GilReleased released;
       work();
     }
     warnings_->hand_over();
@@ -110,14 +133,10 @@ py::array in_crop_rows(const py::object& boxes, const py::object& crop) {
   if (part.size() != 4) throw py::value_error("crop is not x, y, width, height");
   const auto whole_number = [&](std::size_t i) { return static_cast<int>(part[i]); };
   const PixelBox pixels{whole_number(0), whole_number(1), whole_number(2), whole_number(3)};
-  std::vector<double> rows;
-  for (const std::optional<Box>& box : whole) {
-    const auto seen = box ? in_crop(*box, pixels) : std::nullopt;
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    const Box row = seen.value_or(Box{kNone, kNone, kNone, kNone});
-    rows.insert(rows.end(), {row.x, row.y, row.width, row.height});
-  }
-  return array_of(std::move(rows), {std::ssize(whole), 4});
+  std::vector<std::optional<Box>> seen;
+  for (const std::optional<Box>& box : whole)
+    seen.push_back(box ? in_crop(*box, pixels) : std::nullopt);
+  return rows_of_boxes(seen);
 }
 
 }  // namespace

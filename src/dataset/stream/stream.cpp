@@ -161,11 +161,11 @@ struct Stream::State {
       maker.locate(work, work.moved.shake);
       maker.draw(work);
       maker.compose(work);
-      const image::Layer layer = catalogue.stream.masks ? work.painted.layer : image::Layer();
+      const image::Layer layer = work.painted.layer;
       maker.describe(work);
       if (options.stop.stop_requested()) throw Interrupted();
-      if (catalogue.stream.masks) masks[k] = insertion::alpha_masks(work.truth, layer);
-      sample.frames.push_back({std::move(work.frame.picture), std::move(work.truth), {}});
+      masks[k] = insertion::alpha_masks(work.truth, layer);
+      sample.frames.push_back({std::move(work.frame.picture), std::move(work.truth), {}, {}});
     }
     sample.crop = crop_of(index, sample);
     const std::optional<OtherCamera> camera = other_camera_of(index);
@@ -173,8 +173,15 @@ struct Stream::State {
       Sample::Frame& frame = sample.frames[k];
       frame.picture = image::crop(frame.picture, sample.crop);
       if (camera) show_through(*camera, index, k, sample);
-      for (const composite::AlphaMask& mask : masks[k])
-        frame.masks.push_back(insertion::samples_in(mask, sample.crop));
+      for (const composite::AlphaMask& mask : masks[k]) {
+        if (catalogue.stream.masks) frame.masks.push_back(insertion::samples_in(mask, sample.crop));
+        std::optional<PixelBox>& covered = frame.covered.emplace_back();
+        if (const auto seen = composite::covered(mask, sample.crop))
+          covered = {seen->box.x - sample.crop.x,
+                     seen->box.y - sample.crop.y,
+                     seen->box.width,
+                     seen->box.height};
+      }
     }
     return sample;
   }

@@ -34,6 +34,9 @@ struct Sample {
     // With the catalogue's [stream] masks: of each intruder of the truth, 255 alpha of each pixel
     // of the picture, row by row.
     std::vector<std::vector<std::uint8_t>> masks;
+    // Of each intruder of the truth: the bounds of what it covers of the picture, in the picture's
+    // pixels, by the rule of the truth's covered_box_px. Empty where it covers nothing.
+    std::vector<std::optional<PixelBox>> covered;
   };
   std::vector<Frame> frames;
 };

@@ -138,8 +138,27 @@ void expect_same(const Sample& a, const Sample& b) {
   for (std::size_t k = 0; k < a.frames.size(); ++k) {
     EXPECT_TRUE(image::identical(a.frames[k].picture, b.frames[k].picture));
     EXPECT_EQ(a.frames[k].masks, b.frames[k].masks);
+    EXPECT_EQ(a.frames[k].covered, b.frames[k].covered);
     EXPECT_EQ(annotation::jsonl_line(a.frames[k].truth, {}),
               annotation::jsonl_line(b.frames[k].truth, {}));
+  }
+}
+
+// What is covered of the picture are the pixels of the masks with an alpha of 0.08 or more; where
+// the crop holds all of it, it is what is covered of the frame.
+void expect_covered(const Sample::Frame& frame, const PixelBox& crop) {
+  ASSERT_EQ(frame.covered.size(), frame.truth.intruders.size());
+  for (std::size_t i = 0; i < frame.masks.size(); ++i) {
+    std::optional<PixelBox> seen;
+    for (int y = 0; y < crop.height; ++y)
+      for (int x = 0; x < crop.width; ++x)
+        if (frame.masks[i][static_cast<std::size_t>(y * crop.width + x)] >= 0.08 * 255 - 0.5)
+          seen = seen ? bounds(*seen, {x, y, 1, 1}) : PixelBox{x, y, 1, 1};
+    EXPECT_EQ(frame.covered[i], seen);
+    const auto& whole = frame.truth.intruders[i].covered_box_px;
+    if (!whole || intersection(*whole, crop) != *whole) continue;
+    EXPECT_EQ(frame.covered[i],
+              (PixelBox{whole->x - crop.x, whole->y - crop.y, whole->width, whole->height}));
   }
 }
 
@@ -181,6 +200,7 @@ void expect_as_rendered(const Stream& stream, std::int64_t index, const fs::path
     EXPECT_EQ(annotation::jsonl_line(sample.frames[k].truth, truth.lens),
               annotation::jsonl_line(truth.frames[k], truth.lens));
     expect_masks(sample.frames[k], sample.crop, truth, made);
+    expect_covered(sample.frames[k], sample.crop);
   }
 }
 
@@ -239,6 +259,26 @@ TEST_F(StreamOfFlights, SamplesAreWhatRenderMakesOfTheirScenes) {
   EXPECT_EQ(one.frames[0].masks.size(), one.frames[0].truth.intruders.size());
   for (const std::int64_t index : {0, 1, 65, 4099})
     expect_as_rendered(stream, index, folder_->path() / "plain");
+}
+
+TEST_F(StreamOfFlights, WhatACropCutsIsBoundedByWhatItCoversThere) {
+  const Stream stream =
+      stream_of(background("flight3") + kRule +
+                "[stream]\nsize_px = [32, 32]\nintruders = [3, 3]\nmasks = true\n");
+  int tighter = 0;
+  for (std::int64_t index = 0; index < 60; ++index) {
+    const Sample sample = stream.sample(index);
+    const Sample::Frame& frame = sample.frames[0];
+    expect_covered(frame, sample.crop);
+    for (std::size_t i = 0; i < frame.covered.size(); ++i) {
+      const auto& whole = frame.truth.intruders[i].covered_box_px;
+      const auto cut = whole ? intersection(*whole, sample.crop) : std::nullopt;
+      if (!cut) continue;
+      const auto& seen = frame.covered[i];
+      tighter += !seen || seen->width < cut->width || seen->height < cut->height ? 1 : 0;
+    }
+  }
+  EXPECT_GT(tighter, 0);
 }
 
 TEST_F(StreamOfFlights, SoAreSeveralFramesWithACameraAndDistractors) {

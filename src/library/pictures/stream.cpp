@@ -36,9 +36,10 @@ Stream& Stream::operator=(Stream&&) noexcept = default;
 
 StreamSample Stream::sample(std::int64_t index) const {
   stream::Sample made = state_->stream.sample(index);
-  StreamSample sample{index, made.background, made.first_frame, made.weight, made.crop, {}, {}};
+  StreamSample sample{index, made.background, made.first_frame, made.weight, made.crop, {}, {}, {}};
   for (stream::Sample::Frame& frame : made.frames) {
     sample.frames.push_back({public_picture(frame.picture), std::move(frame.truth)});
+    sample.covered.push_back(std::move(frame.covered));
     if (!state_->stream.has_masks()) continue;
     std::vector<SamplePlane>& masks = sample.masks.emplace_back();
     for (std::vector<std::uint8_t>& mask : frame.masks)

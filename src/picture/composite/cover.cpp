@@ -57,12 +57,15 @@ AlphaMask alpha_mask(const image::Layer& layer, std::size_t intruder) {
   return mask;
 }
 
-std::optional<Covered> covered(const AlphaMask& mask) {
+std::optional<Covered> covered(const AlphaMask& mask) { return covered(mask, mask.patch); }
+
+std::optional<Covered> covered(const AlphaMask& mask, const PixelBox& part) {
   std::optional<Covered> covered;
-  std::size_t i = 0;
-  for (int y = mask.patch.y; y < mask.patch.bottom(); ++y)
-    for (int x = mask.patch.x; x < mask.patch.right(); ++x) {
-      if (mask.alpha[i++] < kCoveredAlpha) continue;
+  const auto both = mask.empty() ? std::nullopt : intersection(mask.patch, part);
+  if (!both) return covered;
+  for (int y = both->y; y < both->bottom(); ++y)
+    for (int x = both->x; x < both->right(); ++x) {
+      if (mask.alpha[index_in(mask.patch, x, y)] < kCoveredAlpha) continue;
       if (!covered) covered = Covered{{x, y, 1, 1}};
       covered->box = bounds(covered->box, {x, y, 1, 1});
       ++covered->area_px;

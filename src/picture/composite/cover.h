@@ -43,8 +43,9 @@ struct Covered {
   bool operator==(const Covered&) const = default;
 };
 
-// Empty where there are none.
+// Empty where there are none. `part` is the part of the frame to look at.
 std::optional<Covered> covered(const AlphaMask& mask);
+std::optional<Covered> covered(const AlphaMask& mask, const PixelBox& part);
 std::optional<Covered> covered(const image::Layer& layer, std::size_t intruder);
 
 // What stands in a frame's picture before its intruders. An occluder hides the intruders that are
