@@ -36,7 +36,7 @@ using Json = nlohmann::ordered_json;
 
 // Sequences that are put in the order of their aircraft at a time: enough for dozens of each of a
 // hundred types, in bounded memory.
-constexpr std::int64_t kMaxOrdered = 4096;
+constexpr std::size_t kMaxOrdered = 4096;
 
 // Warnings that are remembered, in bounded memory.
 constexpr std::size_t kMaxSaid = 4096;
@@ -53,11 +53,9 @@ class Work {
 
   BuildSummary run() {
     count();
-    jobs_ = static_cast<int>(std::clamp<std::int64_t>(missing_, 1, jobs_));
+    jobs_ = static_cast<int>(std::clamp<std::int64_t>(std::ssize(missing_), 1, jobs_));
     prepare_backgrounds();
-    for (std::int64_t first = 0; missing_ > 0 && first < share_size(); first += kMaxOrdered)
-      make_all(missing_by_aircraft(first, std::min(share_size(), first + kMaxOrdered)));
-    if (options_.stop.stop_requested()) throw Interrupted();
+    make_missing();
     if (repeated_ > 0)
       warn(options_.warn,
            fmt::format("{} more warnings say the same of other sequences over the same backgrounds",
@@ -67,21 +65,28 @@ class Work {
   }
 
  private:
-  bool is_wanted(const catalogue::Item& item) const { return matches(options_.only, item.name); }
-
-  // Collects the work, the backgrounds that it needs, and how many of their frames.
+  // Collects the work, the backgrounds that it needs, and how many of their frames. Of kMaxOrdered
+  // sequences those with the same aircraft follow one another, so that it is loaded once for them.
   void count() {
     needed_.assign(catalogue_.backgrounds.size(), std::nullopt);
     is_used_.assign(catalogue_.backgrounds.size(), false);
+    std::vector<std::pair<std::string, std::int64_t>> ordered;
+    const auto put_in_order = [&] {
+      std::ranges::sort(ordered);
+      for (const auto& [aircraft, index] : ordered) missing_.push_back(index);
+      ordered.clear();
+    };
     for (std::int64_t i = options_.share; i < expansion_.size(); i += options_.shares) {
       const catalogue::Item item = expansion_.at(i);
-      if (!is_wanted(item)) continue;
+      if (!matches(options_.only, item.name)) continue;
       ++total_;
       if (folder_.holds(item)) {
         ++summary_.kept;
         continue;
       }
-      ++missing_;
+      const auto& intruders = item.scene.intruders;
+      ordered.emplace_back(intruders.empty() ? "" : intruders.front().aircraft, i);
+      if (ordered.size() == kMaxOrdered) put_in_order();
       is_used_[item.background] = true;
       // A clip that begins at a random frame is measured from its own first frame, when it is made.
       if (item.rule != nullptr && item.rule->start == catalogue::ClipStart::kRandom) continue;
@@ -89,6 +94,7 @@ class Work {
       needed =
           item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);
     }
+    put_in_order();
     if (total_ == 0 && options_.only != "*")
       throw Error("no sequence of the catalogue fits '" + options_.only + "'");
   }
@@ -132,40 +138,16 @@ class Work {
     }
   }
 
-  // The number of the catalogue's sequences that are of this share.
-  std::int64_t share_size() const {
-    return (expansion_.size() - options_.share + options_.shares - 1) / options_.shares;
-  }
-
-  // The numbers of the missing sequences among the `first`-th to the `last`-th of this share. Those
-  // with the same aircraft follow one another, so that it is loaded once for them.
-  std::vector<std::int64_t> missing_by_aircraft(std::int64_t first, std::int64_t last) const {
-    std::vector<std::pair<std::string, std::int64_t>> ordered;
-    for (std::int64_t i = first; i < last; ++i) {
-      const catalogue::Item item = expansion_.at(options_.share + i * options_.shares);
-      if (!is_wanted(item) || folder_.holds(item)) continue;
-      const auto& intruders = item.scene.intruders;
-      ordered.emplace_back(intruders.empty() ? "" : intruders.front().aircraft, item.index);
-    }
-    std::sort(ordered.begin(), ordered.end());
-    std::vector<std::int64_t> indices;
-    for (const auto& [aircraft, index] : ordered) indices.push_back(index);
-    return indices;
-  }
-
-  void make_all(const std::vector<std::int64_t>& indices) {
+  void make_missing() {
     in_parallel(
-        indices.size(),
+        missing_.size(),
         jobs_,
-        [&](std::size_t i) {
-          catalogue::Item item = expansion_.at(indices[i]);
-          make(item);
-        },
+        [&](std::size_t i) { make(expansion_.at(missing_[i])); },
         {},
         options_.stop);
   }
 
-  void make(catalogue::Item& item) {
+  void make(catalogue::Item item) {
     pipeline::Options how = run_options();
     how.threads = std::max(1, usable_processors() / jobs_);
     how.warn = [&](const std::string& message) {
@@ -215,8 +197,8 @@ class Work {
   catalogue::Expansion expansion_;
   int jobs_ = 1;
   std::int64_t total_ = 0;
-  std::int64_t missing_ = 0;
-  std::vector<bool> is_used_;  // by background
+  std::vector<std::int64_t> missing_;  // numbers of sequences, in the order of the work
+  std::vector<bool> is_used_;          // by background
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<catalogue::BackgroundFiles> files_;
