@@ -65,8 +65,8 @@ Times times_of(const Clip& clip) {
 
 class AotWriter : public Writer {
  public:
-  AotWriter(fs::path root, const WriteOptions& options) : root_(std::move(root)) {
-    for (const std::string& part : options.parts) {
+  explicit AotWriter(const Writing& to) : root_(to.root) {
+    for (const std::string& part : to.options.parts) {
       fs::create_directories(file_of(part).parent_path());
       files_.try_emplace(part, file_of(part)).first->second.out()
           << "{\"metadata\":{\"description\":\"made by airtruth\"},\n\"samples\":{";
@@ -259,9 +259,7 @@ class FlightReader {
 
 }  // namespace
 
-std::unique_ptr<Writer> aot_writer(Format, const fs::path& root, const WriteOptions& options) {
-  return std::make_unique<AotWriter>(root, options);
-}
+std::unique_ptr<Writer> aot_writer(const Writing& to) { return std::make_unique<AotWriter>(to); }
 
 Clips read_aot(const Reading& in) {
   const char* const name = "ImageSets/groundtruth.json";

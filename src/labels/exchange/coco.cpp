@@ -254,9 +254,9 @@ Json segmentation_of(const Label& label) {
 
 class CocoWriter : public FolderWriter {
  public:
-  CocoWriter(const fs::path& root, const WriteOptions& options) : FolderWriter(root, options) {
+  explicit CocoWriter(const Writing& to) : FolderWriter(to) {
     fs::create_directories(folder());
-    for (const std::string& part : options.parts) parts_.try_emplace(part, whole(part));
+    for (const std::string& part : options_.parts) parts_.try_emplace(part, whole(part));
   }
 
   void add(const Clip& clip, const std::string& part) override {
@@ -369,8 +369,6 @@ class CocoWriter : public FolderWriter {
 
 }  // namespace
 
-std::unique_ptr<Writer> coco_writer(Format, const fs::path& root, const WriteOptions& options) {
-  return std::make_unique<CocoWriter>(root, options);
-}
+std::unique_ptr<Writer> coco_writer(const Writing& to) { return std::make_unique<CocoWriter>(to); }
 
 }  // namespace airtruth::exchange

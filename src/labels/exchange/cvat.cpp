@@ -406,9 +406,7 @@ Clips clips_of_file(const fs::path& file, const Reading& in) {
 
 }  // namespace
 
-std::unique_ptr<Writer> cvat_writer(Format, const fs::path& root, const WriteOptions& options) {
-  return std::make_unique<CvatWriter>(root, options);
-}
+std::unique_ptr<Writer> cvat_writer(const Writing& to) { return std::make_unique<CvatWriter>(to); }
 
 Clips read_cvat(const Reading& in) {
   std::vector<fs::path> found = files_with(in.source, ".xml");

@@ -267,7 +267,7 @@ std::unique_ptr<Writer> make_writer(Format format,
                                     const fs::path& root,
                                     const WriteOptions& options) {
   expect_written(format);
-  return about(format).write(format, root, options);
+  return about(format).write({format, root, options});
 }
 
 std::string loss(Format format) {

@@ -267,9 +267,7 @@ class SequenceFolder {
 
 }  // namespace
 
-std::unique_ptr<Writer> mot_writer(Format, const fs::path& root, const WriteOptions& options) {
-  return std::make_unique<MotWriter>(root, options);
-}
+std::unique_ptr<Writer> mot_writer(const Writing& to) { return std::make_unique<MotWriter>(to); }
 
 Clips read_mot(const Reading& in) {
   std::vector<std::string> categories;

@@ -14,11 +14,18 @@
 // header.
 namespace airtruth::exchange {
 
+// What a writer is given.
+struct Writing {
+  Format format;
+  const fs::path& root;
+  const WriteOptions& options;
+};
+
 // What the writers of most formats have in common.
 class FolderWriter : public Writer {
  public:
-  FolderWriter(fs::path root, const WriteOptions& options)
-      : root_(std::move(root)), options_(options) {}
+  explicit FolderWriter(const Writing& to)
+      : format_(to.format), root_(to.root), options_(to.options) {}
   std::vector<fs::path> images(const Clip& clip, const std::string& part) const override;
   void finish() override {}
 
@@ -28,6 +35,7 @@ class FolderWriter : public Writer {
   // The number of a category, counted from 0.
   std::size_t class_of(const std::string& category) const;
 
+  Format format_;
   fs::path root_;
   WriteOptions options_;
   // By part: the lines of the file that lists its clips or pictures.
@@ -37,9 +45,7 @@ class FolderWriter : public Writer {
 // "NAME_000012": the picture, without its extension.
 std::string numbered_stem(const Clip& clip, std::size_t i);
 
-using MakeWriter = std::unique_ptr<Writer>(Format format,
-                                           const fs::path& root,
-                                           const WriteOptions& options);
+using MakeWriter = std::unique_ptr<Writer>(const Writing& to);
 MakeWriter coco_writer, yolo_writer, mot_writer, voc_writer, cvat_writer, aot_writer,
     single_object_writer, webdataset_writer, table_writer;
 

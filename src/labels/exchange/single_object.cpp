@@ -310,8 +310,7 @@ int cover_of(double visible) {
 
 class SingleObjectWriter : public FolderWriter {
  public:
-  SingleObjectWriter(Format format, const fs::path& root, const WriteOptions& options)
-      : FolderWriter(root, options), format_(format) {}
+  using FolderWriter::FolderWriter;
 
   void add(const Clip& clip, const std::string& part) override {
     const fs::path folder = root_ / part / clip.name;
@@ -449,16 +448,12 @@ class SingleObjectWriter : public FolderWriter {
       if (!frame.labels.empty()) return frame.labels.front().category;
     return {};
   }
-
-  Format format_;
 };
 
 }  // namespace
 
-std::unique_ptr<Writer> single_object_writer(Format format,
-                                             const fs::path& root,
-                                             const WriteOptions& options) {
-  return std::make_unique<SingleObjectWriter>(format, root, options);
+std::unique_ptr<Writer> single_object_writer(const Writing& to) {
+  return std::make_unique<SingleObjectWriter>(to);
 }
 
 }  // namespace airtruth::exchange

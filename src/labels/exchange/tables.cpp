@@ -168,12 +168,12 @@ std::string cell(const std::optional<bool>& value) { return !value ? "" : *value
 // is an empty cell; truths are 1 and 0.
 class TableWriter : public FolderWriter {
  public:
-  TableWriter(const fs::path& root, const WriteOptions& options)
-      : FolderWriter(root, options), file_(root / "frames.csv"), out_(file_.out()) {
+  explicit TableWriter(const Writing& to)
+      : FolderWriter(to), file_(root_ / "frames.csv"), out_(file_.out()) {
     out_ << "part,sequence,frame,time_s,track,category,class,box_px_x,box_px_y,box_px_width,"
             "box_px_height,visible,occluded,truncated,range_m,above_horizon,contrast_to_noise,"
             "area_px";
-    for (const std::string& column : options.columns) out_ << ',' << csv_cell(column);
+    for (const std::string& column : options_.columns) out_ << ',' << csv_cell(column);
     out_ << "\n";
   }
 
@@ -205,8 +205,8 @@ class TableWriter : public FolderWriter {
 
 }  // namespace
 
-std::unique_ptr<Writer> table_writer(Format, const fs::path& root, const WriteOptions& options) {
-  return std::make_unique<TableWriter>(root, options);
+std::unique_ptr<Writer> table_writer(const Writing& to) {
+  return std::make_unique<TableWriter>(to);
 }
 
 }  // namespace airtruth::exchange

@@ -32,7 +32,7 @@ void add_number(pugi::xml_node node, const char* name, double value) {
 
 class VocWriter : public FolderWriter {
  public:
-  VocWriter(const fs::path& root, const WriteOptions& options) : FolderWriter(root, options) {
+  explicit VocWriter(const Writing& to) : FolderWriter(to) {
     fs::create_directories(root_ / "Annotations");
     fs::create_directories(root_ / "ImageSets" / "Main");
   }
@@ -175,9 +175,7 @@ std::vector<fs::path> folders_of_annotations(const fs::path& source) {
 
 }  // namespace
 
-std::unique_ptr<Writer> voc_writer(Format, const fs::path& root, const WriteOptions& options) {
-  return std::make_unique<VocWriter>(root, options);
-}
+std::unique_ptr<Writer> voc_writer(const Writing& to) { return std::make_unique<VocWriter>(to); }
 
 Clips read_voc(const Reading& in) {
   Clips clips;

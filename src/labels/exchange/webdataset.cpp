@@ -102,10 +102,8 @@ void add(const JsonDocument& json, std::map<std::string, Clip>& clips, LeftOut& 
 
 }  // namespace
 
-std::unique_ptr<Writer> webdataset_writer(Format,
-                                          const fs::path& root,
-                                          const WriteOptions& options) {
-  return std::make_unique<WebdatasetWriter>(root, options);
+std::unique_ptr<Writer> webdataset_writer(const Writing& to) {
+  return std::make_unique<WebdatasetWriter>(to);
 }
 
 // Of the shards that the writer above makes, the labels alone: the pictures stay packed.

@@ -26,8 +26,8 @@ namespace {
 
 class YoloWriter : public FolderWriter {
  public:
-  YoloWriter(const fs::path& root, const WriteOptions& options) : FolderWriter(root, options) {
-    for (const std::string& part : options.parts) {
+  explicit YoloWriter(const Writing& to) : FolderWriter(to) {
+    for (const std::string& part : options_.parts) {
       fs::create_directories(root_ / "labels" / part);
       // The loader looks for this folder.
       fs::create_directories(root_ / "images" / part);
@@ -228,9 +228,7 @@ class YoloReader {
 
 }  // namespace
 
-std::unique_ptr<Writer> yolo_writer(Format, const fs::path& root, const WriteOptions& options) {
-  return std::make_unique<YoloWriter>(root, options);
-}
+std::unique_ptr<Writer> yolo_writer(const Writing& to) { return std::make_unique<YoloWriter>(to); }
 
 Clips read_yolo(const Reading& in) { return YoloReader(in).read(); }
 
