@@ -261,11 +261,8 @@ std::vector<fs::path> groundtruth_files(const fs::path& folder) {
   if (!fs::is_directory(folder / "groundtruth"))
     throw Error("is no folder; expected the E-Vision annotations with groundtruth/ and positions/",
                 {(folder / "groundtruth").string()});
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder / "groundtruth"))
-    if (entry.path().extension() == ".xml") files.push_back(entry.path());
+  std::vector<fs::path> files = files_with(folder / "groundtruth", ".xml");
   if (files.empty()) throw Error("holds no .xml", {(folder / "groundtruth").string()});
-  std::sort(files.begin(), files.end());
   return files;
 }
 

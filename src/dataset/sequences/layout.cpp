@@ -56,13 +56,9 @@ bool is_sequence(const fs::path& folder) { return fs::exists(folder / "sequence.
 
 std::vector<std::string> sequences_in(const fs::path& folder) {
   std::vector<std::string> names;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder))
-      // Hidden folders belong to runs that are under way or were killed.
-      if (entry.is_directory() && !entry.path().filename().string().starts_with(".") &&
-          is_sequence(entry.path()))
-        names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
+  // Hidden folders belong to runs that are under way or were killed.
+  for (const fs::path& entry : entries(folder))
+    if (is_sequence(entry)) names.push_back(entry.filename().string());
   return names;
 }
 
@@ -74,10 +70,10 @@ bool is_numbered_folder(const std::string& name) {
 
 SequenceFolders divided_set_in(const fs::path& root) {
   SequenceFolders result{root, {}, {}};
-  for (const auto& entry : fs::directory_iterator(root)) {
-    const std::string numbered = entry.path().filename().string();
-    if (!entry.is_directory() || !is_numbered_folder(numbered)) continue;
-    for (const std::string& name : sequences_in(entry.path())) {
+  for (const fs::path& folder : entries(root)) {
+    const std::string numbered = folder.filename().string();
+    if (!is_numbered_folder(numbered)) continue;
+    for (const std::string& name : sequences_in(folder)) {
       const auto [other, is_new] = result.numbered_folder_of.emplace(name, numbered);
       if (!is_new)
         throw Error("holds a sequence '" + name + "' in both " + std::min(other->second, numbered) +

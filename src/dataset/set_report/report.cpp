@@ -151,10 +151,10 @@ fs::path beside(const fs::path& page, const fs::path& path) {
 
 // The files of a sequence by name, without hidden ones, as the page links to them.
 Json links_of(const fs::path& folder, const fs::path& page) {
-  std::set<std::string> links;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && !entry.path().filename().string().starts_with("."))
-      links.insert((beside(page, folder) / entry.path().filename()).generic_string());
+  Json links = Json::array();
+  for (const fs::path& file : entries(folder))
+    if (fs::is_regular_file(file))
+      links.push_back((beside(page, folder) / file.filename()).generic_string());
   return links;
 }
 

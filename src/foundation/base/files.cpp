@@ -201,6 +201,23 @@ fs::path part_path(const fs::path& path) {
   return part;
 }
 
+std::vector<fs::path> entries(const fs::path& folder) {
+  std::vector<fs::path> found;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (!entry.path().filename().string().starts_with(".")) found.push_back(entry.path());
+  std::ranges::sort(found);
+  return found;
+}
+
+std::vector<fs::path> files_with(const fs::path& folder, std::string_view extension) {
+  std::vector<fs::path> found = entries(folder);
+  std::erase_if(found, [&](const fs::path& path) {
+    return path.extension() != extension || !fs::is_regular_file(path);
+  });
+  return found;
+}
+
 std::string sha256_of_file(const fs::path& path) {
   Sha256 sha;
   read_blocks(path, [&](std::string_view block) {

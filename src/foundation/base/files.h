@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace airtruth {
 
@@ -54,6 +55,12 @@ fs::path first_missing(fs::path folder);
 // Removes the folders from `folder` up to `first`, as long as they are empty. Nothing where `first`
 // is empty.
 void remove_empty(fs::path folder, const fs::path& first);
+
+// The folders and files of a folder, sorted by name, without hidden ones; none where it is no
+// folder.
+std::vector<fs::path> entries(const fs::path& folder);
+// Its files with this extension, such as ".xml".
+std::vector<fs::path> files_with(const fs::path& folder, std::string_view extension);
 
 // SHA-256 of a file's content or of bytes, 64 lower-case hex digits (as sha256sum prints it).
 std::string sha256_of_file(const fs::path& path);

@@ -98,6 +98,13 @@ bool is_picture_file(const fs::path& file) {
   return std::find(kPictureEndings.begin(), kPictureEndings.end(), ending) != kPictureEndings.end();
 }
 
+std::vector<std::string> pictures_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const fs::path& file : entries(folder))
+    if (is_picture_file(file)) names.push_back(file.filename().string());
+  return names;
+}
+
 bool is_numbered_before(std::string_view a, std::string_view b) {
   while (!a.empty() && !b.empty()) {
     const std::string_view digits_a = digits_at_begin(a);

@@ -15,6 +15,9 @@ namespace airtruth::picture_series {
 // .pgm, .webp), whatever the case of its letters.
 bool is_picture_file(const std::filesystem::path& file);
 
+// The names of the pictures in a folder, sorted, without hidden ones.
+std::vector<std::string> pictures_in(const std::filesystem::path& folder);
+
 // Compares texts, with every run of digits as a number of any length.
 //
 //   is_numbered_before("f9.png", "f10.png"), !is_numbered_before("f10.png", "f9.png")

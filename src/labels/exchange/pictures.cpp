@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
-#include "foundation/picture_series/series.h"
 #include "labels/exchange/text.h"
 
 namespace airtruth::exchange {
@@ -163,13 +162,6 @@ std::vector<Clip> clips_of_pictures(std::vector<LabelledPicture> pictures,
     }
   }
   return clips;
-}
-
-std::vector<std::string> pictures_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const fs::path& file : entries(folder))
-    if (picture_series::is_picture_file(file)) names.push_back(file.filename().string());
-  return names;
 }
 
 void join_by_name(Clip& clip, const fs::path& folder, const Warn& warn) {

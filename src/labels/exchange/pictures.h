@@ -12,10 +12,13 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"
+#include "foundation/picture_series/series.h"
 
 // Pictures with labels become clips. A picture is known by its file name, and labels belong to the
 // picture that they name; the order of a file and the numbers in it join nothing.
 namespace airtruth::exchange {
+
+using picture_series::pictures_in;
 
 struct LabelledPicture {
   // As the set states it, relative to its folder of pictures.
@@ -74,8 +77,5 @@ void join_by_number(Clip& clip,
 // Gives the frames of a clip the pictures of a folder in the order of their names. The clip has no
 // media, with a warning, where there is not one picture for each frame.
 void join_in_order(Clip& clip, const fs::path& folder, const Warn& warn);
-
-// The names of the pictures in a folder, sorted.
-std::vector<std::string> pictures_in(const fs::path& folder);
 
 }  // namespace airtruth::exchange

@@ -164,8 +164,11 @@ class SequenceReader {
   void about() {
     const fs::path pictures = pictures_of_sequence(format_, folder_);
     const ReadOptions& options = in_.options;
-    const auto size = options.size ? options.size : size_of_pictures(pictures, options);
-    if (size) std::tie(clip_.width, clip_.height) = *size;
+    const std::vector<std::string> names = pictures_in(pictures);
+    if (options.size)
+      std::tie(clip_.width, clip_.height) = *options.size;
+    else if (!names.empty() && options.size_of_picture)
+      std::tie(clip_.width, clip_.height) = options.size_of_picture(pictures / names.front());
     if (format_ == Format::kVot && fs::exists(folder_ / "sequence")) {
       const auto settings = settings_of(folder_ / "sequence");
       const auto exact = label_file::rate_of(number_in(settings, "exact_fps"));

@@ -11,7 +11,6 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
-#include "foundation/picture_series/series.h"
 #include "labels/label_file/label_file.h"
 
 namespace airtruth::exchange {
@@ -108,31 +107,6 @@ std::pair<std::string, std::optional<std::int64_t>> name_and_number(const std::s
   std::from_chars(stem.data() + digits, stem.data() + stem.size(), number);
   const bool parted = digits > 0 && (stem[digits - 1] == '_' || stem[digits - 1] == '-');
   return {stem.substr(0, parted ? digits - 1 : digits), number};
-}
-
-std::vector<fs::path> entries(const fs::path& folder) {
-  std::vector<fs::path> found;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (!entry.path().filename().string().starts_with(".")) found.push_back(entry.path());
-  std::ranges::sort(found);
-  return found;
-}
-
-std::vector<fs::path> files_with(const fs::path& folder, std::string_view extension) {
-  std::vector<fs::path> found = entries(folder);
-  std::erase_if(found, [&](const fs::path& path) {
-    return path.extension() != extension || !fs::is_regular_file(path);
-  });
-  return found;
-}
-
-std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
-                                                    const ReadOptions& options) {
-  if (!options.size_of_picture) return std::nullopt;
-  for (const fs::path& file : entries(folder))
-    if (picture_series::is_picture_file(file)) return options.size_of_picture(file);
-  return std::nullopt;
 }
 
 bool is_in_picture(const Box& box, int width, int height) {

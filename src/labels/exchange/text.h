@@ -17,6 +17,9 @@
 // Helpers that the formats' readers and writers share.
 namespace airtruth::exchange {
 
+using airtruth::entries;
+using airtruth::files_with;
+
 // The lines of a text file, without blank lines and those that begin with '#'.
 struct Line {
   // From 1.
@@ -58,15 +61,6 @@ std::string padded(std::int64_t number, int digits);
 // "NAME_000123" -> {"NAME", 123}. Without a number at the end the result is {the whole text,
 // empty}.
 std::pair<std::string, std::optional<std::int64_t>> name_and_number(const std::string& stem);
-
-// entries() returns the folders and files of a folder, sorted by name.
-std::vector<fs::path> entries(const fs::path& folder);
-std::vector<fs::path> files_with(const fs::path& folder, std::string_view extension);
-
-// Width and height of the first picture in a folder; empty where there is no picture, or no
-// function that reads its size (ReadOptions::size_of_picture).
-std::optional<std::pair<int, int>> size_of_pictures(const fs::path& folder,
-                                                    const ReadOptions& options);
 
 // True for a box that has an area and touches the picture (of unknown size: any such box). The
 // readers omit other boxes with a warning.

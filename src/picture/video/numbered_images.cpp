@@ -59,13 +59,8 @@ std::string words_of(const picture_series::Series& series, const std::vector<std
 }
 
 std::optional<NumberedImages> in_folder(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (picture_series::is_picture_file(name) && !name.starts_with(".")) names.push_back(name);
-  }
+  const std::vector<std::string> names = picture_series::pictures_in(folder);
   if (names.empty()) return std::nullopt;
-  std::sort(names.begin(), names.end());
   const std::vector<picture_series::Series> all =
       picture_series::series_of(names, picture_series::Stray::kApart);
   if (all.size() > 1)
