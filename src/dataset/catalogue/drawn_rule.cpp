@@ -161,8 +161,8 @@ std::optional<DrawnApproach> drawn_approach_in(const TableReader& rule) {
     table.fail("climb_mps",
                fmt::format("climb_mps reaches {} at a speed_mps of {}; expected no more than the "
                            "speed",
-                           scene::shown(steepest_mps),
-                           scene::shown(drawn.speed_mps->low)));
+                           steepest_mps,
+                           drawn.speed_mps->low));
   return drawn;
 }
 
@@ -177,8 +177,8 @@ std::vector<DrawnSeen> drawn_seen_in(const TableReader& rule) {
       table.fail("time_s",
                  fmt::format("time_s may be {}, not after the {} of the [[random.seen]] before; "
                              "expected later times",
-                             scene::shown(result.back().time_s.low),
-                             scene::shown(before.time_s.high)));
+                             result.back().time_s.low,
+                             before.time_s.high));
   }
   if (result.size() == 1)
     throw Error("[[random.seen]] is alone; expected at least two of them", result[0].where);

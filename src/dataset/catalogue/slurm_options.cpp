@@ -27,12 +27,6 @@ const std::vector<std::string> kOwnOptions = words_in(
 // lines.
 constexpr std::string_view kValueMarks = "_-.,:=/+@%[]()*&|~^";
 
-std::string shown_text(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text.substr(0, 60)) result += is_control(c) ? '?' : c;
-  return result + (text.size() > 60 ? "...'" : "'");
-}
-
 bool consists_of(std::string_view text, std::string_view characters) {
   return !text.empty() && text.find_first_not_of(characters) == std::string_view::npos;
 }
@@ -124,7 +118,7 @@ TaskArray array_size_of(std::string_view text) {
   throw Error(
       fmt::format("{} is no number of tasks; expected N, N%M or %M, for N tasks of which M "
                   "run at a time, each from 1 to {}",
-                  shown_text(text),
+                  scene::in_quotes(text),
                   kMostTasks));
 }
 
@@ -139,12 +133,12 @@ TaskArray task_array_of(std::string_view text) {
   throw Error(
       fmt::format("{} is no array of a set's tasks; expected 0-L, 0-L%M or %M, for tasks 0 "
                   "to L of which M run at a time",
-                  shown_text(text)));
+                  scene::in_quotes(text)));
 }
 
 std::string sbatch_option(const std::string& given, const Where& where) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(shown_text(given) + " is no option for sbatch: " + why, where);
+    throw Error(scene::in_quotes(given) + " is no option for sbatch: " + why, where);
   };
   const auto break_at = given.find_first_of("= ");
   const std::string name = given.substr(0, break_at);
@@ -174,8 +168,9 @@ std::vector<std::string> slurm_in(const scene::TableReader& root) {
     const auto value = table.text(key.key);
     if (!value) continue;
     if (!key.holds(*value))
-      table.fail(key.key,
-                 fmt::format("{} is {}; expected {}", key.key, shown_text(*value), key.expected));
+      table.fail(
+          key.key,
+          fmt::format("{} is {}; expected {}", key.key, scene::in_quotes(*value), key.expected));
     result.push_back(fmt::format("{}={}", key.option, *value));
   }
   if (const auto cpus = table.whole("cpus", 1, 4096))
@@ -189,7 +184,7 @@ std::vector<std::string> slurm_in(const scene::TableReader& root) {
 std::string sbatch_log(const std::string& folder, std::string_view pattern) {
   if (std::any_of(folder.begin(), folder.end(), is_control))
     throw Error("has a control character in its name, which no line of a job script can hold",
-                {shown_text(folder)});
+                {scene::in_quotes(folder)});
   if (folder.find('\\') != std::string::npos)
     throw Error("has a backslash in its name, which Slurm does not take in the name of a log",
                 {folder});

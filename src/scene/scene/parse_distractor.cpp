@@ -139,10 +139,10 @@ LensMark mark_from(const TableReader& table, DistractorKind kind) {
   mark.length_px = table.number("length_px", kSpotSize)
                        .value_or(std::min(kSpotSize.high, slender * mark.size_px));
   if (mark.length_px < mark.size_px)
-    table.fail("length_px",
-               fmt::format("length_px is {}, below size_px; expected {} or more",
-                           shown(mark.length_px),
-                           shown(mark.size_px)));
+    table.fail(
+        "length_px",
+        fmt::format(
+            "length_px is {}, below size_px; expected {} or more", mark.length_px, mark.size_px));
   mark.softness = table.number("softness", kShare).value_or(mark.softness);
   mark.opacity = table.number("opacity", kOpacity).value_or(mark.opacity);
   mark.colour = table.tuple<LinearColour>("colour", kColour).value_or(mark.colour);
@@ -150,7 +150,7 @@ LensMark mark_from(const TableReader& table, DistractorKind kind) {
   if (mark.end_s) *mark.end_s += mark.begin_s;
   if (const auto end_s = table.number("end_s", kTime)) mark.end_s = end_s;
   if (mark.end_s && *mark.end_s < mark.begin_s)
-    table.fail("end_s", fmt::format("end_s is {}, before begin_s", shown(*mark.end_s)));
+    table.fail("end_s", fmt::format("end_s is {}, before begin_s", *mark.end_s));
   return mark;
 }
 

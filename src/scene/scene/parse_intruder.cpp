@@ -57,8 +57,8 @@ Encounter encounter_in(const TableReader& parent) {
   if (std::abs(encounter.climb_mps) > encounter.speed_mps)
     table.fail("climb_mps",
                fmt::format("climb_mps is {} at a speed_mps of {}; expected no more than the speed",
-                           shown(encounter.climb_mps),
-                           shown(encounter.speed_mps)));
+                           encounter.climb_mps,
+                           encounter.speed_mps));
   return encounter;
 }
 
@@ -74,8 +74,8 @@ std::vector<Seen> seen_in(const TableReader& parent) {
       table.fail("time_s",
                  fmt::format("time_s is {}, not after the {} of the [[intruder.seen]] before; "
                              "expected increasing times",
-                             shown(result.back().time_s),
-                             shown(before.time_s)));
+                             result.back().time_s,
+                             before.time_s));
   }
   if (result.size() == 1)
     throw Error("[[intruder.seen]] is alone; expected at least two of them", result[0].where);
@@ -125,8 +125,8 @@ void check_times(const TableReader& table,
     if (times_s[i] <= times_s[i - 1])
       throw Error(fmt::format("times_s[{}] is {}, not after {}; expected increasing times",
                               i,
-                              shown(times_s[i]),
-                              shown(times_s[i - 1])),
+                              times_s[i],
+                              times_s[i - 1]),
                   table.where("times_s", i));
 }
 

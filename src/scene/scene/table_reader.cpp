@@ -54,19 +54,6 @@ std::string listed(const std::vector<std::string>& words) {
   return result;
 }
 
-// The user's text in quotes, shortened to fit one line and without control characters.
-std::string in_quotes(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text.substr(0, 60)) result += is_control(c) ? '?' : c;
-  while (text.size() > 60 && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80)
-    result.pop_back();
-  if (text.size() > 60) {
-    if (static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
-    result += "...";
-  }
-  return result + "'";
-}
-
 bool has_control_character(std::string_view text) { return std::ranges::any_of(text, is_control); }
 
 std::string element_name(std::string_view key, std::size_t i) {
@@ -88,7 +75,17 @@ bool is_plain_file_name(std::string_view name) {
          name.find('/') == std::string_view::npos && !has_control_character(name);
 }
 
-std::string shown(double number) { return fmt::format("{}", number); }
+std::string in_quotes(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text.substr(0, 60)) result += is_control(c) ? '?' : c;
+  while (text.size() > 60 && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80)
+    result.pop_back();
+  if (text.size() > 60) {
+    if (static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
+    result += "...";
+  }
+  return result + "'";
+}
 
 TableReader::TableReader(const toml::table& table,
                          std::string title,
@@ -177,7 +174,7 @@ double TableReader::checked_number(const toml::node& node,
   // toml++ returns no double for an integer that a double cannot represent exactly.
   const double value =
       node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
-  if (!limits.holds(value)) fail_at(place(node), name, shown(value), limits.expected);
+  if (!limits.holds(value)) fail_at(place(node), name, fmt::format("{}", value), limits.expected);
   // Adding 0 turns -0 into 0.
   return value + 0.0;
 }
@@ -199,8 +196,9 @@ std::optional<std::int64_t> TableReader::whole(std::string_view key,
                                    ? fmt::format("a whole number not below {}", low)
                                    : fmt::format("a whole number from {} to {}", low, high);
   if (!value->is_integer()) {
-    const std::string found =
-        value->is_floating_point() ? shown(**value->as_floating_point()) : words_of(value->type());
+    const std::string found = value->is_floating_point()
+                                  ? fmt::format("{}", **value->as_floating_point())
+                                  : words_of(value->type());
     fail_at(place(*value), key, found, expected);
   }
   const std::int64_t number = **value->as_integer();

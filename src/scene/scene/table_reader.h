@@ -149,8 +149,9 @@ TableReader::Keys keys(std::string_view words);
 // holds no slash and no control character.
 bool is_plain_file_name(std::string_view name);
 
-// The number as messages show it: the shortest text that parses to the same number.
-std::string shown(double number);
+// A text of the file as messages show it: in quotes, shortened to fit one line and without control
+// characters.
+std::string in_quotes(std::string_view text);
 
 // Throws Error where the text nests deeper than any scene does: arrays in arrays, or
 // a.long.dotted.key. The TOML parser and the destructors of its result are recursive, so a hostile
