@@ -215,22 +215,6 @@ DrawnMark drawn_mark(const DistractorRule& rule, Random random) {
   return result;
 }
 
-scene::Intruder laid(const scene::Scene& scene,
-                     const DrawnFlock& flock,
-                     const DrawnClip& clip,
-                     const lens::ImageSize& size,
-                     setup::SharedInputs* shared) {
-  // A range until the size of the picture is known.
-  constexpr double kProvisionalRangeM = 100;
-  scene::Intruder leader = flock.leader;
-  const Encounter& encounter = flock.encounter;
-  if (size.width == 0)
-    lay_path(leader, encounter, scene.camera, clip, encounter.range_m.value_or(kProvisionalRangeM));
-  else
-    meet(leader, scene, encounter, clip, size, shared);
-  return leader;
-}
-
 scene::LensMark laid(const DrawnMark& drawn, const DrawnClip& clip, const lens::ImageSize& size) {
   scene::LensMark mark = drawn.mark;
   if (mark.kind == scene::DistractorKind::kGlint) return mark;
@@ -284,10 +268,18 @@ void lay_distractors(scene::Scene& scene,
                      const DrawnClip& clip,
                      const lens::ImageSize& size,
                      setup::SharedInputs* shared) {
+  // A range until the size of the picture is known.
+  constexpr double kProvisionalRangeM = 100;
   std::erase_if(scene.intruders, [](const auto& intruder) { return !is_aircraft(intruder); });
   scene.lens_marks.clear();
   for (const DrawnFlock& flock : drawn.flocks) {
-    const scene::Intruder leader = laid(scene, flock, clip, size, shared);
+    scene::Intruder leader = flock.leader;
+    const Encounter& encounter = flock.encounter;
+    const double range_m = encounter.range_m.value_or(kProvisionalRangeM);
+    if (size.width == 0)
+      lay_path(leader, encounter, scene.camera, clip, range_m);
+    else
+      meet(leader, scene, encounter, clip, size, shared);
     for (scene::Intruder& one : scene::flock_of(leader, flock.count, flock.spread_m, flock.seed))
       scene.intruders.push_back(std::move(one));
   }

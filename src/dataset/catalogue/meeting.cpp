@@ -44,17 +44,6 @@ Vector3 direction_in_world(const Encounter& encounter, const Quaternion& world_f
   return world_from_camera_body * unit_vector(encounter.azimuth_deg, encounter.elevation_deg);
 }
 
-void lay_straight(scene::Intruder& intruder,
-                  const Encounter& encounter,
-                  const Vector3& meeting,
-                  double meets_s,
-                  double clip_s) {
-  const Vector3 velocity =
-      encounter.speed_mps * unit_vector(encounter.heading_deg, encounter.climb_deg);
-  intruder.waypoints_ned_m = {meeting - meets_s * velocity,
-                              meeting + (clip_s + kPastClip_s - meets_s) * velocity};
-}
-
 // Displacement from the meeting point after a time on the helix.
 Vector3 turned(const Encounter& encounter, double turn_rate, double after_s) {
   const double heading = radians(encounter.heading_deg);
@@ -100,10 +89,12 @@ void lay_through(scene::Intruder& intruder,
                  const Vector3& meeting,
                  const DrawnClip& clip) {
   const double meets_s = meeting_s(encounter, clip);
-  if (std::abs(encounter.bank_deg) < kStraightBankDeg)
-    lay_straight(intruder, encounter, meeting, meets_s, clip.duration_s());
-  else
-    lay_turn(intruder, encounter, meeting, meets_s, clip.duration_s());
+  if (std::abs(encounter.bank_deg) >= kStraightBankDeg)
+    return lay_turn(intruder, encounter, meeting, meets_s, clip.duration_s());
+  const Vector3 velocity =
+      encounter.speed_mps * unit_vector(encounter.heading_deg, encounter.climb_deg);
+  intruder.waypoints_ned_m = {meeting - meets_s * velocity,
+                              meeting + (clip.duration_s() + kPastClip_s - meets_s) * velocity};
 }
 
 // The place in a direction from the camera at which the longer side of an aircraft's exact box,
