@@ -91,11 +91,6 @@ std::optional<Kind> kind_of(std::string_view body) {
   return at == kind.length ? std::optional(kind) : std::nullopt;
 }
 
-double number_at(std::string_view message, const MessageColumn& column) {
-  const Letter& letter = *column.letter;
-  return letter.number != nullptr ? letter.scale * letter.number(message, column.at) : NAN;
-}
-
 class DataFlashReader {
  public:
   DataFlashReader(std::string_view bytes, std::string file)
@@ -106,13 +101,9 @@ class DataFlashReader {
   FlightLog read() {
     std::size_t at = 0;
     while (bytes_.size() - at >= kHeadBytes) {
-      if (bytes_[at] != kHead1 || bytes_[at + 1] != kHead2) {
-        // A logger that lost a block of memory goes on with the next message.
-        ++at;
-        continue;
-      }
       const std::size_t length = length_at(at);
       if (length == 0) {
+        // A logger that lost a block of memory goes on with the next message.
         ++at;
         continue;
       }
@@ -120,13 +111,15 @@ class DataFlashReader {
       message(bytes_.substr(at, length), at);
       at += length;
     }
-    choose_positions();
+    // The estimator's positions, else those of the first receiver that has a fix.
+    take_positions(log_, position_.fixes.size() >= 2 ? position_ : first_with_fix(receivers_));
     return from_first_record(std::move(log_));
   }
 
  private:
-  // The length of the message at a byte; 0 where its type is not known.
+  // The length of the message at a byte; 0 where there is none, or its type is not known.
   std::size_t length_at(std::size_t at) const {
+    if (bytes_[at] != kHead1 || bytes_[at + 1] != kHead2) return 0;
     const auto type = static_cast<std::uint8_t>(bytes_[at + 2]);
     if (type == kFormatType) return kFormatBytes;
     const auto kind = kinds_.find(type);
@@ -144,7 +137,8 @@ class DataFlashReader {
     const auto number = [&](std::string_view label) -> std::optional<double> {
       const auto column = kind.columns.find(label);
       if (column == kind.columns.end()) return std::nullopt;
-      return number_at(bytes, column->second);
+      const auto& [letter, begin] = column->second;
+      return letter->number != nullptr ? letter->scale * letter->number(bytes, begin) : NAN;
     };
     const auto microseconds = number("TimeUS");
     if (!microseconds) return;
@@ -170,11 +164,6 @@ class DataFlashReader {
     if (kind.name == "IMU")
       if (const auto rates = three("GyrX", "GyrY", "GyrZ"))
         add_record(log_, Rates{time_s, *rates}, where);
-  }
-
-  // The estimator's positions, else those of the first receiver that has a fix.
-  void choose_positions() {
-    take_positions(log_, position_.fixes.size() >= 2 ? position_ : first_with_fix(receivers_));
   }
 
   std::string_view bytes_;
