@@ -75,19 +75,6 @@ Lens lens_in(const TableReader& parent) {
   return lens;
 }
 
-namespace {
-
-void read_log(const TableReader& table, Camera& camera) {
-  table.exclude("log", {"path_file", "velocity_ned_mps"});
-  camera.log = table.path("log");
-  camera.log_offset_s = table.number("log_offset_s", kTime);
-  camera.position_is_stated = table.has("position_ned_m");
-  if (!camera.log && camera.log_offset_s)
-    table.fail("log_offset_s", "log_offset_s is stated without a log; expected log as well");
-}
-
-}  // namespace
-
 Camera camera_in(const TableReader& parent, const Motion& motion) {
   const TableReader table =
       parent.table("camera",
@@ -97,7 +84,12 @@ Camera camera_in(const TableReader& parent, const Motion& motion) {
   camera.where = table.where();
   table.exclude("path_file", {"position_ned_m", "velocity_ned_mps", "attitude_yaw_pitch_roll_deg"});
   camera.path_file = table.path("path_file");
-  read_log(table, camera);
+  table.exclude("log", {"path_file", "velocity_ned_mps"});
+  camera.log = table.path("log");
+  camera.log_offset_s = table.number("log_offset_s", kTime);
+  camera.position_is_stated = table.has("position_ned_m");
+  if (!camera.log && camera.log_offset_s)
+    table.fail("log_offset_s", "log_offset_s is stated without a log; expected log as well");
   camera.follows_log_attitude = motion.reference == MotionReference::kSmoothed;
   camera.position_ned_m =
       table.tuple<Vector3>("position_ned_m", kPosition).value_or(camera.position_ned_m);
@@ -296,24 +288,18 @@ Output output_in(const TableReader& parent) {
   return output;
 }
 
-Render render_in(const TableReader& parent) {
-  const TableReader table = parent.table("render", {"quality"});
-  Render render;
-  render.quality = static_cast<int>(table.whole("quality", 1, 5).value_or(render.quality));
-  return render;
-}
-
-Composite composite_in(const TableReader& parent) {
-  const TableReader table = parent.table("composite", {"method"});
-  Composite composite;
-  composite.method = table.choice<CompositeMethod>("method").value_or(composite.method);
-  return composite;
-}
-
 }  // namespace
 
 OutputTables output_tables_in(const TableReader& parent) {
-  return {truth_in(parent), render_in(parent), composite_in(parent), output_in(parent)};
+  OutputTables tables;
+  tables.truth = truth_in(parent);
+  const TableReader render = parent.table("render", {"quality"});
+  int& quality = tables.render.quality;
+  quality = static_cast<int>(render.whole("quality", 1, 5).value_or(quality));
+  CompositeMethod& method = tables.composite.method;
+  method = parent.table("composite", {"method"}).choice<CompositeMethod>("method").value_or(method);
+  tables.output = output_in(parent);
+  return tables;
 }
 
 }  // namespace airtruth::scene
