@@ -215,16 +215,16 @@ DrawnMark drawn_mark(const DistractorRule& rule, Random random) {
   return result;
 }
 
-scene::LensMark laid(const DrawnMark& drawn, const DrawnClip& clip, const lens::ImageSize& size) {
+scene::LensMark laid(const DrawnMark& drawn, const DrawnClip& clip) {
+  const auto& [width, height] = clip.size;
   scene::LensMark mark = drawn.mark;
   if (mark.kind == scene::DistractorKind::kGlint) return mark;
-  const Pixel middle(drawn.across * size.width, drawn.down * size.height);
+  const Pixel middle(drawn.across * width, drawn.down * height);
   mark.pixel = middle;
   mark.velocity_px_s = Pixel::Zero();
   if (mark.kind != scene::DistractorKind::kInsect) return mark;
   // It crosses the whole picture.
-  const double crossing_s =
-      2 * (std::hypot(size.width, size.height) + mark.length_px) / drawn.speed_px_s;
+  const double crossing_s = 2 * (std::hypot(width, height) + mark.length_px) / drawn.speed_px_s;
   const double meets_s = drawn.meeting_share * clip.duration_s();
   mark.velocity_px_s =
       drawn.speed_px_s * Pixel(std::cos(drawn.direction_rad), std::sin(drawn.direction_rad));
@@ -266,7 +266,6 @@ DrawnDistractors draw_distractors(const std::vector<DistractorRule>& rules,
 void lay_distractors(scene::Scene& scene,
                      const DrawnDistractors& drawn,
                      const DrawnClip& clip,
-                     const lens::ImageSize& size,
                      setup::SharedInputs* shared) {
   // A range until the size of the picture is known.
   constexpr double kProvisionalRangeM = 100;
@@ -276,14 +275,14 @@ void lay_distractors(scene::Scene& scene,
     scene::Intruder leader = flock.leader;
     const Encounter& encounter = flock.encounter;
     const double range_m = encounter.range_m.value_or(kProvisionalRangeM);
-    if (size.width == 0)
+    if (clip.size.width == 0)
       lay_path(leader, encounter, scene.camera, clip, range_m);
     else
-      meet(leader, scene, encounter, clip, size, shared);
+      meet(leader, scene, encounter, clip, shared);
     for (scene::Intruder& one : scene::flock_of(leader, flock.count, flock.spread_m, flock.seed))
       scene.intruders.push_back(std::move(one));
   }
-  for (const DrawnMark& mark : drawn.marks) scene.lens_marks.push_back(laid(mark, clip, size));
+  for (const DrawnMark& mark : drawn.marks) scene.lens_marks.push_back(laid(mark, clip));
 }
 
 }  // namespace airtruth::catalogue

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "aircraft/shapes/shapes.h"
-#include "camera/lens/lens.h"
 #include "dataset/catalogue/drawing.h"
 #include "foundation/base/error.h"
 #include "scene/scene/distractor.h"
@@ -89,12 +88,11 @@ DrawnDistractors draw_distractors(const std::vector<DistractorRule>& rules,
                                   std::int64_t index);
 
 // Puts the distractors into a scene in place of those that it has, over a clip of this length and
-// size. Until the size is known, with size.width 0, the places are provisional and the numbers of
+// size. Until the size is known, the places are provisional and the numbers of
 // things right. Throws Error as meet() does. `shared` may be null.
 void lay_distractors(scene::Scene& scene,
                      const DrawnDistractors& drawn,
                      const DrawnClip& clip,
-                     const lens::ImageSize& size,
                      setup::SharedInputs* shared);
 
 }  // namespace airtruth::catalogue

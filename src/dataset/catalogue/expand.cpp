@@ -218,7 +218,7 @@ Item Expansion::at(std::int64_t index) const {
   item.scene.name = item.name;
   item.distractors = draw_distractors(catalogue_.distractors, catalogue_.seed, index);
   const std::int64_t frames = item.frame_count > 0 ? item.frame_count : kProvisionalFrames;
-  lay_distractors(item.scene, item.distractors, {frames, kAssumedRateHz}, {0, 0}, nullptr);
+  lay_distractors(item.scene, item.distractors, {frames, kAssumedRateHz}, nullptr);
   return item;
 }
 
@@ -268,17 +268,18 @@ void place(Item& item,
   draw_in_view(item, files);
   if (!item.first_frame && item.rule != nullptr && item.rule->start == ClipStart::kRandom)
     placed.first_frame = random_first_frame(item, background.first_frame, files);
-  DrawnClip clip{item.frame_count, files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
+  DrawnClip clip{item.frame_count,
+                 files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz,
+                 {files.width, files.height}};
   const std::int64_t left = files.frames - placed.first_frame;
   if (background.frame_count && left > 0)
     placed.frame_count = std::min(placed.frame_count.value_or(left), left);
   if (left > 0) clip.frames = clip.frames > 0 ? std::min(clip.frames, left) : left;
   if (clip.frames == 0) clip.frames = kProvisionalFrames;
-  const lens::ImageSize size{files.width, files.height};
   if (item.rule != nullptr)
     for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k)
-      meet(item.scene.intruders[k], item.scene, item.drawn.encounters[k], clip, size, shared);
-  lay_distractors(item.scene, item.distractors, clip, size, shared);
+      meet(item.scene.intruders[k], item.scene, item.drawn.encounters[k], clip, shared);
+  lay_distractors(item.scene, item.distractors, clip, shared);
 }
 
 }  // namespace airtruth::catalogue

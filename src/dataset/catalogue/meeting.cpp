@@ -169,7 +169,6 @@ void meet(scene::Intruder& intruder,
           const scene::Scene& scene,
           const Encounter& encounter,
           const DrawnClip& clip,
-          const lens::ImageSize& size,
           setup::SharedInputs* shared) {
   // Length for the first estimate of the range.
   constexpr double kUsualLengthM = 15;
@@ -183,7 +182,7 @@ void meet(scene::Intruder& intruder,
         intruder, encounter, camera.position_in_world + *encounter.range_m * direction, clip);
     return;
   }
-  const lens::Lens lens = setup::lens_of(scene.lens, size);
+  const lens::Lens lens = setup::lens_of(scene.lens, clip.size);
   const double guess_m = lens.focal_px() * kUsualLengthM / *encounter.size_px;
   lay_through(intruder, encounter, camera.position_in_world + guess_m * direction, clip);
   const trajectory::Path path = setup::path_of(intruder, own);

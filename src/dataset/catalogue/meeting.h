@@ -14,10 +14,11 @@ class SharedInputs;
 
 namespace airtruth::catalogue {
 
-// The length of a sequence, as far as it is known.
+// The length and the size of a sequence, as far as they are known.
 struct DrawnClip {
   std::int64_t frames = 0;
   double frame_rate_hz = 30;
+  lens::ImageSize size{};  // 0: unknown
 
   double duration_s() const { return static_cast<double>(frames) / frame_rate_hz; }
 };
@@ -51,7 +52,6 @@ void meet(scene::Intruder& intruder,
           const scene::Scene& scene,
           const Encounter& encounter,
           const DrawnClip& clip,
-          const lens::ImageSize& size,
           setup::SharedInputs* shared = nullptr);
 
 }  // namespace airtruth::catalogue

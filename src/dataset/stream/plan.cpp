@@ -302,8 +302,7 @@ void Planner::keep_part_in_view(catalogue::Item& item, Random random) const {
   item.scene.background.frame_count = catalogue_.stream.frames;
   catalogue::lay_distractors(item.scene,
                              item.distractors,
-                             {catalogue_.stream.frames, files.frame_rate_hz},
-                             size,
+                             {catalogue_.stream.frames, files.frame_rate_hz, size},
                              &shared_);
 }
 
