@@ -136,18 +136,13 @@ Where TableReader::place(const toml::node& node) const {
 
 bool TableReader::has(std::string_view key) const { return node(key) != nullptr; }
 bool TableReader::says(std::string_view key, std::string_view word) const {
-  const toml::node* value = node(key);
-  return value != nullptr && value->is_string() && value->value_or(std::string_view()) == word;
+  return toml::node_view(node(key)).value<std::string_view>() == word;
 }
-
 bool TableReader::is_array(std::string_view key) const {
-  const toml::node* value = node(key);
-  return value != nullptr && value->is_array();
+  return toml::node_view(node(key)).is_array();
 }
-
 bool TableReader::is_table(std::string_view key) const {
-  const toml::node* value = node(key);
-  return value != nullptr && value->is_table();
+  return toml::node_view(node(key)).is_table();
 }
 
 Where TableReader::where() const { return place(*table_); }
@@ -158,8 +153,7 @@ Where TableReader::where(std::string_view key) const {
 }
 
 Where TableReader::where(std::string_view key, std::size_t i) const {
-  const toml::node* const value = node(key);
-  const toml::array* const array = value ? value->as_array() : nullptr;
+  const toml::array* const array = toml::node_view(node(key)).as_array();
   return array && i < array->size() ? place((*array)[i]) : where(key);
 }
 
@@ -285,10 +279,7 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key,
   note(key, NumberKey{NumberShape::kList, {each}});
   if (!has(key)) return std::nullopt;
   const toml::array& values = array(key, "an array of numbers");
-  std::vector<double> result;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    result.push_back(checked_number(values[i], element_name(key, i), each));
-  return result;
+  return tuple_of(values, std::string(key), std::vector<Limits>(values.size(), each));
 }
 
 std::vector<double> TableReader::tuple_of(const toml::array& values,
