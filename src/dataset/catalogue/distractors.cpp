@@ -124,17 +124,8 @@ namespace {
 // Spans squared over wing areas (Pennycuick 1996, table 1): gulls, crows, buzzards and eagles,
 // pigeons.
 double usual_aspect_ratio(shapes::Plumage plumage) {
-  switch (plumage) {
-    case shapes::Plumage::kGull:
-      return 9.6;
-    case shapes::Plumage::kDark:
-      return 6.5;
-    case shapes::Plumage::kBrown:
-      return 6.3;
-    case shapes::Plumage::kGrey:
-      break;
-  }
-  return 7.2;
+  using enum shapes::Plumage;
+  return plumage == kGull ? 9.6 : plumage == kDark ? 6.5 : plumage == kBrown ? 6.3 : 7.2;
 }
 
 // True for a share of the sequences; rule by rule another irrational number turns.

@@ -19,22 +19,14 @@ namespace {
 const toml::table kAbsent;
 
 const char* words_of(toml::node_type type) {
-  switch (type) {
-    case toml::node_type::string:
-      return "a string";
-    case toml::node_type::integer:
-      return "an integer";
-    case toml::node_type::floating_point:
-      return "a number with a fraction";
-    case toml::node_type::boolean:
-      return "a boolean";
-    case toml::node_type::array:
-      return "an array";
-    case toml::node_type::table:
-      return "a table";
-    default:
-      return "a date or time";
-  }
+  using enum toml::node_type;
+  return type == string           ? "a string"
+         : type == integer        ? "an integer"
+         : type == floating_point ? "a number with a fraction"
+         : type == boolean        ? "a boolean"
+         : type == array          ? "an array"
+         : type == table          ? "a table"
+                                  : "a date or time";
 }
 
 [[noreturn]] void fail_at(const Where& where,
