@@ -17,6 +17,7 @@
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/pictures.h"
 #include "labels/exchange/text.h"
+#include "labels/label_file/label_file.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
@@ -128,12 +129,11 @@ Json record_of(const exchange::Clip& clip, const ImportOptions& options) {
 }
 
 void expect_rate(const exchange::Clip& clip, const fs::path& source) {
-  constexpr double kHighestRate_hz = 1e6;  // the limit of labels.jsonl
-  if (clip.frame_rate_hz && !(*clip.frame_rate_hz > 0 && *clip.frame_rate_hz <= kHighestRate_hz))
+  if (clip.frame_rate_hz && !label_file::rate_of(clip.frame_rate_hz))
     throw Error(fmt::format("{}: the frame rate is {} Hz; expected a number above 0, up to {}",
                             clip.name,
                             *clip.frame_rate_hz,
-                            kHighestRate_hz),
+                            label_file::kHighestRate_hz),
                 {source.string()});
 }
 
@@ -226,7 +226,7 @@ Json write_clip(exchange::Clip clip, const ImportOptions& options, const fs::pat
     write_file(folder / kPictureList, list_of_pictures(clip), Flush::kLater);
     clip.media = kPictureList;
   }
-  write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip), Flush::kLater);
+  write_file(folder / sequences::kLabels, exchange::labels_jsonl(clip), Flush::kLater);
   // Categories come unchanged from the labels and may be invalid UTF-8.
   write_file(folder / "sequence.json",
              record.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",

@@ -62,17 +62,11 @@ std::vector<std::string> sequences_in(const fs::path& folder) {
   return names;
 }
 
-// Whether a folder of `sequences` with this name holds sequences of a divided set: its name
-// consists of digits.
-bool is_numbered_folder(const std::string& name) {
-  return !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
-}
-
 SequenceFolders divided_set_in(const fs::path& root) {
   SequenceFolders result{root, {}, {}};
   for (const fs::path& folder : entries(root)) {
     const std::string numbered = folder.filename().string();
-    if (!is_numbered_folder(numbered)) continue;
+    if (numbered.find_first_not_of("0123456789") != std::string::npos) continue;
     for (const std::string& name : sequences_in(folder)) {
       const auto [other, is_new] = result.numbered_folder_of.emplace(name, numbered);
       if (!is_new)

@@ -88,7 +88,7 @@ void Totals::add(const replay::Finished& finished, const Portrait& portrait) {
   for (const double value : portrait.film.contrasts) contrast.add(value);
 }
 
-std::vector<OverviewPlot> overview_plots(const Totals& totals) {
+std::vector<std::pair<std::string, plot::Plot>> overview_plots(const Totals& totals) {
   std::vector<std::string> classes;
   std::vector<std::int64_t> boxes;
   for (const auto& [name, count] : totals.boxes_by_class) {
@@ -96,7 +96,7 @@ std::vector<OverviewPlot> overview_plots(const Totals& totals) {
     boxes.push_back(count);
   }
   const std::int64_t without = totals.frames - totals.frames_with_intruder;
-  std::vector<OverviewPlot> plots = {
+  std::vector<std::pair<std::string, plot::Plot>> plots = {
       {"range_m", bars("boxes", totals.range_m)},
       {"size_px", bars("boxes", totals.size_px)},
       {"azimuth_deg", bars("boxes", totals.azimuth_deg)},

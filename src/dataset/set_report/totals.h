@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dataset/set_report/portrait.h"
@@ -59,14 +60,9 @@ struct Totals {
   void add(const replay::Finished& finished, const Portrait& portrait);
 };
 
-struct OverviewPlot {
-  std::string name;
-  plot::Plot plot;
-};
-
 // The bar charts at the head of a data set's page: range_m, size_px, azimuth_deg, contrast,
 // classes, negatives and states; where sequences have encounters, also meetings, closest_m,
 // first_seen_m, first_seen_s, to_closest_s and horizon.
-std::vector<OverviewPlot> overview_plots(const Totals& totals);
+std::vector<std::pair<std::string, plot::Plot>> overview_plots(const Totals& totals);
 
 }  // namespace airtruth::set_report
