@@ -89,7 +89,7 @@ class Work {
       if (ordered.size() == kMaxOrdered) put_in_order();
       is_used_[item.background] = true;
       // A clip that begins at a random frame is measured from its own first frame, when it is made.
-      if (item.rule != nullptr && item.rule->start == catalogue::ClipStart::kRandom) continue;
+      if (item.has_random_start()) continue;
       auto& needed = needed_[item.background];
       needed =
           item.frame_count == 0 || needed == 0 ? 0 : std::max(needed.value_or(1), item.frame_count);

@@ -89,10 +89,6 @@ class Planner {
   }
 
  private:
-  static bool has_random_start(const catalogue::Item& item) {
-    return item.rule != nullptr && item.rule->start == catalogue::ClipStart::kRandom;
-  }
-
   // Of a sequence by itself.
   double cost_of(const catalogue::Item& item, std::int64_t frames, double size) const {
     const scene::Scene& scene = item.scene;
@@ -106,15 +102,15 @@ class Planner {
     double per_frame =
         size * kCosts.frame + others * other + (has_camera ? kCosts.camera_model : 0);
     double cost = kCosts.sequence + distractors * kCosts.thing;
-    if (has_random_start(item) && scene.motion.model != scene::MotionModel::kNone)
+    if (item.has_random_start() && scene.motion.model != scene::MotionModel::kNone)
       per_frame += kCosts.motion;
-    if (has_random_start(item) || catalogue_.backgrounds[item.background].first_frame > 0)
+    if (item.has_random_start() || catalogue_.backgrounds[item.background].first_frame > 0)
       cost += kCosts.sought_frames * size * kCosts.decoded;
     return cost + static_cast<double>(frames) * per_frame;
   }
 
   void count_motion(const catalogue::Item& item, std::int64_t frames) {
-    if (has_random_start(item) || item.scene.motion.model == scene::MotionModel::kNone) return;
+    if (item.has_random_start() || item.scene.motion.model == scene::MotionModel::kNone) return;
     std::int64_t& moved = facts_[item.background]->moved_frames;
     moved = std::max(moved, frames);
   }

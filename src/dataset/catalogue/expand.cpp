@@ -266,7 +266,7 @@ void place(Item& item,
   placed.first_frame = item.first_frame.value_or(background.first_frame);
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
   draw_in_view(item, files);
-  if (!item.first_frame && item.rule != nullptr && item.rule->start == ClipStart::kRandom)
+  if (!item.first_frame && item.has_random_start())
     placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count,
                  files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz,

@@ -42,6 +42,8 @@ struct Item {
   DrawnSequence drawn;          // valid where there is a rule
   // In place of the background's first_frame, and of the rule's start.
   std::optional<std::int64_t> first_frame;
+  // True where the clip begins at a drawn frame of its background.
+  bool has_random_start() const { return rule != nullptr && rule->start == ClipStart::kRandom; }
   // In the scene already, with provisional places until place().
   DrawnDistractors distractors;
   // Of a sequence of [[encounter_model]]: its rule, and its number there. Until place() its
