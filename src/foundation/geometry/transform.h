@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include <Eigen/Geometry>
 
@@ -26,6 +27,11 @@ using Matrix3 = Eigen::Matrix3d;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
 constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
+
+// The angle with whole turns added, so that it lies next to the one before it.
+inline double nearest_turn(double angle_deg, double before_deg) {
+  return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
+}
 
 // The unit vector of an azimuth and an elevation above the plane of the first two axes: from north
 // towards east in world, from ahead towards the right in body.

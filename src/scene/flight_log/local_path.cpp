@@ -34,10 +34,6 @@ auto between(const std::vector<Record>& records, double time_s, const Value& val
   return decltype(before)(before + share * (value(b) - before));
 }
 
-double nearest_turn(double angle_deg, double before_deg) {
-  return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
-}
-
 void require_covered(const FlightLog& log, double offset_s) {
   const double first_s = log.fixes.front().time_s, last_s = log.fixes.back().time_s;
   if (offset_s >= first_s - kMaxExtensionS && offset_s <= last_s + kMaxExtensionS) return;

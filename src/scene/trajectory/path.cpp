@@ -162,16 +162,13 @@ class Curve : public CubicSpline {
   mutable std::vector<double> yaw_deg_;
 };
 
-double unwrapped(double angle_deg, double before_deg) {
-  return angle_deg + 360.0 * std::round((before_deg - angle_deg) / 360.0);
-}
-
 // The angles of all samples, without turns by 360 degrees from one to the next in yaw and roll.
 std::vector<Vector3> unwrapped_angles(const Samples& samples) {
   std::vector<Vector3> angles = samples.angles_deg;
   angles.resize(samples.times_s.size(), Vector3::Zero());
   for (std::size_t i = 1; i < angles.size(); ++i)
-    for (const int axis : {0, 2}) angles[i][axis] = unwrapped(angles[i][axis], angles[i - 1][axis]);
+    for (const int axis : {0, 2})
+      angles[i][axis] = nearest_turn(angles[i][axis], angles[i - 1][axis]);
   return angles;
 }
 
