@@ -144,7 +144,6 @@ struct Light {
   // in the background, and where no ground is seen that of fields and roads
   // (sequence/insertion/ambient.h).
   std::optional<double> ground_albedo;
-  Where where;
 };
 
 // The camera between the light of the scene and the stored sample; the tables [shutter], [air],

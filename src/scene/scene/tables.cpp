@@ -184,7 +184,6 @@ Light light_in(const TableReader& parent) {
                         "ground_albedo"));
   table.exclude("ground_colour", {"ground_albedo"});
   Light light;
-  light.where = table.where();
   light.sun_azimuth_deg = table.number("sun_azimuth_deg", kTurn).value_or(light.sun_azimuth_deg);
   light.sun_elevation_deg =
       table.number("sun_elevation_deg", kPitch).value_or(light.sun_elevation_deg);
