@@ -207,9 +207,9 @@ class Export {
     if (options_.shard_mb) write_.shard_bytes = *options_.shard_mb * 1'000'000;
     if (is_table()) {
       write_.columns = truth_columns();
-      write_.cells = [this](const exchange::Clip&,
-                            std::int64_t frame,
-                            const exchange::Label& label) { return cells_of(frame, label); };
+      write_.cells = [this](std::int64_t frame, const exchange::Label& label) {
+        return cells_of(frame, label);
+      };
     }
     write_.parts = {"train", "val", "test", "trainval", "all"};
     std::erase_if(write_.parts, [this](const std::string& part) {

@@ -31,11 +31,10 @@ struct WriteOptions {
   fs::path staging = "pictures";
   // WebDataset only: a shard ends with the first sample that makes it this large.
   std::int64_t shard_bytes = 500'000'000;
-  // The table only: the names of further columns, and their cells in the row of a label. `clip` is
-  // the one that is added.
+  // The table only: the names of further columns, and their cells in the row of a label of the
+  // clip that is added.
   std::vector<std::string> columns;
-  std::function<std::vector<std::string>(const Clip& clip, std::int64_t frame, const Label& label)>
-      cells;
+  std::function<std::vector<std::string>(std::int64_t frame, const Label& label)> cells;
 };
 
 // Writes a set into a folder, clip by clip. Of clips that are written it keeps only the names in

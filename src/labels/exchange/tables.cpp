@@ -188,7 +188,7 @@ class TableWriter : public FolderWriter {
             label, "visible", [&](const char*, const auto& value) { out_ << ',' << cell(value); });
         out_ << ',' << cell(label.area_px);
         if (options_.cells)
-          for (const std::string& text : options_.cells(clip, frame.frame, label))
+          for (const std::string& text : options_.cells(frame.frame, label))
             out_ << ',' << csv_cell(text);
         out_ << "\n";
       }
