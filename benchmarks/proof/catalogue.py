@@ -58,7 +58,7 @@ def of_clips(clips, realism):
     return streamed("proof", backgrounds_of(clips, realism), rules_of((-7, 7), ELEVATION_IN_SKY_DEG, ELEVATION_ANYWHERE_DEG, SKY_OF_TEN))
 
 
-def flights_of(realism):
+def flights():
     """Virtual flights of many lenses, heights, clouds and suns; the own aircraft is in view of the wider ones."""
     tables = []
     for index, (width, height, fov_deg, altitude_m, cloud_cover, azimuth_deg, elevation_deg) in enumerate(FLIGHTS):
@@ -67,11 +67,11 @@ def flights_of(realism):
                             "altitude_m": altitude_m},
                  "camera": {"position_ned_m": [0, 0, -altitude_m], "velocity_ned_mps": [25, 0, 0]},
                  "light": {"sun_azimuth_deg": azimuth_deg, "sun_elevation_deg": elevation_deg}}
-        if realism:
-            table["realism"] = realism
         tables.append(table)
     return tables
 
 
-def of_flights(realism):
-    return streamed("flights", flights_of(realism), rules_of((-14, 14), (0, 9), (-9, 9), 10))
+def of_flights(negatives):
+    """`negatives`: the share of samples without an aircraft."""
+    rules = [{**rule, "negatives": negatives} for rule in rules_of((-14, 14), (0, 9), (-9, 9), 10)]
+    return streamed("flights", flights(), rules)

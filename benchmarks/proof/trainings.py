@@ -150,9 +150,11 @@ def mixed(material, frames, seed):
 
 
 def shipped(material, frames, seed):
-    """Composites over the clips, and a quarter as many over virtual flights: clouds, ground below, an own aircraft in view."""
-    composites(material, frames, seed)
-    add_samples(frames, airtruth.Stream(catalogue.of_flights(REALISM), seed=seed, threads=1), material.options.frames // 4)
+    """The plain matte over the clips, and a quarter as many over virtual flights: clouds, ground below, an own aircraft in view; and as many
+    frames of these flights without an aircraft."""
+    matte(material, frames, seed)
+    for negatives in (0, 1):
+        add_samples(frames, airtruth.Stream(catalogue.of_flights(negatives), seed=seed, threads=1), material.options.frames // 4)
 
 
 @dataclasses.dataclass
@@ -188,7 +190,7 @@ def written(path, value):
 
 def stated(name, options, seed):
     """What a training that is there already must have been made with."""
-    text = json.dumps(catalogue.of_clips([], None)) + (json.dumps(catalogue.of_flights(None)) if TRAININGS[name].ships else "")
+    text = json.dumps(catalogue.of_clips([], None)) + (json.dumps(catalogue.of_flights(0)) if TRAININGS[name].ships else "")
     rules = f"{zlib.crc32(text.encode()):08x}"
     return {"frames": options.frames, "negatives": options.negatives, "batch": options.batch, "steps": options.steps,
             "minutes": None if options.steps else options.minutes, "seed": seed, "train_on": options.train_on,

@@ -131,7 +131,7 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
                                  ->check(CLI::Range(0.001, 86'400.0));
   const auto has_program = [&options] {
     return std::ranges::any_of(options.detectors, [](const std::string& text) {
-      return runs::named_detector(text).command.starts_with("exec:");
+      return text.find("exec:") != std::string::npos;
     });
   };
   for (const CLI::Option* option : {answer, start})
