@@ -713,7 +713,9 @@ class Readers(unittest.TestCase):
         (source / "annotations").mkdir()
         (source / "annotations/instances_val2017.json").write_text(json.dumps(
             {"images": list(reversed(images)), "annotations": boxes, "categories": [{"id": 5, "name": "airplane"}]}))
-        self.assertEqual(self.import_again("coco", source, pictures), [[(1, 2, 3, 4)], [], [(5.5, 6, 7, 8)]])
+        self.assertEqual(self.import_again("coco", source, pictures), [[(1, 2, 3, 4)], [(9, 9, 9, 9)], [(5.5, 6, 7, 8)]])
+        again = json.loads((self.root / "again-coco/coco/annotations/instances_train.json").read_text())
+        self.assertEqual([one["iscrowd"] for one in again["annotations"]], [0, 1, 0])
 
     def test_import_of_aot_by_its_own_names(self):
         """airborne-detection-starter-kit, docs/DATASET.md: times since 1970, flights in hexadecimal, NaN."""

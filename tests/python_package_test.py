@@ -211,11 +211,13 @@ class Frames(unittest.TestCase):
         self.assertEqual(lens.width, 160)
 
     def test_warnings_are_pythons(self):
+        airtruth.convert_labels("coco", "coco", "of no class", "mot")
         with self.assertWarnsRegex(UserWarning, "state no class"):
-            airtruth.read_labels("coco", "coco")
+            airtruth.read_labels("of no class", "mot")
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            self.assertRaises(UserWarning, airtruth.read_labels, "coco", "coco")
+            airtruth.read_labels("coco", "coco")
+            self.assertRaises(UserWarning, airtruth.read_labels, "of no class", "mot")
 
     def test_a_notebook_shows_the_picture_with_its_box(self):
         frame = airtruth.DataSet("set")["across"].frame(3)

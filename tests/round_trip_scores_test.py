@@ -143,6 +143,18 @@ class Scores(Case):
             with self.subTest(format):
                 self.assert_same_detector(format, DETECTION)
 
+    def test_what_counts_neither_way_does_so_in_an_import(self):
+        scores = {}
+        for format in ("webdataset", "coco", "voc"):
+            made("dataset", "export", "set", "--format", format, "--out", f"faint_{format}", "--images", "none", "--split", "none", "--min-size", "22")
+            made("dataset", "import", f"faint_{format}", "--format", format, "--out", f"faint_again_{format}")
+            scores[format] = evaluated(f"faint_again_{format}", "results/detector")["detection.json"]["detectors"][0]
+        expected = {key: scores["webdataset"][key] for key in DETECTION}
+        own = self.own["detection.json"]["detectors"][0]
+        self.assertNotEqual(expected["average_precision"]["ap"], own["average_precision"]["ap"])
+        for format in ("coco", "voc"):
+            self.assert_same(scores[format], expected, format)
+
     def test_formats_of_one_object_keep_tracking(self):
         for format in SINGLE:
             with self.subTest(format):

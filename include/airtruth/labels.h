@@ -135,8 +135,9 @@ AIRTRUTH_API bool can_write(Format format);
 // that information) and ends with the last that shows it.
 AIRTRUTH_API bool is_single_object(Format format);
 
-// The clips that a format stores for one clip: the clip itself, or, for the formats of one object,
-// one clip for each track of an aircraft. A distractor is no tracking target.
+// The clips that a format stores for one clip: the clip itself, without labels of the class
+// "ignore" where the format cannot mark them, or, for the formats of one object, one clip for each
+// track of an aircraft. A distractor is no tracking target.
 // The sequences on which `airtruth track` and `airtruth evaluate` work are arranged(Format::kOtb).
 //
 // Example: a clip named "pass" with the tracks 1 and 2 has the sequences "pass-1" and "pass-2";
@@ -150,7 +151,9 @@ struct ReadOptions {
   std::string category = "aircraft";
   // Label::object_class by category, for categories whose word states no class or another one.
   // "Airplane", "helicopter", "Bird", "Flock", "Drone", "UAV", "Balloon" and the like state it, and
-  // the classes' own names; what states none is an aircraft.
+  // the classes' own names; where a name states none, COCO's supercategory does; what states none is
+  // an aircraft. Boxes that the set marks as counting neither way have the class "ignore" whatever
+  // their category.
   std::map<std::string, std::string> class_of = {};
   // CSV only: the coordinate of the first pixel, 0 or 1.
   int origin_px = 0;

@@ -236,7 +236,8 @@ void add_import(CLI::App& group, Context& context) {
       ->description(
           "What the objects are, where they are no aircraft: bird, multirotor, balloon, "
           "glint, dirt, insect, or ignore for regions that count neither way; "
-          "CLIP=CLASS for clips whose name fits (* and ?)");
+          "CLIP=CLASS for clips whose name fits (* and ?). Boxes that the labels mark as counting "
+          "neither way stay so");
 }
 
 struct DatasetArguments {

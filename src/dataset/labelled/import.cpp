@@ -166,6 +166,8 @@ void classify(std::vector<exchange::Clip>& clips, const ImportOptions& options) 
       fits_any = true;
       for (exchange::LabelledFrame& frame : clip.frames)
         for (exchange::Label& label : frame.labels) {
+          // What its set marks as counting neither way is no object of the clip.
+          if (label.object_class == label_file::kIgnore) continue;
           label.object_class = given.name;
           if (label.category == options.read.category) label.category = given.name;
         }

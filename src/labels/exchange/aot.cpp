@@ -164,7 +164,7 @@ class FlightReader {
                const std::string& id,
                const JsonObject& flight,
                const Reading& in)
-      : file_(file), flight_(flight), left_out_(in.left_out), warn_(in.warn) {
+      : file_(file), flight_(flight), left_out_(in.left_out), warn_(in.warn), classes_(in.classes) {
     clip_.name = id;
   }
 
@@ -210,8 +210,13 @@ class FlightReader {
     Label label;
     label.box_px = {bb[0], bb[1], bb[2], bb[3]};
     label.track = track_of(entity.text("id"));
-    label.category =
-        blob.has("category") ? blob.text("category") : name_and_number(entity.text("id")).first;
+    const std::string kind = name_and_number(entity.text("id")).first;
+    label.category = blob.has("category") ? blob.text("category") : kind;
+    // The writer above names balloons so; in the published files it is any other object in the air.
+    const auto stated = blob.has("category") && kind == "Airborne"
+                            ? std::optional<std::string_view>("balloon")
+                            : annotation::class_of_category(kind);
+    if (stated) classes_.emplace(label.category, *stated);
     label.range_m = range_of(blob);
     label.contrast_to_noise = blob.maybe_number("contrast_to_noise");
     if (entity.has("labels")) {
@@ -251,6 +256,7 @@ class FlightReader {
   const JsonObject& flight_;
   LeftOut& left_out_;
   const Warn& warn_;
+  std::map<std::string, std::string>& classes_;  // Reading::classes
   std::map<std::string, std::int64_t> tracks_;
   std::optional<std::int64_t> origin_ns_;
   bool has_times_ = true;

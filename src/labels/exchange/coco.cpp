@@ -26,8 +26,12 @@ namespace {
 // Reads one annotation file.
 class CocoReader {
  public:
-  CocoReader(const fs::path& file, const Warn& warn)
-      : file_(file), json_(python_json(file)), left_out_(warn), warn_(warn) {}
+  CocoReader(const fs::path& file, const Reading& in)
+      : file_(file),
+        json_(python_json(file)),
+        left_out_(in.warn),
+        warn_(in.warn),
+        classes_(in.classes) {}
 
   Clips read() {
     categories();
@@ -59,8 +63,12 @@ class CocoReader {
   };
 
   void categories() {
-    for (const JsonObject& category : json_.objects("categories"))
-      categories_[category.whole("id")] = category.text("name");
+    for (const JsonObject& category : json_.objects("categories")) {
+      const std::string name = category.text("name");
+      categories_[category.whole("id")] = name;
+      const std::string above = category.maybe_text("supercategory").value_or("");
+      if (const auto stated = annotation::class_of_category(above)) classes_.emplace(name, *stated);
+    }
     if (!json_.has("videos")) return;
     for (const JsonObject& video : json_.objects("videos")) {
       Video& about = videos_[video.whole("id")];
@@ -135,11 +143,8 @@ class CocoReader {
 
   // Category and box of an annotation; empty if it is left out.
   std::optional<Label> label_of(const JsonObject& annotation, const LabelledPicture& picture) {
-    if (annotation.maybe_truth("iscrowd").value_or(false)) {
-      left_out_.add("crowds (iscrowd = 1), which are regions and no objects", annotation.place());
-      return std::nullopt;
-    }
     Label label;
+    if (annotation.maybe_truth("iscrowd").value_or(false)) label.object_class = label_file::kIgnore;
     const auto category = categories_.find(annotation.whole("category_id"));
     if (category == categories_.end()) annotation.fail("category_id names no category");
     label.category = category->second;
@@ -176,6 +181,7 @@ class CocoReader {
   JsonDocument json_;
   LeftOut left_out_;
   const Warn& warn_;
+  std::map<std::string, std::string>& classes_;  // Reading::classes
   std::map<std::int64_t, std::string> categories_;
   std::map<std::int64_t, Image> images_;
   std::map<std::int64_t, Video> videos_;
@@ -214,7 +220,7 @@ Clips read_coco(const Reading& in) {
   Clips clips;
   for (const fs::path& file :
        files_of(in.source, annotation_files(in.source, in.warn), "annotation file (*.json)"))
-    append(clips, CocoReader(file, in.warn).read());
+    append(clips, CocoReader(file, in).read());
   return clips;
 }
 
@@ -313,6 +319,8 @@ class CocoWriter : public FolderWriter {
       const Box& b = label.box_px;
       const std::int64_t number = lists.next_annotation++;
       lists.masks += label.mask ? 1 : 0;
+      if (label.object_class != label_file::kIgnore)
+        classes_.emplace(label.category, label.object_class);
       Json json = {
           {"id", number},
           {"image_id", id},
@@ -332,11 +340,9 @@ class CocoWriter : public FolderWriter {
   void write(const std::string& part, const Lists& lists) const {
     Json categories = Json::array();
     for (const std::string& category : options_.categories)
-      categories.push_back(
-          {{"id", class_of(category) + 1},
-           {"name", category},
-           {"supercategory",
-            std::string(annotation::class_of_category(category).value_or(annotation::kAircraft))}});
+      categories.push_back({{"id", class_of(category) + 1},
+                            {"name", category},
+                            {"supercategory", supercategory_of(category)}});
     PartFile file(whole(part));
     std::ofstream& out = file.out();
     out << "{\"info\":{\"description\":\"made by airtruth; segmentations are "
@@ -349,6 +355,12 @@ class CocoWriter : public FolderWriter {
     append(out, lists.annotations);
     out << "]}\n";
     file.finish();
+  }
+
+  // The class of the category's objects; of a category without one, what its name states.
+  std::string supercategory_of(const std::string& category) const {
+    if (const auto found = classes_.find(category); found != classes_.end()) return found->second;
+    return std::string(annotation::class_of_category(category).value_or(annotation::kAircraft));
   }
 
   static const char* segmentations(const Lists& lists) {
@@ -365,6 +377,8 @@ class CocoWriter : public FolderWriter {
   }
 
   std::map<std::string, Lists> parts_;
+  // By category, the class of its first object that counts.
+  std::map<std::string, std::string> classes_;
 };
 
 }  // namespace

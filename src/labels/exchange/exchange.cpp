@@ -15,6 +15,7 @@
 #include "foundation/base/names.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
+#include "labels/label_file/label_file.h"
 
 namespace airtruth::exchange {
 namespace {
@@ -62,7 +63,8 @@ constexpr std::array<About, 13> kAll = {{
      "box, track, visibility; range in metres as the tenth column, which its readers pass over; "
      "the class of a track in tracks.txt, and as the number of the class where that was asked "
      "for; otherwise what is no aircraft is marked as not to be considered",
-     "time stamps (a frame rate alone), occlusion and truncation as such, contrast, area"},
+     "time stamps (a frame rate alone), occlusion and truncation as such, contrast, area, which "
+     "distractors count neither way"},
     {Format::kVoc,
      "voc",
      "Pascal VOC",
@@ -133,8 +135,11 @@ constexpr std::array<About, 13> kAll = {{
 
 const About& about(Format format) { return *std::ranges::find(kAll, format, &About::format); }
 
-// Gives each label the class that its category states.
-void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& warn) {
+// Gives each label the class that its category states. `stated`: Reading::classes.
+void classify(std::vector<Clip>& clips,
+              const std::map<std::string, std::string>& stated,
+              const ReadOptions& options,
+              const Warn& warn) {
   // By category, its class; empty where it states none.
   std::map<std::string, std::string> classes;
   std::map<std::string, std::int64_t> unknown;
@@ -143,14 +148,16 @@ void classify(std::vector<Clip>& clips, const ReadOptions& options, const Warn& 
       for (Label& label : frame.labels) {
         const auto [known, is_new] = classes.try_emplace(label.category);
         if (is_new) {
-          const auto asked = options.class_of.find(label.category);
-          known->second = asked != options.class_of.end()
-                              ? asked->second
-                              : annotation::class_of_category(label.category).value_or("");
+          known->second = stated_class(label.category, options);
+          if (const auto found = stated.find(label.category);
+              known->second.empty() && found != stated.end())
+            known->second = found->second;
         }
-        // A class that the format itself states.
-        if (!annotation::is_aircraft(label.object_class) &&
-            !options.class_of.contains(label.category))
+        // A mark of the box itself stays; of another class that the format states, the options may
+        // make a third.
+        if (label.object_class == label_file::kIgnore ||
+            (!annotation::is_aircraft(label.object_class) &&
+             !options.class_of.contains(label.category)))
           continue;
         if (!known->second.empty())
           label.object_class = known->second;
@@ -223,7 +230,14 @@ Clip aircraft_alone(Clip clip) {
 }
 
 std::vector<Clip> arranged(Format format, const Clip& clip) {
-  if (!is_single_object(format)) return {clip};
+  if (has_ignore_mark(format)) return {clip};
+  if (!is_single_object(format)) {
+    Clip counted = clip;
+    for (LabelledFrame& frame : counted.frames)
+      std::erase_if(frame.labels,
+                    [](const Label& label) { return label.object_class == label_file::kIgnore; });
+    return {std::move(counted)};
+  }
   std::vector<Clip> clips;
   const Clip aircraft = aircraft_alone(clip);
   const std::vector<std::int64_t> tracks = tracks_of(aircraft);
@@ -270,6 +284,12 @@ std::unique_ptr<Writer> make_writer(Format format,
   return about(format).write({format, root, options});
 }
 
+std::string stated_class(const std::string& category, const ReadOptions& options) {
+  const auto asked = options.class_of.find(category);
+  if (asked != options.class_of.end()) return asked->second;
+  return std::string(annotation::class_of_category(category).value_or(""));
+}
+
 std::string loss(Format format) {
   const About& a = about(format);
   std::string text = std::string("# What ") + a.title + " keeps\n\n";
@@ -281,6 +301,11 @@ std::string loss(Format format) {
   if (*a.lost != 0)
     text += std::string(a.lost) + (is_single_object(format) ? kCutSequence : "") + "; ";
   text += kPictures;
+  if (!has_ignore_mark(format)) text += "; boxes that count neither way, which are left out";
+  if (format == Format::kCoco || format == Format::kAot)
+    text += "; a class other than the one that the category's name states";
+  else if (format != Format::kWebdataset)
+    text += "; a class that the category's name does not state";
   text += ".\n\nFrames are counted anew where only every n-th was taken.\n";
   return text;
 }
@@ -294,8 +319,9 @@ std::vector<Clip> read_clips(Format format,
     throw Error(std::string(name(format)) + " is a format that is written alone",
                 {source.string()});
   LeftOut left_out(warn);
-  std::vector<Clip> clips = about(format).read({format, source, options, warn, left_out});
-  classify(clips, options, warn);
+  std::map<std::string, std::string> classes;
+  std::vector<Clip> clips = about(format).read({format, source, options, warn, left_out, classes});
+  classify(clips, classes, options, warn);
   return clips;
 }
 

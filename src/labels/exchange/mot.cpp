@@ -228,23 +228,31 @@ class SequenceFolder {
     if (!frame) throw Error("the frame is no whole number from 1 on", where);
     const auto track = whole_in(n[1], -1, kMaxTracks);
     if (!track) throw Error("the id is no whole number", where);
-    // In this program's own files tracks.txt says what is not to be considered.
-    if (n.size() > 6 && n[6] == 0 && !categories_.contains(*track))
-      return in_.left_out.add("lines that are not to be considered (conf 0)", to_string(where));
     Label label;
     label.track = *track;
     label.box_px = {n[2] - 1, n[3] - 1, n[4], n[5]};
     label.category = category_of(label.track, n.size() > 7 ? n[7] : 0);
+    if (n.size() > 6 && n[6] == 0 && !is_distractor(*track))
+      label.object_class = label_file::kIgnore;
     if (n.size() > 8 && n[8] >= 0 && knows_visibility_) label.visible = n[8];
     if (n.size() > 9 && n[9] >= 0) label.range_m = n[9];
     if (!is_in_picture(label.box_px, clip_.width, clip_.height))
       return in_.left_out.add(kOutside, to_string(where));
     LabelledFrame& labelled = frame_at(clip_, static_cast<std::size_t>(*frame) - 1);
     for (const Label& other : labelled.labels)
-      if (other.track == label.track && label.track >= 0)
+      if (other.track == label.track && label.track >= 0 &&
+          label.object_class != label_file::kIgnore && other.object_class != label_file::kIgnore)
         throw Error(fmt::format("has the id {} a second time in frame {}", label.track, *frame),
                     where);
     labelled.labels.push_back(label);
+  }
+
+  // Whether tracks.txt says so. The writer above has no distractor considered.
+  bool is_distractor(std::int64_t track) const {
+    const auto found = categories_.find(track);
+    if (found == categories_.end()) return false;
+    const std::string object_class = stated_class(found->second, in_.options);
+    return !object_class.empty() && !annotation::is_aircraft(object_class);
   }
 
   std::string category_of(std::int64_t track, double number) const {

@@ -58,7 +58,13 @@ struct Reading {
   const ReadOptions& options;
   const Warn& warn;
   LeftOut& left_out;
+  // Filled by the reader: the classes that the set itself states for its categories, by name. Such
+  // a class counts where the name states none.
+  std::map<std::string, std::string>& classes;
 };
+
+// The class of a category by the options, or else by its name; empty where neither states one.
+std::string stated_class(const std::string& category, const ReadOptions& options);
 
 using ReadFormat = Clips(const Reading& in);
 ReadFormat read_coco, read_yolo, read_mot, read_voc, read_cvat, read_aot, read_single_object,

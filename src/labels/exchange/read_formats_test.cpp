@@ -97,7 +97,7 @@ TEST(Coco, OfOthersMayHaveGapsPolygonsAndBoxesOutside) {
   EXPECT_NE(all.find("1 annotations with neither bbox nor polygons"), std::string::npos) << all;
 }
 
-TEST(Coco, CrowdsAreNoObjectsAndPicturesOfSeveralSizesAreNoVideo) {
+TEST(Coco, CrowdsCountNeitherWayAndPicturesOfSeveralSizesAreNoVideo) {
   const Folder folder;
   const fs::path file = folder.file("instances_val2017.json", R"({
     "categories": [{"id": 5, "name": "airplane"}],
@@ -114,13 +114,73 @@ TEST(Coco, CrowdsAreNoObjectsAndPicturesOfSeveralSizesAreNoVideo) {
   ASSERT_EQ(clips[0].frames.size(), 2u);
   EXPECT_EQ(clips[0].frames[1].frame, 581929);
   EXPECT_EQ(clips[0].width, 0);
-  ASSERT_EQ(clips[0].frames[0].labels.size(), 1u);
+  ASSERT_EQ(clips[0].frames[0].labels.size(), 2u);
   EXPECT_EQ(clips[0].frames[0].labels[0].box_px, (Box{1, 2, 3, 4}));
-  EXPECT_NE(warnings.find("1 crowds (iscrowd = 1), which are regions and no objects (the first: "
-                          "annotations[1])"),
+  EXPECT_EQ(clips[0].frames[0].labels[0].object_class, "aircraft");
+  EXPECT_EQ(clips[0].frames[0].labels[1].box_px, (Box{5, 5, 90, 80}));
+  EXPECT_EQ(clips[0].frames[0].labels[1].object_class, "ignore");
+  EXPECT_EQ(warnings.find("left out"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("differ in size"), std::string::npos) << warnings;
+}
+
+TEST(Coco, ASupercategoryStatesTheClassThatTheNameDoesNot) {
+  const Folder folder;
+  const fs::path file = folder.file("sky.json", R"({
+    "categories": [{"id": 1, "name": "gull", "supercategory": "bird"},
+                   {"id": 2, "name": "738", "supercategory": "aircraft"},
+                   {"id": 3, "name": "drone", "supercategory": "bird"},
+                   {"id": 4, "name": "thing", "supercategory": "none"}],
+    "images": [{"id": 1, "file_name": "1.png", "width": 64, "height": 48}],
+    "annotations": [{"id": 1, "image_id": 1, "category_id": 1, "bbox": [1, 2, 3, 4], "track_id": 1},
+                    {"id": 2, "image_id": 1, "category_id": 2, "bbox": [1, 2, 3, 4], "track_id": 2},
+                    {"id": 3, "image_id": 1, "category_id": 3, "bbox": [1, 2, 3, 4], "track_id": 3},
+                    {"id": 4, "image_id": 1, "category_id": 4, "bbox": [1, 2, 3, 4], "track_id": 4}
+                   ]})");
+  std::string warnings;
+  const auto clips =
+      read_clips(Format::kCoco, file, {}, [&](const std::string& w) { warnings += w + "\n"; });
+  std::vector<std::string> classes;
+  for (const Label& label : clips.at(0).frames.at(0).labels) classes.push_back(label.object_class);
+  EXPECT_EQ(classes, (std::vector<std::string>{"bird", "aircraft", "multirotor", "aircraft"}));
+  EXPECT_NE(warnings.find("1 categories state no class and count as aircraft: 'thing' (1)"),
             std::string::npos)
       << warnings;
-  EXPECT_NE(warnings.find("differ in size"), std::string::npos) << warnings;
+  // What the user says goes before the set's own word.
+  ReadOptions options;
+  options.class_of["gull"] = "balloon";
+  EXPECT_EQ(
+      read_clips(Format::kCoco, file, options, {}).at(0).frames.at(0).labels.at(0).object_class,
+      "balloon");
+}
+
+TEST(Voc, WhatIsDifficultCountsNeitherWay) {
+  const Folder folder;
+  folder.file("Annotations/a_1.xml",
+              "<annotation><size><width>64</width><height>48</height></size>"
+              "<object><name>aeroplane</name><difficult>1</difficult><bndbox><xmin>1</xmin>"
+              "<ymin>1</ymin><xmax>9</xmax><ymax>9</ymax></bndbox></object>"
+              "<object><name>aeroplane</name><difficult>0</difficult><bndbox><xmin>11</xmin>"
+              "<ymin>1</ymin><xmax>19</xmax><ymax>9</ymax></bndbox></object></annotation>");
+  const auto labels = read_clips(Format::kVoc, folder.path(), {}, {}).at(0).frames.at(0).labels;
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[0].object_class, "ignore");
+  EXPECT_EQ(labels[1].object_class, "aircraft");
+}
+
+// The truth of MOT17 and MOT20 has lines that are not to be considered for what is no pedestrian.
+// Some sets give all such regions of a frame the same id.
+TEST(Mot, LinesThatAreNotToBeConsideredCountNeitherWay) {
+  const Folder folder;
+  folder.file("a/gt/gt.txt",
+              "1,1,5,5,9,9,1,1,1\n1,0,15,5,9,9,0,7,1\n1,0,25,5,9,9,0,7,1\n2,1,5,5,9,9,0,1,1\n");
+  std::string warnings;
+  const auto clips = read_clips(
+      Format::kMot, folder.path(), {}, [&](const std::string& w) { warnings += w + "\n"; });
+  std::vector<std::string> classes;
+  for (const LabelledFrame& frame : clips.at(0).frames)
+    for (const Label& label : frame.labels) classes.push_back(label.object_class);
+  EXPECT_EQ(classes, (std::vector<std::string>{"aircraft", "ignore", "ignore", "ignore"}));
+  EXPECT_EQ(warnings.find("left out"), std::string::npos) << warnings;
 }
 
 // An entity of the published training set, as docs/DATASET.md prints it, with the NaN that Python

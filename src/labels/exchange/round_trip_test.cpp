@@ -250,6 +250,63 @@ TEST(RoundTrip, WhatIsUnknownComesBackAsUnknown) {
   }
 }
 
+// An aircraft that is too faint in the second frame, and a bird.
+Clip clip_with_a_faint_frame() {
+  Clip clip;
+  clip.name = "s";
+  clip.width = 64;
+  clip.height = 48;
+  const Label aircraft{.track = 1, .category = "738", .box_px = {3, 4, 8, 5}};
+  Label faint = aircraft;
+  faint.object_class = "ignore";
+  Label bird{.track = 2, .category = "bird", .box_px = {20, 4, 8, 5}};
+  bird.object_class = "bird";
+  clip.frames = {{0, std::nullopt, {aircraft, bird}}, {1, std::nullopt, {faint, bird}}};
+  return clip;
+}
+
+TEST(RoundTrip, WhatCountsNeitherWayComesBackOrIsLeftOut) {
+  const Part part{"train", {clip_with_a_faint_frame()}};
+  for (const Format format : kWritten) {
+    if (is_single_object(format)) continue;
+    SCOPED_TRACE(name(format));
+    const Folder folder;
+    write_clips(format, folder.path() / "set", {&part, 1});
+    const auto read = read_clips(format, folder.path() / "set", {{{64, 48}}, "aircraft"}, {});
+    ASSERT_EQ(read.size(), 1u);
+    std::vector<std::string> classes;
+    for (const LabelledFrame& frame : read[0].frames)
+      for (const Label& label : frame.labels) classes.push_back(label.object_class);
+    EXPECT_EQ(classes,
+              has_ignore_mark(format)
+                  ? (std::vector<std::string>{"aircraft", "bird", "ignore", "bird"})
+                  : (std::vector<std::string>{"aircraft", "bird", "bird"}));
+    EXPECT_EQ(loss(format).find("count neither way, which are left out") == std::string::npos,
+              has_ignore_mark(format));
+  }
+}
+
+// "738" and "gull" state no class.
+TEST(RoundTrip, AClassThatNoNameStatesComesBackWhereTheFormatStatesIt) {
+  Part part{"train", {clip_with_a_faint_frame()}};
+  for (LabelledFrame& frame : part.clips[0].frames) frame.labels[1].category = "gull";
+  for (const Format format : {Format::kCoco, Format::kAot, Format::kWebdataset}) {
+    SCOPED_TRACE(name(format));
+    const Folder folder;
+    write_clips(format, folder.path() / "set", {&part, 1});
+    std::vector<std::string> warnings;
+    const auto read = read_clips(format, folder.path() / "set", {}, [&](const std::string& text) {
+      warnings.push_back(text);
+    });
+    EXPECT_EQ(warnings, std::vector<std::string>());
+    for (const LabelledFrame& frame : read.at(0).frames) {
+      EXPECT_EQ(frame.labels.back().category, "gull");
+      EXPECT_EQ(frame.labels.back().object_class, "bird");
+    }
+    EXPECT_EQ(read.at(0).frames.at(0).labels.at(0).object_class, "aircraft");
+  }
+}
+
 TEST(RoundTrip, LabelsOfOurOwnKeepEverything) {
   const Folder folder;
   for (unsigned seed = 0; seed < 40; ++seed) {

@@ -152,6 +152,7 @@ LabelledPicture read_picture(const fs::path& file,
     label.category = xml.child(object, "name").child_value();
     label.truncated = flag(object, "truncated");
     label.occluded = flag(object, "occluded");
+    if (flag(object, "difficult").value_or(false)) label.object_class = label_file::kIgnore;
     label.contrast_to_noise = number_in(object.child("contrast_to_noise").child_value());
     const pugi::xml_node box = xml.child(object, "bndbox");
     const double x = xml.number(box, "xmin") - 1;

@@ -11,6 +11,7 @@
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 #include "foundation/tar/tar.h"
+#include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
 #include "labels/exchange/python_json.h"
 #include "labels/exchange/text.h"
@@ -87,7 +88,7 @@ class WebdatasetWriter : public FolderWriter {
 };
 
 // Adds a sample to its clip.
-void add(const JsonDocument& json, std::map<std::string, Clip>& clips, LeftOut& left_out) {
+void add(const JsonDocument& json, std::map<std::string, Clip>& clips, const Reading& in) {
   const std::string name = fs::path(json.text("clip")).filename().string();
   Clip& clip = clips[name];
   clip.name = name;
@@ -95,8 +96,13 @@ void add(const JsonDocument& json, std::map<std::string, Clip>& clips, LeftOut& 
   clip.height = side_of(json.maybe_number("height"));
   clip.frame_rate_hz = label_file::rate_of(json.maybe_number("frame_rate_hz"));
   LabelledFrame frame{json.whole("frame", 0, kMaxFrames), json.maybe_number("time_s"), {}};
-  for (const JsonObject& label : json.objects("labels"))
-    add_label(frame.labels, label_file::label_of_json(label), clip, left_out, label.place());
+  for (const JsonObject& json_of_label : json.objects("labels")) {
+    const Label label = label_file::label_of_json(json_of_label);
+    // A label without a class is one of an aircraft.
+    if (annotation::is_aircraft(label.object_class))
+      in.classes.emplace(label.category, label.object_class);
+    add_label(frame.labels, label, clip, in.left_out, json_of_label.place());
+  }
   clip.frames.push_back(std::move(frame));
 }
 
@@ -112,7 +118,7 @@ Clips read_webdataset(const Reading& in) {
   std::map<std::string, Clip> by_name;
   for (const fs::path& shard : files_of(in.source, files_with(in.source, ".tar"), what))
     tar::each_file(shard, ".json", [&](const std::string& name, const std::string& text) {
-      add({text, Where{(shard / name).string()}}, by_name, in.left_out);
+      add({text, Where{(shard / name).string()}}, by_name, in);
     });
   if (by_name.empty()) throw Error("holds no " + what, {in.source.string()});
   Clips clips;
