@@ -242,6 +242,12 @@ class ShippedNetwork(Case):
         made("detect", "one/one.mp4", "-d", "network=onnx:" + os.path.join(DATA, "aircraft.onnx"), "-o", "named")
         self.assertEqual(self.found("named"), found)
 
+    def test_videos_below_a_set_are_looked_at_where_that_is_asked(self):
+        made("detect", "one", "-d", "frame-difference", "-o", "alone")
+        self.assertFalse(os.path.exists(path("alone", "frame-difference", "backgrounds")))
+        made("detect", "one", "-d", "frame-difference", "-o", "below", "--backgrounds")
+        self.assertEqual(sorted(os.listdir(path("below", "frame-difference", "backgrounds"))), ["clip.json", "clip.txt"])
+
     def test_it_is_found_in_the_layout_of_an_installation(self):
         children = [name for name in os.listdir(program.built()) if name.startswith("airtruth-")]
         for name, place in (("airtruth", "bin"), *((name, "libexec/airtruth") for name in children)):

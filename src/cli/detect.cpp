@@ -98,7 +98,8 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
       ->check(CLI::Range(1, 100'000));
   command.add_flag("--backgrounds,!--no-backgrounds",
                    options.backgrounds,
-                   "The videos that a set was made over as well, which show no intruder (default)");
+                   "The videos that a set was made over as well, which show no intruder; evaluate "
+                   "does not read their results (default: the set's sequences alone)");
   command.add_option("--frame-rate", options.frame_rate_hz)
       ->description("Frames a second of numbered pictures, where nothing states it")
       ->check(above_0());

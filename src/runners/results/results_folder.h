@@ -20,7 +20,7 @@
 //   SEQUENCE.json     size and number of frames, categories, seconds of each frame; it is written
 //                     after the text, so a sequence that has it is whole
 //   detections.json   COCO results of all sequences
-//   backgrounds/      .txt and .json of the videos that the set was made over
+//   backgrounds/      .txt and .json of the videos that the set was made over, where that is asked
 // Coordinates are written to 1/1000 px and scores with 9 digits.
 namespace airtruth::results {
 

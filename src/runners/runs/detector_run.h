@@ -36,8 +36,9 @@ struct DetectOptions : process::Limits {
   std::optional<double> min_score;
   // Of each frame, those with the highest scores are written.
   int max_per_frame = 100;
-  // The backgrounds of a made set as well: pictures without an intruder.
-  bool backgrounds = true;
+  // The backgrounds of a made set as well: pictures without an intruder. No evaluation reads their
+  // results: its figures are of the frames of the set's sequences.
+  bool backgrounds = false;
   // Calibration file for clips that state no lens.
   std::optional<fs::path> lens;
   // Frames a second of pictures that state none.
