@@ -372,13 +372,8 @@ class Export {
       const std::string& part = parts_.at(name);
       if (is_table()) read_truth(name);
       const auto clips = arranged(clip);
-      const std::int64_t frames = clips.empty() ? 0 : std::ssize(clip.frames);
-      if (!clips.empty()) {
-        count_boxes(clip, set_.is_imported(name));
-        ++summary_.sequences;
-      }
-      summary_.frames += frames;
-      summary_.frames_of_part[part] += frames;
+      if (!clips.empty()) count_boxes(clip, set_.is_imported(name));
+      std::int64_t& frames_of_part = summary_.frames_of_part[part];
       const std::size_t tracks = exchange::tracks_of(exchange::aircraft_alone(clip)).size();
       if (exchange::is_single_object(options_.format) && (clips.size() < tracks || tracks == 0))
         warn(
@@ -387,7 +382,12 @@ class Export {
                 (tracks == 0 ? " never shows an aircraft" : " shows an object in one frame alone") +
                 ", and " + exchange::name(options_.format) +
                 " has no place for such a sequence: it is left out");
-      for (const exchange::Clip& one : clips) writer_->add(one, part);
+      for (const exchange::Clip& one : clips) {
+        writer_->add(one, part);
+        ++summary_.sequences;
+        summary_.frames += std::ssize(one.frames);
+        frames_of_part += std::ssize(one.frames);
+      }
     }
     writer_->finish();
     if (is_table()) write_file(place_.root() / "encounters.csv", encounters_header() + encounters_);

@@ -55,6 +55,7 @@ struct ExportOptions {
 };
 
 struct ExportSummary {
+  // Written ones: formats of a single object have one for each aircraft, and its frames alone.
   std::int64_t sequences = 0;
   std::int64_t frames = 0;
   std::int64_t images = 0;  // pictures that this run wrote

@@ -318,6 +318,30 @@ TEST_F(Made, SequencesThatAFormatLeavesOutAreNotCounted) {
   for (const auto& [part, frames] : summary.frames_of_part) EXPECT_EQ(frames, 0) << part;
 }
 
+// The second aircraft is there in the last two of three frames.
+TEST_F(Made, EachAircraftIsCountedAsTheSequenceThatItIs) {
+  const fs::path mot = fresh();
+  fs::create_directories(mot / "a" / "gt");
+  write_file(mot / "a" / "gt" / "gt.txt",
+             "1,1,5,5,9,9\n2,1,5,5,9,9\n3,1,5,5,9,9\n2,2,30,5,9,9\n3,2,30,5,9,9\n");
+  const fs::path imported = fresh();
+  ImportOptions source;
+  source.format = exchange::Format::kMot;
+  import_set(mot, imported, source);
+  ExportOptions options;
+  options.format = exchange::Format::kOtb;
+  options.images = Images::kNone;
+  options.split = Split::kNone;
+  const fs::path out = fresh();
+  for (const bool was_there : {false, true}) {
+    const ExportSummary summary = export_set(imported, out, options);
+    EXPECT_EQ(summary.was_there, was_there);
+    EXPECT_EQ(summary.sequences, 2);
+    EXPECT_EQ(summary.frames, 5);
+    EXPECT_EQ(summary.frames_of_part, (std::map<std::string, std::int64_t>{{"all", 5}}));
+  }
+}
+
 TEST_F(Made, LabelsAreTheBoxesThatAreAskedFor) {
   const LabelledSet set_of_boxes(set());
   const std::string name = "sky-across-b737";
