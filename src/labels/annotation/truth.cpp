@@ -123,6 +123,8 @@ Frame frame_from(const JsonObject& object) {
 lens::Facts lens_from(const JsonObject& object) {
   lens::Facts lens;
   lens.model = object.text("model");
+  if (!enum_named<lens::ModelKind>(lens.model))
+    object.fail("model", "pinhole, brown_conrady or fisheye");
   lens.width = pixels(object, "width");
   lens.height = pixels(object, "height");
   lens.focal_px = tuple<2>(object, "focal_px");

@@ -174,6 +174,8 @@ TEST(Truth, FaultsHaveTheirFileAndLine) {
               j["motion"]["frame_from_reference"] = {1, 2, 3};
             }),
             "truth.jsonl:7: motion.frame_from_reference is a list; expected 3 lists of 3 numbers");
+  EXPECT_EQ(with([](Json& j) { j["lens"]["model"] = "Fisheye"; }),
+            "truth.jsonl:7: lens.model is \"Fisheye\"; expected pinhole, brown_conrady or fisheye");
   EXPECT_EQ(with([](Json& j) { j["intruders"][0]["visible_box_px"][2] = 4'000'000'000; }),
             "truth.jsonl:7: intruders[0].visible_box_px[2] is 4000000000; expected a whole number "
             "from -536870912 to 536870912");
