@@ -337,7 +337,7 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
   if (!tally.cuts.empty())
     warn(to_warn,
          fmt::format(
-             "{}: the video is cut at frame {}: nothing links the camera's pose and light to "
+             "{}: the clip is cut at its frame {}: nothing links the camera's pose and light to "
              "the frames before",
              background.video.string(),
              fmt::join(tally.cuts, ", ")));

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/pipeline/render.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <set>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -427,6 +429,25 @@ TEST_F(Sequence, ACameraFileOfAnotherClipIsRefusedAndWhatCannotBeMeasuredIsSaid)
 }
 
 // A virtual flight states its attitude; its first frame is banked by more than 10 degrees.
+// The frame of a cut is counted from the clip's first, as the truth counts.
+TEST_F(Sequence, AClipThatRunsAcrossACutIsNamed) {
+  constexpr int kCut = 8;
+  fs::create_directories(out_ / "shots");
+  for (int i = 0; i < 2 * kCut; ++i) {
+    image::Rgb8 grey = image::make_rgb8(kWidth, kHeight);
+    std::fill_n(grey.samples.get(), grey.bytes().size(), std::uint8_t(i < kCut ? 60 : 200));
+    video::write_still(out_ / "shots" / fmt::format("{:02}.png", i), grey);
+  }
+  scene::Scene scene =
+      scene_of("cut", crossing("a", "c172/news", 60), "first_frame = 2\nframe_rate_hz = 30\n");
+  scene.background.video = out_ / "shots";
+  Options options;
+  std::vector<std::string> warnings;
+  options.warn = [&](const std::string& w) { warnings.push_back(w); };
+  rendered(scene, options);
+  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("the clip is cut at its frame 6:")));
+}
+
 TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
   synthetic::FlightOptions options;
   options.width = 320;
