@@ -10,6 +10,7 @@
 #include "camera/horizon/horizon.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
@@ -31,9 +32,24 @@ GreyPtr grey_mask(const fs::path& file, const lens::ImageSize& size) {
   return std::make_shared<const video::Grey>(std::move(grey));
 }
 
-GreyPtr still_mask(const fs::path& file, const lens::ImageSize& size) {
+// The mask that is read before the work, with a warning where its black is a video's.
+GreyPtr first_mask(const fs::path& file, const lens::ImageSize& size, const Warn& to_warn) {
+  constexpr int kVideoBlack = 16;  // of limited range
   GreyPtr mask = grey_mask(file, size);
-  if (std::all_of(mask->samples.begin(), mask->samples.end(), [](auto v) { return v == 0; }))
+  const int darkest = std::ranges::min(mask->samples);
+  if (darkest > 0 && darkest <= kVideoBlack)
+    warn(to_warn,
+         fmt::format("{}: is nowhere darker than {} of 255, and so hides {:.0f} % everywhere; "
+                     "expected 0 where it hides nothing",
+                     file.string(),
+                     darkest,
+                     100 * darkest / 255.0));
+  return mask;
+}
+
+GreyPtr still_mask(const fs::path& file, const lens::ImageSize& size, const Warn& to_warn) {
+  GreyPtr mask = first_mask(file, size, to_warn);
+  if (std::ranges::max(mask->samples) == 0)
     throw Error("is black all over: it would hide nothing; expected white where it hides",
                 {file.string()});
   return mask;
@@ -55,12 +71,13 @@ struct Stated {
 
 Stated stated_occluder(const scene::Occluder& occluder,
                        const lens::ImageSize& size,
-                       std::int64_t end_frame) {
+                       std::int64_t end_frame,
+                       const Warn& to_warn) {
   Stated stated{occluder.range_m, nullptr, {}};
   if (!occluder.mask) return stated;
   const auto images = video::numbered_images(*occluder.mask);
   if (!images) {
-    stated.still = still_mask(*occluder.mask, size);
+    stated.still = still_mask(*occluder.mask, size, to_warn);
     return stated;
   }
   stated.series = images->files;
@@ -70,7 +87,7 @@ Stated stated_occluder(const scene::Occluder& occluder,
                             stated.series.size(),
                             end_frame - 1),
                 occluder.where);
-  grey_mask(stated.series.front(), size);
+  first_mask(stated.series.front(), size, to_warn);
   return stated;
 }
 
@@ -135,11 +152,12 @@ Occluders::Occluders(const image::Mask* own_aircraft)
 Occluders::Occluders(const scene::Scene& scene,
                      const lens::Lens& lens,
                      const image::Mask* own_aircraft,
-                     std::int64_t frames) {
+                     std::int64_t frames,
+                     const Warn& to_warn) {
   Impl impl{own_aircraft, lens, scene.background.first_frame, {}, {}};
   const std::int64_t end_frame = frames > 0 ? impl.first_frame + frames : 0;
   for (const scene::Occluder& occluder : scene.occluders) {
-    impl.stated.push_back(stated_occluder(occluder, lens.size(), end_frame));
+    impl.stated.push_back(stated_occluder(occluder, lens.size(), end_frame, to_warn));
     if (occluder.beyond_horizon && !impl.finder) impl.finder.emplace(lens, own_aircraft);
   }
   impl_ = std::make_shared<const Impl>(std::move(impl));

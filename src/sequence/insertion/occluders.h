@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <memory>
 
+#include <airtruth/error.h>
+
 #include "camera/lens/lens.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
@@ -21,11 +23,12 @@ class Occluders {
   explicit Occluders(const image::Mask* own_aircraft = nullptr);
   // `frames`: how many the scene uses of its clip; 0: unknown. Throws Error where a mask
   // cannot be read, is of another size or hides nothing, and where a series of masks ends before
-  // the scene.
+  // the scene. Warns of a mask without black, as one of a video's limited range is.
   Occluders(const scene::Scene& scene,
             const lens::Lens& lens,
             const image::Mask* own_aircraft,
-            std::int64_t frames);
+            std::int64_t frames,
+            const Warn& to_warn = {});
 
   struct InFrame {
     composite::Occlusion occlusion;

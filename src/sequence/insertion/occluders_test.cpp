@@ -210,5 +210,25 @@ TEST_F(BehindAHill, MasksThatCannotBeRight) {
   EXPECT_NE(message_of("none.png").find("none.png"), std::string::npos);
 }
 
+TEST_F(BehindAHill, AMaskWhoseBlackIsThatOfVideoIsNamed) {
+  std::vector<std::string> warnings;
+  const auto read = [&](int black) {
+    video::Grey grey{kFrame.width, kFrame.height, std::vector<std::uint8_t>(320 * 240, 255)};
+    grey.samples[7] = static_cast<std::uint8_t>(black);
+    write_file(folder_ / "hill.png", video::png_of(grey));
+    const scene::Scene scene = scene_of(balloon(60, 0, 12) + kHill);
+    const setup::World world = setup::load_world(scene, kFrame, {});
+    Occluders(scene, world.lens, nullptr, 1, [&](const std::string& w) { warnings.push_back(w); });
+  };
+  read(0);
+  read(17);
+  EXPECT_TRUE(warnings.empty());
+  read(16);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("is nowhere darker than 16 of 255, and so hides 6 % everywhere"),
+            std::string::npos)
+      << warnings[0];
+}
+
 }  // namespace
 }  // namespace airtruth::insertion

@@ -412,7 +412,7 @@ OpenedScene open_over(const video::StreamInfo& of_video,
   // A container may state a frame or two more than it holds.
   const std::int64_t at_least = scene.background.frame_count.value_or(
       std::max<std::int64_t>(0, info.frame_count_estimate - 2));
-  insertion::Occluders occluders(opened, world.lens, mask.get(), at_least);
+  insertion::Occluders occluders(opened, world.lens, mask.get(), at_least, options.warn);
   return {{std::nullopt,
            info,
            std::move(mask),
