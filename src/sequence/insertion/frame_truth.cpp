@@ -155,7 +155,9 @@ std::vector<annotation::Intruder> intruders_of(const setup::World& world,
       truth.encounter = encounter_of(world, moment.camera, *moment.states[i]);
       const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
       truth.state = state_of(moment, i, vector_of(*truth.position_in_cam_m), layer, seen);
-      if (moment.boxes[i].box) truth.exact_box_px = moment.boxes[i].box;
+      // The shape of an aircraft about the camera's plane has no bounds: its parts ahead are not
+      // it.
+      if (!moment.boxes[i].partly_unseen) truth.exact_box_px = moment.boxes[i].box;
       if (seen != nullptr) add_pixels(truth, i, layer, *seen);
     }
     result.push_back(std::move(truth));

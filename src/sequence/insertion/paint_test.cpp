@@ -154,6 +154,20 @@ std::vector<double> coverage_of_rows(const shade::Model& model,
   return rows;
 }
 
+// 0.8 m at 0.1 m: its arms reach behind the camera, and what lies ahead of it has bounds at
+// infinity.
+TEST(Distractors, WhatReachesThroughTheCamerasPlaneHasNoExactBox) {
+  for (const double ahead_m : {0.1, 3.0}) {
+    const Drawn made = drawn(
+        scene_with(fmt::format("[[distractor]]\nkind = \"multirotor\"\nsize_m = 0.8\n"
+                               "position_ned_m = [{}, 0, -150.3]\nvelocity_ned_mps = [0, 1, 0]\n",
+                               ahead_m)),
+        0);
+    ASSERT_EQ(made.truth.intruders.size(), 1U);
+    EXPECT_EQ(made.truth.intruders[0].exact_box_px.has_value(), ahead_m > 1);
+  }
+}
+
 TEST(Distractors, EachRowSeesItsOwnMomentOfTheStroke) {
   const model::Mesh bird = shapes::bird({.span_m = 2, .strokes_per_s = 5, .glide = 0});
   const lens::Lens lens = lens::pinhole_from_vertical_fov(50, kSize);

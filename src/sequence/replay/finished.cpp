@@ -43,7 +43,7 @@ std::size_t intruder_index(const annotation::Frame& truth, const std::string& id
     const annotation::Intruder& intruder = truth.intruders[i];
     const bool drawn = intruder.visible_box_px || intruder.state == annotation::State::kHidden;
     if (id.empty() ? drawn : intruder.id == id) {
-      if (!intruder.exact_box_px) break;
+      if (!intruder.exact_box_px && !intruder.visible_box_px) break;
       return i;
     }
   }
@@ -171,7 +171,7 @@ image::Rgb8 inspect(const Finished& sequence,
                     std::to_string(count - 1),
                 {sequence.folder.string()});
   const annotation::Frame& truth = sequence.truth.frames[static_cast<std::size_t>(frame)];
-  const std::size_t i = intruder_index(truth, intruder_id);
+  const annotation::Intruder& shown = truth.intruders[intruder_index(truth, intruder_id)];
   const video::Frame before =
       frame_at(scene.background.video, scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);
@@ -188,10 +188,12 @@ image::Rgb8 inspect(const Finished& sequence,
                               moment,
                               insertion::Ambient{},
                               occluders.in_frame(moment, before.picture).occlusion);
-  return drawing::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
-                          truth,
-                          area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),
-                          zoom);
+  return drawing::closeup(
+      {&before.picture, &after.picture, matte ? &layer : nullptr},
+      truth,
+      area_around(shown.exact_box_px ? *shown.exact_box_px : as_box(*shown.visible_box_px),
+                  sequence.truth.lens),
+      zoom);
 }
 
 namespace {
