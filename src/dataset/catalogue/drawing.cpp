@@ -104,10 +104,18 @@ Range climb_range(const Drawn& rule, const fleet::FlightLimits* limits, double s
   return range;
 }
 
-double drawn_bank_deg(Random random, const Drawn& rule, const fleet::FlightLimits* limits) {
+// Below the type's usual speeds it turns no faster than at the slowest of them: a bank of 20
+// degrees would spin a helicopter at walking speed once in two seconds.
+double drawn_bank_deg(Random random,
+                      const Drawn& rule,
+                      const fleet::FlightLimits* limits,
+                      double speed_mps) {
   if (rule.bank_deg) return drawn(random, *rule.bank_deg);
   if (!rule.bank_suits_type) return 0;
-  const double most_deg = limits != nullptr ? limits->usual_bank_deg : kAnyBankDeg;
+  double most_deg = limits != nullptr ? limits->usual_bank_deg : kAnyBankDeg;
+  const double slow_mps = limits != nullptr ? limits->usual_low_mps : kAnySpeedMps.low;
+  if (speed_mps < slow_mps)
+    most_deg = degrees(std::atan(std::tan(radians(most_deg)) * speed_mps / slow_mps));
   return random.uniform(-most_deg, most_deg);
 }
 
@@ -132,7 +140,7 @@ Encounter drawn_encounter(
   if (draw_stated_path(rule, of_path, encounter)) return encounter;
   draw_place(random, rule.place, encounter);
   encounter.climb_deg = drawn(random, climb_range(rule, limits, encounter.speed_mps));
-  encounter.bank_deg = drawn_bank_deg(of_bank, rule, limits);
+  encounter.bank_deg = drawn_bank_deg(of_bank, rule, limits, encounter.speed_mps);
   return encounter;
 }
 

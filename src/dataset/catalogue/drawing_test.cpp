@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/catalogue/drawing.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -286,6 +287,22 @@ TEST(Drawing, ABankedPathIsACoordinatedTurn) {
       EXPECT_NEAR(yaw_pitch_roll(path.at(t)->world_from_body).roll_deg, 30, 0.05) << t;
       EXPECT_NEAR(path.at(t)->velocity_in_world_mps.norm(), 55, 1e-6);
     }
+  }
+}
+
+// A bank of 20 degrees at 25 m/s, the slowest usual speed of a helicopter, turns by g tan(bank) /
+// speed.
+TEST(Drawing, ABankThatSuitsTheTypeSpinsNothingAtWalkingSpeed) {
+  const Catalogue catalogue = with_random(
+      "count = 40\nframe_count = 90\naircraft = [\"helicopter-*\"]\nspeed_mps = [1, 2]\n"
+      "climb_deg = [0, 0]\nbank_deg = \"type\"\n");
+  const double most_radps = kStandardGravityMps2 * std::tan(radians(20)) / 25;
+  for (std::int64_t i = 0; i < 40; ++i) {
+    const auto path = path_of_first(Expansion(catalogue).at(i).scene);
+    const auto velocity = [&](double t) { return path.at(t)->velocity_in_world_mps; };
+    const double turned =
+        std::acos(std::clamp(velocity(0).normalized().dot(velocity(1).normalized()), -1.0, 1.0));
+    EXPECT_LE(turned, 1.01 * most_radps) << i;
   }
 }
 
