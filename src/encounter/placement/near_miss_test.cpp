@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +101,14 @@ TEST(NearMiss, SaysWhyThereIsNone) {
   const Vector3 near(90, 0, -150), abeam(0, 400, -150);
   EXPECT_NE(refused({.place_ned_m = near, .miss_m = 100, .speed_mps = 60}).find("is 90 m away"),
             std::string::npos);
+  // At the closest approach itself: at the own aircraft, straight above it, and abeam.
+  for (const auto& [place, miss_m, away_m] : {std::tuple(Vector3(0, 0, -150), 0.0, 0),
+                                              std::tuple(Vector3(0, 0, -180), 30.0, 0),
+                                              std::tuple(Vector3(0, 25, -150), 25.0, 25)})
+    EXPECT_EQ(refused({.place_ned_m = place, .miss_m = miss_m, .speed_mps = 60}),
+              "the intruder is " + std::to_string(away_m) +
+                  " m away horizontally at that moment; expected a smaller miss distance or an "
+                  "earlier moment");
   EXPECT_NE(refused({.place_ned_m = {400, 0, -190}, .miss_m = 30, .speed_mps = 60})
                 .find("passes 40 m above"),
             std::string::npos);
