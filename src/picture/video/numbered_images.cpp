@@ -40,14 +40,15 @@ std::size_t last_digits_of(const std::string& stem) {
 
 // Files in the order of their frames. A gap is seen where all names end in the number that counts.
 NumberedImages in_order(std::vector<fs::path> files) {
-  NumberedImages result{std::move(files), false};
-  for (std::size_t i = 1; i < result.files.size() && !result.has_gaps; ++i) {
+  NumberedImages result{std::move(files)};
+  for (std::size_t i = 1; i < result.files.size() && result.doubt == nullptr; ++i) {
     const std::string before = result.files[i - 1].stem().string();
     const std::string stem = result.files[i].stem().string();
     const std::size_t digits = last_digits_of(stem);
     if (digits == stem.size() || before.substr(0, last_digits_of(before)) != stem.substr(0, digits))
-      return {std::move(result.files), false};
-    result.has_gaps = !follows(before.substr(digits), stem.substr(digits));
+      return {std::move(result.files)};
+    if (!follows(before.substr(digits), stem.substr(digits)))
+      result.doubt = "gaps between the numbers";
   }
   return result;
 }
@@ -74,7 +75,13 @@ std::optional<NumberedImages> in_folder(const fs::path& folder) {
         {folder.string()});
   std::vector<fs::path> files;
   for (const std::size_t i : all.front()) files.push_back(folder / names[i]);
-  return in_order(std::move(files));
+  NumberedImages images = in_order(std::move(files));
+  const auto has_number = [](const std::string& name) {
+    return fs::path(name).stem().string().find_first_of("0123456789") != std::string::npos;
+  };
+  if (names.size() > 1 && !std::all_of(names.begin(), names.end(), has_number))
+    images.doubt = "no number in the names of some";
+  return images;
 }
 
 // A list of pictures: a path on each line, relative to the list's folder.

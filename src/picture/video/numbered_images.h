@@ -11,8 +11,9 @@ namespace airtruth::video {
 struct NumberedImages {
   // At least one file.
   std::vector<std::filesystem::path> files;
-  // True where a number between the first and the last is missing.
-  bool has_gaps = false;
+  // What makes it doubtful that these are a clip's frames in their order, for a warning: "gaps
+  // between the numbers"; nullptr: nothing.
+  const char* doubt = nullptr;
 };
 
 // `path` is a folder of pictures, a pattern of their names such as "frames/%06d.png", or a list of

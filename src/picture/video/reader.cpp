@@ -130,11 +130,13 @@ struct Reader::State {
     std::error_code ignored;
     std::string rate;
     if (auto images = numbered_images(path)) {
-      if (images->has_gaps)
+      if (images->doubt != nullptr)
         airtruth::warn(warn,
-                       path.string() + ": has gaps between the numbers of its " +
-                           std::to_string(images->files.size()) +
-                           " pictures; they are taken as consecutive frames");
+                       fmt::format("{}: has {} of its {} pictures; they are taken as consecutive "
+                                   "frames",
+                                   path.string(),
+                                   images->doubt,
+                                   images->files.size()));
       pictures = std::move(images->files);
       info.is_rate_stated = options.picture_rate_hz.has_value();
       if (options.picture_rate_hz) {

@@ -112,6 +112,20 @@ TEST_F(Video, PicturesAreReadInTheOrderOfTheirNamesWithGapsAndLongNumbers) {
   }
 }
 
+// Two pictures of anything are a clip of two frames, with a warning.
+TEST_F(Video, PicturesWithoutANumberInTheirNamesAreNamed) {
+  const fs::path folder = folder_ / "anything";
+  fs::create_directories(folder);
+  for (const char* name : {"cat.png", "dog.png"})
+    ffmpeg("-f lavfi -i color=gray:s=16x16 -frames:v 1 -update 1 " + (folder / name).string());
+  std::string warning;
+  const Reader reader(folder, {}, [&](const std::string& message) { warning = message; });
+  EXPECT_EQ(warning,
+            folder.string() +
+                ": has no number in the names of some of its 2 pictures; they are taken as "
+                "consecutive frames");
+}
+
 // A picture that is passed over would give those after it the labels of those before them.
 TEST_F(Video, APictureThatCannotBeDecodedIsAnError) {
   fs::create_directories(folder_ / "frames");
