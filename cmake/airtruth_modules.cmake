@@ -108,6 +108,16 @@ function(wing_of_folder out)
   set(${out} ${wing} PARENT_SCOPE)
 endfunction()
 
+# The headers through which a program and its late libraries see the same types, as one number in the names of what these
+# export: a library of other headers lacks the name, and is refused before anything in it is called.
+file(GLOB_RECURSE headers ${PROJECT_SOURCE_DIR}/src/*.h)
+set(AIRTRUTH_BUILD "${PROJECT_VERSION}")
+foreach(header ${headers})
+  file(SHA256 ${header} hash)
+  string(SHA256 AIRTRUTH_BUILD "${AIRTRUTH_BUILD}${hash}")
+endforeach()
+string(SUBSTRING ${AIRTRUTH_BUILD} 0 16 AIRTRUTH_BUILD)
+
 # add_lazy_library(NAME SOURCES a.cpp ... LIBRARIES target ...) makes airtruth-late-NAME.so, which stands beside the
 # program and is loaded when it is first needed (src/foundation/lazy_library/lazy_library.h).
 function(add_lazy_library name)
@@ -119,6 +129,7 @@ function(add_lazy_library name)
   target_link_libraries(airtruth-late-${name} PRIVATE airtruth_options ${arg_LIBRARIES}
     -Wl,--push-state,--no-as-needed -lc -Wl,--pop-state)
   target_include_directories(airtruth-late-${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_compile_definitions(airtruth-late-${name} PRIVATE AIRTRUTH_BUILD="${AIRTRUTH_BUILD}")
 endfunction()
 
 # Keeps test sources of the current folder for the program WING_KIND (kind: test or slow_test) of its wing.

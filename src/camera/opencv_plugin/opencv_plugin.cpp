@@ -10,7 +10,7 @@ const Functions& functions() {
       lazy_library::symbol_of({"airtruth-late-opencv.so",
                                "AIRTRUTH_LATE_OPENCV",
                                "the part that follows corners and objects"},
-                              kSymbol));
+                              lazy_library::of_build(kSymbol)));
   return loaded;
 }
 

@@ -70,7 +70,7 @@ struct Functions {
 // Throws Error where the library is not installed.
 const Functions& functions();
 
-// The library holds a Functions of this name.
+// The library holds a Functions of this name (lazy_library::of_build()).
 constexpr const char* kSymbol = "airtruth_late_opencv";
 
 }  // namespace airtruth::opencv_plugin

@@ -18,7 +18,8 @@ cv::Ptr<Base> made() {
 
 extern "C" {
 extern __attribute__((visibility("default")))
-const airtruth::opencv_plugin::Functions airtruth_late_opencv;
+const airtruth::opencv_plugin::Functions airtruth_late_opencv __asm__(
+    "airtruth_late_opencv_" AIRTRUTH_BUILD);
 const airtruth::opencv_plugin::Functions airtruth_late_opencv = {
     .find_homography = &cv::findHomography,
     .estimate_affine_partial_2d = &cv::estimateAffinePartial2D,

@@ -61,10 +61,12 @@ std::vector<fs::path> data_places_of(const char* name) {
   return places_below("share/airtruth/data", AIRTRUTH_DATA_FOLDER, name);
 }
 
-void* symbol_of(const Library& library, const char* symbol) {
+std::string of_build(const char* symbol) { return std::string(symbol) + "_" AIRTRUTH_BUILD; }
+
+void* symbol_of(const Library& library, const std::string& symbol) {
   void* loaded = ::dlopen(path_of(library).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (loaded == nullptr) fail(library);
-  void* address = ::dlsym(loaded, symbol);
+  void* address = ::dlsym(loaded, symbol.c_str());
   if (address == nullptr) fail(library);
   return address;
 }

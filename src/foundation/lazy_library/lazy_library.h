@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 // A shared library of ours that is loaded when it is first needed, and the places of such
@@ -18,7 +19,11 @@ struct Library {
 // The address of a symbol. The library is looked for in its places (places_of()), then as the
 // dynamic linker does. It stays loaded to the end of the process. Throws Error where the library or
 // the symbol is not there.
-void* symbol_of(const Library& library, const char* symbol);
+void* symbol_of(const Library& library, const std::string& symbol);
+
+// The name under which a library of this build exports what it calls `symbol`. A library of another
+// build, whose types may have other members, has another.
+std::string of_build(const char* symbol);
 
 // Where a child program or a lazy library of this name may be, in the order of preference: beside
 // this program, in ../libexec/airtruth from it, in PREFIX/libexec/airtruth for a libairtruth.so in

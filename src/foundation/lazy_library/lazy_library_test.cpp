@@ -13,7 +13,7 @@
 namespace airtruth::lazy_library {
 namespace {
 
-std::string reason_of(const Library& library, const char* symbol) {
+std::string reason_of(const Library& library, const std::string& symbol) {
   try {
     symbol_of(library, symbol);
     return {};
@@ -35,6 +35,17 @@ TEST(LazyLibrary, IsNamedWhereItIsNotThere) {
   EXPECT_THAT(reason_of({"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"}, "fabs"),
               testing::AllOf(testing::HasSubstr("no-such.so, the tested part, cannot be loaded"),
                              testing::HasSubstr("set AIRTRUTH_TEST_LATE to it")));
+}
+
+// Of another build is what lacks the name of this one, though it has the symbol.
+TEST(LazyLibrary, OfAnotherBuildIsRefused) {
+  EXPECT_THAT(of_build("fabs"), testing::MatchesRegex("fabs_[0-9a-f]*"));
+  EXPECT_NE(of_build("fabs"), "fabs_");
+  ::setenv("AIRTRUTH_TEST_LATE", "libm.so.6", 1);
+  EXPECT_THAT(reason_of({"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"}, of_build("fabs")),
+              testing::AllOf(testing::HasSubstr("cannot be loaded"),
+                             testing::HasSubstr("install airtruth whole")));
+  ::unsetenv("AIRTRUTH_TEST_LATE");
 }
 
 TEST(Places, OfAChildAndOfDataAreBesideTheProgramFirstAndThenInItsPrefix) {

@@ -10,7 +10,7 @@ std::unique_ptr<Backdrop> open_backdrop(int width, int height, const Options& op
       lazy_library::symbol_of({"airtruth-late-backdrop.so",
                                "AIRTRUTH_LATE_BACKDROP",
                                "the part with OpenGL for the method chroma-key"},
-                              kBackdropSymbol));
+                              lazy_library::of_build(kBackdropSymbol)));
   return open(width, height, options);
 }
 

@@ -64,7 +64,7 @@ class Backdrop {
 // EGL device can be opened.
 std::unique_ptr<Backdrop> open_backdrop(int width, int height, const Options& options);
 
-// The library holds a BackdropOpener of this name.
+// The library holds a BackdropOpener of this name (lazy_library::of_build()).
 using BackdropOpener = std::unique_ptr<Backdrop> (*)(int width, int height, const Options& options);
 constexpr const char* kBackdropSymbol = "airtruth_open_backdrop";
 // What that opener is. Throws Error where no EGL device can be opened.

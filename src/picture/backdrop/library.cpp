@@ -4,7 +4,8 @@
 
 extern "C" {
 extern __attribute__((visibility("default")))
-const airtruth::backdrop::BackdropOpener airtruth_open_backdrop;
+const airtruth::backdrop::BackdropOpener airtruth_open_backdrop __asm__(
+    "airtruth_open_backdrop_" AIRTRUTH_BUILD);
 const airtruth::backdrop::BackdropOpener airtruth_open_backdrop =
     &airtruth::backdrop::make_osg_backdrop;
 }
