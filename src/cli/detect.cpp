@@ -98,8 +98,7 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
       ->check(CLI::Range(1, 100'000));
   command.add_flag("--backgrounds,!--no-backgrounds",
                    options.backgrounds,
-                   "The videos that a set was made over as well, which show no intruder; evaluate "
-                   "does not read their results (default: the set's sequences alone)");
+                   "The videos that a set was made over as well, which show no intruder (default)");
   command.add_option("--frame-rate", options.frame_rate_hz)
       ->description("Frames a second of numbered pictures, where nothing states it")
       ->check(above_0());
@@ -131,9 +130,7 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
                                  ->description("Longest that it may take to start, s (default: 30)")
                                  ->check(CLI::Range(0.001, 86'400.0));
   const auto has_program = [&options] {
-    return std::ranges::any_of(options.detectors, [](const std::string& text) {
-      return text.find("exec:") != std::string::npos;
-    });
+    return std::ranges::any_of(options.detectors, runs::is_program);
   };
   for (const CLI::Option* option : {answer, start})
     expect_effect(context, option, has_program, "without a detector that is a program");

@@ -449,6 +449,10 @@ std::vector<std::string> detector_forms() {
           "exec:COMMAND for a program that speaks docs/detector-protocol.md"};
 }
 
+bool is_program(const std::string& detector) {
+  return named_detector(detector).command.starts_with(kExec);
+}
+
 std::vector<DetectSummary> detect(const fs::path& source,
                                   const fs::path& out,
                                   const DetectOptions& options) {

@@ -21,6 +21,7 @@ inline constexpr const char* kShippedDetector = "network";
 std::vector<std::string> detector_names();
 // The forms of the others, with what they are, for --help and errors.
 std::vector<std::string> detector_forms();
+bool is_program(const std::string& detector);  // also for "NAME=exec:COMMAND"
 
 // The limits are for external programs.
 struct DetectOptions : process::Limits {
