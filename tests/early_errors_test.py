@@ -165,6 +165,8 @@ class EarlyErrors(unittest.TestCase):
             (("track", "made/clip", "-t", "am3", "-o", "r", "--first-frame", "2"), "--first-frame has no effect without --init"),
             (("detect", "short.mkv", "-d", "cmo", "-o", "r", "--declare", "2/3"), "--declare has no effect without --associate"),
             (("detect", "short.mkv", "-d", "cmo", "-o", "r", "--timeout", "2"), "--timeout has no effect without a detector that is a program"),
+            (("detect", "short.mkv", "-d", "cmo", "-o", "r", "--only", "a*"), "--only has no effect on a video"),
+            (("detect", "short.mkv", "-d", "cmo", "-o", "r", "--no-backgrounds"), "--backgrounds has no effect on a video"),
             (("dataset", "verify", "made", "--every", "2"), "--every has no effect without --deep"),
             (("dataset", "import", "bad.csv", "-f", "coco", "-o", "i", "--origin", "1"), "--origin has no effect without --format csv"),
             (("evaluate", "made/clip", "nowhere", "-o", "e", "--score", "1"), "--score has no effect without results of a detector"),

@@ -90,15 +90,20 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
   command.add_option("--out,-o", arguments.out)
       ->description("Results, a folder for each detector; a run that was stopped goes on in it")
       ->required();
-  command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
+  const CLI::Option* only =
+      command.add_option("--only", options.only, "Sequences whose name fits (* and ?)");
   command.add_option(
       "--min-score", options.min_score, "Leave out detections with a lower score (default: none)");
   command.add_option("--max-per-frame", options.max_per_frame)
       ->description("Keep only so many of a frame, those of the highest scores (default: 100)")
       ->check(CLI::Range(1, 100'000));
-  command.add_flag("--backgrounds,!--no-backgrounds",
-                   options.backgrounds,
-                   "The videos that a set was made over as well, which show no intruder (default)");
+  const CLI::Option* backgrounds = command.add_flag(
+      "--backgrounds,!--no-backgrounds",
+      options.backgrounds,
+      "The videos that a set was made over as well, which show no intruder (default)");
+  for (const CLI::Option* option : {only, backgrounds})
+    expect_effect(
+        context, option, [&arguments] { return runs::is_set(arguments.source); }, "on a video");
   command.add_option("--frame-rate", options.frame_rate_hz)
       ->description("Frames a second of numbered pictures, where nothing states it")
       ->check(above_0());

@@ -453,17 +453,19 @@ bool is_program(const std::string& detector) {
   return named_detector(detector).command.starts_with(kExec);
 }
 
+bool is_set(const fs::path& source) {
+  if (!fs::exists(source) && source.string().find('%') == std::string::npos)
+    throw Error("does not exist", {source.string()});
+  return fs::is_directory(source) &&
+         (fs::exists(source / "dataset.json") || fs::exists(source / "sequences") ||
+          !sequences::sequence_folders(source).names.empty());
+}
+
 std::vector<DetectSummary> detect(const fs::path& source,
                                   const fs::path& out,
                                   const DetectOptions& options) {
   DetectorRun running(out, options);
-  if (!fs::exists(source) && source.string().find('%') == std::string::npos)
-    throw Error("does not exist", {source.string()});
-  // A folder without sequences is one of pictures, unless it is a set that is still empty.
-  const bool is_set = fs::is_directory(source) &&
-                      (fs::exists(source / "dataset.json") || fs::exists(source / "sequences") ||
-                       !sequences::sequence_folders(source).names.empty());
-  if (is_set) return running.over(labelled::LabelledSet(source));
+  if (is_set(source)) return running.over(labelled::LabelledSet(source));
   return running.over(source);
 }
 

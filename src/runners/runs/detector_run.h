@@ -72,6 +72,10 @@ struct DetectSummary {
   double seconds = 0;  // the detector's own time for those frames
 };
 
+// True for a data set, and false for a video. A folder without sequences is one of pictures, unless
+// it is a set that is still empty. Throws Error for what is not there.
+bool is_set(const fs::path& source);
+
 // Runs detectors over every frame of every sequence of a set, or of one video, and writes
 // out/DETECTOR/ (results_folder.h) and logs/SEQUENCE.log with what a program printed. The results
 // of backgrounds lie in a folder of their own, out/DETECTOR/backgrounds/VIDEO.txt and .json, since
