@@ -39,6 +39,7 @@ NEGATIVE_PX = 280   # px: side of the picture about a false alarm; a crop that i
 MOST_PX = 128       # px: aircraft that are longer are left out of training
 LEAST_CONTRAST = 25  # code values: who labels real video does not see less (docs/proof.md, "Faint aircraft")
 MOST_WAITING = 256  # samples of a stream without an aircraft that wait to be used: 20 MB of crops of 280 px
+MOST_DRAWN = 1000   # samples of a stream in a row without an aircraft that a network can learn: its catalogue has none
 NO_BOXES = np.zeros((0, 4), np.float32)
 
 
@@ -141,6 +142,7 @@ class Streamed:
     `negatives = 0.5` in the catalogue half of the crops of a training are about an aircraft, and half have none."""
 
     def __init__(self, catalogue, seed):
+        self.catalogue = catalogue
         self.stream = airtruth.Stream(pathlib.Path(catalogue), seed=seed)
         self.index = 0  # of the sample that is drawn next
         self.waiting = collections.deque(maxlen=MOST_WAITING)  # (index, sample) of those without an aircraft
@@ -156,13 +158,13 @@ class Streamed:
     def draw(self, with_aircraft, random):
         if not with_aircraft and self.waiting:
             return self.waiting.popleft()[1]
-        for _ in range(20):
+        for _ in range(MOST_DRAWN):
             sample = self.read(self.index)
             self.index += 1
             if not with_aircraft or len(sample[1]):
-                break
+                return sample
             self.waiting.append((self.index - 1, sample))
-        return sample
+        refuse(f"{self.catalogue}: {MOST_DRAWN} samples in a row show no aircraft; expected fewer negatives, or aircraft that are larger")
 
     def place(self):
         return [self.index, *(index for index, _ in self.waiting)]

@@ -79,6 +79,22 @@ assert len(frames.boxes[1]) == 1 and len(frames.ignored[1]) == 0
         self.assertEqual(done.returncode, 0, done.stderr)
 
 
+class Streams(unittest.TestCase):
+    def test_a_stream_without_an_aircraft_ends_the_training(self):
+        code = """
+import airtruth
+airtruth.Stream = lambda catalogue, seed: None
+streamed = script["Streamed"]("sky.toml", 1)
+boxes = script["NO_BOXES"]
+streamed.read = lambda index: ("picture", [[1, 2, 3, 4]] if index == 40 else boxes, boxes)
+assert len(streamed.draw(True, None)[1]) == 1 and streamed.index == 41, streamed.index
+streamed.draw(True, None)
+"""
+        done = run_beside(code)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertIn("sky.toml: 1000 samples in a row show no aircraft", done.stderr)
+
+
 class Negatives(unittest.TestCase):
     def test_half_of_the_crops_without_an_aircraft_are_about_false_alarms(self):
         code = """
