@@ -14,6 +14,7 @@
 #include "picture/video/still.h"
 #include "scene/synthetic/sky.h"
 #include "support/flight_clip.h"
+#include "support/shared_folder.h"
 
 // The surroundings of a camera are found from its clip: sun, air, horizon and the own aircraft.
 namespace airtruth::camera_file {
@@ -127,7 +128,7 @@ TEST(OwnAircraft, IsFoundToTheBorder) {
 // Hand-marked horizons of a real onboard video through a wide lens. Sky and ground are painted
 // along each of them, and the plane that is found must lie along it.
 TEST(Horizon, LiesAlongHandMarkedOnes) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
   std::istringstream lines(
       read_file(std::string(shared) + "/evision/horizon/HorizonLineData_1.txt"));
@@ -189,7 +190,7 @@ TEST(Horizon, LiesAlongHandMarkedOnes) {
 
 // The masks of the paper, each laid over a virtual flight like a real aircraft in the picture.
 TEST(OwnAircraft, RealMasksAreFoundOverAVirtualFlight) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
   for (const char* name : {"mask1"}) {
     const image::Mask mask =

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/lens/calibration_file.h"
 
-#include <cstdlib>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
@@ -11,6 +9,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "support/error_of.h"
+#include "support/shared_folder.h"
 
 namespace airtruth::lens {
 namespace {
@@ -128,7 +127,7 @@ TEST(Gyroflow, EndsAtItsStatedRadius) {
 }
 
 TEST(Gyroflow, ReadsARealProfile) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   const Lens lens = read_calibration(
       std::filesystem::path(shared) / "lens/gopro_hero3plus_1280x960.gyroflow.json", kProfileSize);

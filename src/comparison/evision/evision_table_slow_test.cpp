@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
 #include "comparison/evision/evision_table.h"
+#include "support/shared_folder.h"
 
 namespace airtruth::evision {
 namespace {
 
 TEST(EvisionTable, SizesAreAsPublishedAndNoFrameInViewLacksABox) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr)
     GTEST_SKIP() << "AIRTRUTH_SHARED is unset: the published annotations are not here";
   const auto rows = evision_table(fs::path(shared) / "evision", {});
@@ -25,7 +25,7 @@ TEST(EvisionTable, SizesAreAsPublishedAndNoFrameInViewLacksABox) {
 
 // With another aircraft the sizes differ, which shows that the test above can fail.
 TEST(EvisionTable, ALongerAirlinerDoesNotFit) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr)
     GTEST_SKIP() << "AIRTRUTH_SHARED is unset: the published annotations are not here";
   EvisionOptions options;

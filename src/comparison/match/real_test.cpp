@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/shared_folder.h"
+
 namespace airtruth::match {
 namespace {
 
@@ -23,7 +25,7 @@ TEST(Real, SizesThatJumpAreLeftOut) {
 class Footage : public testing::Test {
  protected:
   void SetUp() override {
-    const char* shared = std::getenv("AIRTRUTH_SHARED");
+    const char* shared = test_support::shared_folder();
     if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set: no footage";
     folder_ = fs::path(shared) / "footage" / "ground-real";
     if (!fs::is_directory(folder_)) GTEST_SKIP() << "no " << folder_;

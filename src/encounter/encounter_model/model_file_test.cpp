@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "encounter/encounter_model/model_file.h"
 
-#include <cstdlib>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "support/error_of.h"
+#include "support/shared_folder.h"
 #include "support/small_encounter_model.h"
 
 namespace airtruth::encounter_model {
@@ -126,7 +126,7 @@ TEST(ModelFile, EveryCutOffFileIsAnError) {
 }
 
 TEST(ModelFile, PublishedModelsAreRead) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   const fs::path folder = fs::path(shared) / "encounters" / "models";
   struct Expected {

@@ -12,6 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
 #include "support/chi_square.h"
+#include "support/shared_folder.h"
 #include "support/small_encounter_model.h"
 
 namespace airtruth::encounter_model {
@@ -129,7 +130,7 @@ TEST(ModelSampler, MarginalsAreThoseOfTheJointDistribution) {
 }
 
 TEST(ModelSampler, PublishedModelsAreDrawnAsTheirTablesSay) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   for (const char* name : {"uncor_1200code_v2p1.txt",
                            "balloon_v1.txt",

@@ -18,6 +18,7 @@
 #include "foundation/base/files.h"
 #include "foundation/geometry/units.h"
 #include "support/random_encounter.h"
+#include "support/shared_folder.h"
 
 namespace airtruth::separation {
 namespace {
@@ -167,7 +168,7 @@ Mover projected(const Plane& plane, const Geodetic& g) {
 }
 
 TEST(Daidalus, H1GivesThePublishedTable) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset: H1 is not here";
   const fs::path folder = fs::path(shared) / "encounters" / "daidalus";
   const auto flown = rows_of(folder / "H1.daa", 2);

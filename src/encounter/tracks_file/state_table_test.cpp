@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -11,6 +10,7 @@
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
 #include "support/error_of.h"
+#include "support/shared_folder.h"
 
 namespace airtruth::tracks_file {
 namespace {
@@ -190,7 +190,7 @@ TEST(StateTable, WhatIsWrittenReadsTheSame) {
 
 // The first row of DAIDALUS' own output for its H1.daa: 44.554796 nmi and 799.951467 kt.
 TEST(StateTable, DistancesAreThoseOfDaidalus) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   const auto encounters = read_encounters(fs::path(shared) / "encounters/daidalus/H1.daa");
   ASSERT_EQ(encounters.size(), 1u);
@@ -205,7 +205,7 @@ TEST(StateTable, DistancesAreThoseOfDaidalus) {
 }
 
 TEST(StateTable, TheExamplesOfThePairingToolAreRead) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   for (const char* name : {"1.txt", "2.txt"}) {
     const auto encounters = read_encounters(fs::path(shared) / "encounters/examples" / name);

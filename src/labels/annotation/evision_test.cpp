@@ -12,6 +12,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "support/error_of.h"
+#include "support/shared_folder.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::annotation {
@@ -176,7 +177,7 @@ bool differs_in_rounding(const std::string& a, const std::string& b) {
 // Reads and writes every published file. Each line must stay the same, except for the rounding of
 // exact halves.
 TEST(Evision, PublishedFilesComeBackButForTheRoundingOfHalves) {
-  const char* const shared = std::getenv("AIRTRUTH_SHARED");
+  const char* const shared = test_support::shared_folder();
   if (!shared) GTEST_SKIP() << "AIRTRUTH_SHARED is not set: the published annotations are not here";
   int files = 0;
   std::size_t lines = 0;

@@ -2,7 +2,6 @@
 #include "picture/video/media_file.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "picture/video/metadata.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
+#include "support/shared_folder.h"
 #include "support/source_folder.h"
 #include "support/video_folder.h"
 
@@ -190,7 +190,7 @@ TEST_F(Video, PicturesAreFoundByTheirNumber) {
 }
 
 TEST_F(Video, FramesOfTheRealClipsAreFound) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   const fs::path footage = fs::path(shared) / "footage";
   for (const char* clip : {"fixed-wing/cumulus_a4.mp4", "gopro-karma/karma.mp4"})

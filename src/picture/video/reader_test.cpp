@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/video/reader.h"
 
-#include <cstdlib>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -15,6 +14,7 @@
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
 #include "support/error_of.h"
+#include "support/shared_folder.h"
 #include "support/video_folder.h"
 
 namespace airtruth::video {
@@ -254,7 +254,7 @@ TEST_F(Video, TagsComeThrough) {
 }
 
 TEST_F(Video, DecodesTheRealClipsAsFfmpegDoes) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset";
   for (const char* clip :
        {"fixed-wing/cumulus_a4.mp4", "fixed-wing/overcast_b4.mp4", "gopro-karma/karma.mp4"}) {

@@ -14,6 +14,7 @@
 #include "foundation/base/median.h"
 #include "scene/synthetic/flight.h"
 #include "support/far_field.h"
+#include "support/shared_folder.h"
 
 // Compares measured motion with known motion: a pinhole that only rotates, so that a homography is
 // exact, with the own aircraft in view and a fifth of the picture moving independently.
@@ -172,7 +173,7 @@ Yardstick measure(const lens::Lens& lens, int frames, double clutter) {
 }
 
 TEST(MotionYardstick, RotationThroughAFisheyeHoldsWithinAFiftiethOfADegreeOver1000Frames) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   // The calibration is scaled to this size.
   const lens::ImageSize size{640, 480};
   const lens::Lens lens =

@@ -2,7 +2,6 @@
 // Compares bearings on a real clip with large rotations with the positions of the pixels.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -12,6 +11,7 @@
 #include "sequence/replay/finished.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "support/shared_folder.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::pipeline {
@@ -24,7 +24,7 @@ double median_of(std::vector<double> values) {
 
 // The centre of what is covered is some pixels off the reference point: a fraction of the box.
 TEST(BearingOnARealClip, AgreesWithThePixelAndNotWithTheNominalBoresight) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set: the clip is not here";
   const fs::path clip = fs::path(shared) / "footage/fixed-wing/overcast_b4.mp4";
   if (!fs::exists(clip)) GTEST_SKIP() << clip << " is not there";

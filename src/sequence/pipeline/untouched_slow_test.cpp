@@ -10,6 +10,7 @@
 #include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
+#include "support/shared_folder.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::pipeline {
@@ -105,7 +106,7 @@ TEST_F(Untouched, InEveryPixelFormat) {
 }
 
 TEST_F(Untouched, InTheRealClips) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is unset: the real clips are not here";
   const fs::path footage = fs::path(shared) / "footage";
   for (const char* clip :

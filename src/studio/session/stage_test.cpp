@@ -2,7 +2,6 @@
 #include "studio/session/stage.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "studio/session/near_miss.h"
 #include "studio/session/plan.h"
 #include "support/flight_file.h"
+#include "support/shared_folder.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::session {
@@ -140,7 +140,7 @@ TEST_F(OverAFlight, SoAreTheyWhereTheSceneIsEditedInBetween) {
 
 // The light begins 240 frames before, where that of a run has begun with the clip.
 TEST_F(OverAFlight, SoAreTheyDeepInARealClip) {
-  const char* shared = std::getenv("AIRTRUTH_SHARED");
+  const char* shared = test_support::shared_folder();
   if (shared == nullptr) GTEST_SKIP() << "AIRTRUTH_SHARED is not set";
   const scene::Scene scene = scene::parse_scene(
       "[background]\nvideo = \"" + std::string(shared) +
