@@ -215,6 +215,8 @@ image::Rgb8 tiles_under(
                            kSheetHeaderPx + i / columns * (tile.height + kTileGapPx));
     cv::Mat place = canvas(cv::Rect(corner, tile));
     draw(static_cast<std::size_t>(i), place);
+    // A copy of another size leaves the sheet for memory of its own.
+    check(place.size() == tile, "a tile is as large as its place");
   }
   return paper;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -134,6 +136,14 @@ TEST(ContactSheet, HasNoEmptyPlaceWhateverTheLength) {
     }
   }
   EXPECT_GT(ContactSheet("empty", 0).sheet().height, 0);
+}
+
+TEST(Tiled, PicturesOfSeveralSizesAreOurMistake) {
+  std::vector<NamedPicture> pictures;
+  pictures.push_back({"a", image::make_rgb8(64, 48)});
+  EXPECT_GT(tiled("same", pictures, 2).width, 64);
+  pictures.push_back({"b", image::make_rgb8(32, 24)});
+  EXPECT_THROW(tiled("other", pictures, 2), std::logic_error);
 }
 
 TEST(Closeup, EnlargesEachPixelToASquareOfItsOwnColour) {
