@@ -36,25 +36,22 @@ std::optional<Box> box_from(const std::vector<double>& n, std::size_t first, int
   return is_sound(box) ? std::optional(box) : std::nullopt;
 }
 
-// Takes down a box of x, y, width, height with a side below 0.
-void see_sides(const std::vector<double>& n,
-               std::size_t first,
-               const Where& where,
-               TrackerResults& results) {
-  if (n.size() < first + 4 || !(n[first + 2] < 0 || n[first + 3] < 0)) return;
+// Takes down a box with a side below 0.
+void add_negative(const Where& where, TrackerResults& results) {
   if (results.negative_boxes++ == 0) results.first_negative = where;
 }
 
 Trajectory read_trajectory(const fs::path& file, int origin_px, TrackerResults& results) {
-  if (file.extension() == kBinary) return read_binary_trajectory(file, origin_px);
   Trajectory trajectory;
-  for (const exchange::Line& line : exchange::lines_of(file)) {
-    trajectory.push_back(region_of(line, file, origin_px));
-    const VotFrame& frame = trajectory.back();
-    if (frame.mark != Mark::kAnswer || frame.box || line.text.starts_with('m')) continue;
-    const std::vector<double> numbers = exchange::numbers_of(line, file);
-    if (numbers.size() == 4) see_sides(numbers, 0, {file.string(), line.number}, results);
-  }
+  const auto add = [&](const Region& region, int line) {
+    trajectory.push_back(region.frame);
+    if (region.has_negative_side) add_negative({file.string(), line}, results);
+  };
+  if (file.extension() == kBinary)
+    for (const Region& region : read_binary_regions(file, origin_px)) add(region, 0);
+  else
+    for (const exchange::Line& line : exchange::lines_of(file))
+      add(region_of(line, file, origin_px), line.number);
   return trajectory;
 }
 
@@ -113,8 +110,8 @@ Trajectory read_mot(const fs::path& file, const exchange::Clip& clip, TrackerRes
                   {file.string(), line.number});
     if (const auto box = box_from(n, 2, 1))
       tracks[*frame - 1][*id] = *box;
-    else
-      see_sides(n, 2, {file.string(), line.number}, results);
+    else if (n[4] < 0 || n[5] < 0)
+      add_negative({file.string(), line.number}, results);
   }
   const auto mine = overlapping_track(tracks, clip);
   Trajectory trajectory;

@@ -175,6 +175,19 @@ TEST(VotRuns, ANanIsTheMarkZeroAndNoAreaIsAnAnswer) {
   EXPECT_EQ(to_string(one_pass.first_negative), (folder.path() / "a.txt").string() + ":5");
 }
 
+// The rectangle of kBinaryHex with a width of -30; its place has no line.
+TEST(VotRuns, ASideBelow0IsToldOfABinaryFileToo) {
+  const ResultsFolder folder;
+  std::string bytes = bytes_from_hex(kBinaryHex);
+  bytes.at(6 + 5 + 1 + 8 + 3) = '\xc1';  // the sign of the third float32 of the second region
+  const fs::path file = folder.path() / "baseline/a/a_001.bin";
+  folder.file("baseline/a/a_001.bin", bytes);
+  const TrackerResults found = read_results(folder.path(), clip(), 0);
+  EXPECT_FALSE(found.restart.at(0).at(1).box);
+  EXPECT_EQ(found.negative_boxes, 1);
+  EXPECT_EQ(to_string(found.first_negative), file.string());
+}
+
 TEST(MotTracks, ASideBelow0IsTold) {
   const ResultsFolder folder;
   folder.file("a.txt", "1,1,5,5,9,9,1\n2,1,5,5,-9,9,1\n3,1,5,5,0,9,1\n");

@@ -21,21 +21,26 @@ namespace airtruth::results {
 namespace {
 
 using evaluation::Mark;
-using evaluation::Trajectory;
-using evaluation::VotFrame;
 
 constexpr std::size_t kMaskHead = 4;     // x, y, width, height
 constexpr double kMaxMaskSide = 65'535;  // px; that of a picture in any format
 
-VotFrame marked(double code) {
-  if (code == 1) return {Mark::kBegun, {}};
-  if (code == 2) return {Mark::kFailed, {}};
-  return {Mark::kUnknown, {}};
+Region marked(double code) {
+  if (code == 1) return {{Mark::kBegun, {}}};
+  if (code == 2) return {{Mark::kFailed, {}}};
+  return {{Mark::kUnknown, {}}};
 }
 
 // A box without area is an answer without a box.
-VotFrame answer(const std::optional<Box>& box) {
-  return {Mark::kAnswer, box && is_sound(*box) ? box : std::nullopt};
+Region answer(const std::optional<Box>& box) {
+  return {{Mark::kAnswer, box && is_sound(*box) ? box : std::nullopt}};
+}
+
+// Of x, y, width, height.
+Region rectangle(const std::vector<double>& n, int origin_px) {
+  Region region = answer(Box{n[0] - origin_px, n[1] - origin_px, n[2], n[3]});
+  region.has_negative_side = n[2] < 0 || n[3] < 0;
+  return region;
 }
 
 // Little-endian numbers of a file's bytes, one after another.
@@ -71,14 +76,12 @@ class Bytes {
   std::size_t at_ = 0;
 };
 
-VotFrame next_region(Bytes& bytes, int origin_px) {
+Region next_region(Bytes& bytes, int origin_px) {
   switch (const auto type = bytes.next<std::uint8_t>()) {
     case 0:
       return marked(bytes.next<std::uint32_t>());
-    case 1: {
-      const std::vector<double> n = bytes.next<float>(4);
-      return answer(Box{n[0] - origin_px, n[1] - origin_px, n[2], n[3]});
-    }
+    case 1:
+      return rectangle(bytes.next<float>(4), origin_px);
     case 2: {
       const auto points = bytes.next<std::uint16_t>();
       return answer(bounds_of_polygon(bytes.next<float>(std::size_t{2} * points), origin_px));
@@ -144,7 +147,7 @@ std::optional<Box> bounds_of_mask(const std::vector<double>& n, int origin_px) {
   return bounds.box();
 }
 
-VotFrame region_of(const exchange::Line& line, const std::filesystem::path& file, int origin_px) {
+Region region_of(const exchange::Line& line, const std::filesystem::path& file, int origin_px) {
   if (line.text.starts_with('m')) {
     const std::vector<double> n = exchange::numbers_of({line.number, line.text.substr(1)}, file);
     if (const auto fault = fault_of_mask(n)) throw Error(*fault, {file.string(), line.number});
@@ -157,19 +160,19 @@ VotFrame region_of(const exchange::Line& line, const std::filesystem::path& file
                 {file.string(), line.number});
   if (std::any_of(n.begin(), n.end(), [](double value) { return std::isnan(value); }))
     return marked(0);
-  if (n.size() == 4) return answer(Box{n[0] - origin_px, n[1] - origin_px, n[2], n[3]});
+  if (n.size() == 4) return rectangle(n, origin_px);
   return answer(bounds_of_polygon(n, origin_px));
 }
 
-Trajectory read_binary_trajectory(const std::filesystem::path& file, int origin_px) {
+std::vector<Region> read_binary_regions(const std::filesystem::path& file, int origin_px) {
   Bytes bytes(file);
   if (const auto version = bytes.next<std::int16_t>(); version != 1)
     bytes.fail(fmt::format("has version {}", version));
   const auto count = bytes.next<std::uint32_t>();
-  Trajectory trajectory;
-  for (std::uint32_t i = 0; i < count; ++i) trajectory.push_back(next_region(bytes, origin_px));
+  std::vector<Region> regions;
+  for (std::uint32_t i = 0; i < count; ++i) regions.push_back(next_region(bytes, origin_px));
   if (bytes.left() > 0) bytes.fail(fmt::format("has more than its {} regions", count));
-  return trajectory;
+  return regions;
 }
 
 }  // namespace airtruth::results
