@@ -234,7 +234,9 @@ LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) 
 std::string note_in(const fs::path& calibration) {
   const std::string text = read_file(calibration, kMaxTextBytes);
   const std::size_t at = text.find(fmt::format("# {}", focal_length::kEstimatedNote));
-  return at == std::string::npos ? "" : ", " + text.substr(at + 2, text.find('\n', at) - at - 2);
+  if (at == std::string::npos) return "";
+  // A scene's comment can hold no carriage return.
+  return fmt::format(", {}", trimmed(text.substr(at + 2, text.find('\n', at) - at - 2)));
 }
 
 LensWords lens_for(const fs::path& video, lens::ImageSize size, const NewSceneOptions& options) {

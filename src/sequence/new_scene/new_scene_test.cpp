@@ -191,9 +191,12 @@ TEST(NewScene, TheEstimatesIntervalIsInTheScene) {
   EXPECT_LT(std::stod(found[2]), options.lens->focal_px());
   EXPECT_GT(std::stod(found[3]), options.lens->focal_px());
   EXPECT_NEAR(std::stod(found[1]), options.lens->focal_px(), 0.1 * options.lens->focal_px());
-  // An estimate that was written into a calibration keeps its doubt.
-  std::ofstream(folder / "lens.yml") << lens::opencv_calibration(
-      *options.lens, "estimated by airtruth lens estimate: 9 to 10 px at 95 %; not certain");
+  // An estimate that was written into a calibration keeps its doubt, with Windows' line ends too.
+  std::ofstream(folder / "lens.yml") << std::regex_replace(
+      lens::opencv_calibration(
+          *options.lens, "estimated by airtruth lens estimate: 9 to 10 px at 95 %; not certain"),
+      std::regex("\n"),
+      "\r\n");
   NewSceneOptions stated;
   stated.lens = folder / "lens.yml";
   EXPECT_THAT(scene_text(folder / "flight.mp4", stated),
