@@ -102,6 +102,20 @@ class Encounter(unittest.TestCase):
                 sectors.add(math.floor((course + 180) / 10))
         self.assertEqual(len(sectors), 36)
 
+    def test_geometric_encounters_that_turn_come_no_nearer_than_stated(self):
+        turning = ("sample", "geometric", "--own", OWN, "--vmd-m", "0", "-o", "a.csv", "--hmd-m")
+        self.done(*turning, "200", "300", "--count", "300", "--turn-rate-dps", "-3", "3")
+        own, least = {}, {}
+        for row in self.rows("a.csv"):
+            place = float(row["north_m"]), float(row["east_m"])
+            key = row["encounter"], row["time_s"]
+            if row["aircraft"] == "own":
+                own[key] = place
+            else:
+                least[row["encounter"]] = min(least.get(row["encounter"], 1e9), math.dist(own[key], place))
+        self.assertEqual(len(least), 300)
+        self.assertGreaterEqual(min(least.values()), 195)
+
     def test_formats_convert_into_each_other(self):
         self.done("sample", MODEL, "--own", OWN, "--count", "3", "-o", "a.csv")
         self.done("convert", "a.csv", "b.dat")

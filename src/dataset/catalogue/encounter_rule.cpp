@@ -325,10 +325,11 @@ Passage from_geometry(const EncounterRule& rule,
   if (!rule.states_speed && limits != nullptr)
     options.speed_mps = pairing::Distribution({limits->usual_low_mps, limits->usual_high_mps});
   const pairing::GeometricSampler sampler(options, seed, static_cast<std::uint64_t>(rule.count));
-  const pairing::Geometry geometry = sampler.draw(index);
-  Passage passage{pairing::geometric_track(own, geometry, -kMargin_s, rule.length_s + kMargin_s),
-                  1};
-  if (is_high_enough(passage.track, own, geometry.approach.time_s)) return passage;
+  pairing::GeometricPassage drawn = setup::at_place(rule.where, [&] {
+    return pairing::geometric_passage(sampler, index, own, -kMargin_s, rule.length_s + kMargin_s);
+  });
+  const pairing::Geometry& geometry = drawn.geometry;
+  if (is_high_enough(drawn.track, own, geometry.approach.time_s)) return {std::move(drawn.track), 1};
   throw Error(
       fmt::format("an intruder {:.0f} m above the own aircraft that climbs at {:.1f} m/s "
                   "would be less than {:.0f} m above the ground; expected a higher vmd_m or "

@@ -86,6 +86,17 @@ TEST_F(EncounterModel, AStatedGeometryPassesWithinATenthOfAMetre) {
   }
 }
 
+TEST_F(EncounterModel, AGeometryThatTurnsComesNoNearerAtAnotherTime) {
+  const Catalogue catalogue = with(
+      "kind = \"geometric\"\ncount = 20\nhmd_m = [200, 300]\nspeed_mps = [40, 60]\n"
+      "turn_rate_dps = [-40, 40]\n");
+  for (std::int64_t i = 0; i < 20; ++i) {
+    const Item item = Expansion(catalogue).at(i);
+    // The path is a spline through samples that the draw joins by straight lines.
+    EXPECT_GE(closest_of(item.scene, item.scene.intruders.at(0), 8).distance_m, 185) << i;
+  }
+}
+
 // The own aircraft flies north, turns after 20 s of its log, and flies east: an encounter that is
 // drawn for another part of the log misses it by hundreds of metres.
 TEST_F(EncounterModel, OverALogTheyPassTheCameraAsItFliesFromTheFirstFrameOn) {

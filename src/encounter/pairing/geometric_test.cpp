@@ -85,6 +85,37 @@ TEST(Geometric, TheTrackPassesAsDrawn) {
   }
 }
 
+TEST(Geometric, AGeometryThatTurnsBackNearerIsDrawnAgain) {
+  const track::Track own = own_track();
+  GeometricOptions options;
+  options.hmd_m = Distribution({200, 300});
+  options.turn_rate_dps = Distribution({-3, 3});
+  const GeometricSampler sampler(options, 1, 500);
+  int again = 0;
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    const GeometricPassage passage = geometric_passage(sampler, i, own, 0, 60);
+    EXPECT_GE(least_distance_m(own, passage.track), passage.geometry.approach.hmd_m - 5) << i;
+    again += passage.draws > 1 ? 1 : 0;
+    if (passage.draws > 1) continue;
+    EXPECT_EQ(passage.geometry.turn_rate_dps, sampler.draw(i).turn_rate_dps);
+  }
+  EXPECT_GT(again, 0);
+  EXPECT_LT(again, 100);
+}
+
+// It circles, 172 m in radius, about an own aircraft that hovers or beside it.
+TEST(Geometric, AStatedPointThatTurnsBackNearerIsAnError) {
+  const track::Track own{"own", {0, 60}, {{0, 0, -500}, {0, 0, -500}}, {{0, 0, 0}, {0, 0, 0}}};
+  GeometricOptions options;
+  options.course_deg = Distribution({0});
+  options.speed_mps = Distribution({60});
+  options.turn_rate_dps = Distribution({20});
+  options.hmd_m = Distribution({200});
+  EXPECT_THROW(geometric_passage(GeometricSampler(options, 1, 1), 0, own, 0, 60), Error);
+  options.hmd_m = Distribution({-200});
+  EXPECT_EQ(geometric_passage(GeometricSampler(options, 1, 1), 0, own, 0, 60).draws, 1);
+}
+
 TEST(Geometric, WhatCannotBeIsAnError) {
   EXPECT_THROW(GeometricSampler({}, 1, 0), Error);
   GeometricOptions options;

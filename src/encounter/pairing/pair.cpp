@@ -66,7 +66,7 @@ namespace {
 
 using track::Track;
 
-// Number of draws of an approach: it ends a search among tracks that circle.
+// Number of draws of an approach or a geometry: it ends a search among tracks that circle.
 constexpr int kMaxDraws = 100;
 // Of courses: the acceptance is at least one in 1.6 where the speeds are equal.
 constexpr int kMaxCourses = 1000;
@@ -172,6 +172,15 @@ double least_distance_m(const Track& own, const Track& intruder) {
   return std::min(least, from.norm());
 }
 
+namespace {
+
+// False where the tracks come closer at another time.
+bool passes_as_drawn(const Track& own, const Track& intruder, const ClosestApproach& approach) {
+  return least_distance_m(own, intruder) >= std::abs(approach.hmd_m) - kMaxMissError_m;
+}
+
+}  // namespace
+
 double mean_relative_speed_mps(double a_mps, double b_mps, double climb_difference_mps) {
   const double fastest = std::hypot(a_mps + b_mps, climb_difference_mps);
   if (fastest == 0) return 0;
@@ -199,8 +208,7 @@ std::optional<Pairing> pair(const Track& own,
                         options.hmd_m.quantile(random.uniform()),
                         options.vmd_m.quantile(random.uniform())};
     place(intruder, own, pairing.approach);
-    const double least_m = least_distance_m(own, intruder);
-    if (least_m < std::abs(pairing.approach.hmd_m) - options.max_miss_error_m) continue;
+    if (!passes_as_drawn(own, intruder, pairing.approach)) continue;
     pairing.weight = mean_mps * density_ratio(options.hmd_m, pairing.approach.hmd_m) *
                      density_ratio(options.vmd_m, pairing.approach.vmd_m);
     return pairing;
@@ -224,15 +232,18 @@ double versine_ratio(double x) {
 GeometricSampler::GeometricSampler(const GeometricOptions& options,
                                    std::uint64_t seed,
                                    std::uint64_t count)
-    : options_(options), strata_(seed, count < 1 ? 1 : count, kDimensions) {
+    : options_(options), seed_(seed), count_(count) {
   if (count < 1) throw Error("0 encounters are asked for; expected 1 or more");
   if (options.speed_mps.low() < 0)
     throw Error(fmt::format("speed_mps begins at {}; expected 0 or more", options.speed_mps.low()));
 }
 
-Geometry GeometricSampler::draw(std::uint64_t index) const {
+Geometry GeometricSampler::draw(std::uint64_t index, std::uint64_t attempt) const {
+  const Strata strata(attempt == 0 ? seed_ : Seed(seed_).stream("geometry drawn again", attempt)(),
+                      count_,
+                      kDimensions);
   const auto value = [&](const Distribution& distribution, Dimension dimension) {
-    return distribution.quantile(strata_.at(index, dimension));
+    return distribution.quantile(strata.at(index, dimension));
   };
   return {.approach = {.time_s = value(options_.cpa_time_s, kTime),
                        .course_deg = value(options_.course_deg, kCourse),
@@ -268,6 +279,25 @@ track::Track geometric_track(const track::Track& own,
   add(end_s);
   place(track, own, geometry.approach);
   return track;
+}
+
+GeometricPassage geometric_passage(const GeometricSampler& sampler,
+                                   std::uint64_t index,
+                                   const track::Track& own,
+                                   double begin_s,
+                                   double end_s) {
+  for (int attempt = 0; attempt < kMaxDraws; ++attempt) {
+    const Geometry geometry = sampler.draw(index, static_cast<std::uint64_t>(attempt));
+    Track track = geometric_track(own, geometry, begin_s, end_s);
+    if (passes_as_drawn(own, track, geometry.approach))
+      return {geometry, std::move(track), attempt + 1};
+  }
+  throw Error(
+      fmt::format("each of {} draws of encounter {} turns so that it comes nearer than its miss "
+                  "distance at another time; expected wider ranges, slower turns, or an own track "
+                  "that ends sooner",
+                  kMaxDraws,
+                  index + 1));
 }
 
 }  // namespace airtruth::pairing

@@ -70,14 +70,15 @@ double least_distance_m(const track::Track& own, const track::Track& intruder);
 // complete elliptic integral of the second kind and k^2 = 4 a b / A^2.
 double mean_relative_speed_mps(double a_mps, double b_mps, double climb_difference_mps);
 
+// An encounter whose tracks come closer than |hmd_m| by more than this, at another time, is drawn
+// again: the public tool allows 500 ft.
+inline constexpr double kMaxMissError_m = 5;
+
 struct PairingOptions {
   double cpa_time_s = 30;
   // Drawn; neither may be a single value.
   Distribution hmd_m{{-500, 500}, {}, "hmd_m"};
   Distribution vmd_m{{-150, 150}, {}, "vmd_m"};
-  // An encounter whose tracks come closer than |hmd_m| by more than this, at another time, is drawn
-  // again: the public tool allows 500 ft.
-  double max_miss_error_m = 5;
 };
 
 struct Pairing {
@@ -128,12 +129,14 @@ class GeometricSampler {
  public:
   // Throws Error where a speed is negative, or `count` is 0.
   GeometricSampler(const GeometricOptions& options, std::uint64_t seed, std::uint64_t count);
-  // Geometry `index`, below `count`; it depends on options, seed, count and index alone.
-  Geometry draw(std::uint64_t index) const;
+  // Geometry `index`, below `count`; it depends on options, seed, count, index and attempt alone.
+  // Each attempt is a hypercube of its own.
+  Geometry draw(std::uint64_t index, std::uint64_t attempt = 0) const;
 
  private:
   GeometricOptions options_;
-  Strata strata_;
+  std::uint64_t seed_;
+  std::uint64_t count_;
 };
 
 // The track of the intruder from `begin_s` to `end_s`, one sample each second and one at the end.
@@ -143,5 +146,20 @@ track::Track geometric_track(const track::Track& own,
                              const Geometry& geometry,
                              double begin_s,
                              double end_s);
+
+struct GeometricPassage {
+  Geometry geometry;
+  track::Track track;
+  int draws = 1;
+};
+
+// Geometry `index` and its track, of the first attempt that does not come closer than |hmd_m| by
+// more than kMaxMissError_m at another time: where an aircraft turns, it can. Throws Error where
+// none of many attempts passes as drawn.
+GeometricPassage geometric_passage(const GeometricSampler& sampler,
+                                   std::uint64_t index,
+                                   const track::Track& own,
+                                   double begin_s,
+                                   double end_s);
 
 }  // namespace airtruth::pairing

@@ -77,11 +77,9 @@ DrawEncounter geometric_pairs(const pairing::GeometricSampler& sampler, track::T
                             encounter_model::kMaxDuration_s));
   own = own_of(std::move(own), static_cast<int>(std::ceil(length_s)));
   return [sampler, own = std::move(own)](std::uint64_t index) {
-    return DrawnEncounter{{{own,
-                            pairing::geometric_track(
-                                own, sampler.draw(index), own.times_s.front(), own.times_s.back())},
-                           1},
-                          1};
+    pairing::GeometricPassage passage =
+        pairing::geometric_passage(sampler, index, own, own.times_s.front(), own.times_s.back());
+    return DrawnEncounter{{{own, std::move(passage.track)}, 1}, passage.draws};
   };
 }
 

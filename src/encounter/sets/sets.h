@@ -40,8 +40,8 @@ DrawEncounter model_pairs(std::shared_ptr<const encounter_model::Sampler> sample
                           const pairing::PairingOptions& options,
                           std::uint64_t seed);
 
-// The own track, likewise, and an intruder of the stratified geometry that flies as long. Throws
-// Error where that is longer than kMaxDuration_s.
+// The own track, likewise, and an intruder of the stratified geometry that flies as long, drawn as
+// geometric_passage() does. Throws Error where that is longer than kMaxDuration_s.
 DrawEncounter geometric_pairs(const pairing::GeometricSampler& sampler, track::Track own);
 
 // A set as a user asks for it.
