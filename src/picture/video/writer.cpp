@@ -105,6 +105,13 @@ void check_size(const StreamInfo& info,
               {path.string()});
 }
 
+// AVI states one rate and no times.
+void check_rate(const StreamInfo& info, Format format, const std::filesystem::path& path) {
+  if (format == Format::kAvi && info.variable_frame_rate)
+    throw Error("avi cannot hold the times of a variable frame rate; expected mp4 or mkv",
+                {path.string()});
+}
+
 AVPixelFormat pixel_format(const Colour& colour, Format format) {
   if (colour.matrix == Matrix::kRgb) return AV_PIX_FMT_BGR0;
   return planar_format(colour.chroma, format == Format::kAvi);
@@ -433,6 +440,7 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   state_->info = info;
   state_->options = options;
   state_->stored = stored_colour(info, options.format, path);
+  check_rate(info, options.format, path);
   state_->unfinished.emplace(Unfinished::path(state_->part));
   if (options.format != Format::kPng) {
     state_->open();

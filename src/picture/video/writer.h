@@ -42,8 +42,9 @@ struct WriterOptions {
 //
 // H.264 keeps the picture's own chroma layout (High, High 4:2:2 or High 4:4:4 profile). Odd sizes
 // are kept where the layout allows them; otherwise an Error names a format that supports them. RGB
-// becomes 4:4:4 BT.709 full range in mp4 and avi, and stays RGB in mkv and png. avi has a constant
-// frame rate and only full-range samples; png is sRGB. mkv keeps time stamps in whole milliseconds.
+// becomes 4:4:4 BT.709 full range in mp4 and avi, and stays RGB in mkv and png. avi has
+// only full-range samples, and one frame rate: a variable one is an Error. png is sRGB, without
+// times. mkv keeps time stamps in whole milliseconds.
 class Writer {
  public:
   Writer(const std::filesystem::path& path, const StreamInfo& info, const WriterOptions& options);

@@ -101,6 +101,18 @@ TEST_F(Video, LosslessOutputGivesEverySampleBack) {
   }
 }
 
+TEST_F(Video, AviRefusesAVariableFrameRate) {
+  ffmpeg(
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=0.6 -vf \"select='not(eq(n,3)+eq(n,4)+eq(n,9))'\" "
+      "-fps_mode vfr -c:v libx264 vfr.mp4");
+  const StreamInfo info = Reader(folder_ / "vfr.mp4").info();
+  EXPECT_THAT(
+      test_support::error_of([&] { Writer(folder_ / "out.avi", info, {.format = Format::kAvi}); }),
+      testing::HasSubstr("avi cannot hold the times of a variable frame rate; "
+                         "expected mp4 or mkv"));
+  EXPECT_FALSE(fs::exists(part_path(folder_ / "out.avi")));
+}
+
 TEST_F(Video, NumberedImagesNeverReplaceAFolder) {
   fs::create_directories(folder_ / "frames");
   write_file(folder_ / "frames/user.txt", "mine");
