@@ -27,6 +27,7 @@
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
+#include "sequence/setup/motion_source.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
@@ -70,6 +71,7 @@ class Work {
   void count() {
     needed_.assign(catalogue_.backgrounds.size(), std::nullopt);
     is_used_.assign(catalogue_.backgrounds.size(), false);
+    kept_.resize(catalogue_.backgrounds.size());
     std::vector<std::pair<std::string, std::int64_t>> ordered;
     const auto put_in_order = [&] {
       std::ranges::sort(ordered);
@@ -82,6 +84,8 @@ class Work {
       ++total_;
       if (folder_.holds(item)) {
         ++summary_.kept;
+        auto& kept = kept_[item.background];
+        if (kept.empty()) kept = folder_.sequence(item);
         continue;
       }
       const auto& intruders = item.scene.intruders;
@@ -107,7 +111,26 @@ class Work {
       const WaitingLock lock(
           folder_.backgrounds() / ("." + catalogue_.backgrounds[i].name + ".lock"), options_.stop);
       files_[i] = prepare(catalogue_.backgrounds[i], folder_, options_);
+      if (!kept_[i].empty()) check_inputs(kept_[i], files_[i].video);
       measure(i);
+    }
+  }
+
+  // A sequence that was made of other files than are there now and those that follow would be a
+  // mixed set. Of a record, the first input is its background, which may have another name by now.
+  void check_inputs(const fs::path& kept, const fs::path& video) const {
+    const JsonDocument record(kept / "sequence.json");
+    bool is_background = true;
+    for (const JsonObject& input : record.objects("inputs")) {
+      const fs::path file = is_background ? video : fs::path(input.text("name"));
+      is_background = false;
+      const std::string now = setup::sha256_of_video(file, *shared_);
+      if (!now.empty() && now != input.text("sha256"))
+        throw Error(fmt::format("is another file than the one that '{}', which is kept, was made "
+                                "of (its SHA-256 differs); expected that file, or another folder "
+                                "for the set",
+                                kept.filename().string()),
+                    {file.string()});
     }
   }
 
@@ -199,6 +222,7 @@ class Work {
   std::int64_t total_ = 0;
   std::vector<std::int64_t> missing_;  // numbers of sequences, in the order of the work
   std::vector<bool> is_used_;          // by background
+  std::vector<fs::path> kept_;         // by background: its first whole sequence, if any
   // By background: the frames whose motion is measured ahead; 0 means all, empty means none.
   std::vector<std::optional<std::int64_t>> needed_;
   std::vector<catalogue::BackgroundFiles> files_;

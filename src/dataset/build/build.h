@@ -67,8 +67,9 @@ struct BuildSummary {
 // Makes the missing sequences. A build that was killed at any instant continues at the next call: a
 // sequence's folder exists whole or not at all, and whole sequences are kept. A sequence that fails
 // is listed in `failures`, and the build continues with the others. Throws Error where `out` was
-// begun with another catalogue, another build is at work in it, the video of a background cannot be
-// read, or no sequence's name matches the pattern. Throws Interrupted on stop.
+// begun with another catalogue, another build is at work in it, the first whole sequence over a
+// background was made of other files than are there now, the video of a background cannot be read,
+// or no sequence's name matches the pattern. Throws Interrupted on stop.
 BuildSummary build_set(const catalogue::Catalogue& catalogue,
                        const fs::path& out,
                        const BuildOptions& options);

@@ -262,6 +262,44 @@ TEST_F(Build, VerifyFindsWhatWasChanged) {
   EXPECT_FALSE(build::status(root_ / "set").complete);
 }
 
+// Appends an empty box to an MP4: another file with the same frames.
+void change(const fs::path& mp4) {
+  write_file(mp4,
+             read_file(mp4) + std::string("\0\0\0\x08"
+                                          "free",
+                                          8));
+}
+
+TEST_F(Build, ABackgroundThatChangedUnderABuildIsRefusedByName) {
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
+  BuildOptions little;
+  little.only = "sky-across-c172";
+  build_set(catalogue, root_ / "set", little);
+  change(root_ / "set" / "backgrounds" / "sky.mp4");
+  const std::string error =
+      test_support::error_of([&] { build_set(catalogue, root_ / "set", {}); });
+  EXPECT_THAT(error, HasSubstr("sky.mp4"));
+  EXPECT_THAT(error, HasSubstr("is another file than the one that 'sky-across-c172'"));
+  EXPECT_FALSE(build::status(root_ / "set").complete);
+}
+
+TEST_F(Build, DeepVerificationNamesAnInputThatChanged) {
+  build_set(catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), root_ / "set", {});
+  VerifyOptions deep;
+  deep.deep_every = 30;
+  EXPECT_TRUE(verify(root_ / "set", deep).faults.empty());
+  change(root_ / "set" / "backgrounds" / "sky.mp4");
+  EXPECT_TRUE(verify(root_ / "set", {}).faults.empty());
+  const VerifyResult result = verify(root_ / "set", deep);
+  EXPECT_EQ(result.faults.size(), 2u);
+  EXPECT_EQ(result.recomposed, 2);
+  for (const std::string& fault : result.faults) {
+    EXPECT_THAT(fault, HasSubstr("was made of another "));
+    EXPECT_THAT(fault, HasSubstr("sky.mp4 than is there now"));
+  }
+}
+
 TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   const catalogue::Catalogue catalogue =
       catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");

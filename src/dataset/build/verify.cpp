@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,6 +26,8 @@
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
+#include "sequence/setup/motion_source.h"
+#include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
 namespace {
@@ -62,11 +66,32 @@ bool is_below(const fs::path& folder, const fs::path& name) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
+// The files that sequences were made of, as they are now. Each is read once, by one of the threads
+// that ask.
+class InputsNow {
+ public:
+  // Empty where there is no such file.
+  std::string sha256_of(const fs::path& file) {
+    const std::lock_guard lock(mutex_);
+    return setup::sha256_of_video(file, inputs_);
+  }
+
+ private:
+  std::mutex mutex_;
+  setup::SharedInputs inputs_;
+};
+
 // Verifies one sequence of a data set.
 class Check {
  public:
-  Check(const catalogue::Folder& folder, const catalogue::Item& item, const VerifyOptions& options)
-      : name_(item.name), folder_(folder.sequence(item)), options_(options) {}
+  Check(const catalogue::Folder& folder,
+        const catalogue::Item& item,
+        const VerifyOptions& options,
+        InputsNow& inputs_now)
+      : name_(item.name),
+        folder_(folder.sequence(item)),
+        options_(options),
+        inputs_now_(inputs_now) {}
 
   VerifyResult run() {
     ++result_.sequences;
@@ -85,7 +110,7 @@ class Check {
       files(JsonDocument(folder_ / "sequence.json"));
       const replay::Finished finished = replay::open_finished(folder_);
       truth(finished);
-      if (options_.deep_every > 0) deep(finished);
+      if (options_.deep_every > 0 && has_its_inputs()) deep(finished);
     } catch (const Error& error) {
       fault(error.what());
     }
@@ -135,6 +160,20 @@ class Check {
         if (finished.scene && finished.scene->output.masks) mask(finished, frame, intruder);
       }
     result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
+  }
+
+  // Of other inputs another truth follows, which says nothing of the sequence.
+  bool has_its_inputs() {
+    bool has = true;
+    for (const auto& [name, input] : result_.inputs) {
+      const std::string now = inputs_now_.sha256_of(name);
+      if (now == input.sha256) continue;
+      has = false;
+      fault(now.empty() ? name + ", of which it was made, is not there"
+                        : "was made of another " + name +
+                              " than is there now (its SHA-256 differs); it is not drawn anew");
+    }
+    return has;
   }
 
   void deep(const replay::Finished& finished) {
@@ -226,6 +265,7 @@ class Check {
   std::string name_;
   fs::path folder_;
   const VerifyOptions& options_;
+  InputsNow& inputs_now_;
   VerifyResult result_;
   std::vector<double> contrast_ratios_;  // stated to measured
 };
@@ -313,14 +353,15 @@ std::vector<VerifyResult> results_of(const catalogue::Folder& folder,
                                      const catalogue::Expansion& expansion,
                                      std::int64_t first,
                                      std::int64_t count,
-                                     const VerifyOptions& options) {
+                                     const VerifyOptions& options,
+                                     InputsNow& inputs_now) {
   std::vector<VerifyResult> results(static_cast<std::size_t>(count));
   in_parallel(
       results.size(),
       options.jobs,
       [&](std::size_t i) {
         const catalogue::Item item = expansion.at(first + static_cast<std::int64_t>(i));
-        results[i] = Check(folder, item, options).run();
+        results[i] = Check(folder, item, options, inputs_now).run();
       },
       [&](std::int64_t done, std::int64_t) {
         if (options.progress) options.progress(first + done, expansion.size());
@@ -336,9 +377,10 @@ VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
   const catalogue::Catalogue catalogue = catalogue_of(folder);
   const catalogue::Expansion expansion(catalogue);
   VerifyResult result;
+  InputsNow inputs_now;
   for (std::int64_t first = 0; first < expansion.size(); first += kMaxHeldResults) {
     const std::int64_t count = std::min(kMaxHeldResults, expansion.size() - first);
-    for (const VerifyResult& one : results_of(folder, expansion, first, count, options))
+    for (const VerifyResult& one : results_of(folder, expansion, first, count, options, inputs_now))
       add(one, result);
   }
   if (result.not_there > kMaxMissingFaults)
