@@ -810,7 +810,7 @@ class Mined(unittest.TestCase):
             with self.assertRaisesRegex(airtruth.Error, words) as caught:
                 airtruth.mine(arguments[0], detector=arguments[1] if len(arguments) > 1 else "cmo", frame_rate_hz=25)
             self.assertEqual(len(str(caught.exception).splitlines()), 1)
-        with self.assertRaisesRegex(airtruth.Error, "numbered pictures, which state no rate"):
+        with self.assertRaisesRegex(airtruth.Error, "numbered pictures, which state no rate; expected frame_rate_hz"):
             airtruth.mine("sky")
         for arguments in ({"every": 0}, {"count": 0}):
             self.assertRaises(ValueError, airtruth.mine, "sky", **arguments)
@@ -925,17 +925,46 @@ class Hostile(unittest.TestCase):
             (lambda: airtruth.render("scene.toml", threads=-1), ValueError, "threads is -1"),
             (lambda: airtruth.render({"a": object()}), TypeError, "a is a object"),
             (lambda: airtruth.DataSet("set")["other"], airtruth.Error, "other"),
-            (lambda: airtruth.DataSet("set")["across"].frame(6), IndexError, ""),
+            (lambda: airtruth.DataSet("set")["across"].frame(6), IndexError, "there is no frame 6; across has 6"),
+            (lambda: airtruth.DataSet("set")[0], TypeError, "name is of the type int; expected a text"),
+            (lambda: airtruth.DataSet("set", boxes=1)["across"], TypeError, "boxes is of the type int; expected a text"),
+            (lambda: airtruth.Stream("training.toml", seed=-1), ValueError, "seed is -1; expected 0 to 18446744073709551615"),
+            (lambda: airtruth.Stream("training.toml", threads=2**70), ValueError, "threads is 1180591620717411303424; expected 0 to 256"),
+            (lambda: airtruth.VideoReader("clip.mkv", first_frame=2**64), ValueError, "first_frame is 18446744073709551616; expected 0 to"),
+            (lambda: airtruth.VideoReader("clip.mkv", first_frame=-1), ValueError, "first_frame is -1; expected 0 to"),
+            (lambda: airtruth.render("scene.toml", threads=1.5), TypeError, "threads is of the type float; expected a whole number"),
+            (lambda: airtruth.motion("clip.mkv", model=3), TypeError, "model is of the type int; expected a text"),
+            (lambda: airtruth.sample_encounters("geometric", own="own.csv", jobs=257), ValueError, "jobs is 257; expected 0 to 256"),
+            (lambda: airtruth.Lens.pinhole((1,), (2, 3), 64, 48), TypeError, "focal_px is of the type tuple; expected two numbers"),
+            (lambda: airtruth.Lens.pinhole((1, 1), (2, 3), 0, 48), ValueError, "width is 0; expected 1 to 65536"),
+            (lambda: evaluate.score([], [], size=(2**70, 1)), ValueError, "width is 1180591620717411303424; expected 1 to 65536"),
+            (lambda: evaluate.bootstrap_mean([1, math.nan]), ValueError, "number 1 of values is infinite or NaN"),
+            (lambda: evaluate.average_precision([[[0, 0, 9, 9]]], [[[0, 0, 9, 9]]], [[math.inf]]), ValueError, "number 0 of scores is infinite or NaN"),
+            (lambda: airtruth.HardNegatives(pathlib.Path("clip.mkv"), "cmo", []).crops((-1, 9)), ValueError, r"size_px is \[-1, 9\]; expected a width"),
             (lambda: airtruth.VideoReader("clip.mkv", 6), airtruth.Error, "6 frames"),
             (lambda: airtruth.read_labels("coco", "cocoo"), airtruth.Error, "coco"),
             (lambda: airtruth.aircraft("c127"), airtruth.Error, "no name among .* contains 'c127'; the nearest are .*c172"),
         ):
-            with self.assertRaisesRegex(kind, words):
+            with self.assertRaisesRegex(kind, words) as caught:
                 wrong()
+            self.assertEqual(len(str(caught.exception).splitlines()), 1, str(caught.exception))
         deep = {}
         deep["deep"] = deep
         with self.assertRaises(ValueError):
             airtruth.render(deep)
+
+    def test_a_lens_is_the_same_in_another_process(self):
+        for lens in (
+            airtruth.Lens.pinhole((500, 510), (320, 240), 640, 480),
+            airtruth.Lens.brown_conrady((500, 500), (320, 240), [-0.2, 0.03, 0, 0], 640, 480),
+            airtruth.Lens.fisheye((300, 300), (320, 240), [0.1], 640, 480),
+        ):
+            copy = pickle.loads(pickle.dumps(lens))
+            self.assertEqual((copy.model, copy.width, copy.height), (lens.model, lens.width, lens.height))
+            point = [[0.3, -0.2, 1]]
+            self.assertTrue(np.array_equal(copy.pixel_from_cam(point), lens.pixel_from_cam(point)))
+        moved = airtruth.Motion(640, 480, lens, *[np.zeros(0)] * 6, [], None)
+        self.assertEqual(pickle.loads(pickle.dumps(moved)).lens.model, "fisheye")
 
     def test_use_after_close_is_an_error(self):
         frames, video = airtruth.render("scene.toml"), airtruth.VideoReader("clip.mkv")

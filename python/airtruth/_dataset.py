@@ -98,7 +98,10 @@ class Sequence:
         >>> frame.rgb.shape, frame.intruders[0].covered_box
         ((120, 160, 3), array([43, 57, 31, 11]))
         """
-        k = range(len(self))[k]
+        try:
+            k = range(len(self))[k]
+        except IndexError:
+            raise IndexError(f"there is no frame {k}; {self.name} has {len(self)}") from None
         truth = truth_of(self._core.truth(k))
         process, following, reader = self._reader or (0, 0, None)
         if reader is None or process != os.getpid() or following != truth.frame:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Sequence
+from typing import Any, Sequence, Tuple
 
 from numpy.typing import ArrayLike
 
@@ -139,6 +139,11 @@ class Lens:
     def vertical_fov_deg(self) -> float:
         """The full field of view through the principal point."""
         return self._core.vertical_fov_deg
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        distortion = [] if self.model == "pinhole" else [self.distortion.tolist()]
+        arguments = (self.focal_px.tolist(), self.principal_point_px.tolist(), *distortion, self.width, self.height)
+        return getattr(Lens, self.model), arguments
 
     def __repr__(self) -> str:
         return f"<airtruth.Lens {self.model} {self.width}x{self.height}>"

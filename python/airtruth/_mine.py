@@ -38,10 +38,10 @@ class FalseAlarm:
         >>> alarm.around((64, 32), next(airtruth.VideoReader("clip.mkv")))
         array([96,  6, 64, 32])
         """
-        size = np.asarray(size_px, np.int64)
+        size = _size(size_px)
         whole = np.array(frame.gray.shape[::-1], np.int64)
-        if size.shape != (2,) or (size < 1).any() or (size > whole).any():
-            raise ValueError(f"size_px is {list(size_px)}; expected a width and a height from 1 px to those of the frame, {whole.tolist()}")
+        if (size > whole).any():
+            raise ValueError(f"size_px is {list(size_px)}; expected a width and a height up to those of the frame, {whole.tolist()}")
         corner = np.round(self.box[:2] + self.box[2:] / 2 - size / 2).astype(np.int64)
         return np.concatenate([np.clip(corner, 0, whole - size), size])
 
@@ -82,7 +82,7 @@ class HardNegatives:
         width of "gray" (Frame.full_range_gray), uint8. ValueError where the frame is smaller than a crop."""
         if channels not in ("rgb", "gray"):
             raise ValueError(f"channels is {channels!r}; expected 'rgb' or 'gray'")
-        width, height = size_px
+        width, height = _size(size_px)
         pictures = np.zeros((len(self.alarms), height, width) + ((3,) if channels == "rgb" else ()), np.uint8)
         place = {id(alarm): k for k, alarm in enumerate(self.alarms)}
         for frame, alarms in self.frames():
@@ -123,6 +123,13 @@ class HardNegatives:
                     "weight": weight,
                 }
         return list(made.values())
+
+
+def _size(size_px: Sequence[int]) -> NDArray[np.int64]:
+    size = np.asarray(size_px, np.int64)
+    if size.shape != (2,) or (size < 1).any():
+        raise ValueError(f"size_px is {size.tolist()}; expected a width and a height of 1 px or more")
+    return size
 
 
 def _found(results: pathlib.Path) -> Numbers:
@@ -204,7 +211,10 @@ def mine(
         "frame_rate": frame_rate_hz,
     }
     with tempfile.TemporaryDirectory(prefix="airtruth_mine_") as folder:
-        run_from(3, "detect", [path], {**options, "out": folder}, progress)
+        try:
+            run_from(3, "detect", [path], {**options, "out": folder}, progress)
+        except Error as error:  # in the words of the program
+            raise Error(str(error).replace("--frame-rate", "frame_rate_hz")) from None
         rows = _thinned(_found(pathlib.Path(folder)), every, count)
     mined = HardNegatives(path, detector, [FalseAlarm(int(row[0]), 0.0, row[2:6].copy(), float(row[6])) for row in rows], frame_rate_hz)
     for frame, alarms in mined.frames():

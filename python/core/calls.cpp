@@ -53,12 +53,8 @@ void watch_end_of_interpreter() {
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_of_interpreter));
 }
 
-int checked_threads(int threads) {
-  constexpr int kMost = 256;
-  if (threads < 0 || threads > kMost)
-    throw py::value_error("threads is " + std::to_string(threads) + "; expected 0 to " +
-                          std::to_string(kMost));
-  return threads;
+int checked_threads(const py::object& threads, const char* what) {
+  return whole_of<int>(threads, what, 0, 256);
 }
 
 void Warnings::add(const std::string& message) {

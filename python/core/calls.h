@@ -55,8 +55,8 @@ class GilReleased {
 // Has `atexit` call what GilReleased needs to know of the interpreter's end.
 void watch_end_of_interpreter();
 
-// 0 (one for each core) to 256; ValueError for any other.
-int checked_threads(int threads);
+// 0 (one for each core) to 256; ValueError for any other. `what` names the argument.
+int checked_threads(const py::object& threads, const char* what = "threads");
 
 // Where measured motion is kept: True and False, or a folder. `Options` has use_cache and cache.
 template <typename Options>

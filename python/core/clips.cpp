@@ -161,8 +161,26 @@ py::list profiles() {
 }  // namespace
 
 void bind_clips(py::module_& core) {
-  core.def("motion", &motion);
-  core.def("calibrate", &calibration);
+  core.def("motion",
+           named(&motion,
+                 "video",
+                 "model",
+                 "lens",
+                 "mask",
+                 "reference",
+                 "smoothing_s",
+                 "cache",
+                 "progress"));
+  core.def("calibrate",
+           named(&calibration,
+                 "videos",
+                 "lens",
+                 "mask",
+                 "altitude_m",
+                 "heading_deg",
+                 "gamma",
+                 "profile",
+                 "progress"));
   core.def("camera_profiles", &profiles);
 }
 

@@ -75,7 +75,7 @@ void bind_dataset(py::module_& core) {
   py::class_<DataSet>(core, "DataSet")
       .def(py::init<const std::filesystem::path&>())
       .def_property_readonly("names", &DataSet::names)
-      .def("sequence", &sequence_in);
+      .def("sequence", named(&sequence_in, "self", "name", "boxes"));
   py::class_<PySequence>(core, "Sequence")
       .def_property_readonly("name", [](const PySequence& s) { return s.sequence.name; })
       .def_property_readonly("folder", [](const PySequence& s) { return s.sequence.folder; })

@@ -22,7 +22,7 @@ std::optional<std::int64_t> track_of(double number, const char* what) {
   constexpr double kMost = 9e15;
   if (std::isnan(number)) return std::nullopt;
   if (!(std::abs(number) <= kMost) || number != std::floor(number))
-    throw py::value_error(std::string(what) + " holds no whole number");
+    throw py::value_error(std::string(what) + " holds a number that is not whole");
   return static_cast<std::int64_t>(number);
 }
 
@@ -192,7 +192,7 @@ AotFrame aot_frame_of(const py::handle& item, double centre_px) {
     const auto id = track_of(ids[i], "truth_tracks");
     if (!id) throw py::value_error("truth_tracks holds a NaN");
     if (above[i] != -1 && above[i] != 0 && above[i] != 1)
-      throw py::value_error("above_horizon holds no -1, 0 or 1");
+      throw py::value_error("above_horizon holds another number than -1, 0 and 1");
     const std::optional<double> range_m =
         std::isnan(ranges[i]) ? std::nullopt : std::optional(ranges[i]);
     frame.objects.push_back({*id, box, range_m, static_cast<int>(above[i])});
@@ -200,7 +200,7 @@ AotFrame aot_frame_of(const py::handle& item, double centre_px) {
   const std::vector<double> numbers = beside(scores, "scores", boxes.size());
   const std::vector<double> of_tracks = beside(tracks, "tracks", boxes.size());
   each_box(boxes, [&](const Box& box, std::size_t i) {
-    if (!std::isfinite(numbers[i])) throw py::value_error("scores holds no finite number");
+    expect_finite(numbers, i, "scores");
     frame.detections.push_back({box, numbers[i], track_of(of_tracks[i], "tracks")});
   });
   return frame;
@@ -269,10 +269,11 @@ py::tuple ranks(const py::list& sequences, std::optional<double> rate_hz, double
 }  // namespace
 
 void bind_detectors(py::module_& core) {
-  core.def("froc", &froc_dict);
-  core.def("hota", &hota_dict);
-  core.def("aot", &aot);
-  core.def("aot_ranks", &ranks);
+  core.def("froc", named(&froc_dict, "sequences", "rate_hz", "centre_px"));
+  core.def("hota", named(&hota_dict, "sequences", "centre_px"));
+  core.def("aot",
+           named(&aot, "sequences", "rate_hz", "centre_px", "min_score", "min_track_frames"));
+  core.def("aot_ranks", named(&ranks, "sequences", "rate_hz", "centre_px"));
 }
 
 }  // namespace airtruth::python

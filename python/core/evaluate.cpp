@@ -18,7 +18,8 @@ namespace {
 
 using namespace evaluation;
 
-using Size = std::optional<std::pair<std::int64_t, std::int64_t>>;
+using TwoWhole = std::pair<py::object, py::object>;
+using Size = std::optional<TwoWhole>;
 
 // Width and height of a picture; (0, 0): unknown.
 std::pair<int, int> picture_size(const Size& size) {
@@ -109,13 +110,6 @@ py::array overlaps(const py::object& a, const py::object& b) {
 py::object interval_tuple(const std::optional<Interval>& interval) {
   if (!interval) return py::none();
   return py::make_tuple(interval->low, interval->high);
-}
-
-std::vector<double> finite_list_of(const py::object& value, const char* what) {
-  std::vector<double> values = list_of(value, what);
-  for (const double one : values)
-    if (!std::isfinite(one)) throw py::value_error(std::string(what) + " holds no finite number");
-  return values;
 }
 
 py::object bootstrap(const py::object& values, const py::object& weights) {
@@ -256,16 +250,13 @@ std::vector<MultiStartRuns> multistart_runs(const py::iterable& sequences) {
   return result;
 }
 
-std::pair<int, int> range_of(const std::pair<std::int64_t, std::int64_t>& range) {
-  constexpr std::int64_t kMost = 1'000'000;
-  if (range.first < 0 || range.second < range.first || range.second > kMost)
-    throw py::value_error("eao_range is (" + std::to_string(range.first) + ", " +
-                          std::to_string(range.second) + "); expected 0 <= low <= high <= 1000000");
-  return {static_cast<int>(range.first), static_cast<int>(range.second)};
+std::pair<int, int> range_of(const TwoWhole& range) {
+  constexpr int kMost = 1'000'000;
+  const int low = whole_of<int>(range.first, "eao_range[0]", 0, kMost);
+  return {low, whole_of<int>(range.second, "eao_range[1]", low, kMost)};
 }
 
-py::dict restart_dict(const py::iterable& sequences,
-                      const std::pair<std::int64_t, std::int64_t>& range) {
+py::dict restart_dict(const py::iterable& sequences, const TwoWhole& range) {
   const Restart result = left_alone(
       [runs = restart_runs(sequences), to = range_of(range)] { return restart_score(runs, to); });
   py::dict dict;
@@ -278,8 +269,7 @@ py::dict restart_dict(const py::iterable& sequences,
   return dict;
 }
 
-py::dict multistart_dict(const py::iterable& sequences,
-                         const std::pair<std::int64_t, std::int64_t>& range) {
+py::dict multistart_dict(const py::iterable& sequences, const TwoWhole& range) {
   const MultiStart result = left_alone([runs = multistart_runs(sequences), to = range_of(range)] {
     return multistart_score(runs, to);
   });
@@ -292,20 +282,19 @@ py::dict multistart_dict(const py::iterable& sequences,
   return dict;
 }
 
-py::list anchors(const py::object& truth, std::int64_t step) {
-  if (step < 1 || step > 1'000'000)
-    throw py::value_error("step is " + std::to_string(step) + "; expected 1 to 1000000");
+py::list anchors(const py::object& truth, const py::object& step) {
+  const int frames = whole_of<int>(step, "step", 1, 1'000'000);
   py::list result;
-  for (const Anchor& anchor : anchors_of(vot_truth(truth, {}), static_cast<int>(step)))
+  for (const Anchor& anchor : anchors_of(vot_truth(truth, {}), frames))
     result.append(py::make_tuple(anchor.frame, anchor.is_backward));
   return result;
 }
 
-std::pair<int, int> lengths_range(const std::vector<std::int64_t>& lengths) {
-  for (const std::int64_t length : lengths)
-    if (length < 1 || length > 1'000'000)
-      throw py::value_error("a length is " + std::to_string(length) + "; expected 1 to 1000000");
-  return eao_range(lengths);
+std::pair<int, int> lengths_range(const py::sequence& lengths) {
+  std::vector<std::int64_t> frames;
+  for (const py::handle& length : lengths)
+    frames.push_back(whole_of<int>(length, "a length", 1, 1'000'000));
+  return eao_range(frames);
 }
 
 }  // namespace
@@ -356,20 +345,20 @@ evaluation::ScoredImage scored_image_of(const py::handle& item) {
 }
 
 void bind_evaluate(py::module_& core) {
-  core.def("score", &score_of);
-  core.def("mean_of", &mean);
+  core.def("score", named(&score_of, "truth", "answers", "seconds", "size"));
+  core.def("mean_of", named(&mean, "scores"));
   core.def("first_loss", [](const py::object& truth, const py::object& answers) {
     return first_loss(pairs_of(truth, answers));
   });
   core.def("overlap", &overlaps);
-  core.def("average_precision", &precision_dict);
+  core.def("average_precision", named(&precision_dict, "sequences", "centre_px"));
   core.def("bootstrap_mean", &bootstrap);
   core.def("paired", &paired_dict);
   core.def("kendall_tau", &tau);
-  core.def("restart_score", &restart_dict);
-  core.def("multistart_score", &multistart_dict);
+  core.def("restart_score", named(&restart_dict, "sequences", "eao_range"));
+  core.def("multistart_score", named(&multistart_dict, "sequences", "eao_range"));
   core.def("anchors_of", &anchors);
-  core.def("eao_range", &lengths_range);
+  core.def("eao_range", named(&lengths_range, "lengths"));
 }
 
 }  // namespace airtruth::python

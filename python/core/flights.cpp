@@ -71,7 +71,8 @@ std::vector<std::size_t> numbers_from_1(const py::object& value, const char* wha
   std::vector<std::size_t> numbers;
   for (const double number : list_of(value, what)) {
     if (!(number >= 1 && number <= 1e6) || number != std::floor(number))
-      throw py::value_error(std::string(what) + " holds no whole number of 1 to 1000000");
+      throw py::value_error(std::string(what) +
+                            " holds a number that is no whole one of 1 to 1000000");
     numbers.push_back(static_cast<std::size_t>(number));
   }
   return numbers;
@@ -117,7 +118,7 @@ py::dict encounters(const fs::path& model,
                     const py::object& airspace,
                     std::optional<double> cpa_time_s,
                     const std::array<py::object, 9>& ranges,
-                    int jobs) {
+                    const py::object& jobs) {
   EncounterOptions options;
   options.own = own.string();
   options.count = count;
@@ -135,7 +136,7 @@ py::dict encounters(const fs::path& model,
   options.speed_mps = list_of(ranges[6], "speed_mps");
   options.climb_mps = list_of(ranges[7], "climb_mps");
   options.turn_rate_dps = list_of(ranges[8], "turn_rate_dps");
-  options.jobs = checked_threads(jobs);
+  options.jobs = checked_threads(jobs, "jobs");
   return encounters_dict(stoppable(
       options, [&](const EncounterOptions& o) { return sample_encounters(model.string(), o); }));
 }
@@ -143,10 +144,21 @@ py::dict encounters(const fs::path& model,
 }  // namespace
 
 void bind_flights(py::module_& core) {
-  core.def("aircraft", &aircraft);
-  core.def("left_out_aircraft", &left_out);
-  core.def("show_aircraft", &show);
-  core.def("sample_encounters", &encounters);
+  core.def("aircraft", named(&aircraft, "filter"));
+  core.def("left_out_aircraft", named(&left_out, "filter"));
+  core.def("show_aircraft", named(&show, "name", "forward", "up", "scale"));
+  core.def("sample_encounters",
+           named(&encounters,
+                 "model",
+                 "own",
+                 "count",
+                 "seed",
+                 "duration_s",
+                 "domain",
+                 "airspace",
+                 "cpa_time_s",
+                 "ranges",
+                 "jobs"));
 }
 
 }  // namespace airtruth::python

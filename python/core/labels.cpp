@@ -52,7 +52,7 @@ std::pair<int, int> size_of_picture(const fs::path& picture) {
 
 PyClips clips_in(const std::string& format,
                  const fs::path& source,
-                 const std::optional<std::pair<std::int64_t, std::int64_t>>& size,
+                 const std::optional<std::pair<py::object, py::object>>& size,
                  const std::string& category) {
   if (format == "airtruth") return {{exchange::read_labels(source)}};
   exchange::ReadOptions options;
@@ -73,8 +73,8 @@ PyClips clips_in(const std::string& format,
 void write(const std::string& format,
            const fs::path& folder,
            const std::string& part,
-           const PyClips& clips) {
-  const exchange::Part written{part, clips.clips};
+           const py::object& clips) {
+  const exchange::Part written{part, clips.cast<const PyClips&>().clips};
   const GilReleased released;
   exchange::write_clips(exchange::format_from_name(format), folder, {&written, 1});
 }
@@ -113,8 +113,8 @@ py::dict clip_dict(const Clip& clip) {
 
 void bind_labels(py::module_& core) {
   py::class_<PyClips>(core, "Clips").def("dicts", &dicts);
-  core.def("read_clips", &clips_in);
-  core.def("write_clips", &write);
+  core.def("read_clips", named(&clips_in, "format", "source", "size", "category"));
+  core.def("write_clips", named(&write, "format", "folder", "part", "clips"));
 }
 
 }  // namespace airtruth::python

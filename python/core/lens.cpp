@@ -48,37 +48,50 @@ Doubles rays_of(const Lens& lens, const py::object& pixels) {
   return mapped<2, 3>(pixels, "pixels", [&](const auto& p) { return lens.ray_from_pixel(p); });
 }
 
-// A model of Lens whose distortion has coefficients, with checked sizes.
-auto with_coefficients(Lens (*make)(const Two&, const Two&, const Coefficients&, int, int)) {
-  return [make](const Two& focal_px,
-                const Two& centre_px,
-                const Coefficients& k,
-                std::int64_t w,
-                std::int64_t h) {
-    return make(focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
-  };
+Lens pinhole(const Two& focal_px, const Two& centre_px, const py::object& w, const py::object& h) {
+  return Lens::pinhole(focal_px, centre_px, size_of(w, "width"), size_of(h, "height"));
+}
+
+Lens pinhole_of_view(double fov_deg, const py::object& w, const py::object& h) {
+  return Lens::pinhole_from_vertical_fov(fov_deg, size_of(w, "width"), size_of(h, "height"));
+}
+
+// A model of Lens whose distortion has coefficients.
+template <Lens (*kMake)(const Two&, const Two&, const Coefficients&, int, int)>
+Lens with_coefficients(const Two& focal_px,
+                       const Two& centre_px,
+                       const Coefficients& k,
+                       const py::object& w,
+                       const py::object& h) {
+  return kMake(focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
+}
+
+Lens from_file(const std::filesystem::path& file, const py::object& w, const py::object& h) {
+  return Lens::from_file(file, size_of(w, "width"), size_of(h, "height"));
 }
 
 }  // namespace
 
 void bind_lens(py::module_& core) {
   py::class_<Lens>(core, "Lens")
-      .def_static("pinhole",
-                  [](const Two& focal_px, const Two& centre_px, std::int64_t w, std::int64_t h) {
-                    return Lens::pinhole(
-                        focal_px, centre_px, size_of(w, "width"), size_of(h, "height"));
-                  })
+      .def_static("pinhole", named(&pinhole, "focal_px", "principal_point_px", "width", "height"))
       .def_static("pinhole_from_vertical_fov",
-                  [](double fov_deg, std::int64_t w, std::int64_t h) {
-                    return Lens::pinhole_from_vertical_fov(
-                        fov_deg, size_of(w, "width"), size_of(h, "height"));
-                  })
-      .def_static("brown_conrady", with_coefficients(&Lens::brown_conrady))
-      .def_static("fisheye", with_coefficients(&Lens::fisheye))
-      .def_static("from_file",
-                  [](const std::filesystem::path& file, std::int64_t w, std::int64_t h) {
-                    return Lens::from_file(file, size_of(w, "width"), size_of(h, "height"));
-                  })
+                  named(&pinhole_of_view, "vertical_fov_deg", "width", "height"))
+      .def_static("brown_conrady",
+                  named(&with_coefficients<&Lens::brown_conrady>,
+                        "focal_px",
+                        "principal_point_px",
+                        "distortion",
+                        "width",
+                        "height"))
+      .def_static("fisheye",
+                  named(&with_coefficients<&Lens::fisheye>,
+                        "focal_px",
+                        "principal_point_px",
+                        "distortion",
+                        "width",
+                        "height"))
+      .def_static("from_file", named(&from_file, "calibration", "width", "height"))
       .def("pixel_from_cam", &pixels_of)
       .def("ray_from_pixel", &rays_of)
       .def_property_readonly("width", &Lens::width)

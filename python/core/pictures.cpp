@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
 #include <airtruth/renderer.h>
 #include <airtruth/video.h>
 #include <pybind11/stl.h>
@@ -30,7 +32,7 @@ class PyRenderer {
  public:
   PyRenderer(const py::object& scene,
              const fs::path& folder,
-             int threads,
+             const py::object& threads,
              const py::object& cache) {
     RenderOptions options;
     options.threads = checked_threads(threads);
@@ -111,14 +113,13 @@ class PyRenderer {
 // The frames of a video. One thread at a time.
 class PyVideoReader {
  public:
-  PyVideoReader(const fs::path& video, std::int64_t first_frame) {
-    if (first_frame < 0)
-      throw py::value_error("first_frame is " + std::to_string(first_frame) +
-                            "; expected 0 or more");
+  PyVideoReader(const fs::path& video, const py::object& first_frame) {
+    const auto first = whole_of<std::int64_t>(
+        first_frame, "first_frame", 0, std::numeric_limits<std::int64_t>::max());
     const Warn warn = [warnings = warnings_](const std::string& message) {
       warnings->add(message);
     };
-    reader_ = left_alone([=] { return std::make_unique<VideoReader>(video, first_frame, warn); });
+    reader_ = left_alone([=] { return std::make_unique<VideoReader>(video, first, warn); });
     warnings_->hand_over();
   }
   // The decoder's threads do not exist in a process that was forked off.
@@ -188,8 +189,8 @@ FramePicture picture_of(const py::sequence& planes,
       throw py::type_error("a plane is no array of uint8");
     const auto plane = py::array_t<std::uint8_t, py::array::c_style>::ensure(item);
     if (plane.ndim() != 2) throw py::value_error("a plane has not 2 dimensions");
-    const int height = size_of(plane.shape(0), "a plane's height");
-    const int width = size_of(plane.shape(1), "a plane's width");
+    const int height = size_of(py::int_(plane.shape(0)), "a plane's height");
+    const int width = size_of(py::int_(plane.shape(1)), "a plane's width");
     picture.planes.push_back({width, height, {plane.data(), plane.data() + plane.size()}});
   }
   if (picture.planes.empty()) throw py::value_error("there is no plane");
@@ -223,17 +224,17 @@ py::tuple picture_tuple(FramePicture picture) {
 
 void bind_pictures(py::module_& core) {
   py::class_<PyRenderer>(core, "Renderer")
-      .def(py::init<const py::object&, const fs::path&, int, const py::object&>())
+      .def(py::init<const py::object&, const fs::path&, const py::object&, const py::object&>())
       .def("next", &PyRenderer::next)
       .def("info", &PyRenderer::info)
       .def("lens", &PyRenderer::lens)
       .def("close", &PyRenderer::close);
   py::class_<PyVideoReader>(core, "VideoReader")
-      .def(py::init<const fs::path&, std::int64_t>())
+      .def(py::init<const fs::path&, const py::object&>())
       .def("next", &PyVideoReader::next)
       .def("info", &PyVideoReader::info)
       .def("close", &PyVideoReader::close);
-  core.def("rgb", &rgb);
+  core.def("rgb", named(&rgb, "planes", "pixel_format", "matrix", "is_full_range"));
 }
 
 }  // namespace airtruth::python

@@ -58,11 +58,11 @@ class PyStream {
  public:
   PyStream(const py::object& catalogue,
            const fs::path& folder,
-           std::uint64_t seed,
-           int threads,
+           const py::object& seed,
+           const py::object& threads,
            const py::object& cache) {
     StreamOptions options;
-    options.seed = seed;
+    options.seed = argument<std::uint64_t>(seed, "seed");
     options.threads = checked_threads(threads);
     take_cache(cache, options);
     options.warn = [warnings = warnings_](const std::string& message) { warnings->add(message); };
@@ -143,7 +143,11 @@ py::array in_crop_rows(const py::object& boxes, const py::object& crop) {
 
 void bind_stream(py::module_& core) {
   py::class_<PyStream>(core, "Stream")
-      .def(py::init<const py::object&, const fs::path&, std::uint64_t, int, const py::object&>())
+      .def(py::init<const py::object&,
+                    const fs::path&,
+                    const py::object&,
+                    const py::object&,
+                    const py::object&>())
       .def("sample", &PyStream::sample)
       .def("scene", &PyStream::scene)
       .def_property_readonly("is_stopped", &PyStream::is_stopped);

@@ -63,11 +63,33 @@ std::vector<std::optional<Box>> boxes_of(const py::handle& value, const std::str
   return boxes;
 }
 
-int size_of(std::int64_t value, const char* what) {
-  if (value < 1 || value > 65536)
-    throw py::value_error(std::string(what) + " is " + std::to_string(value) +
-                          "; expected 1 to 65536");
-  return static_cast<int>(value);
+void expect_finite(const std::vector<double>& numbers, std::size_t i, const std::string& what) {
+  if (!std::isfinite(numbers[i]))
+    throw py::value_error("number " + std::to_string(i) + " of " + what +
+                          " is infinite or NaN; expected finite numbers");
+}
+
+std::vector<double> finite_list_of(const py::handle& value, const std::string& what) {
+  std::vector<double> values = list_of(value, what);
+  for (std::size_t i = 0; i < values.size(); ++i) expect_finite(values, i, what);
+  return values;
+}
+
+void refuse_type(const py::handle& value, const std::string& what, const char* kind) {
+  throw py::type_error(what + " is of the type " +
+                       std::string(py::str(py::type::handle_of(value).attr("__name__"))) +
+                       "; expected " + kind);
+}
+
+py::int_ index_of(const py::handle& value, const std::string& what) {
+  if (PyIndex_Check(value.ptr()) == 0) refuse_type(value, what, "a whole number");
+  PyObject* number = PyNumber_Index(value.ptr());
+  if (number == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::int_>(number);
+}
+
+int size_of(const py::handle& value, const char* what) {
+  return whole_of<int>(value, what, 1, 65536);
 }
 
 py::str text(const std::string& bytes) {

@@ -3,9 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,8 +32,99 @@ std::vector<double> list_of(const py::handle& value, const std::string& what);
 // negative size; a row that holds a NaN is no box.
 std::vector<std::optional<Box>> boxes_of(const py::handle& value, const std::string& what);
 
+// ValueError where number i of an argument is infinite or NaN.
+void expect_finite(const std::vector<double>& numbers, std::size_t i, const std::string& what);
+// As list_of(), of finite numbers.
+std::vector<double> finite_list_of(const py::handle& value, const std::string& what);
+
+// A whole number as a Python int. Throws TypeError where the value is none; `what` names it.
+py::int_ index_of(const py::handle& value, const std::string& what);
+
+// A whole number from `least` to `most`; ValueError for any other, however large, and TypeError for
+// what is no whole number.
+template <typename Whole>
+Whole whole_of(const py::handle& value, const std::string& what, Whole least, Whole most) {
+  const py::int_ number = index_of(value, what);
+  if (number < py::int_(least) || number > py::int_(most))
+    throw py::value_error(what + " is " + std::string(py::str(number)) + "; expected " +
+                          std::to_string(least) + " to " + std::to_string(most));
+  return number.cast<Whole>();
+}
+
 // A size in pixels, 1 to 65536; ValueError for any other.
-int size_of(std::int64_t value, const char* what);
+int size_of(const py::handle& value, const char* what);
+
+// Throws the TypeError of one line that says that an argument is of another type than expected.
+[[noreturn]] void refuse_type(const py::handle& value, const std::string& what, const char* kind);
+
+template <typename T>
+struct OptionalValue : std::false_type {};
+template <typename T>
+struct OptionalValue<std::optional<T>> : std::true_type {
+  using Type = T;
+};
+
+template <typename T>
+constexpr const char* kind_of() {
+  if constexpr (std::is_same_v<T, double>) return "a number";
+  if constexpr (std::is_same_v<T, std::string>) return "a text";
+  if constexpr (std::is_same_v<T, std::filesystem::path>) return "a path";
+  if constexpr (std::is_same_v<T, std::array<double, 2>>) return "two numbers";
+  if constexpr (std::is_same_v<T, std::pair<py::object, py::object>>) return "two numbers";
+  if constexpr (std::is_same_v<T, std::vector<double>>) return "numbers";
+  return "another type";
+}
+
+// An argument as a type of C++, with the errors of whole_of() and refuse_type().
+template <typename T>
+T argument(const py::object& value, const char* what) {
+  if constexpr (std::is_same_v<T, py::object>) {
+    return value;
+  } else if constexpr (OptionalValue<T>::value) {
+    if (value.is_none()) return std::nullopt;
+    return argument<typename OptionalValue<T>::Type>(value, what);
+  } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    return whole_of<T>(value, what, std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
+  } else {
+    try {
+      return value.cast<T>();
+    } catch (const py::cast_error&) {
+      refuse_type(value, what, kind_of<T>());
+    }
+  }
+}
+
+// A function as pybind11 takes it, whose arguments have names for errors: pybind11's own error of
+// an argument that does not fit has many lines, of the types of C++.
+template <typename T>
+struct ObjectFor {
+  using Type = py::object;
+};
+template <typename Result, typename... Arguments>
+class Named {
+ public:
+  using Names = std::array<const char*, sizeof...(Arguments)>;
+  Named(Result (*function)(Arguments...), const Names& names)
+      : function_(function), names_(names) {}
+  Result operator()(const typename ObjectFor<Arguments>::Type&... values) const {
+    return call(std::index_sequence_for<Arguments...>(), values...);
+  }
+
+ private:
+  template <std::size_t... I>
+  Result call(std::index_sequence<I...>,
+              const typename ObjectFor<Arguments>::Type&... values) const {
+    return function_(argument<std::remove_cvref_t<Arguments>>(values, names_[I])...);
+  }
+
+  Result (*function_)(Arguments...);
+  Names names_;
+};
+template <typename Result, typename... Arguments, typename... Name>
+Named<Result, Arguments...> named(Result (*function)(Arguments...), Name... names) {
+  static_assert(sizeof...(Arguments) == sizeof...(Name), "each argument has a name");
+  return {function, {names...}};
+}
 
 // A text of the library, whose bytes need not be UTF-8 (names of files).
 py::str text(const std::string& bytes);
