@@ -10,6 +10,7 @@
 #include "dataset/build/inputs.h"
 #include "dataset/build/verify.h"
 #include "dataset/catalogue/folder.h"
+#include "dataset/labelled/import.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "support/error_of.h"
@@ -298,6 +299,42 @@ TEST_F(Build, DeepVerificationNamesAnInputThatChanged) {
     EXPECT_THAT(fault, HasSubstr("was made of another "));
     EXPECT_THAT(fault, HasSubstr("sky.mp4 than is there now"));
   }
+}
+
+TEST_F(Build, AnImportedSetIsVerifiedByItsPicturesAndBoxes) {
+  BuildOptions little;
+  little.only = "sky-across-c172";
+  build_set(catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), root_ / "set", little);
+  const fs::path made = root_ / "set" / "sequences" / "sky-across-c172";
+  EXPECT_TRUE(verify(made, {}).faults.empty());
+  const fs::path video = root_ / "boxes.mkv";
+  fs::copy_file(made / "sky-across-c172.mkv", video);
+  write_file(root_ / "boxes.csv", "frame,x,y,w,h\n0,10,20,30,40\n5,11,20,30,40\n");
+  labelled::ImportOptions options;
+  options.format = exchange::Format::kCsv;
+  options.videos[""] = video;
+  labelled::import_set(root_ / "boxes.csv", root_ / "imported", options);
+  const VerifyResult good = verify(root_ / "imported", {});
+  EXPECT_EQ(good.sequences, 1);
+  EXPECT_EQ(good.faults, std::vector<std::string>{});
+
+  const fs::path labels = root_ / "imported" / "sequences" / "boxes" / "labels.jsonl";
+  const std::string text = read_file(labels);
+  const std::string box = "\"box_px\":[11";
+  ASSERT_NE(text.find(box), std::string::npos) << text;
+  write_file(labels, std::string(text).replace(text.find(box), box.size(), "\"box_px\":[911"));
+  EXPECT_THAT(
+      verify(root_ / "imported", {}).faults,
+      testing::ElementsAre(HasSubstr("boxes: frame 5, track 1: its box is empty or outside")));
+  write_file(labels, text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+  EXPECT_THAT(verify(root_ / "imported", {}).faults,
+              testing::ElementsAre(HasSubstr("and sequence.json states")));
+  write_file(labels, text);
+  fs::remove(video);
+  EXPECT_THAT(verify(root_ / "imported", {}).faults, testing::ElementsAre(HasSubstr("boxes.mkv")));
+  fs::create_directories(root_ / "empty");
+  EXPECT_THAT(test_support::error_of([&] { verify(root_ / "empty", {}); }),
+              HasSubstr("holds no finished sequence"));
 }
 
 TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {

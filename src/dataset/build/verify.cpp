@@ -3,16 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <airtruth/labels.h>
 #include <fmt/format.h>
 
 #include "camera/lens/lens.h"
 #include "dataset/catalogue/expand.h"
+#include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
@@ -20,6 +24,7 @@
 #include "foundation/image/contrast_to_noise.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"
+#include "labels/exchange/text.h"
 #include "picture/composite/cover.h"
 #include "picture/video/reader.h"
 #include "picture/video/writer.h"
@@ -46,7 +51,8 @@ constexpr double kCodecFactor = 10;
 
 catalogue::Catalogue catalogue_of(const catalogue::Folder& folder) {
   if (!fs::exists(folder.catalogue()))
-    throw Error("is no data set: it holds no catalogue.toml", {folder.root.string()});
+    throw Error("holds no catalogue.toml; expected a set that `airtruth dataset build` has begun",
+                {folder.root.string()});
   return catalogue::read_catalogue(folder.catalogue());
 }
 
@@ -81,15 +87,18 @@ class InputsNow {
   setup::SharedInputs inputs_;
 };
 
+// A sequence and where it lies.
+struct Place {
+  std::string name;
+  fs::path folder;
+};
+
 // Verifies one sequence of a data set.
 class Check {
  public:
-  Check(const catalogue::Folder& folder,
-        const catalogue::Item& item,
-        const VerifyOptions& options,
-        InputsNow& inputs_now)
-      : name_(item.name),
-        folder_(folder.sequence(item)),
+  Check(Place place, const VerifyOptions& options, InputsNow& inputs_now)
+      : name_(std::move(place.name)),
+        folder_(std::move(place.folder)),
         options_(options),
         inputs_now_(inputs_now) {}
 
@@ -107,7 +116,9 @@ class Check {
  private:
   void whole() {
     try {
-      files(JsonDocument(folder_ / "sequence.json"));
+      const JsonDocument record(folder_ / "sequence.json");
+      if (fs::exists(folder_ / sequences::kLabels)) return labelled(record);
+      files(record);
       const replay::Finished finished = replay::open_finished(folder_);
       truth(finished);
       if (options_.deep_every > 0 && has_its_inputs()) deep(finished);
@@ -136,6 +147,54 @@ class Check {
     for (const auto& entry : fs::recursive_directory_iterator(folder_))
       if (entry.is_regular_file() && !known.contains(fs::relative(entry.path(), folder_).string()))
         fault(entry.path().filename().string() + " is not of this sequence");
+  }
+
+  // Of a clip that was labelled elsewhere and imported, its pictures and its labels are all that is
+  // known.
+  void labelled(const JsonObject& record) {
+    const exchange::Clip clip = exchange::read_labels(folder_ / sequences::kLabels);
+    std::int64_t labels = 0;
+    for (const exchange::LabelledFrame& frame : clip.frames)
+      for (const exchange::Label& label : frame.labels) {
+        ++labels;
+        if (!exchange::is_in_picture(label.box_px, clip.width, clip.height))
+          fault(fmt::format("frame {}, track {}: its box is empty or outside of the picture",
+                            frame.frame,
+                            label.track));
+      }
+    const std::int64_t frames = std::ssize(clip.frames);
+    const std::int64_t stated_frames = record.count("frames");
+    const std::int64_t stated_labels = record.count("labels");
+    if (frames != stated_frames || labels != stated_labels)
+      fault(fmt::format(
+          "labels.jsonl has {} frames and {} labels, and sequence.json states {} and {}",
+          frames,
+          labels,
+          stated_frames,
+          stated_labels));
+    result_.frames += frames;
+    if (!clip.media.empty()) pictures(clip);
+  }
+
+  void pictures(const exchange::Clip& clip) {
+    video::Reader reader(clip.media, {.threads = 1});
+    const int width = reader.info().width;
+    const int height = reader.info().height;
+    const std::string media = clip.media.string();
+    if (clip.width > 0 && (width != clip.width || height != clip.height))
+      fault(fmt::format("{} is of {}x{}, and labels.jsonl of {}x{}",
+                        media,
+                        width,
+                        height,
+                        clip.width,
+                        clip.height));
+    std::int64_t frames = 0;
+    while (reader.next()) ++frames;
+    if (!clip.frames.empty() && clip.frames.back().frame >= frames)
+      fault(fmt::format("{} has {} frames, and labels.jsonl goes on to frame {}",
+                        media,
+                        frames,
+                        clip.frames.back().frame));
   }
 
   void truth(const replay::Finished& finished) {
@@ -348,9 +407,33 @@ Status status(const fs::path& root) {
 
 namespace {
 
+// The sequences that are verified, in their order.
+struct Places {
+  std::int64_t size = 0;
+  std::function<Place(std::int64_t)> at;
+};
+
+Places places_of(const catalogue::Folder& folder) {
+  const auto catalogue = std::make_shared<const catalogue::Catalogue>(catalogue_of(folder));
+  const auto expansion = std::make_shared<const catalogue::Expansion>(*catalogue);
+  return {expansion->size(), [catalogue, expansion, folder](std::int64_t i) {
+            const catalogue::Item item = expansion->at(i);
+            return Place{item.name, folder.sequence(item)};
+          }};
+}
+
+// Of an imported set, and of what `render` has made, which have no catalogue: those that are there.
+Places places_there(const fs::path& root) {
+  const sequences::SequenceFolders folders = sequences::sequence_folders(root);
+  if (folders.names.empty()) throw sequences::no_sequence_in(root);
+  return {std::ssize(folders.names), [folders](std::int64_t i) {
+            const std::string& name = folders.names[static_cast<std::size_t>(i)];
+            return Place{name, folders.folder(name)};
+          }};
+}
+
 // The results of `count` sequences from number `first` on, in their order.
-std::vector<VerifyResult> results_of(const catalogue::Folder& folder,
-                                     const catalogue::Expansion& expansion,
+std::vector<VerifyResult> results_of(const Places& places,
                                      std::int64_t first,
                                      std::int64_t count,
                                      const VerifyOptions& options,
@@ -360,11 +443,11 @@ std::vector<VerifyResult> results_of(const catalogue::Folder& folder,
       results.size(),
       options.jobs,
       [&](std::size_t i) {
-        const catalogue::Item item = expansion.at(first + static_cast<std::int64_t>(i));
-        results[i] = Check(folder, item, options, inputs_now).run();
+        Place place = places.at(first + static_cast<std::int64_t>(i));
+        results[i] = Check(std::move(place), options, inputs_now).run();
       },
       [&](std::int64_t done, std::int64_t) {
-        if (options.progress) options.progress(first + done, expansion.size());
+        if (options.progress) options.progress(first + done, places.size);
       },
       options.stop);
   return results;
@@ -374,13 +457,14 @@ std::vector<VerifyResult> results_of(const catalogue::Folder& folder,
 
 VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
   const catalogue::Folder folder{root};
-  const catalogue::Catalogue catalogue = catalogue_of(folder);
-  const catalogue::Expansion expansion(catalogue);
+  // The record of a set that was built is there even where its catalogue is lost.
+  const bool is_built = fs::exists(folder.catalogue()) || fs::exists(folder.record());
+  const Places places = is_built ? places_of(folder) : places_there(root);
   VerifyResult result;
   InputsNow inputs_now;
-  for (std::int64_t first = 0; first < expansion.size(); first += kMaxHeldResults) {
-    const std::int64_t count = std::min(kMaxHeldResults, expansion.size() - first);
-    for (const VerifyResult& one : results_of(folder, expansion, first, count, options, inputs_now))
+  for (std::int64_t first = 0; first < places.size; first += kMaxHeldResults) {
+    const std::int64_t count = std::min(kMaxHeldResults, places.size - first);
+    for (const VerifyResult& one : results_of(places, first, count, options, inputs_now))
       add(one, result);
   }
   if (result.not_there > kMaxMissingFaults)
@@ -388,7 +472,7 @@ VerifyResult verify(const fs::path& root, const VerifyOptions& options) {
         "{} more sequences of the catalogue are not there; `airtruth dataset build` makes "
         "what is missing",
         result.not_there - kMaxMissingFaults));
-  check_manifest(folder, result);
+  if (is_built) check_manifest(folder, result);
   return result;
 }
 

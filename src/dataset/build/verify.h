@@ -66,6 +66,11 @@ struct VerifyResult {
   };
   std::map<std::string, Input> inputs;
 };
+//
+// A folder without a catalogue is verified by the sequences that are in it: those of `render`
+// likewise, and of imported clips that their pictures can be read, their size and number are those
+// of the labels, boxes lie in the picture, and labels.jsonl is as long as sequence.json states.
+// Throws Error where there is none.
 VerifyResult verify(const fs::path& root, const VerifyOptions& options);
 
 }  // namespace airtruth::build
