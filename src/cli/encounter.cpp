@@ -40,7 +40,12 @@ std::string words_of(const Sample& arguments, const sets::SetSummary& summary, d
                                   summary.encounters,
                                   arguments.own.empty() ? "tracks" : "encounters",
                                   arguments.seed);
-  if (arguments.is_geometric()) return words;
+  if (arguments.is_geometric()) {
+    if (summary.draws > summary.encounters)
+      words += fmt::format("; {:.3f} draws an encounter",
+                           double(summary.draws) / double(summary.encounters));
+    return words;
+  }
   if (share < 1)
     words += fmt::format("; the cut holds {:.3g} % of the model's traffic", 100 * share);
   words +=
