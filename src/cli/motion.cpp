@@ -66,6 +66,10 @@ void check_files(const MotionArguments& arguments, RunFiles& files) {
   if (!arguments.plot.empty()) plot::check_gnuplot("--plot");
   if (!arguments.stabilised.empty()) video::format_of_file(arguments.stabilised);
   files.begin();
+  if (!arguments.stabilised.empty())
+    video::check_output(video::Reader(arguments.video).info(),
+                        video::format_of_file(arguments.stabilised),
+                        {arguments.stabilised});
 }
 
 void report_gyro(const std::optional<gyro::GyroFit>& fit, Console& console) {

@@ -57,6 +57,16 @@ TEST(Catalogue, WhatItNamesMustBeThere) {
   EXPECT_THAT(error_of("name = \"empty\"\n"), HasSubstr("makes no sequence"));
 }
 
+TEST(Catalogue, WhatItsFormatCannotHoldIsRefusedAtTheBackground) {
+  std::string text = test_support::kCatalogue;
+  const std::string size = "width = 160, height = 120 }";
+  text.replace(text.find(size), size.size(), "width = 161, height = 121 }");
+  text.replace(text.find("\"mkv\""), 5, "\"mp4\"");
+  EXPECT_THAT(
+      test_support::error_of([&] { check_sources(catalogue::parse_catalogue(text, "c.toml")); }),
+      testing::AllOf(HasSubstr("c.toml:3"), HasSubstr("an odd size")));
+}
+
 TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
   const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
       std::string(test_support::kCatalogue) +

@@ -12,6 +12,7 @@
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "picture/video/writer.h"
 #include "sequence/demo/demo.h"
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/resolved_scene.h"
@@ -119,6 +120,7 @@ void check_background(const catalogue::Catalogue& catalogue, std::size_t place) 
   scene::Scene scene = catalogue::scene_over(catalogue, place);
   if (std::holds_alternative<fs::path>(background.source)) scene.background.mask = background.mask;
   video::StreamInfo info = stream_of(background);
+  video::check_output(info, scene.output.video, background.where);
   info.frame_count_estimate = 0;  // unknown
   pipeline::check_scene(scene, info);
 }

@@ -89,10 +89,7 @@ void fill_frame(AVFrame& frame, const Picture& picture) {
 
 // H.264 halves chroma in whole samples. libx264 also refuses such a size, but leaks memory when it
 // does.
-void check_size(const StreamInfo& info,
-                Chroma chroma,
-                Format format,
-                const std::filesystem::path& path) {
+void check_size(const StreamInfo& info, Chroma chroma, Format format, const Where& where) {
   const bool half_width = chroma == Chroma::k420 || chroma == Chroma::k422;
   const bool half_height = chroma == Chroma::k420;
   if (format != Format::kMp4 ||
@@ -102,14 +99,13 @@ void check_size(const StreamInfo& info,
                   std::to_string(info.height) +
                   " with halved chroma (an odd size); expected output.video = \"mkv\", \"avi\" or "
                   "\"png\"",
-              {path.string()});
+              where);
 }
 
 // AVI states one rate and no times.
-void check_rate(const StreamInfo& info, Format format, const std::filesystem::path& path) {
+void check_rate(const StreamInfo& info, Format format, const Where& where) {
   if (format == Format::kAvi && info.variable_frame_rate)
-    throw Error("avi cannot hold the times of a variable frame rate; expected mp4 or mkv",
-                {path.string()});
+    throw Error("avi cannot hold the times of a variable frame rate; expected mp4 or mkv", where);
 }
 
 AVPixelFormat pixel_format(const Colour& colour, Format format) {
@@ -296,7 +292,7 @@ FramePtr on_device(const AVCodecContext& encoder, const AVFrame& frame) {
 
 // The colour that a format stores for the video's pictures. Throws Error where it can hold none of
 // their colour and size.
-Colour stored_colour(const StreamInfo& info, Format format, const std::filesystem::path& path) {
+Colour stored_colour(const StreamInfo& info, Format format, const Where& where) {
   Colour stored = info.colour;
   if (format == Format::kMkv || format == Format::kPng) return stored;
   if (stored.matrix == Matrix::kRgb)
@@ -307,9 +303,8 @@ Colour stored_colour(const StreamInfo& info, Format format, const std::filesyste
     if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
   }
   if (stored.chroma == Chroma::k440)
-    throw Error("mp4 and avi cannot hold 4:4:0; expected output.video = \"mkv\" or \"png\"",
-                {path.string()});
-  check_size(info, stored.chroma, format, path);
+    throw Error("mp4 and avi cannot hold 4:4:0; expected output.video = \"mkv\" or \"png\"", where);
+  check_size(info, stored.chroma, format, where);
   return stored;
 }
 
@@ -439,8 +434,8 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   state_->part = part_path(path);
   state_->info = info;
   state_->options = options;
-  state_->stored = stored_colour(info, options.format, path);
-  check_rate(info, options.format, path);
+  check_output(info, options.format, {path.string()});
+  state_->stored = stored_colour(info, options.format, {path.string()});
   state_->unfinished.emplace(Unfinished::path(state_->part));
   if (options.format != Format::kPng) {
     state_->open();
@@ -500,6 +495,11 @@ void Writer::finish() {
     if (failed) s.fail("cannot create: " + failed.message());
   });
   s.unfinished.reset();
+}
+
+void check_output(const StreamInfo& info, Format format, const Where& where) {
+  stored_colour(info, format, where);
+  check_rate(info, format, where);
 }
 
 Format format_of_file(const fs::path& path) {

@@ -36,6 +36,9 @@ struct WriterOptions {
   Where encoder_where;
 };
 
+// Throws Error at `where` for a video that the format cannot hold, as a Writer does.
+void check_output(const StreamInfo& info, Format format, const Where& where);
+
 // Writes pictures of one size and colour with their time stamps, tagged with their colour. The file
 // is written under part_path(path) and renamed by finish(); a Writer that is destroyed before
 // finish() leaves nothing behind.
