@@ -130,6 +130,7 @@ class EarlyErrors(unittest.TestCase):
             (("scene", "new", "short.mkv", "-o", "new.txt"), "expected .toml"),
             (("evision", "nowhere", "--frames", "f.txt"), "expected .csv"),
             (("dataset", "report", "made/clip", "-o", "r.txt"), "expected .html or .htm"),
+            (("motion", "odd.mkv", "-o", "m.csv", "--stabilised", "s.mp4"), "odd size"),
             (("motion", "short.mkv", "-o", "m.csv", "--plot", "no/p.png"), "no folder no"),
             (("lens", "estimate", "short.mkv", "-o", "no/l.yml"), "no folder no"),
             (("synth", "-o", "new.mkv", "--truth", "no/t.csv"), "no folder no"),
