@@ -27,7 +27,6 @@
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
-#include "sequence/setup/motion_source.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
@@ -124,8 +123,7 @@ class Work {
     for (const JsonObject& input : record.objects("inputs")) {
       const fs::path file = is_background ? video : fs::path(input.text("name"));
       is_background = false;
-      const std::string now = setup::sha256_of_video(file, *shared_);
-      if (!now.empty() && now != input.text("sha256"))
+      if (is_another(file, input.text("sha256"), *shared_))
         throw Error(fmt::format("is another file than the one that '{}', which is kept, was made "
                                 "of (its SHA-256 differs); expected that file, or another folder "
                                 "for the set",

@@ -295,11 +295,28 @@ TEST_F(Build, ABackgroundThatChangedUnderABuildIsRefusedByName) {
   EXPECT_FALSE(build::status(root_ / "set").complete);
 }
 
+TEST_F(Build, AnInputIsAnotherOneByItsBytesAndNotByItsEnding) {
+  setup::SharedInputs inputs;
+  const fs::path log = root_ / "log.txt";  // a list of pictures has the same ending
+  write_file(log, "time_s,latitude_deg\n");
+  const std::string sha256 = sha256_of_file(log);
+  EXPECT_FALSE(is_another(log, sha256, inputs));
+  write_file(log, "time_s,latitude_deg,longitude_deg\n");
+  EXPECT_TRUE(is_another(log, sha256, inputs));
+  fs::remove(log);
+  EXPECT_FALSE(is_another(log, sha256, inputs));
+  EXPECT_FALSE(is_another(root_ / "frames" / "%04d.png", sha256, inputs));
+}
+
 TEST_F(Build, DeepVerificationNamesAnInputThatChanged) {
   build_set(catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), root_ / "set", {});
   VerifyOptions deep;
   deep.deep_every = 30;
   EXPECT_TRUE(verify(root_ / "set", deep).faults.empty());
+  const auto record = nlohmann::json::parse(
+      read_file(root_ / "set" / "sequences" / "sky-across-c172" / "sequence.json"));
+  for (const auto& input : record["inputs"])
+    EXPECT_TRUE(fs::path(input["name"].get<std::string>()).is_absolute()) << input["name"];
   change(root_ / "set" / "backgrounds" / "sky.mp4");
   EXPECT_TRUE(verify(root_ / "set", {}).faults.empty());
   const VerifyResult result = verify(root_ / "set", deep);

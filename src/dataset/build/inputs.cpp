@@ -18,6 +18,7 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/level_camera.h"
+#include "sequence/setup/motion_source.h"
 #include "sequence/setup/world.h"
 
 namespace airtruth::build {
@@ -152,6 +153,17 @@ void check_sources(const catalogue::Catalogue& catalogue) {
     setup::at_place(aircraft.where, [&] { return fleet::aircraft_file(aircraft.aircraft); });
   for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i) check_background(catalogue, i);
   check_names(catalogue);
+}
+
+bool is_another(const fs::path& input, const std::string& sha256, setup::SharedInputs& inputs) {
+  std::error_code ignored;
+  if (fs::is_regular_file(input, ignored) && inputs.sha256_of_file(input) == sha256) return false;
+  try {
+    const std::string now = setup::sha256_of_video(input, inputs);
+    return !now.empty() && now != sha256;
+  } catch (const Error&) {  // a text that is no list of pictures, or a series without any
+    return fs::exists(input, ignored);
+  }
 }
 
 catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "camera/lens/lens.h"
+#include "dataset/build/inputs.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
@@ -31,7 +32,6 @@
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
-#include "sequence/setup/motion_source.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
@@ -76,10 +76,9 @@ bool is_below(const fs::path& folder, const fs::path& name) {
 // that ask.
 class InputsNow {
  public:
-  // Empty where there is no such file.
-  std::string sha256_of(const fs::path& file) {
+  bool is_another(const fs::path& input, const std::string& sha256) {
     const std::lock_guard lock(mutex_);
-    return setup::sha256_of_video(file, inputs_);
+    return build::is_another(input, sha256, inputs_);
   }
 
  private:
@@ -221,16 +220,15 @@ class Check {
     result_.frames += static_cast<std::int64_t>(finished.truth.frames.size());
   }
 
-  // Of other inputs another truth follows, which says nothing of the sequence.
+  // Of other inputs another truth follows, which says nothing of the sequence. What is missing is
+  // an error of opening it.
   bool has_its_inputs() {
     bool has = true;
     for (const auto& [name, input] : result_.inputs) {
-      const std::string now = inputs_now_.sha256_of(name);
-      if (now == input.sha256) continue;
+      if (!inputs_now_.is_another(name, input.sha256)) continue;
       has = false;
-      fault(now.empty() ? name + ", of which it was made, is not there"
-                        : "was made of another " + name +
-                              " than is there now (its SHA-256 differs); it is not drawn anew");
+      fault("was made of another " + name +
+            " than is there now (its SHA-256 differs); it is not drawn anew");
     }
     return has;
   }

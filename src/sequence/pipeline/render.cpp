@@ -200,14 +200,16 @@ nlohmann::ordered_json input_files(const scene::Scene& scene,
                                    const std::string& video_sha256,
                                    setup::SharedInputs& inputs) {
   nlohmann::ordered_json result = nlohmann::ordered_json::array();
-  if (!video_sha256.empty()) add_file(result, scene.background.video, video_sha256);
-  const auto add = [&](const fs::path& file) {
-    add_file(result, file, inputs.sha256_of_file(file));
+  // Under the names that scene_toml has, wherever the run was called.
+  const auto add_with = [&](const fs::path& file, const std::string& sha256) {
+    add_file(result, fs::absolute(file).lexically_normal(), sha256);
   };
+  const auto add = [&](const fs::path& file) { add_with(file, inputs.sha256_of_file(file)); };
+  if (!video_sha256.empty()) add_with(scene.background.video, video_sha256);
   std::set<fs::path> masks;
   for (const scene::Occluder& occluder : scene.occluders)
     if (occluder.mask && masks.insert(*occluder.mask).second)
-      add_file(result, *occluder.mask, setup::sha256_of_video(*occluder.mask, inputs));
+      add_with(*occluder.mask, setup::sha256_of_video(*occluder.mask, inputs));
   for (const auto& [file, where] : scene::stated_files(scene))
     if (file != scene.background.video && !masks.contains(file)) add(file);
   for (const fs::path& model : model_files(world)) add(model);
