@@ -61,8 +61,7 @@ class AIRTRUTH_API DataSet {
   const std::vector<std::string>& names() const;
 
   // Reads a sequence, which may take a second for many thousand frames. Throws Error for a name
-  // that the set lacks, for a file that is missing or broken, and where covered boxes are requested
-  // and the sequence is older than they are.
+  // that the set lacks, and for a file that is missing or broken.
   Sequence sequence(const std::string& name, dataset::Boxes boxes = dataset::Boxes::kCovered) const;
 
  private:

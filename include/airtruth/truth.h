@@ -91,19 +91,19 @@ struct IntruderTruth {
   // Bearing from the boresight of the nominal, unshaken camera.
   std::optional<double> nominal_azimuth_deg;
   std::optional<double> nominal_elevation_deg;
-  // Empty where the intruder is not in the world, and in older files.
+  // Empty where the intruder is not in the world.
   std::optional<EncounterTruth> encounter;
   // Box of the projected geometry, not clipped by the frame.
   std::optional<Box> exact_box_px;
   // Bounds of the whole pixels that the intruder covers with an alpha of 0.08 or more: the box for
   // training and scoring.
   std::optional<PixelBox> covered_box_px;
-  // Number of those pixels; empty without that box, and in older files.
+  // Number of those pixels; empty without that box.
   std::optional<std::int64_t> covered_area_px;
   // Bounds of the pixels that changed; present exactly where the state is kVisible.
   std::optional<PixelBox> visible_box_px;
   // Root mean square difference of the covered box (else the visible one) from its surroundings
-  // over their noise, in the picture before it is encoded; empty in older files.
+  // over their noise, in the picture before it is encoded; empty without surroundings.
   std::optional<double> contrast_to_noise;
   // Number of pixels that changed.
   std::int64_t visible_area_px = 0;

@@ -460,8 +460,6 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   require_utf8(fs::absolute(set));
   require_utf8(fs::absolute(out));
   for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
-  if (options.boxes == dataset::Boxes::kCovered)
-    for (const std::string& name : labelled.names()) labelled.expect_covered_boxes(name);
   Place place(out, options_json(set, options));
   if (place.is_complete()) {
     ExportSummary summary;
@@ -469,7 +467,7 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
     const JsonObject record = file.object("summary");
     summary.sequences = record.count("sequences");
     summary.frames = record.count("frames");
-    if (record.has("faint")) summary.faint = record.count("faint");
+    summary.faint = record.count("faint");
     const JsonObject parts = record.object("frames_of_part");
     for (const std::string& part : parts.keys()) summary.frames_of_part[part] = parts.count(part);
     summary.was_there = true;

@@ -406,36 +406,20 @@ TEST_F(Made, VerificationHoldsMasksToTheirBoxes) {
               testing::Contains(HasSubstr("its mask is not of its covered box")));
 }
 
-// A set from before the truth had covered boxes.
-TEST_F(Made, AnOlderSetIsRefusedWithOneLineOrTakenByItsVisibleBoxes) {
-  const fs::path old = fresh();
-  fs::copy(set(), old, fs::copy_options::recursive);
-  for (const auto& folder : fs::directory_iterator(old / "sequences")) {
-    auto record = nlohmann::ordered_json::parse(read_file(folder.path() / "sequence.json"));
-    record.erase("covered_alpha");
-    write_file(folder.path() / "sequence.json", record.dump());
-  }
+TEST_F(Made, TruthWithoutCoveredBoxesIsRefusedWithOneLine) {
+  const fs::path lacking = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
+    intruder.erase("covered_box_px");
+  });
   ExportOptions options;
   options.images = Images::kNone;
   std::string said = "nothing";
-  const fs::path refused = fresh();
   try {
-    export_set(old, refused, options);
+    export_set(lacking, fresh(), options);
   } catch (const Error& error) {
     said = error.what();
   }
-  EXPECT_THAT(said, HasSubstr("was made before truth had covered boxes"));
-  EXPECT_THAT(said, HasSubstr("--boxes visible"));
+  EXPECT_THAT(said, HasSubstr("truth.jsonl:1: intruders[0] has no covered_box_px"));
   EXPECT_EQ(said.find('\n'), std::string::npos);
-  EXPECT_FALSE(fs::exists(refused));
-  options.boxes = dataset::Boxes::kVisible;
-  EXPECT_EQ(export_set(old, fresh(), options).frames, 32);
-  std::vector<std::string> warnings;
-  const Warn warn = [&](const std::string& w) { warnings.push_back(w); };
-  EXPECT_EQ(LabelledSet(old).usual_boxes(warn), dataset::Boxes::kVisible);
-  EXPECT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(LabelledSet(set()).usual_boxes(warn), dataset::Boxes::kCovered);
-  EXPECT_EQ(warnings.size(), 1u);
 }
 
 TEST_F(Made, WhatIsImportedCanBeLookedAt) {
@@ -560,10 +544,10 @@ TEST_F(Made, VerificationFindsAnIntruderThatGeometrySeesAndTruthDoesNot) {
   EXPECT_GT(build::verify(set(), {}).in_view, 16);
   const fs::path copy = changed("sky-across-c172", [](nlohmann::ordered_json& intruder) {
     intruder["state"] = "outside";
-    intruder.erase("visible_box_px");
-    intruder.erase("covered_box_px");
-    intruder.erase("covered_area_px");
-    intruder.erase("contrast_to_noise");
+    intruder["visible_box_px"] = nullptr;
+    intruder["covered_box_px"] = nullptr;
+    intruder["covered_area_px"] = nullptr;
+    intruder["contrast_to_noise"] = nullptr;
   });
   const build::VerifyResult result = build::verify(copy, {});
   EXPECT_EQ(result.in_view_without_box, 1);

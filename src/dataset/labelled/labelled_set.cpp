@@ -6,7 +6,6 @@
 
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/folder.h"
-#include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/json/json_object.h"
 #include "labels/pixel_mask/pixel_mask.h"
@@ -84,34 +83,8 @@ exchange::Clip LabelledSet::clip(const std::string& name,
                                  dataset::Boxes boxes,
                                  bool with_masks) const {
   if (is_imported(name)) return exchange::read_labels(folder(name) / sequences::kLabels);
-  if (boxes == dataset::Boxes::kCovered) expect_covered_boxes(name);
   const replay::Finished finished = replay::open_finished(folder(name));
   return clip_of(finished, boxes, with_masks && finished.scene && finished.scene->output.masks);
-}
-
-bool LabelledSet::has_covered_boxes(const std::string& name) const {
-  if (is_imported(name)) return true;
-  return JsonDocument(folder(name) / "sequence.json").has("covered_alpha");
-}
-
-void LabelledSet::expect_covered_boxes(const std::string& name) const {
-  if (!has_covered_boxes(name))
-    throw Error(
-        "was made before truth had covered boxes (covered_box_px); expected --boxes visible or "
-        "--boxes exact, or a sequence that is rendered again",
-        {folder(name).string()});
-}
-
-dataset::Boxes LabelledSet::usual_boxes(const Warn& warn) const {
-  for (const std::string& name : names()) {
-    if (has_covered_boxes(name)) continue;
-    airtruth::warn(warn,
-                   folder(name).string() +
-                       ": was made before truth had covered boxes (covered_box_px); the visible "
-                       "boxes are taken");
-    return dataset::Boxes::kVisible;
-  }
-  return dataset::Boxes::kCovered;
 }
 
 ClipFacts LabelledSet::facts(const std::string& name) const {

@@ -11,7 +11,6 @@
 #include "dataset/sequences/labels_of_truth.h"
 #include "dataset/sequences/layout.h"
 #include "foundation/base/files.h"
-#include "foundation/base/log.h"
 
 namespace airtruth::labelled {
 
@@ -49,20 +48,13 @@ class LabelledSet {
   // Returns one clip; its `media` is the path of its video. Labels exist for the frames in which an
   // object is visible and has the requested box. Each label holds its object's pixels where
   // `with_masks` is true and the sequence has masks. An imported clip has a single kind of box,
-  // which is returned for every value of `boxes`. Throws Error where covered boxes are requested
-  // and the sequence is older than they are.
+  // which is returned for every value of `boxes`.
   exchange::Clip clip(const std::string& name,
                       dataset::Boxes boxes = dataset::Boxes::kCovered,
                       bool with_masks = false) const;
-  // Returns kCovered, or kVisible (with a warning) where a sequence of the set is older than
-  // covered boxes are.
-  dataset::Boxes usual_boxes(const Warn& warn) const;
   fs::path folder(const std::string& name) const;
   // True where the clip was labelled elsewhere; nothing is known about its camera.
   bool is_imported(const std::string& name) const;
-  bool has_covered_boxes(const std::string& name) const;
-  // Throws Error where the sequence has no covered boxes.
-  void expect_covered_boxes(const std::string& name) const;
   // The number of sequences of the catalogue that the folder does not hold.
   std::int64_t missing() const { return missing_; }
 

@@ -8,8 +8,7 @@
 
 #include "sequence/replay/finished.h"
 
-// What the data card and the report page say of encounters. Imported clips and sequences older than
-// the record of encounters have none.
+// What the data card and the report page say of encounters. Imported clips have none.
 namespace airtruth::set_report {
 
 // When an intruder is nearest; empty where the sequence has no record of it.

@@ -27,7 +27,7 @@ struct Portrait {
   labelled::ClipFacts facts;
   video::StreamInfo info;
   std::optional<scene::Scene> scene;  // the effective scene; empty for an imported clip
-  // In the order of the scene; empty for an imported clip and an older sequence.
+  // In the order of the scene; empty for an imported clip.
   std::vector<pipeline::EncounterRecord> encounters;
   // Frames of aircraft with the state visible, hidden, outside, behind and ended, in this order.
   std::array<std::int64_t, 5> frames_by_state{};

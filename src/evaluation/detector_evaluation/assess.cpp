@@ -114,7 +114,7 @@ scores::Assessment assess(const fs::path& set,
   assessment.set = report::name_of_results(set);
   assessment.options = options;
   for (const sequences::Condition& one : options.where) assessment.where.push_back(one.text);
-  SetTruth truth = set_truth(set, options.volume, options.ignore, options.warn);
+  SetTruth truth = set_truth(set, options.volume, options.ignore);
   assessment.truths = std::move(truth.sequences);
   assessment.options.is_weighted = truth.is_weighted;
   assessment.left_out = std::move(truth.left_out);

@@ -91,19 +91,17 @@ scores::TruthObject object_of(const exchange::Label& label, const annotation::In
   return object;
 }
 
-// What is visible has a box: the one that is asked for, or else, for what does not count, the
-// visible one.
-scores::TruthFrame frame_of(const annotation::Frame& truth,
-                            dataset::Boxes boxes,
-                            const lens::Facts& lens) {
+// What is visible has a box: the covered one, or else, for what does not count, the visible one.
+scores::TruthFrame frame_of(const annotation::Frame& truth, const lens::Facts& lens) {
   scores::TruthFrame frame;
   frame.frame = truth.frame;
   frame.time_s = truth.time_s;
-  const auto asked = sequences::labels_of(truth, boxes, lens.width, lens.height);
+  const auto covered =
+      sequences::labels_of(truth, dataset::Boxes::kCovered, lens.width, lens.height);
   const auto visible =
       sequences::labels_of(truth, dataset::Boxes::kVisible, lens.width, lens.height);
   for (const exchange::Label& shown : visible.labels) {
-    const exchange::Label* label = label_of(asked, shown.track);
+    const exchange::Label* label = label_of(covered, shown.track);
     const annotation::Intruder& intruder =
         truth.intruders[static_cast<std::size_t>(shown.track) - 1];
     frame.objects.push_back(object_of(label != nullptr ? *label : shown, intruder));
@@ -204,9 +202,7 @@ void add_times_to_approach(scores::TruthSequence& truth) {
 }
 
 // Without its duration.
-scores::TruthSequence rendered_truth(const fs::path& folder,
-                                     dataset::Boxes boxes,
-                                     const std::string& volume) {
+scores::TruthSequence rendered_truth(const fs::path& folder, const std::string& volume) {
   const replay::Finished finished = replay::open_finished(folder);
   const JsonDocument record(folder / "sequence.json");
   scores::TruthSequence truth;
@@ -225,7 +221,7 @@ scores::TruthSequence rendered_truth(const fs::path& folder,
   truth.weight = record.maybe_number("weight");
   if (truth.weight && *truth.weight < 0) record.fail("weight", "a number from 0 on");
   for (const annotation::Frame& frame : finished.truth.frames)
-    truth.frames.push_back(frame_of(frame, boxes, finished.truth.lens));
+    truth.frames.push_back(frame_of(frame, finished.truth.lens));
   if (truth.frames.size() > 1 && truth.frames.back().time_s > 0)
     truth.frame_rate_hz = static_cast<double>(truth.frames.size() - 1) / truth.frames.back().time_s;
   for (const auto& [id, category] : aircraft_in(truth))
@@ -391,18 +387,14 @@ double entry_s(const separation::Volume& volume, const PairState& before, const 
 
 }  // namespace
 
-SetTruth set_truth(const fs::path& folder,
-                   const std::string& volume,
-                   fs::path ignore,
-                   const Warn& warn) {
+SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path ignore) {
   const labelled::LabelledSet set(folder);
-  const dataset::Boxes boxes = set.usual_boxes(warn);
   SetTruth result;
   std::size_t weighted = 0;
   for (const std::string& name : set.names()) {
     scores::TruthSequence& truth = result.sequences.emplace_back(
         set.is_imported(name) ? imported_truth(set, name)
-                              : rendered_truth(set.folder(name), boxes, volume));
+                              : rendered_truth(set.folder(name), volume));
     weighted += truth.weight ? 1 : 0;
     truth.name = name;
     start_at_0(truth);

@@ -13,7 +13,6 @@
 #include "encounter/separation/violation.h"
 #include "evaluation/scores/truth.h"
 #include "foundation/base/files.h"
-#include "foundation/base/log.h"
 
 // The truth of a data set as the measures of detections take it.
 namespace airtruth::detector_evaluation {
@@ -30,10 +29,7 @@ struct SetTruth {
 // An aircraft that is visible without a covered box is in the truth with its visible box and does
 // not count. Throws Error for a volume that is neither known nor any sequence's own, for a broken
 // file of regions, and for a region that fits no sequence.
-SetTruth set_truth(const fs::path& set,
-                   const std::string& volume,
-                   fs::path ignore,
-                   const Warn& warn);
+SetTruth set_truth(const fs::path& set, const std::string& volume, fs::path ignore);
 
 // Measures the contrast to noise of every aircraft in the sequence's video; without a video nothing
 // happens. Throws Error where the video ends before the truth does.

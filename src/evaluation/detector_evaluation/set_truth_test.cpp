@@ -64,7 +64,7 @@ class OfRenderedSet : public testing::Test {
   }
 
   static SetTruth truth(const std::string& volume = "") {
-    return set_truth(root_ / "set", volume, {}, {});
+    return set_truth(root_ / "set", volume, {});
   }
 
   // A folder of results that are the truth, shifted to the right, as one track.

@@ -281,7 +281,7 @@ Assessment assess(const fs::path& set,
   assessment.set = report::name_of_results(set);
   assessment.until_loss = options.until_loss;
   for (const sequences::Condition& one : options.where) assessment.where.push_back(one.text);
-  assessment.truths = truths_of(labelled::LabelledSet(set), options.warn);
+  assessment.truths = truths_of(labelled::LabelledSet(set));
   assessment.eao_range = options.eao_range.value_or(range_of(assessment.truths));
   // Results are read first, so that their faults are reported before minutes of video are read.
   AllResults found;

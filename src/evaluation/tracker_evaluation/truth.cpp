@@ -25,13 +25,12 @@ PixelBox covered(const Box& box) {
 
 }  // namespace
 
-std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& warn) {
-  const dataset::Boxes boxes = set.usual_boxes(warn);
+std::vector<TruthClip> truths_of(const labelled::LabelledSet& set) {
   std::vector<TruthClip> truths;
   for (const std::string& name : set.names()) {
     const auto lens = lens_of(set, name);
     const labelled::ClipFacts facts = set.facts(name);
-    for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name, boxes))) {
+    for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name))) {
       TruthClip& truth = truths.emplace_back();
       truth.contrast.resize(clip.frames.size());
       truth.clip = std::move(clip);

@@ -12,7 +12,6 @@
 
 #include "camera/lens/lens.h"
 #include "dataset/labelled/labelled_set.h"
-#include "foundation/base/log.h"
 #include "runners/results/trajectories.h"
 #include "show/drawing/thumbnails.h"
 
@@ -50,9 +49,8 @@ struct TruthClip {
 constexpr drawing::CutoutOptions kClose = {
     .surroundings = 3, .most_of_picture = 3, .side = 200, .whole_width = 400, .quality = 8};
 
-// Returns every object of every sequence, sorted by name, with its covered boxes
-// (LabelledSet::usual_boxes).
-std::vector<TruthClip> truths_of(const labelled::LabelledSet& set, const Warn& warn);
+// Returns every object of every sequence, sorted by name, with its covered boxes.
+std::vector<TruthClip> truths_of(const labelled::LabelledSet& set);
 
 // Reads the clip's video once and fills in the contrast of each frame and `stills` pictures spread
 // over the clip. A clip without a video gets neither.

@@ -37,8 +37,8 @@ std::array<double, 9> homography(const JsonObject& object, const char* key) {
   return result;
 }
 
-// Takes the values of members from an object: visit of truth_fields.h. An optional member may be
-// missing.
+// Takes the values of members from an object: visit of truth_fields.h. An optional member that is
+// empty is null; hidden_by_occluder is missing instead.
 struct Reading {
   const JsonObject& object;
 
@@ -71,7 +71,9 @@ struct Reading {
   }
   template <typename T>
   void operator()(const char* key, std::optional<T>& value) const {
-    if (object.has(key)) (*this)(key, value.emplace());
+    const bool may_be_missing = key == std::string_view("hidden_by_occluder");
+    if (may_be_missing ? object.has(key) : !object.value(key).is_null())
+      (*this)(key, value.emplace());
   }
 };
 
@@ -92,17 +94,6 @@ void read_shake(const JsonObject& motion, Frame& frame) {
     frame.frame_from_reference_per_s = homography(motion, "frame_from_reference_per_s");
 }
 
-// Older files have one bearing, which is the nominal camera's where motion is a homography. It is
-// moved to the nominal fields, so that no reader takes it for the real camera's.
-void place_old_bearing(const Frame& frame, Intruder& intruder) {
-  if (!intruder.azimuth_deg || intruder.nominal_azimuth_deg || frame.rotation) return;
-  intruder.nominal_azimuth_deg = intruder.azimuth_deg;
-  intruder.nominal_elevation_deg = intruder.elevation_deg;
-  if (frame.frame_from_reference == Frame().frame_from_reference) return;  // no motion
-  intruder.azimuth_deg.reset();
-  intruder.elevation_deg.reset();
-}
-
 Frame frame_from(const JsonObject& object) {
   Frame frame;
   frame.frame = object.whole("frame");
@@ -116,7 +107,6 @@ Frame frame_from(const JsonObject& object) {
   read_shake(motion, frame);
   for (const JsonObject& intruder : object.objects("intruders"))
     frame.intruders.push_back(intruder_from(intruder));
-  for (Intruder& intruder : frame.intruders) place_old_bearing(frame, intruder);
   return frame;
 }
 

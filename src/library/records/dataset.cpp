@@ -25,8 +25,8 @@ fs::path video_in(const fs::path& folder, const std::string& name) {
               {folder.string()});
 }
 
-// The name that the record states; Error where it has no covered boxes and these are asked for.
-std::string name_in_record(const fs::path& folder, dataset::Boxes boxes) {
+// The name that the record states.
+std::string name_in_record(const fs::path& folder) {
   const fs::path file = folder / "sequence.json";
   const auto record = parse_json(read_file(file));
   if (!record.is_object() || !record.contains("name") || !record["name"].is_string())
@@ -36,11 +36,6 @@ std::string name_in_record(const fs::path& folder, dataset::Boxes boxes) {
   if (name.empty() || fs::path(name).filename() != name)
     throw Error("name is '" + name.substr(0, 80) + "'; expected a plain file name",
                 {file.string()});
-  if (boxes == dataset::Boxes::kCovered && !record.contains("covered_alpha"))
-    throw Error(
-        "was made before truth had covered boxes (covered_box_px); expected the visible or the "
-        "exact boxes, or a sequence that is rendered again",
-        {folder.string()});
   return name;
 }
 
@@ -60,7 +55,7 @@ exchange::Clip labels_of(const Sequence& sequence,
 Sequence rendered(const fs::path& folder, dataset::Boxes boxes) {
   Sequence sequence;
   sequence.folder = folder;
-  sequence.name = name_in_record(folder, boxes);
+  sequence.name = name_in_record(folder);
   sequence.video = video_in(folder, sequence.name);
   annotation::Truth truth = annotation::read_truth(folder / "truth.jsonl");
   sequence.labels = labels_of(sequence, truth, boxes);

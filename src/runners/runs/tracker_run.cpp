@@ -148,10 +148,9 @@ class TrackerRun {
       if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
     open_folder();
-    const dataset::Boxes boxes = set.usual_boxes(options_.warn);
     in_parallel(names.size(), options_, [&](std::size_t i) {
       for (const exchange::Clip& clip :
-           exchange::arranged(exchange::Format::kOtb, set.clip(names[i], boxes)))
+           exchange::arranged(exchange::Format::kOtb, set.clip(names[i])))
         follow(clip);
     });
     return summary_;

@@ -172,7 +172,6 @@ EncounterRecord record_of(const JsonObject& object) {
 
 std::vector<EncounterRecord> read_encounter_records(const JsonObject& sequence) {
   std::vector<EncounterRecord> records;
-  if (!sequence.has("encounters")) return records;
   for (const JsonObject& object : sequence.objects("encounters"))
     records.push_back(record_of(object));
   return records;

@@ -57,9 +57,9 @@ std::vector<EncounterRecord> encounter_records(
 
 nlohmann::ordered_json json_of(const std::vector<EncounterRecord>& records);
 
-// The records that a sequence.json holds; none where it is older than they are. Of the exact box of
-// the first frame that shows an intruder only the size is recorded. Throws Error where one is not
-// as docs/formats/output.md describes it.
+// The records that a sequence.json holds. Of the exact box of the first frame that shows an
+// intruder only the size is recorded. Throws Error where one is not as docs/formats/output.md
+// describes it.
 std::vector<EncounterRecord> read_encounter_records(const JsonObject& sequence);
 
 }  // namespace airtruth::pipeline
