@@ -22,10 +22,15 @@ std::vector<std::string> cells_of(std::string_view line, char between) {
   return cells;
 }
 
+std::string printable(std::string_view text, std::size_t most) {
+  std::string shown(text.substr(0, most));
+  for (char& c : shown)
+    if (c < ' ' || c > '~') c = '?';
+  return shown;
+}
+
 std::string quoted_excerpt(std::string_view text, std::size_t most) {
-  std::string shown = "'";
-  for (const char c : text.substr(0, most)) shown += c >= ' ' && c <= '~' ? c : '?';
-  return shown + (text.size() > most ? "...'" : "'");
+  return "'" + printable(text, most) + (text.size() > most ? "...'" : "'");
 }
 
 std::string csv_cell(std::string_view text) {

@@ -42,8 +42,11 @@ std::vector<Text> words_in(std::string_view text) {
 // Whether the character controls a terminal or a parser, and shows nothing: ASCII's C0 set and DEL.
 constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-// The text in quotes for a message of one line: no more than `most` bytes, with '?' for each that
-// is no printable ASCII. A text that goes on ends with "...".
+// The first `most` bytes of a text for a message of one line, with '?' for each that is no
+// printable ASCII.
+std::string printable(std::string_view text, std::size_t most = 40);
+
+// The same in quotes. A text that goes on ends with "...".
 std::string quoted_excerpt(std::string_view text, std::size_t most);
 
 // The line, counted from 1, of the byte at `offset` in the text, for messages about text that a

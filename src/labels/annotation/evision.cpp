@@ -21,11 +21,8 @@ constexpr int kLargestPixel = 1 << 29;
 
 // Names in corrupt files may be long and contain any character.
 std::string short_name(const pugi::xml_node& node) {
-  std::string name(node.name());
-  if (name.size() > 40) name.replace(40, name.npos, "...");
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
-  return name;
+  const std::string_view name = node.name();
+  return printable(name, 40) + (name.size() > 40 ? "..." : "");
 }
 
 class Reader {

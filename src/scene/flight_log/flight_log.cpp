@@ -198,15 +198,6 @@ FlightLog from_first_record(FlightLog log) {
   return log;
 }
 
-std::string printable(std::string_view text) {
-  // A message repeats at most this much of a text, so that it stays on one line.
-  constexpr std::size_t kMaxShownBytes = 40;
-  std::string result(text.substr(0, kMaxShownBytes));
-  for (char& c : result)
-    if (c < 0x20 || c >= 0x7f) c = '?';
-  return result;
-}
-
 namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 30;  // ten hours of a ULog at 30 kB a second

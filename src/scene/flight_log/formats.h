@@ -72,8 +72,4 @@ void take_positions(FlightLog& log, const FlightLog& positions);
 // The log with its times counted from its first record of any kind.
 FlightLog from_first_record(FlightLog log);
 
-// At most 40 bytes of a file's text for a message of one line: other than printable ASCII becomes
-// '?'.
-std::string printable(std::string_view text);
-
 }  // namespace airtruth::flight_log

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/text.h"
 #include "scene/flight_log/formats.h"
 
 namespace airtruth::flight_log {
