@@ -2,7 +2,6 @@
 #include "calibration/camera_file/calibrate.h"
 
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 

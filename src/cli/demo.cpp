@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/demo/demo.h"
 
-#include <memory>
-
 #include <fmt/format.h>
 
 #include "cli/commands.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <initializer_list>
-#include <memory>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "camera/motion/motion.h"
 
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>

@@ -3,8 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>

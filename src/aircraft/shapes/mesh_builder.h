@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "aircraft/model/mesh.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aircraft/shapes/shapes.h"
 
-#include <array>
 #include <cmath>
 #include <map>
 

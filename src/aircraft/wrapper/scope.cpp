@@ -2,7 +2,6 @@
 #include "aircraft/wrapper/scope.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 #include "calibration/camera_file/calibration.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <string_view>
 #include <type_traits>

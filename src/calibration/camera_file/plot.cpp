@@ -2,7 +2,6 @@
 #include "calibration/camera_file/plot.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

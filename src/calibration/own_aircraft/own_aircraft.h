@@ -2,9 +2,7 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <stop_token>
-#include <string>
 
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"

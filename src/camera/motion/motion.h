@@ -3,9 +3,7 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "foundation/base/files.h"

@@ -2,7 +2,6 @@
 #include "comparison/match/place.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "foundation/base/error.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "comparison/match/pose.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 

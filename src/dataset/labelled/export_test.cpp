@@ -2,7 +2,6 @@
 #include "dataset/labelled/export.h"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <set>
 #include <sstream>

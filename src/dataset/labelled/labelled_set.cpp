@@ -2,7 +2,6 @@
 #include "dataset/labelled/labelled_set.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "dataset/catalogue/expand.h"
 #include "dataset/catalogue/folder.h"

@@ -2,7 +2,6 @@
 #include "dataset/stream/stream.h"
 
 #include <cmath>
-#include <fstream>
 #include <future>
 #include <map>
 #include <set>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <thread>
 
 #include <gmock/gmock.h>

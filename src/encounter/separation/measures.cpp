@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "encounter/separation/measures.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace airtruth::separation {

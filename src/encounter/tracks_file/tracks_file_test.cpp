@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "encounter/tracks_file/tracks_file.h"
 
-#include <fstream>
 #include <iterator>
 #include <string>
 

@@ -2,8 +2,6 @@
 #include "evaluation/detector_evaluation/plots.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 

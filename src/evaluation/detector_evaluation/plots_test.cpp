@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evaluation/detector_evaluation/plots.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 namespace airtruth::detector_evaluation {

@@ -2,7 +2,6 @@
 #include "foundation/image/cuts.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/run_files/run_files.h"
 
-#include <cstdlib>
 #include <thread>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,6 @@
 #include "foundation/tar/tar.h"
 
 #include <map>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

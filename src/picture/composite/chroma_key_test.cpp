@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/composite/chroma_key.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "foundation/image/colour.h"

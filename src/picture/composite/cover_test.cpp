@@ -2,7 +2,6 @@
 #include "picture/composite/cover.h"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 

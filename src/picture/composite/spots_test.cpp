@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/composite/spots.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 namespace airtruth::composite {

@@ -2,7 +2,6 @@
 #include "picture/render/visibility.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <set>

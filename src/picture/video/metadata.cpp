@@ -2,7 +2,6 @@
 #include "picture/video/metadata.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "picture/video/libav.h"
 #include "picture/video/media_file.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <list>
-#include <vector>
 
 #include "foundation/base/error.h"
 #include "picture/video/libav.h"

@@ -2,7 +2,6 @@
 #include "runners/classical/blobs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <tuple>

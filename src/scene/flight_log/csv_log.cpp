@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // airtruth's own flight log: CSV with a header, one record a row.
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 

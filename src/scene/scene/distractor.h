@@ -2,10 +2,8 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "aircraft/shapes/shapes.h"
 #include "foundation/base/error.h"

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"

@@ -2,7 +2,6 @@
 #include "scene/synthetic/land.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

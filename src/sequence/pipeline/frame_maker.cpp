@@ -2,7 +2,6 @@
 #include "sequence/pipeline/frame_maker.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
