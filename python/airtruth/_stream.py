@@ -90,8 +90,9 @@ class Stream:
         frames = []
         for picture, fields, masks, covered in made:
             truth = truth_of(fields)
-            shown = {"crop": crop, "masks": masks, "covered_in_crop": covered}
-            frames.append(Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth, **shown))
+            frames.append(
+                Frame(truth.frame, truth.time_s, *picture, damaged=truth.damaged, truth=truth, crop=crop, masks=masks, covered_in_crop=covered)
+            )
         return Sample(number, background, first_frame, crop, frames, weight)
 
     def __iter__(self) -> Iterator[Sample]:
