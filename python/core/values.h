@@ -46,7 +46,7 @@ template <typename Whole>
 Whole whole_of(const py::handle& value, const std::string& what, Whole least, Whole most) {
   const py::int_ number = index_of(value, what);
   if (number < py::int_(least) || number > py::int_(most))
-    throw py::value_error(what + " is " + std::string(py::str(number)) + "; expected " +
+    throw py::value_error(what + " is " + std::string(py::str(py::handle(number))) + "; expected " +
                           std::to_string(least) + " to " + std::to_string(most));
   return number.cast<Whole>();
 }
