@@ -99,7 +99,8 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
   const CLI::Option* backgrounds = command.add_flag(
       "--backgrounds,!--no-backgrounds",
       options.backgrounds,
-      "The videos that a set was made over as well, which show no intruder (default)");
+      "The videos that a set was made over as well, which show no intruder; evaluate does not read "
+      "their results (default: the set's sequences alone)");
   for (const CLI::Option* option : {only, backgrounds})
     expect_effect(
         context, option, [&arguments] { return runs::is_set(arguments.source); }, "on a video");
