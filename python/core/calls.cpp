@@ -2,6 +2,8 @@
 #include "calls.h"
 
 #include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 
@@ -22,7 +24,8 @@ void Process::expect_this(const char* what) const {
 
 namespace {
 
-std::atomic<int> taking_gil = 0;  // threads that are about to have it again
+std::atomic<int> in_call = 0;     // threads that have released the GIL
+std::atomic<int> taking_gil = 0;  // those of them that are about to have it again
 std::atomic<bool> is_ending = false;
 std::thread::id ending_thread;
 
@@ -33,9 +36,19 @@ void end_of_interpreter() {
   PyThreadState* const thread = PyEval_SaveThread();
   while (taking_gil > 0) std::this_thread::yield();
   PyEval_RestoreThread(thread);
+  // What is registered last is called first, before the destructors of static objects.
+  on_exit(
+      [](int status, void*) {
+        if (in_call == 0) return;
+        std::fflush(nullptr);
+        _exit(status);
+      },
+      nullptr);
 }
 
 }  // namespace
+
+GilReleased::GilReleased() : thread_(PyEval_SaveThread()) { ++in_call; }
 
 GilReleased::~GilReleased() {
   ++taking_gil;
@@ -45,11 +58,12 @@ GilReleased::~GilReleased() {
   }
   PyEval_RestoreThread(thread_);
   --taking_gil;
+  --in_call;
 }
 
 void watch_end_of_interpreter() {
   // The other threads are not there after a fork.
-  pthread_atfork(nullptr, nullptr, [] { taking_gil = 0; });
+  pthread_atfork(nullptr, nullptr, [] { taking_gil = in_call = 0; });
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_of_interpreter));
 }
 

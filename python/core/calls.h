@@ -40,10 +40,11 @@ class Process {
 
 // Releases the GIL for a scope, so that other threads of Python run meanwhile. A daemon thread that
 // is in such a scope when the interpreter ends stays there: Python would end it, where it asks for
-// the GIL again, by unwinding its stack, which C++ answers by ending the process.
+// the GIL again, by unwinding its stack, which C++ answers by ending the process. The process then
+// ends without the destructors of static objects, which that thread may be using.
 class GilReleased {
  public:
-  GilReleased() : thread_(PyEval_SaveThread()) {}
+  GilReleased();
   ~GilReleased();
   GilReleased(const GilReleased&) = delete;
   GilReleased& operator=(const GilReleased&) = delete;
