@@ -72,7 +72,8 @@ def write_results():
 
 
 def evaluated(folder, *results):
-    made("evaluate", folder, *results, "--score", "0", "--no-page", "-o", f"scores_{folder}")
+    score = ["--score", "0"] if "results/detector" in results else []
+    made("evaluate", folder, *results, *score, "--no-page", "-o", f"scores_{folder}")
     found = {}
     for name in ("evaluation.json", "detection.json"):
         if os.path.exists(path(f"scores_{folder}", name)):
