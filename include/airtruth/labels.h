@@ -151,9 +151,9 @@ struct ReadOptions {
   std::string category = "aircraft";
   // Label::object_class by category, for categories whose word states no class or another one.
   // "Airplane", "helicopter", "Bird", "Flock", "Drone", "UAV", "Balloon" and the like state it, and
-  // the classes' own names; where a name states none, COCO's supercategory does; what states none is
-  // an aircraft. Boxes that the set marks as counting neither way have the class "ignore" whatever
-  // their category.
+  // the classes' own names; where a name states none, COCO's supercategory does; what states none
+  // is an aircraft. Boxes that the set marks as counting neither way have the class "ignore"
+  // whatever their category.
   std::map<std::string, std::string> class_of = {};
   // CSV only: the coordinate of the first pixel, 0 or 1.
   int origin_px = 0;

@@ -329,7 +329,8 @@ Passage from_geometry(const EncounterRule& rule,
     return pairing::geometric_passage(sampler, index, own, -kMargin_s, rule.length_s + kMargin_s);
   });
   const pairing::Geometry& geometry = drawn.geometry;
-  if (is_high_enough(drawn.track, own, geometry.approach.time_s)) return {std::move(drawn.track), 1};
+  if (is_high_enough(drawn.track, own, geometry.approach.time_s))
+    return {std::move(drawn.track), 1};
   throw Error(
       fmt::format("an intruder {:.0f} m above the own aircraft that climbs at {:.1f} m/s "
                   "would be less than {:.0f} m above the ground; expected a higher vmd_m or "
