@@ -110,7 +110,7 @@ endfunction()
 
 # The headers through which a program and its late libraries see the same types, as one number in the names of what these
 # export: a library of other headers lacks the name, and is refused before anything in it is called.
-file(GLOB_RECURSE headers ${PROJECT_SOURCE_DIR}/src/*.h)
+file(GLOB_RECURSE headers ${PROJECT_SOURCE_DIR}/src/*.h ${PROJECT_SOURCE_DIR}/include/*.h)
 set(AIRTRUTH_BUILD "${PROJECT_VERSION}")
 foreach(header ${headers})
   file(SHA256 ${header} hash)

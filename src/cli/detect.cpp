@@ -101,9 +101,13 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
       options.backgrounds,
       "The videos that a set was made over as well, which show no intruder; evaluate does not read "
       "their results (default: the set's sequences alone)");
-  for (const CLI::Option* option : {only, backgrounds})
-    expect_effect(
-        context, option, [&arguments] { return runs::is_set(arguments.source); }, "on a video");
+  expect_effect(
+      context, only, [&arguments] { return runs::is_set(arguments.source); }, "on a video");
+  expect_effect(
+      context,
+      backgrounds,
+      [&arguments] { return !arguments.options.backgrounds || runs::is_set(arguments.source); },
+      "on a video");
   command.add_option("--frame-rate", options.frame_rate_hz)
       ->description("Frames a second of numbered pictures, where nothing states it")
       ->check(above_0());

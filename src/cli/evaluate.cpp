@@ -406,8 +406,8 @@ void expect_results(CLI::App& command, const Evaluate& arguments, Context& conte
   const auto has = [&arguments](bool detections) {
     return [&arguments, detections] {
       return std::ranges::any_of(arguments.results, [&](const std::string& results) {
-        return detector_evaluation::holds_detections(results, arguments.is_detections) ==
-               detections;
+        return !fs::exists(results) || detector_evaluation::holds_detections(
+                                           results, arguments.is_detections) == detections;
       });
     };
   };

@@ -129,10 +129,7 @@ void add_studio(CLI::App& app, Context& context) {
   const std::string& input = arguments->input;
   for (const CLI::Option* option : {lens, rate})
     expect_effect(
-        context,
-        option,
-        [&input] { return scene_file(input) != input && !fs::exists(scene_file(input)); },
-        "on a scene that is there");
+        context, option, [&input] { return scene_file(input) != input; }, "on a scene");
   command->add_option("--port", arguments->port, "Port of 127.0.0.1; 0: any that is free [0]")
       ->check(CLI::Range(0, 65535));
   command->add_flag("--open", arguments->open, "Open the page in the browser");

@@ -66,7 +66,7 @@ struct VerifyResult {
   };
   std::map<std::string, Input> inputs;
 };
-//
+
 // A folder without a catalogue is verified by the sequences that are in it: those of `render`
 // likewise, and of imported clips that their pictures can be read, their size and number are those
 // of the labels, boxes lie in the picture, and labels.jsonl is as long as sequence.json states.

@@ -65,7 +65,10 @@ class CocoReader {
     for (const JsonObject& category : json_.objects("categories")) {
       const std::string name = category.text("name");
       categories_[category.whole("id")] = name;
-      const std::string above = category.maybe_text("supercategory").value_or("");
+      // It is anything in files of others, who use it for nothing.
+      const bool has_above =
+          category.has("supercategory") && category.value("supercategory").is_string();
+      const std::string above = has_above ? category.text("supercategory") : "";
       if (const auto stated = annotation::class_of_category(above)) classes_.emplace(name, *stated);
     }
     if (!json_.has("videos")) return;

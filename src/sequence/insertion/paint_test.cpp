@@ -155,12 +155,12 @@ std::vector<double> coverage_of_rows(const shade::Model& model,
 }
 
 // 0.8 m at 0.1 m: its arms reach behind the camera, and what lies ahead of it has bounds at
-// infinity.
-TEST(Distractors, WhatReachesThroughTheCamerasPlaneHasNoExactBox) {
+// infinity. It is out of view, 1 m beside the camera.
+TEST(Distractors, WhatReachesThroughTheCamerasPlaneOutOfViewHasNoExactBox) {
   for (const double ahead_m : {0.1, 3.0}) {
     const Drawn made = drawn(
         scene_with(fmt::format("[[distractor]]\nkind = \"multirotor\"\nsize_m = 0.8\n"
-                               "position_ned_m = [{}, 0, -150.3]\nvelocity_ned_mps = [0, 1, 0]\n",
+                               "position_ned_m = [{}, 1, -150.3]\nvelocity_ned_mps = [0, 1, 0]\n",
                                ahead_m)),
         0);
     ASSERT_EQ(made.truth.intruders.size(), 1U);

@@ -428,7 +428,6 @@ TEST_F(Sequence, ACameraFileOfAnotherClipIsRefusedAndWhatCannotBeMeasuredIsSaid)
   EXPECT_FALSE(warnings.empty());
 }
 
-// A virtual flight states its attitude; its first frame is banked by more than 10 degrees.
 // The frame of a cut is counted from the clip's first, as the truth counts.
 TEST_F(Sequence, AClipThatRunsAcrossACutIsNamed) {
   constexpr int kCut = 8;
@@ -448,6 +447,7 @@ TEST_F(Sequence, AClipThatRunsAcrossACutIsNamed) {
   EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("the clip is cut at its frame 6:")));
 }
 
+// A virtual flight states its attitude; its first frame is banked by more than 10 degrees.
 TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
   synthetic::FlightOptions options;
   options.width = 320;

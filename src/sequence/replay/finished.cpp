@@ -41,11 +41,9 @@ video::Frame frame_at(const fs::path& path, std::int64_t index) {
 std::size_t intruder_index(const annotation::Frame& truth, const std::string& id) {
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
+    const bool has_box = intruder.exact_box_px || intruder.visible_box_px;
     const bool drawn = intruder.visible_box_px || intruder.state == annotation::State::kHidden;
-    if (id.empty() ? drawn : intruder.id == id) {
-      if (!intruder.exact_box_px && !intruder.visible_box_px) break;
-      return i;
-    }
+    if (has_box && (id.empty() ? drawn : intruder.id == id)) return i;
   }
   throw Error("frame " + std::to_string(truth.frame) + " shows no intruder" +
               (id.empty() ? "" : " '" + id + "'") +
