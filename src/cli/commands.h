@@ -63,6 +63,26 @@ inline void expect_effect(Context& context,
   });
 }
 
+// --timeout and --start-timeout of programs that answer (process::Limits), which have an effect on
+// such programs alone.
+template <typename Limits>
+void add_limits(CLI::App& command,
+                Limits& limits,
+                const char* of_an_answer,
+                Context& context,
+                const std::function<bool()>& has_effect,
+                const char* without) {
+  const auto add = [&](const char* name, double& seconds, const char* description) {
+    expect_effect(
+        context,
+        command.add_option(name, seconds, description)->check(CLI::Range(0.001, 86'400.0)),
+        has_effect,
+        without);
+  };
+  add("--timeout", limits.answer_s, of_an_answer);
+  add("--start-timeout", limits.start_s, "Longest that it may take to start, s (default: 30)");
+}
+
 // Shows the warnings of a stage and its progress, and lets an interrupt stop it.
 template <typename Options>
 void follow(Options& options, Context& context, const char* stage, const char* unit = "frames") {

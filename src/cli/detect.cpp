@@ -131,18 +131,15 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
   for (const CLI::Option* option : {declare, confident})
     expect_effect(
         context, option, [&arguments] { return arguments.associate; }, "without --associate");
-  const CLI::Option* answer =
-      command.add_option("--timeout", options.answer_s)
-          ->description("Longest that a program may take for a frame, s (default: 30)")
-          ->check(CLI::Range(0.001, 86'400.0));
-  const CLI::Option* start = command.add_option("--start-timeout", options.start_s)
-                                 ->description("Longest that it may take to start, s (default: 30)")
-                                 ->check(CLI::Range(0.001, 86'400.0));
   const auto has_program = [&options] {
     return std::ranges::any_of(options.detectors, runs::is_program);
   };
-  for (const CLI::Option* option : {answer, start})
-    expect_effect(context, option, has_program, "without a detector that is a program");
+  add_limits(command,
+             options,
+             "Longest that a program may take for a frame, s (default: 30)",
+             context,
+             has_program,
+             "without a detector that is a program");
   add_jobs(command, options.jobs, "Sequences at a time (default: 1)");
 }
 

@@ -156,19 +156,12 @@ void add_run_options(CLI::App& command, Track& arguments, Context& context) {
           ->check(CLI::Range(1, 1'000'000)),
       is_of("multistart"),
       "without --protocol multistart");
-  expect_effect(
-      context,
-      command.add_option("--timeout", options.answer_s)
-          ->description("Longest that a TraX tracker may take for an answer, s (default: 30)")
-          ->check(CLI::Range(0.001, 86'400.0)),
-      speaks_trax,
-      "without a tracker that speaks TraX");
-  expect_effect(context,
-                command.add_option("--start-timeout", options.start_s)
-                    ->description("Longest that it may take to start, s (default: 30)")
-                    ->check(CLI::Range(0.001, 86'400.0)),
-                speaks_trax,
-                "without a tracker that speaks TraX");
+  add_limits(command,
+             options,
+             "Longest that a TraX tracker may take for an answer, s (default: 30)",
+             context,
+             speaks_trax,
+             "without a tracker that speaks TraX");
   add_jobs(
       command, options.jobs, "Sequences at a time (default: 1, so that times are a tracker's own)");
 }

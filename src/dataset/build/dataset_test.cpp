@@ -134,6 +134,13 @@ class Build : public testing::Test {
     return result;
   }
 
+  // A build of one sequence of the catalogue.
+  static BuildOptions one_alone() {
+    BuildOptions options;
+    options.only = "sky-across-c172";
+    return options;
+  }
+
   test_support::TemporaryFolder temporary_;
   fs::path root_ = temporary_.path();
 };
@@ -284,9 +291,7 @@ void change(const fs::path& mp4) {
 TEST_F(Build, ABackgroundThatChangedUnderABuildIsRefusedByName) {
   const catalogue::Catalogue catalogue =
       catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
-  BuildOptions little;
-  little.only = "sky-across-c172";
-  build_set(catalogue, root_ / "set", little);
+  build_set(catalogue, root_ / "set", one_alone());
   change(root_ / "set" / "backgrounds" / "sky.mp4");
   const std::string error =
       test_support::error_of([&] { build_set(catalogue, root_ / "set", {}); });
@@ -329,9 +334,8 @@ TEST_F(Build, DeepVerificationNamesAnInputThatChanged) {
 }
 
 TEST_F(Build, AnImportedSetIsVerifiedByItsPicturesAndBoxes) {
-  BuildOptions little;
-  little.only = "sky-across-c172";
-  build_set(catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), root_ / "set", little);
+  build_set(
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), root_ / "set", one_alone());
   const fs::path made = root_ / "set" / "sequences" / "sky-across-c172";
   EXPECT_TRUE(verify(made, {}).faults.empty());
   const fs::path video = root_ / "boxes.mkv";
@@ -367,13 +371,11 @@ TEST_F(Build, AnImportedSetIsVerifiedByItsPicturesAndBoxes) {
 TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   const catalogue::Catalogue catalogue =
       catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
-  BuildOptions little;
-  little.only = "sky-across-c172";
-  build_set(catalogue, root_ / "set", little);
+  build_set(catalogue, root_ / "set", one_alone());
   const catalogue::Catalogue other = catalogue::parse_catalogue(
       std::string(test_support::kCatalogue) + "quality = 20\n", "c.toml");
   const auto error_of_build = [&](const catalogue::Catalogue& one) -> std::string {
-    return test_support::error_of([&] { build_set(one, root_ / "set", little); });
+    return test_support::error_of([&] { build_set(one, root_ / "set", one_alone()); });
   };
   EXPECT_THAT(error_of_build(other), HasSubstr("catalogue"));
   EXPECT_EQ(error_of_build(catalogue), "no error");

@@ -188,7 +188,10 @@ class Check {
                         clip.width,
                         clip.height));
     std::int64_t frames = 0;
-    while (reader.next()) ++frames;
+    while (reader.next()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      ++frames;
+    }
     if (!clip.frames.empty() && clip.frames.back().frame >= frames)
       fault(fmt::format("{} has {} frames, and labels.jsonl goes on to frame {}",
                         media,
@@ -202,6 +205,7 @@ class Check {
     const int height = reader.info().height;
     std::size_t frames = 0;
     while (const auto frame = reader.next()) {
+      if (options_.stop.stop_requested()) throw Interrupted();
       if (frames < finished.truth.frames.size())
         contrast(finished, finished.truth.frames[frames], frame->picture);
       ++frames;

@@ -87,8 +87,8 @@ DrawnDistractors draw_distractors(const std::vector<DistractorRule>& rules,
                                   std::int64_t index);
 
 // Puts the distractors into a scene in place of those that it has, over a clip of this length and
-// size. Until the size is known, the places are provisional and the numbers of
-// things right. Throws Error as meet() does. `shared` may be null.
+// size. Until the size is known, the places are provisional and the numbers of things right. Throws
+// Error as meet() does. `shared` may be null.
 void lay_distractors(scene::Scene& scene,
                      const DrawnDistractors& drawn,
                      const DrawnClip& clip,

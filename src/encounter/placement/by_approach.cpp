@@ -202,8 +202,7 @@ Vector3 velocity_past(const Vector3& off, const Vector3& own_mps, double left_m,
   if (!(std::abs(left_m) < range_m))
     throw Error(
         fmt::format("the intruder is {:.0f} m away horizontally at that moment; expected a smaller "
-                    "miss distance "
-                    "or an earlier moment",
+                    "miss distance or an earlier moment",
                     range_m));
   const double course_rad = std::atan2(-off.y(), -off.x()) + std::asin(left_m / range_m);
   const Vector3 along(std::cos(course_rad), std::sin(course_rad), 0);

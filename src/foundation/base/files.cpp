@@ -90,14 +90,9 @@ void refuse_existing(const fs::path& path, bool overwrite) {
 }
 
 void refuse_foreign(const fs::path& folder, std::initializer_list<const char*> records) {
-  if (!fs::is_directory(folder)) return;
-  const bool is_empty =
-      std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& entry) {
-        return entry.path().filename().string().starts_with('.');
-      });
   const bool is_own = std::any_of(
       records.begin(), records.end(), [&](const char* name) { return fs::exists(folder / name); });
-  if (!is_empty && !is_own)
+  if (!is_own && !entries(folder).empty())
     throw Error(fmt::format("exists and is not empty{}{}; expected a new folder",
                             records.size() > 0 ? ", and holds no " : "",
                             fmt::join(records, " or ")),

@@ -17,9 +17,6 @@
 // Helpers that the formats' readers and writers share.
 namespace airtruth::exchange {
 
-using airtruth::entries;
-using airtruth::files_with;
-
 // The lines of a text file, without blank lines and those that begin with '#'.
 struct Line {
   // From 1.

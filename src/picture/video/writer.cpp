@@ -434,8 +434,8 @@ Writer::Writer(const fs::path& path, const StreamInfo& info, const WriterOptions
   state_->part = part_path(path);
   state_->info = info;
   state_->options = options;
-  check_output(info, options.format, {path.string()});
   state_->stored = stored_colour(info, options.format, {path.string()});
+  check_rate(info, options.format, {path.string()});
   state_->unfinished.emplace(Unfinished::path(state_->part));
   if (options.format != Format::kPng) {
     state_->open();

@@ -130,7 +130,7 @@ fs::path mot_file(const fs::path& folder, const std::string& name) {
 std::vector<std::string> mot_names(const fs::path& folder) {
   std::vector<std::string> names;
   for (const fs::path& place : {folder, folder / "data"})
-    for (const fs::path& path : exchange::entries(place))
+    for (const fs::path& path : entries(place))
       if (fs::is_regular_file(path) && path.extension() == ".txt")
         names.push_back(path.stem().string());
       else if (fs::is_regular_file(path / "det" / "det.txt"))
@@ -141,7 +141,7 @@ std::vector<std::string> mot_names(const fs::path& folder) {
 
 // The one JSON file of a folder without text; empty: none, or several.
 fs::path only_json(const fs::path& folder) {
-  const std::vector<fs::path> files = exchange::files_with(folder, ".json");
+  const std::vector<fs::path> files = files_with(folder, ".json");
   return files.size() == 1 ? files.front() : fs::path();
 }
 

@@ -178,8 +178,8 @@ bool is_anchor_name(const fs::path& file, const std::string& sequence) {
 
 // Where a run has both files, the text file is read, as in the toolkit.
 std::vector<fs::path> vot_files(const fs::path& folder) {
-  std::vector<fs::path> files = exchange::files_with(folder, ".txt");
-  for (const fs::path& file : exchange::files_with(folder, kBinary))
+  std::vector<fs::path> files = files_with(folder, ".txt");
+  for (const fs::path& file : files_with(folder, kBinary))
     if (!fs::exists(fs::path(file).replace_extension(".txt"))) files.push_back(file);
   std::sort(files.begin(), files.end());
   return files;
@@ -298,7 +298,7 @@ evaluation::VotTruth vot_truth(const exchange::Clip& clip) {
 
 std::vector<std::string> tracked_sequences_in(const fs::path& folder) {
   std::set<std::string> names;
-  for (const fs::path& file : exchange::files_with(folder, ".txt"))
+  for (const fs::path& file : files_with(folder, ".txt"))
     if (const std::string name = file.stem().string(); !name.ends_with("_time")) names.insert(name);
   const auto add_folders = [&](const fs::path& place) {
     if (!fs::is_directory(place)) return;

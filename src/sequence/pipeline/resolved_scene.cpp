@@ -352,7 +352,7 @@ scene::Scene with_measured_camera(StatedScene stated,
 }
 
 video::Reader open_background(const scene::Scene& scene, const Options& options) {
-  expect_there(scene::stated_files(scene).front());
+  expect_there({scene.background.video, scene.background.where});
   video::Reader reader(scene.background.video,
                        {.first_frame = scene.background.first_frame,
                         .frame_count = scene.background.frame_count,

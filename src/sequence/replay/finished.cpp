@@ -41,9 +41,8 @@ video::Frame frame_at(const fs::path& path, std::int64_t index) {
 std::size_t intruder_index(const annotation::Frame& truth, const std::string& id) {
   for (std::size_t i = 0; i < truth.intruders.size(); ++i) {
     const annotation::Intruder& intruder = truth.intruders[i];
-    const bool has_box = intruder.exact_box_px || intruder.visible_box_px;
     const bool drawn = intruder.visible_box_px || intruder.state == annotation::State::kHidden;
-    if (has_box && (id.empty() ? drawn : intruder.id == id)) return i;
+    if (intruder.exact_box_px && (id.empty() ? drawn : intruder.id == id)) return i;
   }
   throw Error("frame " + std::to_string(truth.frame) + " shows no intruder" +
               (id.empty() ? "" : " '" + id + "'") +
@@ -169,7 +168,7 @@ image::Rgb8 inspect(const Finished& sequence,
                     std::to_string(count - 1),
                 {sequence.folder.string()});
   const annotation::Frame& truth = sequence.truth.frames[static_cast<std::size_t>(frame)];
-  const annotation::Intruder& shown = truth.intruders[intruder_index(truth, intruder_id)];
+  const std::size_t i = intruder_index(truth, intruder_id);
   const video::Frame before =
       frame_at(scene.background.video, scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);
@@ -186,12 +185,10 @@ image::Rgb8 inspect(const Finished& sequence,
                               moment,
                               insertion::Ambient{},
                               occluders.in_frame(moment, before.picture).occlusion);
-  return drawing::closeup(
-      {&before.picture, &after.picture, matte ? &layer : nullptr},
-      truth,
-      area_around(shown.exact_box_px ? *shown.exact_box_px : as_box(*shown.visible_box_px),
-                  sequence.truth.lens),
-      zoom);
+  return drawing::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
+                          truth,
+                          area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),
+                          zoom);
 }
 
 namespace {
