@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "camera/motion/corners.h"
 #include "camera/motion/rotation_fit.h"
 #include "foundation/base/median.h"
@@ -219,8 +221,9 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   const auto& pairs = impl_->pairs;
   const lens::ImageSize& size = impl_->size;
   if (pairs.size() < kMinPairs) {
-    why = "the camera turns far enough to tell in " + std::to_string(pairs.size()) + " of the " +
-          std::to_string(kMinPairs) + " places that it takes";
+    why = fmt::format("the camera turns far enough to tell in {} of the {} places that it takes",
+                      pairs.size(),
+                      kMinPairs);
     return std::nullopt;
   }
   const std::vector<Profile> as_pinhole = profiles_of(pairs, false, size);
