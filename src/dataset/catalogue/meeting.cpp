@@ -109,14 +109,14 @@ std::optional<Vector3> sized_place(const Vector3& camera_ned_m,
   for (int round = 0; round < kMaxRounds; ++round) {
     Vector3 at = camera_ned_m + range_m * direction;
     if (camera_ned_m.z() < -kLowestFlightM) at.z() = std::min(at.z(), -kLowestFlightM);
-    const projection::ExactBox exact = box_at(at);
-    if (!exact.box || exact.partly_unseen) {
+    const std::optional<Box> box = box_at(at).whole();
+    if (!box) {
       // A part of the aircraft is behind the camera or beyond the lens's field.
       range_m *= 2;
       if (range_m > kFarthestM) return std::nullopt;
       continue;
     }
-    const double ratio = std::max(exact.box->width, exact.box->height) / size_px;
+    const double ratio = std::max(box->width, box->height) / size_px;
     if (std::abs(ratio - 1) < kWithinShare) return at;
     // At long range the product of size and range is constant.
     range_m *= ratio;

@@ -44,6 +44,10 @@ struct ExactBox {
   std::optional<Box> box;
   // True where some points have no pixel (behind the camera or beyond the lens's field).
   bool partly_unseen = false;
+
+  // The box where all points have a pixel: a shape that reaches through the camera's plane has no
+  // bounds.
+  std::optional<Box> whole() const { return partly_unseen ? std::nullopt : box; }
 };
 
 // Bounding box of the projected silhouette, in frame pixels and not clipped: it contains everything

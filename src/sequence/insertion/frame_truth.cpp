@@ -155,10 +155,8 @@ std::vector<annotation::Intruder> intruders_of(const setup::World& world,
       truth.encounter = encounter_of(world, moment.camera, *moment.states[i]);
       const composite::Visible* seen = i < visible.size() ? &visible[i] : nullptr;
       truth.state = state_of(moment, i, vector_of(*truth.position_in_cam_m), layer, seen);
-      // A shape that reaches through the camera's plane has no bounds: beside what is visible, its
-      // parts ahead say nothing.
-      if (!moment.boxes[i].partly_unseen || truth.state == annotation::State::kVisible)
-        truth.exact_box_px = moment.boxes[i].box;
+      truth.exact_box_px = truth.state == annotation::State::kVisible ? moment.boxes[i].box
+                                                                      : moment.boxes[i].whole();
       if (seen != nullptr) add_pixels(truth, i, layer, *seen);
     }
     result.push_back(std::move(truth));

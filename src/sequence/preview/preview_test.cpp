@@ -65,6 +65,31 @@ TEST(PreviewRows, NumbersAreThoseOfAHeadOnEncounter) {
   EXPECT_THAT(table_text(rows), testing::HasSubstr("out of view"));
 }
 
+// Both reach behind the camera's plane, where a box has no bounds: one beside the camera, and one
+// in whose tail the camera is.
+TEST(PreviewRows, WhatReachesBehindTheCameraHasItsPlaceAlone) {
+  const auto beside = [](const std::string& place) {
+    return "[[intruder]]\naircraft = \"c172/g-boix\"\nwaypoints_ned_m = [[" + place +
+           ", -150], [1000, 0, -150]]\nspeed_mps = 50\n";
+  };
+  const scene::Scene scene = scene::parse_scene(
+      "[background]\nvideo = \"none.mp4\"\n[lens]\nvertical_fov_deg = 60\n"
+      "[camera]\nposition_ned_m = [0, 0, -150]\n"
+      "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n" +
+          beside("0, 20") + beside("2, 0"),
+      "beside.toml");
+  const setup::World world = setup::load_world(scene, {640, 480}, {});
+  const setup::Moment moment = setup::moment_at(world, 0, 0, {});
+  for (const auto& exact : moment.boxes) EXPECT_TRUE(exact.box && exact.partly_unseen);
+  const auto rows = preview_rows(world, parties_of(scene), {0}, [&](double) { return moment; });
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_FALSE(rows[0].box_px);
+  ASSERT_TRUE(rows[1].box_px);
+  EXPECT_NEAR(rows[1].box_px->x, 320, 1);
+  EXPECT_EQ(rows[1].box_px->width, 0);
+  EXPECT_EQ(table_cells(rows[1])[4], "-");
+}
+
 // Two flocks side by side and a lone bird: a row for each, around all of its members.
 TEST(PreviewRows, AFlockIsOneRow) {
   const auto flock = [](int east_m, int count) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "encounter/passage/passage.h"
+#include "labels/projection/exact_box.h"
 
 namespace airtruth::preview {
 namespace {
@@ -35,7 +36,11 @@ std::optional<PreviewRow> row_of(const setup::World& world,
                                                         passage::mover_of(*moment.states[actor]));
     if (!is_there || m.range_m < row.nearest.range_m) row.nearest = m;
     is_there = true;
-    const auto& box = moment.boxes[actor].box;
+    std::optional<Box> box = moment.boxes[actor].whole();
+    if (moment.boxes[actor].partly_unseen)
+      if (const auto pixel =
+              projection::pixel_from_world(moment.sight, moment.states[actor]->position_in_world))
+        box = Box{pixel->x(), pixel->y(), 0, 0};
     if (box && setup::meets_frame(*box, world.lens.size()))
       row.box_px = row.box_px ? bounds(*row.box_px, *box) : *box;
   }
@@ -172,7 +177,7 @@ std::vector<std::string> table_cells(const PreviewRow& row) {
           fmt::format("{:.0f}", row.time_s),
           row.box_px ? centre(row.box_px->x, row.box_px->width) : "out of view",
           row.box_px ? centre(row.box_px->y, row.box_px->height) : "-",
-          row.box_px ? fmt::format("{:.1f}", row.box_px->width) : "-",
+          row.box_px && row.box_px->width > 0 ? fmt::format("{:.1f}", row.box_px->width) : "-",
           fmt::format("{:.0f}", row.nearest.range_m),
           cell(row.nearest.relative_bearing_deg, "{:.1f}"),
           fmt::format("{:.0f}", row.nearest.above_m),

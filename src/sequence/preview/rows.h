@@ -31,7 +31,8 @@ struct PreviewRow {
   double time_s = 0;
   std::size_t party = 0;
   std::string intruder;  // its name
-  // The exact box, of a flock around those in view; empty where none is in view.
+  // The exact box, of a flock around those in view; empty where none is in view. Of what reaches
+  // behind the camera's plane, which has no bounds, the place of its reference point.
   std::optional<Box> box_px;
   separation::Measures nearest;  // of the nearest one
 };

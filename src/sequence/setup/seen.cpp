@@ -137,12 +137,12 @@ std::optional<Box> whole_box(const Ray& ray,
                              double spin_time_s) {
   const auto state = path.at(ray.frame_s);
   check(state.has_value(), "the path reaches its own moments");
-  const auto exact = projection::exact_box(ray.sight,
-                                           aircraft,
-                                           state->world_from_body_rigid(),
-                                           ray.frame_s + spin_time_s,
-                                           twist_of(path, *state, ray.frame_s, world.shutter));
-  return exact.partly_unseen ? std::nullopt : exact.box;
+  return projection::exact_box(ray.sight,
+                               aircraft,
+                               state->world_from_body_rigid(),
+                               ray.frame_s + spin_time_s,
+                               twist_of(path, *state, ray.frame_s, world.shutter))
+      .whole();
 }
 
 // Moves each place until the middle of the box is at the stated pixel, and where a width is stated

@@ -40,13 +40,14 @@ std::optional<Pixel> middle_of(const Stage& stage,
   const setup::World& world = stage.world();
   const auto state = path.at(time_s);
   if (!state) return std::nullopt;
-  const auto exact = projection::exact_box(sight,
-                                           world.actors[actor].type->silhouette,
-                                           state->world_from_body_rigid(),
-                                           world.actors[actor].turned_s(time_s),
-                                           setup::twist_of(path, *state, time_s, world.shutter));
-  if (!exact.box || exact.partly_unseen) return std::nullopt;
-  const Pixel middle = centre_of(*exact.box);
+  const auto box = projection::exact_box(sight,
+                                         world.actors[actor].type->silhouette,
+                                         state->world_from_body_rigid(),
+                                         world.actors[actor].turned_s(time_s),
+                                         setup::twist_of(path, *state, time_s, world.shutter))
+                       .whole();
+  if (!box) return std::nullopt;
+  const Pixel middle = centre_of(*box);
   return setup::meets_frame({middle.x(), middle.y(), 0, 0}, world.lens.size())
              ? std::optional(middle)
              : std::nullopt;

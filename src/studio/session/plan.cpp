@@ -132,8 +132,7 @@ bool is_in(const Pixel& pixel, const lens::Lens& lens) {
   return setup::meets_frame({pixel.x(), pixel.y(), 0, 0}, lens.size());
 }
 
-// Whether the frame can show the actor. The box of what reaches behind the camera's plane has no
-// bounds, so that its reference point decides.
+// Whether the frame can show the actor; of what has no bounds the reference point decides.
 bool shows(const setup::Moment& moment, std::size_t actor) {
   if (!moment.search[actor]) return false;
   if (!moment.boxes[actor].partly_unseen) return true;
@@ -153,7 +152,7 @@ Pixel range_times_offset(const setup::Actor& actor,
   const auto box =
       projection::exact_box(
           sight, actor.type->silhouette, state->world_from_body_rigid(), actor.turned_s(time_s))
-          .box;
+          .whole();
   const auto pixel = projection::pixel_from_world(sight, state->position_in_world);
   if (!box || !pixel) return Pixel::Zero();
   const double range_m = (state->position_in_world - camera.position_in_world).norm();
@@ -280,7 +279,7 @@ class Planner {
   // [frame, x, y, range_m, width_px, visible]
   static Json point(const setup::Moment& moment, std::size_t actor) {
     const Vector3& place = moment.states[actor]->position_in_world;
-    const auto& box = moment.boxes[actor].box;
+    const auto box = moment.boxes[actor].whole();
     auto pixel = projection::pixel_from_world(moment.sight, place);
     // As a moment of [[intruder.seen]] states it.
     if (box && is_in(centre_of(*box), *moment.sight.lens)) pixel = centre_of(*box);
@@ -304,7 +303,7 @@ class Planner {
       const setup::Moment moment =
           setup::moment_at(alone, frame, stage_.time_s(frame), stage_.shake_at(frame));
       const auto& state = moment.states.front();
-      const auto& box = moment.boxes.front().box;
+      const auto box = moment.boxes.front().whole();
       result.push_back(
           {{"frame", frame},
            {"pixel", {seen.pixel.x(), seen.pixel.y()}},
@@ -351,11 +350,12 @@ Json plan_of(Stage& stage, const document::Tables& tables) { return Planner(stag
 Json boxes_of(const Stage& stage, const setup::Moment& moment, const document::Tables& tables) {
   Json result = Json::array();
   for (std::size_t i = 0; i < moment.search.size(); ++i) {
-    if (!moment.boxes[i].box || !shows(moment, i)) continue;
+    const auto box = moment.boxes[i].whole();
+    if (!box || !shows(moment, i)) continue;
     result.push_back(
         {{"table", table_at(tables, stage.scene().intruders[i].where.line)},
          {"id", stage.world().actors[i].id},
-         {"box", box_json(*moment.boxes[i].box)},
+         {"box", box_json(*box)},
          {"range_m",
           hundredths(
               (moment.states[i]->position_in_world - moment.camera.position_in_world).norm())}});

@@ -352,7 +352,21 @@ TEST_F(OverAFlight, WhatIsBesideTheCameraIsNotInView) {
   const auto plan = plan_of(stage, tables_of(scene));
   const auto& track = plan["tracks"][0];
   for (const auto& point : track["points"]) EXPECT_FALSE(point[5].get<bool>()) << point;
+  EXPECT_TRUE(track["points"][15][4].is_null()) << track["points"][15];
   EXPECT_NE(track["checks"].dump().find("never in view"), std::string::npos) << track["checks"];
+}
+
+TEST_F(OverAFlight, WhatIsAroundTheCameraIsInViewWithoutABox) {
+  const scene::Scene scene =
+      scene_of(kAircraft + "waypoints_ned_m = [[2, 0, -300], [402, 0, -300]]\nspeed_mps = 25\n");
+  Stage stage(options());
+  stage.set(1, scene, measured_of(scene, options()));
+  const auto moment = stage.picture(3, false)->moment;
+  EXPECT_TRUE(moment.boxes[0].box && moment.boxes[0].partly_unseen);
+  EXPECT_TRUE(boxes_of(stage, moment, tables_of(scene)).empty());
+  const auto& point = plan_of(stage, tables_of(scene))["tracks"][0]["points"][3];
+  EXPECT_TRUE(point[5].get<bool>()) << point;
+  EXPECT_TRUE(point[4].is_null()) << point;
 }
 
 }  // namespace
