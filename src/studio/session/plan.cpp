@@ -218,12 +218,13 @@ class Planner {
   }
 
  private:
-  // Of the middles, with what is ever in view.
+  // Of the middles, as they say, with what is ever in view.
   std::vector<std::string> approach_words() const {
     std::vector<preview::Party> single;
     std::set<std::size_t> seen;
     for (std::size_t i = 0; i < parties_.size(); ++i) {
-      single.push_back({parties_[i].name, {i}, i});
+      const char* which = parties_[i].actors.size() > 1 ? ", its middle" : "";
+      single.push_back({parties_[i].name + which, {i}, i});
       const bool is_seen = std::ranges::any_of(moments_, [&](const auto& moment) {
         if (shows(moment, i)) return true;
         return std::ranges::any_of(parties_[i].actors, [&](std::size_t actor) {

@@ -12,7 +12,7 @@ namespace airtruth::session {
 nlohmann::ordered_json table_at(const document::Tables& tables, int line);
 
 // The paths of all that flies, as the page draws them: docs/how-to/studio.md has the members. Of a
-// flock the path of its middle stands for all.
+// flock the path of its middle stands for all, and the closest approach is that of its middle.
 nlohmann::ordered_json plan_of(Stage& stage, const document::Tables& tables);
 
 // The exact boxes in one frame, of each that is in view: {"table", "id", "box", "range_m"}.

@@ -270,6 +270,22 @@ TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {
   EXPECT_NE(second.find("never in view"), std::string::npos) << second;
 }
 
+TEST_F(OverAFlight, TheClosestApproachOfAFlockSaysWhoseItIs) {
+  const scene::Scene scene = scene_of(
+      "[[distractor]]\nkind = \"bird\"\ncount = 5\nspread_m = 4\nposition_ned_m = [40, 0, "
+      "-300]\n" +
+      kSeen);
+  Stage stage(options());
+  stage.set(1, scene, {});
+  const auto plan = plan_of(stage, tables_of(scene));
+  for (const auto& track : plan["tracks"]) {
+    const auto said = track["approach"].get<std::string>();
+    const bool is_flock = track["id"] == "bird-1 (5)";
+    EXPECT_TRUE(said.starts_with(is_flock ? "bird-1 (5), its middle: closest " : "a: closest "))
+        << said;
+  }
+}
+
 // 10 degrees beside the axis are tan(10 deg) focal lengths, of 120 px / tan(30 deg).
 TEST_F(OverAFlight, DirectionsOfTheWorldAreMarked) {
   Stage stage(options());
