@@ -102,6 +102,14 @@ LABELS = r"""(() => {
 })()"""
 
 
+# Names of directions that lie on each other.
+MEETING = r"""(() => {
+  const boxes = [...document.querySelectorAll('.motion text')].map((e) => [e.textContent, e.getBoundingClientRect()]);
+  const meet = (a, b) => Math.min(a.right, b.right) > Math.max(a.left, b.left) && Math.min(a.bottom, b.bottom) > Math.max(a.top, b.top);
+  return boxes.flatMap(([words, a], k) => boxes.slice(k + 1).filter(([, b]) => meet(a, b)).map(([other]) => `${words} and ${other}`));
+})()"""
+
+
 class Server:
     """`airtruth studio` on a video or a scene, in a folder."""
 
@@ -506,6 +514,11 @@ def test_keys(airtruth, browser, root):
             browser.looks(size)
             page.rest()
             browser.wait(f"!{LABELS}.length", 5)
+    # Directions of the world, in a picture as small as that of a narrow window.
+    browser.run("airtruthStudio.studio.store.put({ showsMotion: true, look: { x: 0, y: 0, scale: 0.6 } })")
+    browser.wait("document.querySelectorAll('.motion text').length > 5")
+    expect("names of directions on each other", browser.run(MEETING), [])
+    browser.run("airtruthStudio.studio.store.put({ showsMotion: false, look: null })")
     expect("time in view", words_of(browser, ".in-view")[1].startswith("In view for "), True)
     # The gallery: by class, and as large with few hits as with all.
     browser.key("Escape")

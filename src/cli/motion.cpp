@@ -112,7 +112,7 @@ void measure(MotionArguments arguments, Context& context) {
     video::write_still(
         at,
         plot::picture_of({.plots = motion_plot::plots_of(all, found.info.width, found.info.height),
-                          .height = 12,
+                          .height = 16,
                           .legend = plot::Legend::kAbove}));
   });
   files.write(arguments.stabilised,

@@ -282,7 +282,7 @@ std::string gnuplot_script(const Sheet& sheet, Format format, const std::string&
   const auto rows = (static_cast<int>(sheet.plots.size()) + sheet.columns - 1) / sheet.columns;
   const bool is_multiple = sheet.plots.size() > 1;
   if (is_multiple)
-    script.command(fmt::format("set multiplot layout {},{}\nset lmargin 9", rows, sheet.columns));
+    script.command(fmt::format("set multiplot layout {},{}\nset lmargin 11", rows, sheet.columns));
   for (std::size_t i = 0; i < sheet.plots.size(); ++i)
     script.add_plot(sheet.plots[i],
                     sheet.legend == Legend::kAbove || (sheet.legend == Legend::kBeside && i == 0),

@@ -190,6 +190,17 @@ TEST(Gnuplot, APlotWithoutDataHasAxes) {
   EXPECT_GE(rows_of(picture, {85, 85, 85}, 900).size(), 4U);  // two axes, top and bottom
 }
 
+// gnuplot leaves the name of an axis out where there is no room for it.
+TEST(Gnuplot, AnAxisOfLongNumbersHasItsName) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const auto drawn = [](const std::string& name) {
+    Plot plot{.y = {.label = name, .min = -0.0004, .max = 0.0003}};
+    plot.series.push_back({.style = style_of(0), .x = {0, 1}, .y = {-0.0003, 0.0002}});
+    return picture_of({.plots = {plot, plot}, .height = 8, .legend = Legend::kAbove});
+  };
+  EXPECT_NE(drawn("degrees").bytes(), drawn("").bytes());
+}
+
 TEST(Gnuplot, NamesOfAUserRunNothing) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const test_support::TemporaryFolder temporary;

@@ -98,7 +98,7 @@ export class OverlayLayer {
   }
 
   // Directions of the world, which stay on clouds and far ground where the measured motion is right: azimuths on the
-  // row nearest the middle of the picture, elevations on the nearest column. And the own speed in words.
+  // row nearest the middle of the picture, elevations below the nearest column's. And the own speed in words.
   private showMotion({plan, clip, frame, showsMotion, picture}: Readonly<Everything>): void {
     this.motion.replaceChildren();
     if (!showsMotion || !plan || !clip) return;
@@ -109,11 +109,10 @@ export class OverlayLayer {
     const arm = 6 * px;
     for (const [azimuth, elevation, x, y] of marks) {
       this.motion.append(s('path', {d: `M${x - arm},${y}h${2 * arm}M${x},${y - arm}v${2 * arm}`}));
-      const words = [
-        elevation === middle![1] && `${azimuth}°`,
-        azimuth === middle![0] && `${Math.abs(elevation)}° ${elevation < 0 ? 'down' : 'up'}`
-      ];
-      this.motion.append(this.words(x + 4 * px, y - 4 * px, words.filter(Boolean).join(', ')));
+      if (elevation === middle![1]) this.motion.append(this.words(x + 4 * px, y - 4 * px, `${azimuth}°`));
+      if (azimuth === middle![0])
+        this.motion.append(
+            this.words(x + 4 * px, y + LABEL_PX * px, `${Math.abs(elevation)}° ${elevation < 0 ? 'down' : 'up'}`));
     }
     const [a, b] = [nedAt(plan, plan.own.ned, frame), nedAt(plan, plan.own.ned, frame + 1)];
     if (!a || !b) return;
