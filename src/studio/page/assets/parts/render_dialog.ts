@@ -14,7 +14,8 @@ interface FilmBox {
   box: BoxPx;
 }
 
-// Rendering with its progress, and then the film over the original, parted by a line that is drawn aside.
+// Rendering with its progress, and then the film over the original from the frame shown on, parted by a line that is
+// drawn aside.
 export class RenderDialog extends DialogPart {
   protected readonly watches: Member[] =
       ['dialog', 'busy', 'progress', 'film', 'clip', 'state', 'file', 'notices', 'connected'];
@@ -116,8 +117,12 @@ export class RenderDialog extends DialogPart {
                `The film, its boxes and its truth will be in ${this.now.out}/${
                    name}, as \`airtruth render\` writes them. What is there is replaced.`);
     this.film.hidden = !film || isRendering;
-    if (film && film !== this.shown) this.load(film);
-    if (dialog !== 'render') this.pause();
+    const isNew = film !== null && film !== this.shown;
+    if (isNew) this.load(film);
+    if (dialog !== 'render')
+      this.pause();
+    else if (film && (isNew || changed.has('dialog')))
+      this.goTo(this.now.frame);
   }
 
   private load(film: Rendered): void {
