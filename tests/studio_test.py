@@ -446,8 +446,12 @@ def test_keys(airtruth, browser, root):
         browser.key(" ")
         page.rest()
         expect(f"Space on a {reached} that was reached by keys", browser.run(f"{STORE}.{pressed}") != before, True)
-    # Delete on a heading, whichever way it got the focus.
+    # What is new flies level.
+    browser.wait(f"{STORE}.plan?.complete", 120)
     page.add("738")
+    heights = browser.run(f"{STORE}.plan.tracks[1].ned.filter(Boolean).map((ned) => -ned[2])")
+    near("its heights", [min(heights)], [max(heights)], 1.5)
+    # Delete on a heading, whichever way it got the focus.
     flyers = lambda: len(page.state()["scene"].get("intruder", []))
     for reach in (lambda: browser.click_on("button.flyer", 1), lambda: browser.run("document.querySelectorAll('button.flyer')[1].focus()")):
         expect("flyers", flyers(), 2)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Approach, Change, Clip, Json, Path, Plan, State, Table, Track} from './contract';
-import {type Point, clamp, courseOf, isPlaced, radians, relativeOf, round, speedOf, turned, velocityAt} from './geometry';
+import {type Point, clamp, courseOf, isPlaced, mix, nedAt, radians, relativeOf, round, speedOf, turned, velocityAt} from './geometry';
 
 // Of a scene's numbers (src/scene/scene/limits.h).
 export const MOST_MISS_M = 1e5;
@@ -219,8 +219,20 @@ export function focalOf(scene: Table, clip: Clip): number {
   return fov && fov < 179 ? clip.height / 2 / Math.tan(radians(fov) / 2) : clip.width * 0.8;
 }
 
-// A flyer that crosses the picture, and the way of the own aircraft, and is at a pixel in the frame shown.
-export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point, own_mps: number): Table {
+// Where the horizon is in a frame, on the column of a pixel; none where the camera does not see it.
+function horizonAt(plan: Plan, frame: number, x: number): number|null {
+  const after = plan.horizon.findIndex((one) => one[0] >= frame);
+  if (after < 0) return null;
+  const [a, b] = [plan.horizon[Math.max(0, after - 1)], plan.horizon[after]];
+  const [from, to] = [a, b].map(([, [x1, y1, x2, y2]]) => mix(y1, y2, (x - x1) / (x2 - x1)));
+  return mix(from, to, b[0] > a[0] ? clamp((frame - a[0]) / (b[0] - a[0]), 0, 1) : 0);
+}
+
+// A flyer that crosses the picture, and the way of the own aircraft, and is at a pixel in the frame shown. It flies
+// level where the horizon is known.
+export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number, at: Point, plan: Plan|null): Table {
+  const own_mps = plan ? ownSpeed(plan, frame, clip) : 0;
+  const focal_px = focalOf(scene, clip);
   const isFlock = choice.count !== undefined && choice.count > 1;
   const width_px = Math.max(
       14,
@@ -228,7 +240,7 @@ export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number
           (choice.kind === 'aircraft' ? NEW_SHARE :
                isFlock                ? FLOCK_SHARE :
                                         SMALL_SHARE));
-  const range_m = (choice.length_m * focalOf(scene, clip)) / width_px;
+  const range_m = (choice.length_m * focal_px) / width_px;
   const rate_px_s = (cruise(choice) * width_px) / choice.length_m;
   const span = clip.frames - 1;
   const lasts_s = Math.min((clip.width * 0.45) / rate_px_s, (range_m * (1 - NEAREST_SHARE)) / Math.max(1, own_mps));
@@ -237,8 +249,20 @@ export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number
   const isEarly = span - frame >= Math.min(way, clip.rate_hz, frame);
   const [first, last] = isEarly ? [frame, Math.min(frame + way, span)] : [Math.max(0, frame - way), frame];
   const direction = at[0] < clip.width / 2 ? 1 : -1;
-  const pixelAt = (k: number): Point => [at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz, at[1]];
   const rangeAt = (k: number) => Math.max(range_m * NEAREST_SHARE, range_m - (own_mps * (k - first)) / clip.rate_hz);
+  const xAt = (k: number) => at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz;
+  // So high above the horizon that the height is that of the frame shown.
+  const pixelAt = (k: number): Point => {
+    const [here, then] = [frame, k].map((one) => plan && horizonAt(plan, one, xAt(one)));
+    if (!plan || here === null || then === null) return [xAt(k), at[1]];
+    const m_per_px = (one: number, y: number) =>
+        rangeAt(one) / Math.hypot(focal_px, xAt(one) - clip.width / 2, y - clip.height / 2);
+    const [down, downThen] = [frame, k].map((one) => nedAt(plan, plan.own.ned, one)?.[2] ?? 0);
+    const above_m = (here - at[1]) * m_per_px(frame, at[1]) + downThen - down;
+    let y = at[1];
+    for (let round = 0; k !== frame && round < 8; ++round) y = then - above_m / m_per_px(k, y);
+    return [xAt(k), y];
+  };
   const seen = [first, last].map((k) => seenTable(timeOf(k, clip), pixelAt(k), rangeAt(k)));
   if (choice.kind === 'aircraft') return {aircraft: choice.aircraft ?? '', seen};
   const flock: Table = isFlock ? {count: choice.count!, spread_m: round(choice.length_m * 6, 0)} : {};

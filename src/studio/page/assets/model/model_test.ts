@@ -198,7 +198,7 @@ tests['What is new is in the clip, and at its pixel in the frame shown'] = () =>
   for (const frame of [0, 60, 149]) {
     const table = newFlyer(
         {kind: 'aircraft', aircraft: '738/738-ANA', length_m: 39.5}, {lens: {vertical_fov_deg: 60}}, CLIP, frame,
-        [300, 200], 25);
+        [300, 200], null);
     same(Object.keys(table), ['aircraft', 'seen']);
     const moments = momentsOf(flyer(table), CLIP);
     same(
@@ -207,6 +207,24 @@ tests['What is new is in the clip, and at its pixel in the frame shown'] = () =>
         ],
         [2, true, true]);
     same(moments.find((one) => one.frame === frame)?.pixel, [300, 200]);
+  }
+};
+tests['What is new flies level'] = () => {
+  // The own aircraft sinks by 2 m/s and pitches, so that the horizon moves.
+  const frames = Array.from({length: 31}, (_, k) => 5 * k);
+  const ned = frames.map((frame) => [(25 * frame) / 30, 0, -100 + (2 * frame) / 30]);
+  const horizon = frames.map((frame) => [frame, [0, 400 + frame, 1280, 400 + frame]]);
+  const plan = {frames, horizon, own: {ned}} as never;
+  for (const frame of [0, 62, 149]) {
+    const table = newFlyer(
+        {kind: 'aircraft', aircraft: '738/738-ANA', length_m: 39.5}, {lens: {focal_px: [900, 900]}}, CLIP, frame,
+        [300, 200], plan);
+    const heights = momentsOf(flyer(table), CLIP).map(({frame: at, pixel: [x, y], range_m}) => {
+      const above_m = ((400 + at - y) * range_m!) / Math.hypot(900, x - 640, y - 480);
+      return 100 - (2 * at) / 30 + above_m;
+    });
+    near(heights[1], heights[0], 0.1);
+    same(momentsOf(flyer(table), CLIP).find((one) => one.frame === frame)?.pixel, [300, 200]);
   }
 };
 tests['A moment stands in its place in time, or moves the one that is there'] = () => {

@@ -2,7 +2,7 @@
 import {Connection, Lost, Refused} from './connection';
 import type {AircraftGroup, Change, Clip, MeasuredValue, NearMiss, Path, Plan, Rendered, ServerEvent, State, Table, Told} from './contract';
 import {type Edit, Edits, type Unsent} from './edits';
-import {type Choice, type Flyer, type Moment, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, ownSpeed, trackOf, withMoment} from './flyers';
+import {type Choice, type Flyer, type Moment, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, trackOf, withMoment} from './flyers';
 import {type Point, clamp, seenNear} from './geometry';
 import {Pictures} from './pictures';
 import type {Store} from './store';
@@ -135,11 +135,7 @@ export class Studio {
     const list = state.scene[key];
     const count = Array.isArray(list) ? list.length : 0;
     const place = at ?? [clip.width * 0.3, clip.height * (0.3 + 0.08 * (flyersOf(state.scene).length % 5))];
-    this.edit([{
-      insert: [key],
-      at: null,
-      table: newFlyer(choice, state.scene, clip, frame, place as Point, plan ? ownSpeed(plan, frame, clip) : 0)
-    }]);
+    this.edit([{insert: [key], at: null, table: newFlyer(choice, state.scene, clip, frame, place as Point, plan)}]);
     this.store.put({selected: [key, count], moment: null, tab: 'flyers'});
   }
 
