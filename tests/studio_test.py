@@ -322,16 +322,23 @@ def test_near_miss(airtruth, browser, root):
     browser.key("Enter")
     page.rest()
     near("another miss distance", [miss()["distance_m"], miss()["right_m"] < 0], [30, True], 0.3)
+    middle = lambda: [(lambda x, y, w, h: (x + w / 2, y + h / 2))(*one["box"]) for one in page.boxes()]
+    near("the box in that frame at another miss distance", middle()[0], pixel, BESIDE_PX)
     type_into(browser, "Miss distance, m", "5")
     expect("nearer than it is above", words_of(browser, ".expected")[0].startswith("Expected a number from 10.1 to 100000 m, since it is so far above"), True)
     browser.key("Escape")
-    browser.click_on(".near-miss summary")
+    page.open(server.address)
+    says_so = lambda: any(words.startswith("Its pixel at 0.4 s stays") for words in words_of(browser, "studio-flyer .hint"))
+    type_into(browser, "Above, m", "20")
+    browser.key("Enter")
+    page.rest()
+    near("at another height, after a reload", [miss()["distance_m"], miss()["above_m"], *middle()[0], says_so()], [30, 20, *pixel, True], BESIDE_PX)
     type_into(browser, "Course, °", "250")
     browser.key("Enter")
     page.rest()
-    near("on another course", [miss()["distance_m"], miss()["right_m"] < 0], [30, True], 0.3)
+    near("on another course", [miss()["distance_m"], miss()["right_m"] < 0, says_so()], [30, True, False], 0.3)
     # What is undone to the file's text is saved.
-    for _ in range(2):
+    for _ in range(3):
         browser.key("z", CONTROL)
         page.rest()
     expect("saved", page.state()["saved"], True)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Clip, MeasuredValue, Path, PictureHeader, Plan, Rendered, State} from './contract';
+import type {Clip, MeasuredValue, NearMiss, Path, PictureHeader, Plan, Rendered, State} from './contract';
 
 // A line for the user; what is said twice is shown once.
 export interface Notice {
@@ -29,6 +29,12 @@ export interface Draft {
   pixel: [number, number];
 }
 
+// What was asked for, through the pixel of a frame.
+export interface MadeNearMiss {
+  asked: NearMiss;
+  frame: number;
+}
+
 // All that the page knows, as it is at the beginning. Parts read it and are told which members changed.
 const beginning = {
   connected: false,
@@ -46,6 +52,7 @@ const beginning = {
   busy: null as 'render' | 'calibrate' | null,
   measured: null as MeasuredValue[] | null,
   film: null as Rendered | null,
+  nearMisses: {} as {[encounter: string]: MadeNearMiss},  // by what they became
   // view settings
   frame: 0,
   playing: false,
@@ -68,8 +75,10 @@ export type Everything = typeof beginning;
 export type Member = keyof Everything;
 
 // What a reload of the page keeps.
-const KEPT: Member[] =
-    ['frame', 'selected', 'moment', 'tab', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion', 'speed'];
+const KEPT: Member[] = [
+  'nearMisses', 'frame', 'selected', 'moment', 'tab', 'showsAircraft', 'showsBoxes', 'showsHorizon', 'showsMotion',
+  'speed'
+];
 const KEY = 'airtruth-studio-view';
 
 type Listener = (changed: Set<Member>) => void;

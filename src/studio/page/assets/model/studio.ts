@@ -2,12 +2,13 @@
 import {Connection, Lost, Refused} from './connection';
 import type {AircraftGroup, Change, Clip, MeasuredValue, NearMiss, Path, Plan, Rendered, ServerEvent, State, Table, Told} from './contract';
 import {type Edit, Edits, type Unsent} from './edits';
-import {type Choice, type Flyer, type Moment, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, trackOf, withMoment} from './flyers';
+import {type Choice, type Flyer, type Moment, STATED, TO_MOMENTS, byEncounter, copyOf, flyerAt, flyersOf, momentsOf, newFlyer, tableOf, trackOf, withMoment} from './flyers';
 import {type Point, clamp, seenNear} from './geometry';
 import {Pictures} from './pictures';
-import type {Store} from './store';
+import type {MadeNearMiss, Store} from './store';
 
 const KEPT_LATENCIES = 500;
+const KEPT_NEAR_MISSES = 100;
 const REST_MS = 100;
 const UNSENT_KEY = 'airtruth-studio-unsent';
 
@@ -16,6 +17,7 @@ interface ShownEdit extends Edit {
   moved_ms?: number;
 }
 
+const keyOf = (encounter: Table) => JSON.stringify(Object.entries(encounter).sort());
 const backgroundOf = (state: State) => JSON.stringify(state.scene.background ?? null);
 
 // What a user can do, on the store and over the connection.
@@ -24,7 +26,7 @@ export class Studio {
   readonly pictures: Pictures;
   readonly edits: Edits;
   private merges = 0;
-  private wholes = 0;  // undos and the like under way
+  private wholes = 0;  // undos, near misses and the like under way
   private rest: ReturnType<typeof setTimeout>|undefined;
   private planAsked = false;
   private planStale = false;
@@ -208,19 +210,31 @@ export class Studio {
   }
 
   // Lets the selected path go on straight from the frame shown, past the own aircraft.
-  async nearMiss({above_m, ...wanted}: NearMiss): Promise<void> {
-    const {frame} = this.store.now;
+  async nearMiss(asked: NearMiss, frame = this.store.now.frame): Promise<void> {
     const {flyer} = this;
     if (!flyer || !this.isConnected()) return;
-    await this.edits.whenIdle();
+    const {above_m, ...wanted} = asked;
+    this.wholes += 1;
     try {
+      await this.edits.whenIdle();
       const {encounter} = await this.connection.request<{encounter: Table}>(
           'near_miss', {intruder: flyer.path[1], frame, ...wanted, ...(above_m === null ? {} : {above_m})});
       const now = flyerAt(this.store.now.state, flyer.path);
-      if (now) this.edit(byEncounter(now, encounter));
+      if (!now) return;
+      const others = Object.entries(this.store.now.nearMisses).slice(1 - KEPT_NEAR_MISSES);
+      this.store.put({nearMisses: Object.fromEntries([...others, [keyOf(encounter), {asked, frame}]])});
+      this.edit(byEncounter(now, encounter));
     } catch (error) {
       this.failed(error);
+    } finally {
+      this.wholes -= 1;
     }
+  }
+
+  // The near miss that the selected path still is; null where it is none, or was edited otherwise.
+  get madeBy(): MadeNearMiss|null {
+    const {encounter} = this.flyer?.table ?? {};
+    return encounter ? this.store.now.nearMisses[keyOf(tableOf(encounter))] ?? null : null;
   }
 
   async search(text: string): Promise<AircraftGroup[]> {

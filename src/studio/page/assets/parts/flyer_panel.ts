@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Change, Clip, Json, Table} from '../model/contract';
+import type {Change, Clip, Json, NearMiss, Table} from '../model/contract';
 import {type Flyer, type Moment, STATED, TO_MOMENTS, MOST_MISS_M, SPEEDS_MPS, describedApproach, frameOf, missOf, momentsOf, numberOf, roomOf, tableOf, timeOf, toApproach, toMoments, trackOf, withCourse, withMiss, writtenRange, writtenWidth} from '../model/flyers';
 import {round, speedOf, velocityAt} from '../model/geometry';
 import type {Member} from '../model/store';
@@ -75,9 +75,11 @@ export class FlyerPanel extends Part {
         (value) => {
           const {flyer} = this.studio;
           const {plan, clip} = this.now;
-          if (flyer && plan && clip) this.studio.edit(withMiss(flyer, plan, clip, value));
+          if (flyer && plan && clip && !this.passesAgain({miss_m: value}))
+            this.studio.edit(withMiss(flyer, plan, clip, value));
         }
   });
+  private keeps = h('p', {class: 'hint'});
   private portrait = h('img', {alt: '', width: 56, height: 56});
   private seenAs = h('p', {class: 'hint'});
 
@@ -104,6 +106,10 @@ export class FlyerPanel extends Part {
       const {miss_m, least_m} = missOf(flyer, plan, clip);
       this.miss.limit(round(least_m, 1), MOST_MISS_M, 'm', 'since it is so far above or below');
       this.miss.show(round(miss_m, 1));
+      const made = this.studio.madeBy;
+      text(
+          this.keeps,
+          made ? `Its pixel at ${timeOf(made.frame, clip)} s stays under Miss distance, Above and Speed alone.` : '');
     }
     const approach = track ? track.approach || (track.cpa ? describedApproach(track.cpa) : '') : '';
     // What the checks say already is not said twice.
@@ -152,7 +158,9 @@ export class FlyerPanel extends Part {
         [] :
         [h('div', {class: 'actions'}, h('button', {onclick: () => this.restate(toMoments)}, TO_MOMENTS))];
     if (flyer.statement !== 'approach') return turn;
-    return [h('div', {class: 'grid'}, this.miss.element, ...ENCOUNTER.map((one) => this.keyField(one))), ...turn];
+    return [
+      h('div', {class: 'grid'}, this.miss.element, ...ENCOUNTER.map((one) => this.keyField(one))), this.keeps, ...turn
+    ];
   }
 
   private keyField(options: KeyOptions): HTMLElement {
@@ -166,6 +174,8 @@ export class FlyerPanel extends Part {
     if (!flyer) return;
     const to = options.key[0] === 'count' ? Math.round(value) : value;
     const {plan, clip} = this.now;
+    if (options.key[1] === 'cpa_above_m' && this.passesAgain({above_m: to})) return;
+    if (options.key[1] === 'speed_mps' && this.passesAgain({speed_mps: to})) return;
     if (options.key[1] === 'course_deg' && plan && clip) return this.studio.edit(withCourse(flyer, plan, clip, to));
     const changes: Change[] = [{set: [...flyer.path, ...options.key], to}];
     if (options.key[0] === 'count' && to > 1 && !('spread_m' in flyer.table))
@@ -177,6 +187,13 @@ export class FlyerPanel extends Part {
     if (other && other in tableOf(flyer.table.encounter))
       changes.unshift({remove: [...flyer.path, 'encounter', other]});
     this.studio.edit(changes);
+  }
+
+  // Whether the path is a near miss, which then passes otherwise, still through its pixel.
+  private passesAgain(part: Partial<NearMiss>): boolean {
+    const made = this.studio.madeBy;
+    if (made) void this.studio.nearMiss({...made.asked, ...part}, made.frame);
+    return made !== null;
   }
 
   private restate(how: typeof toApproach|typeof toMoments): void {
