@@ -380,7 +380,8 @@ TEST_F(OverAFlight, WhatIsAroundTheCameraIsInViewWithoutABox) {
   const auto moment = stage.picture(3, false)->moment;
   EXPECT_TRUE(moment.boxes[0].box && moment.boxes[0].partly_unseen);
   EXPECT_TRUE(boxes_of(stage, moment, tables_of(scene)).empty());
-  const auto& point = plan_of(stage, tables_of(scene))["tracks"][0]["points"][3];
+  const auto plan = plan_of(stage, tables_of(scene));
+  const auto& point = plan["tracks"][0]["points"][3];
   EXPECT_TRUE(point[5].get<bool>()) << point;
   EXPECT_TRUE(point[4].is_null()) << point;
 }

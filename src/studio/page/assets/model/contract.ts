@@ -78,7 +78,7 @@ export interface Track {
   handles: Handle[];
   cpa: Approach|null;
   checks: string[];
-  approach: string;  // the command line's words
+  approach: string;  // the command line's words, of a flock those of its middle
 }
 
 export interface Volume {
