@@ -187,8 +187,7 @@ class AcParser {
   AcParser(std::string_view text, const fs::path& name) : tokens_(text, name), name_(name) {}
 
   AcFile parse() {
-    std::string_view head = tokens_.word();
-    if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);  // a byte order mark
+    const std::string_view head = without_mark(tokens_.word());
     if (head.empty()) throw Error("is empty; expected a 3D model", {name_.string()});
     if (!head.starts_with("AC3D"))
       throw Error("is no AC3D file (it does not begin with AC3D)", {name_.string(), 1});

@@ -125,6 +125,7 @@ std::string CameraProfile::words() const {
 CameraProfile parse_camera_profile(std::string_view text, const std::string& name) {
   CameraProfile profile;
   profile.name = name;
+  text = without_mark(text);
   int number = 0;
   while (!text.empty()) {
     const std::size_t end = text.find('\n');

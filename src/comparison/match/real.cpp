@@ -87,7 +87,7 @@ double pixels(const std::string& cell, const Where& where) {
 }  // namespace
 
 RealBoxes read_boxes(const fs::path& file, double origin_px) {
-  std::istringstream lines(read_file(file));
+  std::istringstream lines{std::string(without_mark(read_file(file)))};
   std::string line;
   std::getline(lines, line);
   const std::vector<std::string> header = cells_of(line);

@@ -8,7 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "foundation/base/files.h"
 #include "support/shared_folder.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth::match {
 namespace {
@@ -19,6 +21,15 @@ TEST(Real, SizesThatJumpAreLeftOut) {
   const RealBoxes kept = without_jumps(boxes);
   EXPECT_EQ(kept.size(), 19u);
   EXPECT_FALSE(kept.contains(9));
+}
+
+TEST(Real, BoxesAreReadBehindAByteOrderMark) {
+  const test_support::TemporaryFolder folder;
+  const fs::path file = folder / "boxes.csv";
+  write_file(file,
+             "\xEF\xBB\xBF"
+             "frame,x,y,w,h\n0,1,2,3,4\n1,1,2,3,4\n");
+  EXPECT_EQ(read_boxes(file, 0).size(), 2u);
 }
 
 // The clips that came with tight boxes made by others.

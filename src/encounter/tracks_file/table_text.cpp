@@ -41,9 +41,8 @@ void split_row(std::string_view line, std::vector<std::string_view>& cells) {
 
 }  // namespace
 
-Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
-  if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
-}
+Lines::Lines(std::string_view text, std::string file)
+    : rest_(without_mark(text)), file_(std::move(file)) {}
 
 bool Lines::next() {
   while (!rest_.empty()) {

@@ -37,9 +37,7 @@ std::vector<Line> lines_of(const fs::path& file) {
   const std::string text = read_file(file);
   std::vector<Line> lines;
   int number = 0;
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  for (std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-       at < text.size();) {
+  for (std::size_t at = text.size() - without_mark(text).size(); at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     ++number;
     const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));

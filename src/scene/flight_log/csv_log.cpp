@@ -77,12 +77,6 @@ void add_row(FlightLog& log, const Places& places, std::string_view line, const 
     add_good(log, Rates{fix.time_s, {number(kRateX), number(kRateY), number(kRateZ)}}, where);
 }
 
-std::string_view without_mark(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  return text;
-}
-
 }  // namespace
 
 bool is_csv(std::string_view content) {

@@ -77,11 +77,10 @@ void add_row(const std::vector<std::string>& cells,
 }
 
 Samples read_samples(std::string_view text, const std::string& file) {
-  std::istringstream lines{std::string(text)};
+  std::istringstream lines{std::string(without_mark(text))};
   std::string line;
   if (!std::getline(lines, line))
     throw Error("is empty; expected a header and at least two rows", {file});
-  if (line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
   const Header header = header_of(line, file);
   Samples samples;
   for (std::size_t i = 0; i < 3; ++i)

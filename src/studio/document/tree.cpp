@@ -15,13 +15,11 @@
 namespace airtruth::document {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 // Finds the byte of a line and column. toml++ counts columns in code points.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {
-    starts_.push_back(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+    starts_.push_back(text.size() - without_mark(text).size());
     for (std::size_t i = 0; i < text.size(); ++i)
       if (text[i] == '\n') starts_.push_back(i + 1);
   }
@@ -181,7 +179,7 @@ const Node* Node::member(std::string_view name) const {
 Tree tree_of(std::string_view text, const std::string& file) {
   const toml::table parsed = scene::parsed_toml(text, file);
   Tree tree{Reader(text).table(parsed, Node::Kind::kHeaderTable), json_of(parsed)};
-  tree.root.begin = tree.root.end = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  tree.root.begin = tree.root.end = text.size() - without_mark(text).size();
   return tree;
 }
 
