@@ -218,6 +218,11 @@ class Frames(unittest.TestCase):
             warnings.simplefilter("error")
             airtruth.read_labels("coco", "coco")
             self.assertRaises(UserWarning, airtruth.read_labels, "of no class", "mot")
+        with open("foreign.json", "w") as file:
+            json.dump({"images": [{"id": 1, "file_name": "a.png", "width": 64, "height": 64}], "categories": [{"id": 1, "name": "a\x1b[31m"}],
+                       "annotations": [{"id": 1, "image_id": 1, "category_id": 1, "bbox": [1, 2, 3, 4]}]}, file)
+        with self.assertWarnsRegex(UserWarning, r"'a\?\[31m'"):
+            airtruth.read_labels("foreign.json", "coco")
 
     def test_a_notebook_shows_the_picture_with_its_box(self):
         frame = airtruth.DataSet("set")["across"].frame(3)

@@ -84,7 +84,7 @@ void Warnings::hand_over() {
   }
   // The second frame is that of whoever called the package.
   for (const std::string& message : messages)
-    py::module_::import("warnings").attr("warn")(text(message), py::arg("stacklevel") = 2);
+    py::module_::import("warnings").attr("warn")(line_of_text(message), py::arg("stacklevel") = 2);
 }
 
 void HeardProgress::set(std::int64_t done, std::int64_t total) {

@@ -12,17 +12,9 @@
 namespace airtruth::python {
 namespace {
 
-// Raises airtruth.Error. The message is one line, whatever bytes a file's name in it has.
 void raise_error(const std::string& message) {
-  std::string line;
-  for (const char c : message) {
-    if (c == '\n')
-      line += "\\n";
-    else
-      line += static_cast<unsigned char>(c) < ' ' ? '?' : c;
-  }
   const py::object type = py::module_::import("airtruth._error").attr("Error");
-  PyErr_SetObject(type.ptr(), text(line).ptr());
+  PyErr_SetObject(type.ptr(), line_of_text(message).ptr());
 }
 
 void translate(std::exception_ptr thrown) {

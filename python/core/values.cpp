@@ -98,4 +98,15 @@ py::str text(const std::string& bytes) {
   return py::reinterpret_steal<py::str>(decoded);
 }
 
+py::str line_of_text(const std::string& message) {
+  std::string line;
+  for (const char c : message) {
+    if (c == '\n')
+      line += "\\n";
+    else
+      line += static_cast<unsigned char>(c) < ' ' || c == 0x7f ? '?' : c;
+  }
+  return text(line);
+}
+
 }  // namespace airtruth::python

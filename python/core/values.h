@@ -128,6 +128,8 @@ Named<Result, Arguments...> named(Result (*function)(Arguments...), Name... name
 
 // A text of the library, whose bytes need not be UTF-8 (names of files).
 py::str text(const std::string& bytes);
+// A message as one line without control characters, whatever bytes a name in it has.
+py::str line_of_text(const std::string& message);
 
 // An array that owns the values: they are not copied.
 template <typename T>

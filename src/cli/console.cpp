@@ -36,11 +36,10 @@ std::string time_left(double left_s) {
                     : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
-// A warning may quote any byte. The text is reduced to one line, and no control sequence reaches
-// the terminal.
-std::string one_line(std::string text) {
+// A message may quote any byte of a file or a name. No control sequence reaches the terminal.
+std::string without_controls(std::string text, char line_end) {
   for (char& c : text)
-    if (is_control(c)) c = c == '\n' ? ' ' : '?';
+    if (is_control(c)) c = c == '\n' ? line_end : '?';
   return text;
 }
 
@@ -51,7 +50,7 @@ void to_standard_error(const std::string& text) {
 }
 
 std::string log_line(const char* level, const std::string& message, bool json) {
-  if (!json) return fmt::format("airtruth: {}: {}\n", level, one_line(message));
+  if (!json) return fmt::format("airtruth: {}: {}\n", level, without_controls(message, ' '));
   const nlohmann::ordered_json line = {{"level", level}, {"message", message}};
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
@@ -123,7 +122,7 @@ void Console::ended(const std::string& words) {
 
 void Console::result(const std::string& message) {
   end_progress();
-  if (!options_.quiet) print(message + "\n");
+  if (!options_.quiet) print(without_controls(message, '\n') + "\n");
 }
 
 void Console::print(const std::string& text) {

@@ -389,6 +389,11 @@ class Others(Case):
         self.assertEqual(tables[0], tables[1])
         self.assertEqual(len(tables[0].splitlines()), 3)
 
+    def test_no_control_character_of_a_name_reaches_the_terminal(self):
+        made = run("synth", "-o", os.path.join(self.out, "a\x1b[31m.mkv"), "--width", "64", "--height", "64", "--frames", "2")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("a?[31m.mkv: 2 frames", made.stdout)
+
     def test_calibrate_names_what_is_missing_and_nothing_else(self):
         """The extinction takes the lens and the altitude; a file that lacks one names that one."""
         made = run("synth", "-o", os.path.join(self.out, "c.mkv"), "--width", "160", "--height", "120", "--frames", "10", "--no-own-aircraft")
