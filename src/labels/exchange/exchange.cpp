@@ -143,9 +143,12 @@ void classify(std::vector<Clip>& clips,
   // By category, its class; empty where it states none.
   std::map<std::string, std::string> classes;
   std::map<std::string, std::int64_t> unknown;
+  std::int64_t labels = 0, marked = 0;
   for (Clip& clip : clips)
     for (LabelledFrame& frame : clip.frames)
       for (Label& label : frame.labels) {
+        ++labels;
+        if (label.object_class == label_file::kIgnore) ++marked;
         const auto [known, is_new] = classes.try_emplace(label.category);
         if (is_new) {
           known->second = stated_class(label.category, options);
@@ -175,6 +178,12 @@ void classify(std::vector<Clip>& clips,
                    fmt::format("{} categories state no class and count as aircraft: {}",
                                words.size(),
                                fmt::join(words, ", ")));
+  if (marked > 0 && marked == labels)
+    airtruth::warn(warn,
+                   fmt::format("{} of {} boxes are marked as counting neither way (iscrowd, "
+                               "difficult, or 0 in MOT's seventh column), so that none counts",
+                               marked,
+                               labels));
 }
 
 WriteOptions options_of(std::span<const Part> parts) {

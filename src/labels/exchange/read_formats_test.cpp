@@ -123,6 +123,26 @@ TEST(Coco, CrowdsCountNeitherWayAndPicturesOfSeveralSizesAreNoVideo) {
   EXPECT_NE(warnings.find("differ in size"), std::string::npos) << warnings;
 }
 
+TEST(Coco, ASetOfCrowdsAloneIsSaid) {
+  const Folder folder;
+  const auto warnings_of = [&](const std::string& second) {
+    const fs::path file = folder.file("crowds.json",
+                                      R"({
+      "categories": [{"id": 5, "name": "aircraft"}],
+      "images": [{"id": 1, "file_name": "1.png", "width": 64, "height": 48}],
+      "annotations": [
+        {"id": 1, "image_id": 1, "category_id": 5, "bbox": [1, 2, 3, 4], "iscrowd": 1},
+        {"id": 2, "image_id": 1, "category_id": 5, "bbox": [5, 5, 9, 8], "iscrowd": )" +
+                                          second + "}]}");
+    std::string warnings;
+    read_clips(Format::kCoco, file, {}, [&](const std::string& w) { warnings += w + "\n"; });
+    return warnings;
+  };
+  EXPECT_NE(warnings_of("1").find("2 of 2 boxes are marked as counting neither way"),
+            std::string::npos);
+  EXPECT_EQ(warnings_of("0").find("neither way"), std::string::npos);
+}
+
 TEST(Coco, ASupercategoryStatesTheClassThatTheNameDoesNot) {
   const Folder folder;
   const fs::path file = folder.file("sky.json", R"({
