@@ -323,7 +323,7 @@ BuildSummary build_set(const catalogue::Catalogue& given,
 
 bool finish(const fs::path& root) {
   const catalogue::Folder folder{root};
-  const catalogue::Catalogue catalogue = catalogue::read_catalogue(folder.catalogue());
+  const catalogue::Catalogue catalogue = catalogue::catalogue_of(folder);
   const RunLock lock = catalogue::lock_of(folder, Sharing::kAlone);
   return write_manifest(catalogue, folder);
 }

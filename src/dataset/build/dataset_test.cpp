@@ -345,6 +345,8 @@ TEST_F(Build, AnImportedSetIsVerifiedByItsPicturesAndBoxes) {
   options.format = exchange::Format::kCsv;
   options.videos[""] = video;
   labelled::import_set(root_ / "boxes.csv", root_ / "imported", options);
+  EXPECT_THAT(test_support::error_of([&] { finish(root_ / "imported"); }),
+              HasSubstr("holds no catalogue.toml; expected a set that `airtruth dataset build`"));
   const VerifyResult good = verify(root_ / "imported", {});
   EXPECT_EQ(good.sequences, 1);
   EXPECT_EQ(good.faults, std::vector<std::string>{});

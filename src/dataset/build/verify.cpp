@@ -49,13 +49,6 @@ constexpr double kSureContrast = 3;
 constexpr std::ptrdiff_t kMostlySeen = 5;
 constexpr double kCodecFactor = 10;
 
-catalogue::Catalogue catalogue_of(const catalogue::Folder& folder) {
-  if (!fs::exists(folder.catalogue()))
-    throw Error("holds no catalogue.toml; expected a set that `airtruth dataset build` has begun",
-                {folder.root.string()});
-  return catalogue::read_catalogue(folder.catalogue());
-}
-
 bool is_at_work(const catalogue::Folder& folder) {
   try {
     const RunLock lock = catalogue::lock_of(folder, Sharing::kAlone);
@@ -383,7 +376,7 @@ void count_violations(const fs::path& sequence, Status& status) {
 
 Status status(const fs::path& root) {
   const catalogue::Folder folder{root};
-  const catalogue::Catalogue catalogue = catalogue_of(folder);
+  const catalogue::Catalogue catalogue = catalogue::catalogue_of(folder);
   const catalogue::Expansion expansion(catalogue);
   Status status;
   status.name = catalogue.name;
@@ -416,7 +409,8 @@ struct Places {
 };
 
 Places places_of(const catalogue::Folder& folder) {
-  const auto catalogue = std::make_shared<const catalogue::Catalogue>(catalogue_of(folder));
+  const auto catalogue =
+      std::make_shared<const catalogue::Catalogue>(catalogue::catalogue_of(folder));
   const auto expansion = std::make_shared<const catalogue::Expansion>(*catalogue);
   return {expansion->size(), [catalogue, expansion, folder](std::int64_t i) {
             const catalogue::Item item = expansion->at(i);

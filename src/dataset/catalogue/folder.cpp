@@ -50,6 +50,13 @@ Folder open_folder(const Catalogue& catalogue, const fs::path& root, std::int64_
   return folder;
 }
 
+Catalogue catalogue_of(const Folder& folder) {
+  if (!fs::exists(folder.catalogue()))
+    throw Error("holds no catalogue.toml; expected a set that `airtruth dataset build` has begun",
+                {folder.root.string()});
+  return read_catalogue(folder.catalogue());
+}
+
 RunLock lock_of(const Folder& folder, Sharing sharing, const Warn& to) {
   return {
       folder.root / ".lock", folder.root, to, sharing, "another build is at work in this folder"};

@@ -47,6 +47,9 @@ Folder open_folder(const Catalogue& catalogue,
                    const fs::path& root,
                    std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder);
 
+// The catalogue of a set that was begun. Throws Error for any other folder.
+Catalogue catalogue_of(const Folder& folder);
+
 // A lock that is held during a build; the kernel releases it when the process ends. Workers that
 // each make their own share hold it together (`shared`); a whole build holds it alone.
 // Throws Error where another process holds it. Where the file system has no locks that is not seen,
