@@ -98,6 +98,11 @@ class ASet(Case):
         write("key.toml", read("key.toml").replace("set/backgrounds/sky.mp4", videos[0]))
         self.assert_refused(run("render", "key.toml", "--out", "out"), "key.toml:", "chroma-key", "dirt")
 
+    def test_a_scene_of_distractors_alone_has_no_intruder(self):
+        write("dirt.toml", f"[background]\nvideo = \"{glob.glob(path('set', '**', 'sky*.m*'), recursive=True)[0]}\"\n"
+                           "[lens]\nvertical_fov_deg = 60\n[[distractor]]\nkind = \"dirt\"\npixel = [10, 10]\n")
+        self.assertIn("frames, no intruder, ", made("render", "dirt.toml", "--out", "out").stdout)
+
 
 def make_set():
     write("set.toml", CATALOGUE)

@@ -79,11 +79,13 @@ void render(const RenderArguments& arguments, Context& context) {
   const pipeline::Summary summary =
       pipeline::render(scene, arguments.out, options_from(arguments, context));
   for (const std::string& note : summary.notes) context.console().result(note);
+  const bool has_intruders = std::ranges::any_of(scene.intruders, scene::is_aircraft);
   context.console().result(
-      fmt::format("{}: {} frames, an intruder visible in {}, {:.1f} s ({:.1f} frames/s)",
+      fmt::format("{}: {} frames, {}, {:.1f} s ({:.1f} frames/s)",
                   summary.folder.string(),
                   summary.frames,
-                  summary.frames_visible,
+                  has_intruders ? fmt::format("an intruder visible in {}", summary.frames_visible)
+                                : "no intruder",
                   summary.seconds,
                   static_cast<double>(summary.frames) / std::max(1e-9, summary.seconds)));
   if (arguments.timings) context.console().result(timings(summary));
