@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/names.h"
+#include "foundation/disk_cache/disk_cache.h"
 
 namespace {
 
@@ -154,5 +155,10 @@ int main(int argc, char** argv) {
   app.add_flag(
       "--json-log", context.options.json_log, "Log as JSON, an object a line, on standard error");
   for (cli::Add* add : kCommands) add(app, context);
-  return run(app, argc, argv, context);
+  const int code = run(app, argc, argv, context);
+  if (const std::filesystem::path folder = disk_cache::refused_folder(); !folder.empty())
+    context.console().warning(folder.string() +
+                              ": nothing is kept there; expected a folder of the user's own that "
+                              "nobody else may write (chmod go-w)");
+  return code;
 }

@@ -394,6 +394,18 @@ class Others(Case):
         self.assertEqual(made.returncode, 0, made.stderr)
         self.assertIn("a?[31m.mkv: 2 frames", made.stdout)
 
+    def test_a_cache_that_others_may_write_is_said_once(self):
+        made = run("synth", "-o", os.path.join(self.out, "w.mkv"), "--width", "160", "--height", "120", "--frames", "10")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        cache = os.path.join(self.out, "cache")
+        os.makedirs(os.path.join(cache, "airtruth", "motion"))
+        os.chmod(os.path.join(cache, "airtruth", "motion"), 0o777)
+        with open(os.path.join(self.out, "w.toml"), "w") as file:
+            file.write("[background]\nvideo = \"w.mkv\"\n[lens]\nvertical_fov_deg = 60\n[motion]\nmodel = \"homography\"\n")
+        result = run("render", os.path.join(self.out, "w.toml"), "--out", self.out, prefix=("env", "XDG_CACHE_HOME=" + cache))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr.count("nothing is kept there; expected a folder of the user's own"), 1, result.stderr)
+
     def test_calibrate_names_what_is_missing_and_nothing_else(self):
         """The extinction takes the lens and the altitude; a file that lacks one names that one."""
         made = run("synth", "-o", os.path.join(self.out, "c.mkv"), "--width", "160", "--height", "120", "--frames", "10", "--no-own-aircraft")

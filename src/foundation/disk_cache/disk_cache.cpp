@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 
 #include <elf.h>
 #include <link.h>
@@ -88,6 +89,9 @@ void remove_unused(const fs::path& folder) {
   }
 }
 
+std::mutex refused_mutex;
+fs::path refused;  // guarded by refused_mutex
+
 }  // namespace
 
 fs::path user_folder(const char* kind) {
@@ -98,11 +102,21 @@ fs::path user_folder(const char* kind) {
   return {};
 }
 
+fs::path refused_folder() {
+  const std::lock_guard lock(refused_mutex);
+  return refused;
+}
+
 // Entries are believed, since their checksum is their own. Only the user may have written them.
 bool Cache::is_own() const {
   struct stat folder {};
-  return keeps() && ::lstat(folder_.c_str(), &folder) == 0 && S_ISDIR(folder.st_mode) &&
-         folder.st_uid == ::geteuid() && (folder.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+  if (!keeps() || ::lstat(folder_.c_str(), &folder) != 0) return false;
+  if (S_ISDIR(folder.st_mode) && folder.st_uid == ::geteuid() &&
+      (folder.st_mode & (S_IWGRP | S_IWOTH)) == 0)
+    return true;
+  const std::lock_guard lock(refused_mutex);
+  refused = folder_;
+  return false;
 }
 
 void Cache::make() const {

@@ -33,6 +33,10 @@ namespace airtruth::disk_cache {
 // Empty, so that nothing is kept, where the environment names neither by an absolute path.
 std::filesystem::path user_folder(const char* kind);
 
+// A folder that was there and that this process has not used, since it is not the user's alone;
+// empty: none.
+std::filesystem::path refused_folder();
+
 // The largest entry. The largest that a use of the cache makes is a model at its own limits.
 constexpr std::size_t kMaxEntryBytes = std::size_t{512} << 20;
 

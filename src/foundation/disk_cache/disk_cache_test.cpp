@@ -73,6 +73,7 @@ TEST_F(DiskCache, AFolderThatOthersCanWriteIsNotUsed) {
     fs::permissions(folder_ / "entries", fs::perms::owner_all | others);
     EXPECT_FALSE(cache_.find(kKey));
     EXPECT_EQ(cache_.lock(kKey, {}), nullptr);
+    EXPECT_EQ(refused_folder(), folder_ / "entries");
   }
   fs::permissions(folder_ / "entries", fs::perms::owner_all | fs::perms::group_read);
   EXPECT_EQ(cache_.find(kKey), "body");
