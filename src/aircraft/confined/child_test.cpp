@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -19,6 +18,7 @@
 #include "aircraft/wrapper/model_files.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/environment_variable.h"
 #include "support/error_of.h"
 
 namespace airtruth::confined {
@@ -42,17 +42,8 @@ class Strangers : public testing::Test {
       : outside_(fs::temp_directory_path() / ("airtruth_strangers_" + std::to_string(::getpid()))),
         folder_(outside_ / "model") {
     fs::create_directories(folder_ / "below");
-    ::setenv("XDG_CACHE_HOME", (outside_ / "cache").c_str(), 1);
-    if (const char* stated = std::getenv("AIRTRUTH_MODEL_READER")) reader_ = stated;
   }
-  ~Strangers() override {
-    if (reader_.empty()) {
-      ::unsetenv("AIRTRUTH_MODEL_READER");
-    } else {
-      ::setenv("AIRTRUTH_MODEL_READER", reader_.c_str(), 1);
-    }
-    fs::remove_all(outside_);
-  }
+  ~Strangers() override { fs::remove_all(outside_); }
 
   // The message of the Error; the number of triangles where loading succeeds.
   std::string said(const std::string& file, const model::LoadOptions& options = {}) const {
@@ -68,7 +59,7 @@ class Strangers : public testing::Test {
 
   fs::path outside_;
   fs::path folder_;
-  std::string reader_;
+  const test_support::EnvironmentVariable cache_{"XDG_CACHE_HOME", outside_ / "cache"};
 };
 
 TEST_F(Strangers, NothingIsRunAndNoPluginIsChosenByAName) {
@@ -114,11 +105,11 @@ TEST_F(Strangers, PathsStayBelowTheModelsFolder) {
 
 TEST_F(Strangers, AReaderThatBreaksLiesOrHangsIsOneLine) {
   write_file(folder_ / "a.ac", kPlainAc);
+  const fs::path program = outside_ / "reader";
+  const test_support::EnvironmentVariable reader("AIRTRUTH_MODEL_READER", program);
   const auto with_reader = [&](const std::string& script) {
-    const fs::path program = outside_ / "reader";
     write_file(program, "#!/bin/sh\n" + script + "\n");
     fs::permissions(program, fs::perms::owner_all);
-    ::setenv("AIRTRUTH_MODEL_READER", program.c_str(), 1);
   };
   with_reader("exit 3");
   EXPECT_THAT(said("a.ac"), testing::HasSubstr("a.ac: cannot be read as a 3D model: its reader"));
@@ -130,8 +121,10 @@ TEST_F(Strangers, AReaderThatBreaksLiesOrHangsIsOneLine) {
   EXPECT_THAT(said("a.ac"), testing::HasSubstr("handed back too few bytes"));
   with_reader("printf '\\077\\0\\0\\0\\0\\0\\0\\0\\0' >&0");
   EXPECT_THAT(said("a.ac"), testing::HasSubstr("say what it should not"));
-  ::setenv("AIRTRUTH_MODEL_READER", (outside_ / "none").c_str(), 1);
-  EXPECT_THAT(said("a.ac"), testing::HasSubstr("AIRTRUTH_MODEL_READER"));
+  {
+    const test_support::EnvironmentVariable none("AIRTRUTH_MODEL_READER", outside_ / "none");
+    EXPECT_THAT(said("a.ac"), testing::HasSubstr("AIRTRUTH_MODEL_READER"));
+  }
   with_reader("exec sleep 60");
   std::stop_source stop;
   model::LoadOptions options;
@@ -153,7 +146,7 @@ TEST_F(Strangers, AModelIsReadOnceAndAgainWhenAnyFileChanges) {
              "#!/bin/sh\n[ -e " + broken.string() + " ] && exit 3\nexec " +
                  model_reader_program().string() + " \"$@\"\n");
   fs::permissions(reader, fs::perms::owner_all);
-  ::setenv("AIRTRUTH_MODEL_READER", reader.c_str(), 1);
+  const test_support::EnvironmentVariable used("AIRTRUTH_MODEL_READER", reader);
   EXPECT_EQ(said("w.xml"), "1");
   write_file(broken, "");
   EXPECT_EQ(said("w.xml"), "1");  // from the cache: no reader is started

@@ -9,6 +9,7 @@
 #include "aircraft/fleet/fleet.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "support/environment_variable.h"
 #include "support/error_of.h"
 
 namespace airtruth::model_reader {
@@ -19,7 +20,6 @@ class Formats : public testing::Test {
   Formats()
       : folder_(fs::temp_directory_path() / ("airtruth_formats_" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
-    ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
   }
   ~Formats() override { fs::remove_all(folder_); }
 
@@ -35,6 +35,7 @@ class Formats : public testing::Test {
     return test_support::error_of([&] { load(name, bytes); });
   }
   fs::path folder_;
+  const test_support::EnvironmentVariable cache_{"XDG_CACHE_HOME", folder_ / "cache"};
   std::string warnings_;
 };
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/files.h"
+#include "support/environment_variable.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::disk_cache {
@@ -82,20 +83,12 @@ TEST_F(DiskCache, AFolderThatOthersCanWriteIsNotUsed) {
 }
 
 TEST(DiskCacheFolder, IsTheUsersOrNone) {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  const std::string kept_cache = cache == nullptr ? "" : cache;
-  const std::string kept_home = home == nullptr ? "" : home;
-  ::setenv("XDG_CACHE_HOME", "/c", 1);
+  const test_support::EnvironmentVariable cache("XDG_CACHE_HOME", "/c"), home("HOME", "/h");
   EXPECT_EQ(user_folder("k"), "/c/airtruth/k");
   ::setenv("XDG_CACHE_HOME", "c", 1);
-  ::setenv("HOME", "/h", 1);
   EXPECT_EQ(user_folder("k"), "/h/.cache/airtruth/k");
   ::unsetenv("HOME");
   EXPECT_EQ(user_folder("k"), "");
-  kept_cache.empty() ? ::unsetenv("XDG_CACHE_HOME")
-                     : ::setenv("XDG_CACHE_HOME", kept_cache.c_str(), 1);
-  if (!kept_home.empty()) ::setenv("HOME", kept_home.c_str(), 1);
 }
 
 TEST_F(DiskCache, EntriesThatNobodyUsesAreRemoved) {
