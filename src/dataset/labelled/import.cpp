@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
@@ -283,8 +284,7 @@ ImportSummary import_set(const fs::path& source,
   // All input is read before the first file is written.
   files.begin();
   const RunLock lock(out, out, options.warn);
-  const sequences::Layout layout =
-      sequences::layout_for(std::ssize(clips), options.max_in_a_folder);
+  const sequences::Layout layout = sequences::layout_for(std::ssize(clips));
   ImportSummary summary;
   files.write(out, [&](const fs::path& at) {
     const fs::path sequences = at / "sequences";

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "dataset/sequences/layout.h"
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "labels/exchange/exchange.h"
@@ -31,8 +30,6 @@ struct ImportOptions {
   std::vector<ObjectClass> classes;
   // Of pictures, for sets that state none.
   std::optional<double> frame_rate_hz;
-  // More clips lie in numbered folders with as many each (dataset/sequences/layout.h).
-  std::int64_t max_in_a_folder = sequences::kMaxSequencesInAFolder;
   Warn warn;
 };
 

@@ -116,8 +116,7 @@ std::optional<Blob> blob_of(const AgainstRing& ring, const Region& region, std::
   if (!around) return std::nullopt;
   const double to_noise =
       std::abs(level.picture.at<short>(ring.sample) - around->middle) / around->noise;
-  return Blob{
-      box_of(region, ring.fine), to_noise, to_noise, ring.contrast < 0, number, ring.sample};
+  return Blob{box_of(region, ring.fine), to_noise, to_noise, number, ring.sample};
 }
 
 // The connected samples that are as dark (or bright) as a sample that responds, to half of its
@@ -162,7 +161,7 @@ std::optional<Blob> against_response(const Level& level,
   if (!noise) return std::nullopt;
   const double to_noise = response_to_noise(level, sample, std::max(typical, *noise));
   if (to_noise <= least) return std::nullopt;
-  return Blob{box_of(*region, level), to_noise, 0, false, number, sample};
+  return Blob{box_of(*region, level), to_noise, 0, number, sample};
 }
 
 // The object by its parts, within the one of its bounds that holds them best. Those by the ring are
@@ -185,8 +184,7 @@ std::optional<Blob> by_parts(const std::vector<Level>& levels,
     boxes.push_back(box_of(*region, level));
   const auto whole = whole_of_parts(levels, number, boxes);
   if (!whole) return std::nullopt;
-  const bool is_dark = level.is_dark.at<std::uint8_t>(sample) != 0;
-  return Blob{whole->box_px, whole->to_noise, whole->to_noise, is_dark, number, sample};
+  return Blob{whole->box_px, whole->to_noise, whole->to_noise, number, sample};
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ struct Blob {
   // The first of the two alone: of several boxes of an object, that of the largest is the best. 0
   // where the ring does not bound it.
   double against_ring = 0;
-  bool is_dark = false;
   std::size_t level = 0;  // on which it was found
   cv::Point sample;       // of its strongest response, on that level
 };

@@ -382,12 +382,10 @@ class Am3 : public Tracker {
     }
     Answer answer;
     answer.lost = candidates.empty();
-    answer.confidence = 0;
     if (!candidates.empty()) {
       const Candidate& found = *std::min_element(candidates.begin(), candidates.end(), better);
       x_ = view.left + found.place.x * view.scale;
       y_ = view.top + found.place.y * view.scale;
-      answer.confidence = found.vote / static_cast<double>(levels_);
     }
     answer.box_px = box();
     return answer;

@@ -25,8 +25,6 @@ namespace airtruth::tracking {
 struct Answer {
   // In pixels (docs/conventions.md).
   Box box_px;
-  // The tracker's own confidence; trackers have no common scale.
-  double confidence = 1;
   // True where the tracker reports that it has lost the object; box_px is then its last box.
   bool lost = false;
   // Time for this answer in seconds, where the tracker measures it better than its caller.

@@ -226,7 +226,6 @@ TEST(TraxTracker, OfVersionFour) {
   const Answer answer = tracker->update();
   EXPECT_FALSE(answer.lost);
   EXPECT_EQ(answer.box_px, (Box{5, 6, 7, 8}));
-  EXPECT_EQ(answer.confidence, 0.25);
   EXPECT_GT(answer.seconds, 0);
   tracker->load(one);
   tracker->init({2, 2, 3, 4});

@@ -2,9 +2,7 @@
 #include "runners/tracking/trax_tracker.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -51,13 +49,6 @@ std::optional<ImageKind> image_kind_of(std::string_view name) {
 std::string_view property(const Message& message, std::string_view name, std::string_view old) {
   const std::string_view value = message.property(name);
   return value.empty() ? message.property(old) : value;
-}
-
-double confidence_of(const Message& message) {
-  const std::string_view text = message.property("confidence");
-  double value = 1;
-  const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return fault == std::errc() && std::isfinite(value) ? value : 1;
 }
 
 void expect(const Message& message, Type type, const char* name) {
@@ -240,7 +231,7 @@ class TraxTracker : public Tracker {
     const std::string& region = message.arguments.front();
     const std::optional<Box> box = box_of(region);
     if (box) last_ = *box;
-    return {last_, confidence_of(message), !box, took, !box && has_negative_side(region)};
+    return {last_, !box, took, !box && has_negative_side(region)};
   }
 
   void guarded(const auto& work) {
