@@ -121,12 +121,9 @@ std::vector<DistractorRule> distractor_rules(const TableReader& root) {
 
 namespace {
 
-// Spans squared over wing areas (Pennycuick 1996, table 1): gulls, crows, buzzards and eagles,
-// pigeons.
-double usual_aspect_ratio(shapes::Plumage plumage) {
-  using enum shapes::Plumage;
-  return plumage == kGull ? 9.6 : plumage == kDark ? 6.5 : plumage == kBrown ? 6.3 : 7.2;
-}
+// Spans squared over wing areas (Pennycuick 1996, table 1) in the order of shapes::Plumage: gulls,
+// crows, buzzards and eagles, pigeons.
+constexpr std::array<double, 4> kUsualAspectRatios = {9.6, 6.5, 6.3, 7.2};
 
 // True for a share of the sequences; rule by rule another irrational number turns.
 bool is_in_share(const DistractorRule& rule, std::size_t place, double turn, std::int64_t index) {
@@ -145,7 +142,7 @@ scene::Intruder drawn_leader(const DistractorRule& rule, Random& random) {
       scene::usual_distractor(rule.kind, drawn_evenly_in_logarithm(random, rule.size_m));
   scene::Distractor& one = *leader.distractor;
   one.plumage = one_of(random, rule.plumages);
-  one.aspect_ratio = usual_aspect_ratio(one.plumage);
+  one.aspect_ratio = kUsualAspectRatios[static_cast<std::size_t>(one.plumage)];
   one.glide = drawn(random, rule.glide);
   one.flap_phase = random.uniform(0, model::kStrokesOfBout);
   // Numbers of rotors, drawn with equal chances: a choice.
