@@ -182,6 +182,9 @@ class Frames(unittest.TestCase):
             self.assertEqual((told[-1], told == sorted(told)), ((6, 6), True))
             with self.assertRaises(ZeroDivisionError):
                 call(progress=lambda done, total: 1 / 0)
+        told.clear()
+        airtruth.sample_encounters("light_aircraft.txt", count=20, progress=lambda done, total: told.append((done, total)))
+        self.assertEqual(told[-1], (20, 20))
 
     def test_full_range_gray_is_that_of_a_network(self):
         def frame(planes, pixel_format, matrix, is_full_range):

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -54,6 +55,8 @@ struct EncounterOptions {
   std::vector<double> turn_rate_dps;
   // Threads; 0: one for each core. The encounters do not depend on it.
   int jobs = 0;
+  // Called as encounters are drawn, from the thread of sample_encounters().
+  std::function<void(std::int64_t done, std::int64_t total)> progress;
   // sample_encounters() throws Interrupted once a stop is requested.
   std::stop_token stop;
 };

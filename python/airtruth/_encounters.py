@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._frames import Numbers
+from ._progress import Progress, shown
 from ._video import Path
 
 # One number, or the edges of bins.
@@ -57,6 +58,7 @@ def sample_encounters(
     climb_mps: Optional[Range] = None,
     turn_rate_dps: Optional[Range] = None,
     jobs: int = 0,
+    progress: Optional[Progress] = None,
 ) -> Encounters:
     """Draws tracks from an encounter model, alone or paired with an own track to encounters, as `airtruth encounter sample` does: an
     encounter depends on the arguments and its number alone.
@@ -71,6 +73,8 @@ def sample_encounters(
     Of geometric: `course_deg` relative to the own one, 180 head-on, 90 from the left (-180 to 180), `speed_mps` (30 to 80),
     `climb_mps` (0), `turn_rate_dps` (0).
 
+    `progress(done, total)` is called as encounters are drawn; without it a terminal shows a line.
+
     airtruth.Error for files that cannot be read, for what is out of range, and for what is stated and has no effect. Ctrl-C ends the
     work within 2 s.
 
@@ -82,8 +86,8 @@ def sample_encounters(
     array([60., 60., 60.])
     """
     ranges = [_list(one) for one in (altitude_ft, hmd_m, hmd_shares, vmd_m, vmd_shares, course_deg, speed_mps, climb_mps, turn_rate_dps)]
-    return Encounters(
-        **_core.sample_encounters(
-            os.fspath(model), os.fspath(own or ""), count, seed, duration_s, _list(domain), _list(airspace), cpa_time_s, ranges, jobs
+    with shown("drawing", progress) as tell:
+        fields = _core.sample_encounters(
+            os.fspath(model), os.fspath(own or ""), count, seed, duration_s, _list(domain), _list(airspace), cpa_time_s, ranges, jobs, tell
         )
-    )
+    return Encounters(**fields)

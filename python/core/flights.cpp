@@ -118,7 +118,8 @@ py::dict encounters(const fs::path& model,
                     const py::object& airspace,
                     std::optional<double> cpa_time_s,
                     const std::array<py::object, 9>& ranges,
-                    const py::object& jobs) {
+                    const py::object& jobs,
+                    const py::object& progress) {
   EncounterOptions options;
   options.own = own.string();
   options.count = count;
@@ -138,7 +139,9 @@ py::dict encounters(const fs::path& model,
   options.turn_rate_dps = list_of(ranges[8], "turn_rate_dps");
   options.jobs = checked_threads(jobs, "jobs");
   return encounters_dict(stoppable(
-      options, [&](const EncounterOptions& o) { return sample_encounters(model.string(), o); }));
+      options,
+      [&](const EncounterOptions& o) { return sample_encounters(model.string(), o); },
+      progress));
 }
 
 }  // namespace
@@ -158,7 +161,8 @@ void bind_flights(py::module_& core) {
                  "airspace",
                  "cpa_time_s",
                  "ranges",
-                 "jobs"));
+                 "jobs",
+                 "progress"));
 }
 
 }  // namespace airtruth::python

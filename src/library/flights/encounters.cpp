@@ -25,7 +25,7 @@ SampledEncounters sample_encounters(const std::string& model, const EncounterOpt
   const sets::SampleRequest request{options, model};
   const sets::SampledSet set = sets::sampled_set(request);
   const sets::DrawnSet drawn =
-      sets::draw_set(set.draw, {request.size(), options.jobs, {}, options.stop});
+      sets::draw_set(set.draw, {request.size(), options.jobs, options.progress, options.stop});
   SampledEncounters result;
   for (const track::Track& track : drawn.encounters.front().aircraft)
     result.aircraft_names.push_back(track.name);

@@ -39,7 +39,10 @@ TEST(PublicEncounters, MeetAsTheyAreAskedFor) {
   options.vmd_m = {30};
   options.hmd_m = {0};
   options.course_deg = {180};
+  std::int64_t drawn = 0;
+  options.progress = [&](std::int64_t done, std::int64_t) { drawn = done; };
   const SampledEncounters met = sample_encounters("geometric", options);
+  EXPECT_EQ(drawn, 5);
   EXPECT_EQ(met.aircraft_names, (std::vector<std::string>{"own", "intruder"}));
   EXPECT_EQ(met.weights, std::vector<double>(5, 1));
   EXPECT_EQ(met.effective_count, 5);
