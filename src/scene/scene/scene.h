@@ -113,9 +113,10 @@ struct Camera {
   double clip_start_s = 0;
   // Whether the scene states the position at the first frame; else it is that of a log.
   bool position_is_stated = false;
-  // With a log: true where the attitude follows the log throughout, which is so for motion
-  // `smoothed`. Otherwise it is that of the first frame, from where the measured motion turns it.
-  bool follows_log_attitude = false;
+  // True where the attitude is that of the path file or the log throughout: the measured motion is
+  // the shake about it (`smoothed`), or none is measured. Otherwise it is that of the first frame,
+  // from where the measured motion turns it.
+  bool follows_attitude = false;
   Where where;
 };
 

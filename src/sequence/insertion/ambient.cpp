@@ -428,11 +428,16 @@ void AmbientEstimator::follow_exposure(const std::vector<Rgb>& blocks) {
   }
 }
 
+// The sun's centre when the last of it sets: half its width and the refraction at the horizon, 16'
+// and 34' (Meeus 1998, "Astronomical algorithms", chapter 15).
+constexpr double kSunsetDeg = -50.0 / 60;
+
 Ambient AmbientEstimator::with_scene(Ambient measured) const {
   if (light_.exposure) {
     for (std::size_t c = 0; c < 3; ++c)
       measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
   }
+  if (light_.sun_elevation_deg < kSunsetDeg) measured.sun = {};
   // A stated sky is uniform, as an overcast sky nearly is.
   if (light_.sky_colour) measured.blue = {}, measured.cloud = floats(*light_.sky_colour);
   if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);

@@ -81,6 +81,20 @@ TEST(Ambient, AClearSkysLightIsThatOfTheWholeSkyWhereverTheCameraLooks) {
     }
 }
 
+// Whether its light is stated or measured.
+TEST(Ambient, ASunThatHasSetLightsNothing) {
+  for (const bool is_stated : {false, true}) {
+    const auto sun_at = [&](double elevation_deg) {
+      ClearSky sky(25, 100, elevation_deg);
+      if (is_stated) sky.light.exposure = 0.5;
+      return sky.seen().sun[0];
+    };
+    EXPECT_GT(sun_at(0), 0);
+    EXPECT_EQ(sun_at(-1), 0);
+    EXPECT_EQ(sun_at(-90), 0);
+  }
+}
+
 TEST(Ambient, ABlackPictureGetsTheLightOfAnOvercastSky) {
   ClearSky black(40, 180, 30);
   EXPECT_FALSE(black.seen().is_assumed);

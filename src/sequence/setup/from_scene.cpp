@@ -99,6 +99,15 @@ trajectory::AttitudeOverride held(const scene::Camera& camera,
   return {attitude->yaw_deg, attitude->pitch_deg, attitude->roll_deg};
 }
 
+trajectory::Path path_from_file(const scene::Camera& camera) {
+  const trajectory::Path path = trajectory::read_path_file(*camera.path_file);
+  const auto first = path.at(0);
+  if (camera.follows_attitude || !first) return path;
+  const YawPitchRoll held = yaw_pitch_roll(first->world_from_body);
+  return trajectory::read_path_file(*camera.path_file,
+                                    {held.yaw_deg, held.pitch_deg, held.roll_deg});
+}
+
 trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   const flight_log::FlightLog log = read_log(*camera.log);
   if (!log.first_fault.empty())
@@ -114,8 +123,7 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   const flight_log::Placement placement{offset_s, first};
   try {
     const trajectory::Path path = flight_log::local_path(log, placement);
-    if (camera.follows_log_attitude && !camera.attitude_yaw_pitch_roll_deg &&
-        !log.attitudes.empty())
+    if (camera.follows_attitude && !camera.attitude_yaw_pitch_roll_deg && !log.attitudes.empty())
       return path;
     return flight_log::local_path(log, placement, held(camera, log, path, offset_s));
   } catch (const Error& error) {
@@ -132,7 +140,7 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
 }
 
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {
-  if (camera.path_file) return trajectory::read_path_file(*camera.path_file);
+  if (camera.path_file) return path_from_file(camera);
   if (camera.log) return path_from_log(camera, warn);
   return trajectory::uniform(camera.position_ned_m,
                              camera.velocity_ned_mps,

@@ -27,12 +27,13 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
 
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
 //
+// The attitude of a path file or a log is that at the first frame, and is held, since the measured
+// motion turns the camera from there. Where follows_attitude is true it is the file's throughout.
+//
 // Of a log the position at the first frame is the stated one; without it the aircraft is over the
 // origin at the log's height above take-off, or at the default height of a scene where the log
 // states none. The attitude at the first frame is the stated one; without it it is the log's, and
-// for a log without attitudes the aircraft is level and heads along its path. It is held, since the
-// measured motion turns the camera from there; where follows_log_attitude is true it is the log's
-// throughout.
+// for a log without attitudes the aircraft is level and heads along its path.
 //
 // Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
 // not cover the first frame.

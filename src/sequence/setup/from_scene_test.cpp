@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/setup/from_scene.h"
 
+#include <cmath>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -74,6 +76,35 @@ TEST_F(OwnLog, TheAttitudeIsHeldUnlessTheMotionIsSmoothed) {
   const auto stated = camera_path(
       scene_of(log, "log_offset_s = 10\nattitude_yaw_pitch_roll_deg = [7, -3, 0]\n").camera);
   EXPECT_NEAR(attitude(stated, 10).yaw_deg, 7, 1e-6);
+}
+
+// With columns of angles, and along a curve without: the measured motion turns the camera as well.
+TEST_F(OwnLog, AnAttitudeOfAPathFileIsHeldUnlessItIsAllThatTurnsTheCamera) {
+  const auto turning = [&](const std::string& file, const std::string& motion) {
+    const scene::Scene scene = scene::parse_scene(
+        "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n[motion]\n" + motion +
+            "[camera]\npath_file = \"" + file +
+            "\"\n[[intruder]]\naircraft = \"c172/news\"\nwaypoints_ned_m = [[0,0,0],[1,0,0]]\n"
+            "speed_mps = 1\n",
+        (folder / "s.toml").string());
+    const auto path = camera_path(scene.camera);
+    return attitude(path, 10).yaw_deg - attitude(path, 0).yaw_deg;
+  };
+  std::string stated = "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n";
+  std::string curve = "time_s,north_m,east_m,down_m\n";
+  for (int i = 0; i <= 10; ++i) {
+    stated += fmt::format("{},{},0,-100,{},2,1\n", i, 20 * i, 3 * i);
+    const double turned = radians(3 * i);
+    curve +=
+        fmt::format("{},{},{},-100\n", i, 400 * std::sin(turned), 400 - 400 * std::cos(turned));
+  }
+  write("stated.csv", stated);
+  write("curve.csv", curve);
+  for (const char* file : {"stated.csv", "curve.csv"}) {
+    EXPECT_NEAR(turning(file, ""), 0, 1e-6) << file;
+    EXPECT_NEAR(turning(file, "reference = \"smoothed\"\n"), 30, 0.5) << file;
+    EXPECT_NEAR(turning(file, "model = \"none\"\n"), 30, 0.5) << file;
+  }
 }
 
 TEST_F(OwnLog, ASceneWithALogIsWrittenAndReadTheSame) {
