@@ -32,6 +32,11 @@ class ColourCode {
   explicit ColourCode(const Colour& colour);
   Rgb rgb_from_ycc(const Ycc& ycc) const;  // coded R'G'B'
   Ycc ycc_from_rgb(const Rgb& rgb) const;
+  // Luma in code values: y, or for Matrix::kRgb that of BT.601. It is linear: the luma of a change
+  // is the change of luma.
+  float luma(const Ycc& ycc) const {
+    return rgb_planes_ ? kr_ * ycc.cr + kg_ * ycc.y + kb_ * ycc.cb : ycc.y;
+  }
 
  private:
   bool rgb_planes_ = false;

@@ -118,14 +118,14 @@ class Matte {
     free_.assign(size, 1);
     drawn_.assign(size, 0);
     changed_.assign(size, 0);
-    luma_.assign(size, 0);
+    first_.assign(size, 0);
     change_.assign(size, image::Ycc{0, 0, 0});
     for (int y = layer.patch.y; y < layer.patch.bottom(); ++y) {
       for (int x = layer.patch.x; x < layer.patch.right(); ++x) {
         const std::size_t i = layer.index(x, y);
         free_[i] = layer.is_open(i);
         drawn_[i] = free_[i] && layer.pixels[i].alpha > 0;
-        luma_[i] = picture.planes[0].row(y)[x];
+        first_[i] = picture.planes[0].row(y)[x];
       }
     }
   }
@@ -134,9 +134,10 @@ class Matte {
     std::vector<CodedWindow> windows;
     if (options_.coder != nullptr)
       windows = coded_windows(picture_, layer_, options_.sensor.reach_px());
-    find_luma_changes();
+    find_changes();
     pass_sensor();
-    write_luma();
+    if (is_rgb() && options_.sensor.chroma_spread_px > 0) soften_rgb();
+    write_first();
     if (picture_.plane_count == 3) blend_chroma();
     if (options_.coder != nullptr) pass_codec(windows);
   }
@@ -154,7 +155,7 @@ class Matte {
   // The change that the layer causes in a pixel whose background has this chroma.
   image::Ycc change(std::size_t index, float cb, float cr) const {
     const image::LayerPixel& over = layer_.pixels[index];
-    const auto luma = static_cast<float>(luma_[index]);
+    const auto luma = static_cast<float>(first_[index]);
     const image::Rgb background = colour_code_.rgb_from_ycc({luma, cb, cr});
     const std::array<float, 3> add = {over.red, over.green, over.blue};
     image::Rgb blend;
@@ -195,7 +196,9 @@ class Matte {
     });
   }
 
-  void find_luma_changes() {
+  bool is_rgb() const { return picture_.colour.matrix == image::Matrix::kRgb; }
+
+  void find_changes() {
     for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y)
       for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
         const std::size_t i = layer_.index(x, y);
@@ -205,18 +208,20 @@ class Matte {
       }
   }
 
-  // Sharpening reaches beyond the layer; noise stays within the drawn pixels.
+  // A smaller change, in code values, does not alter a sample.
+  static constexpr float kLeastChange = 0.5F;
+
+  // Sharpening reaches beyond the layer; noise stays within the drawn pixels. What both add to luma
+  // is added to red, green and blue alike where these are the planes.
   void pass_sensor() {
     const Sensor& sensor = options_.sensor;
     if (!(sensor.sharpening > 0) && !sensor.has_noise()) return;
     const PixelBox& patch = layer_.patch;
     std::vector<float> luma(change_.size());
-    for (std::size_t i = 0; i < luma.size(); ++i) luma[i] = change_[i].y;
+    for (std::size_t i = 0; i < luma.size(); ++i) luma[i] = colour_code_.luma(change_[i]);
     sharpen(luma, patch.width, patch.height, sensor);
-    // A smaller change, in code values, does not alter a sample.
-    constexpr float kHalo = 0.5F;
     for (std::size_t i = 0; i < luma.size(); ++i)
-      drawn_[i] = free_[i] && (drawn_[i] || std::abs(luma[i]) >= kHalo);
+      drawn_[i] = free_[i] && (drawn_[i] || std::abs(luma[i]) >= kLeastChange);
     if (sensor.has_noise()) {
       const std::vector<float> field =
           noise_field(patch, options_.seed, options_.frame, sensor.noise_correlation_px);
@@ -225,25 +230,60 @@ class Matte {
       const auto sigma_at = [&](float code_value) {
         return noise_sigma((code_value - dark) / codes_per_unit, codes_per_unit, sensor);
       };
-      for (std::size_t i = 0; i < luma.size(); ++i) {
-        if (!drawn_[i]) continue;
-        const auto under = static_cast<float>(luma_[i]);
-        const float wanted = sigma_at(under + luma[i]);
-        const float left = (1 - layer_.pixels[i].alpha) * sigma_at(under);
-        luma[i] += field[i] * std::sqrt(std::max(0.0F, wanted * wanted - left * left));
-      }
+      for (int y = patch.y; y < patch.bottom(); ++y)
+        for (int x = patch.x; x < patch.right(); ++x) {
+          const std::size_t i = layer_.index(x, y);
+          if (!drawn_[i]) continue;
+          const float under = luma_under(x, y);
+          const float wanted = sigma_at(under + luma[i]);
+          const float left = (1 - layer_.pixels[i].alpha) * sigma_at(under);
+          luma[i] += field[i] * std::sqrt(std::max(0.0F, wanted * wanted - left * left));
+        }
     }
-    for (std::size_t i = 0; i < luma.size(); ++i) change_[i].y = drawn_[i] ? luma[i] : 0.0F;
+    for (std::size_t i = 0; i < luma.size(); ++i) {
+      if (!drawn_[i]) continue;
+      image::Ycc& change = change_[i];
+      const float added = luma[i] - colour_code_.luma(change);
+      change = is_rgb() ? image::Ycc{change.y + added, change.cb + added, change.cr + added}
+                        : image::Ycc{luma[i], change.cb, change.cr};
+    }
   }
 
-  void write_luma() {
+  // Luma of the background.
+  float luma_under(int x, int y) const {
+    image::Ycc under = chroma_at(x >> log2_width_, y >> log2_height_);
+    under.y = static_cast<float>(first_[layer_.index(x, y)]);
+    return colour_code_.luma(under);
+  }
+
+  // Blurs what the layer changes of blue and red less luma, and keeps its change of luma.
+  void soften_rgb() {
+    std::vector<float> blue, red;
+    for (const image::Ycc& change : change_) {
+      const float luma = colour_code_.luma(change);
+      blue.push_back(change.cb - luma), red.push_back(change.cr - luma);
+    }
+    soften(blue, layer_.patch), soften(red, layer_.patch);
+    const float weight_of_green = colour_code_.luma({1, 0, 0});
+    for (std::size_t i = 0; i < change_.size(); ++i) {
+      image::Ycc& change = change_[i];
+      const float luma = colour_code_.luma(change);
+      change = {luma - colour_code_.luma({0, blue[i], red[i]}) / weight_of_green,
+                luma + blue[i],
+                luma + red[i]};
+      const float most = std::max({std::abs(change.y), std::abs(change.cb), std::abs(change.cr)});
+      drawn_[i] = free_[i] && (drawn_[i] || most >= kLeastChange);
+    }
+  }
+
+  void write_first() {
     for (int y = layer_.patch.y; y < layer_.patch.bottom(); ++y) {
       std::uint8_t* row = picture_.planes[0].row(y);
       for (int x = layer_.patch.x; x < layer_.patch.right(); ++x) {
         const std::size_t i = layer_.index(x, y);
         if (!drawn_[i]) continue;
-        row[x] = code(static_cast<float>(luma_[i]) + change_[i].y);
-        changed_[i] = row[x] != luma_[i];
+        row[x] = code(static_cast<float>(first_[i]) + change_[i].y);
+        changed_[i] = row[x] != first_[i];
       }
     }
   }
@@ -279,13 +319,13 @@ class Matte {
     for (const CodedWindow& window : windows) {
       const Coded coded =
           options_.coder->code(window.box, image::crop(picture_, window.box), window.background);
-      take_coded_luma(window, coded);
+      take_coded_first(window, coded);
       if (picture_.plane_count == 3) take_coded_chroma(window, coded);
     }
   }
 
   // The sum of the coded layer and of the part of the background's grain that remains.
-  void take_coded_luma(const CodedWindow& window, const Coded& coded) {
+  void take_coded_first(const CodedWindow& window, const Coded& coded) {
     const PixelBox& box = window.box;
     for (int y = box.y; y < box.bottom(); ++y) {
       std::uint8_t* row = picture_.planes[0].row(y);
@@ -294,10 +334,10 @@ class Matte {
       for (int x = box.x; x < box.right(); ++x) {
         if (!drawn(x, y)) continue;
         const std::size_t i = layer_.index(x, y);
-        const auto lost = static_cast<float>(int{luma_[i]} - int{without[x - box.x]});
+        const auto lost = static_cast<float>(int{first_[i]} - int{without[x - box.x]});
         row[x] = code(static_cast<float>(with_layer[x - box.x]) +
                       (1 - std::min(1.0F, layer_.pixels[i].alpha)) * lost);
-        changed_[i] = row[x] != luma_[i];
+        changed_[i] = row[x] != first_[i];
       }
     }
   }
@@ -357,10 +397,8 @@ class Matte {
     return {0, sum.cb / total, sum.cr / total};
   }
 
-  // Red, green and blue planes are equally sharp.
-  bool chroma_is_soft() const {
-    return options_.sensor.chroma_spread_px > 0 && picture_.colour.matrix != image::Matrix::kRgb;
-  }
+  // Whether the planes are blurred as they are; soften_rgb() does it for R'G'B'.
+  bool chroma_is_soft() const { return options_.sensor.chroma_spread_px > 0 && !is_rgb(); }
 
   void soften(std::vector<float>& plane, const PixelBox& samples) const {
     const double spread_px = options_.sensor.chroma_spread_px;
@@ -443,8 +481,8 @@ class Matte {
   std::vector<std::uint8_t> drawn_;
   // 1: drawn, and a sample differs.
   std::vector<std::uint8_t> changed_;
-  // Luma of the background, before the blend.
-  std::vector<std::uint8_t> luma_;
+  // The first plane of the background, luma or green, before the blend.
+  std::vector<std::uint8_t> first_;
   // Computed with the chroma of the pixel's own block.
   std::vector<image::Ycc> change_;
 };

@@ -9,7 +9,8 @@
 #include "foundation/image/tone_curve.h"
 
 // The camera's processing of its samples: sharpening and noise on luma, blur on chroma. Values are
-// code values on a patch of the frame.
+// code values on a patch of the frame. Where the planes are red, green and blue, a change of luma
+// is the same in each, and chroma is blue less luma and red less luma.
 namespace airtruth::composite {
 
 struct Sensor {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/composite/sensor.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "foundation/image/colour.h"
 #include "picture/composite/matte.h"
 #include "picture/composite/spread.h"
 
@@ -134,6 +136,72 @@ TEST(Matte, WithASensorTouchesNothingBeyondItsReach) {
   EXPECT_NEAR(visible[0].centroid->x(), 23, 1e-3);
   // The halo of sharpening belongs to the visible box.
   EXPECT_LT(visible[0].box->x, 19);
+}
+
+image::Picture even_picture(int side, const image::Colour& colour) {
+  image::Rgb8 rgb = image::make_rgb8(side, side);
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      rgb.at(x, y)[0] = 90;
+      rgb.at(x, y)[1] = 120;
+      rgb.at(x, y)[2] = 150;
+    }
+  return image::picture_from_rgb8(rgb, colour);
+}
+
+// BT.601's matrix, so that both have the same luma.
+TEST(Matte, ASensorDoesTheSameToPlanesOfRedGreenAndBlueAsToLumaAndChroma) {
+  image::Layer layer = square(12, 0.8F, 0.3F);
+  for (image::LayerPixel& pixel : layer.pixels) pixel.red = 0.4F, pixel.blue = 0.1F;
+  layer = spread(layer, 0.7, 9, 60, 60);
+  Sensor noisy, sharp, soft, all;
+  noisy.noise_floor = 2e-4;
+  sharp.sharpening = 1;
+  sharp.sharpening_px = 1.5;
+  soft.chroma_spread_px = 2;
+  all = sharp;
+  all.noise_floor = noisy.noise_floor;
+  all.chroma_spread_px = soft.chroma_spread_px;
+  for (const Sensor& sensor : {noisy, sharp, soft, all}) {
+    MatteOptions options;
+    options.sensor = sensor;
+    const auto seen = [&](image::Matrix matrix) {
+      image::Picture picture = even_picture(60, {image::Chroma::k444, matrix, image::Range::kFull});
+      composite_matte(picture, layer, options);
+      return image::rgb8_from_picture(picture);
+    };
+    const image::Rgb8 of_rgb = seen(image::Matrix::kRgb), of_ycc = seen(image::Matrix::kBt601);
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 60; ++x)
+        for (int c = 0; c < 3; ++c)
+          // The rounding of Y, Cb and Cr, before and after.
+          ASSERT_NEAR(of_rgb.at(x, y)[c], of_ycc.at(x, y)[c], 4) << x << ' ' << y << ' ' << c;
+  }
+}
+
+// What does not reach a pixel leaves its bits, and a grey intruder stays grey.
+TEST(Matte, OnRedGreenAndBlueASensorKeepsGreyGreyAndTheRestUntouched) {
+  const image::Layer layer = spread(square(6, 1, 0.02F), 0.7, 9, 60, 60);
+  image::Picture picture =
+      image::make_picture(60, 60, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  for (image::Plane& plane : picture.planes)
+    for (int y = 0; y < 60; ++y) std::fill_n(plane.row(y), 60, std::uint8_t{120});
+  MatteOptions options;
+  options.sensor.sharpening = 1;
+  options.sensor.noise_floor = 1e-5;
+  options.sensor.chroma_spread_px = 2;
+  const auto visible = composite_matte(picture, layer, options);
+  ASSERT_TRUE(visible[0].box);
+  int brightest = 0;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 60; ++x) {
+      const int green = picture.planes[0].row(y)[x];
+      ASSERT_NEAR(picture.planes[1].row(y)[x], green, 1);
+      ASSERT_NEAR(picture.planes[2].row(y)[x], green, 1);
+      brightest = std::max(brightest, green);
+      if (!visible[0].box->contains(x, y)) ASSERT_EQ(green, 120);
+    }
+  EXPECT_GT(brightest, 124);  // the halo
 }
 
 }  // namespace
