@@ -249,7 +249,7 @@ class Frames(unittest.TestCase):
     def test_gray_of_rgb_is_luma(self):
         planes = tuple(np.full((2, 2), value, np.uint8) for value in (200, 50, 100))  # G, B, R
         frame = airtruth.Frame(0, 0.0, planes, "gbrp", "rgb", True)
-        self.assertEqual(frame.gray[0, 0], round(0.2126 * 100 + 0.7152 * 200 + 0.0722 * 50))
+        self.assertEqual(frame.gray[0, 0], round(0.299 * 100 + 0.587 * 200 + 0.114 * 50))
         self.assertEqual(frame.rgb[0, 0].tolist(), [100, 200, 50])
 
 

@@ -171,23 +171,21 @@ class Frame:
 
     @property
     def gray(self) -> Samples:
-        """H x W, uint8: the plane Y as it is, without a copy; of "gbrp" the luma of BT.709, computed at each access."""
+        """H x W, uint8: the plane Y as it is, without a copy; of "gbrp" the luma of BT.601, computed at each access.
+        `airtruth detect` sends it to a program that asks for gray."""
         if self.pixel_format != "gbrp":
             return self.planes[0]
-        green, blue, red = (plane.astype(np.float32) for plane in self.planes)
-        luma: Samples = np.rint(0.2126 * red + 0.7152 * green + 0.0722 * blue).astype(np.uint8)
+        green, blue, red = (plane.astype(np.uint32) for plane in self.planes)
+        luma: Samples = ((9798 * red + 19235 * green + 3735 * blue + 16384) >> 15).astype(np.uint8)  # OpenCV's integers
         return luma
 
     @property
     def full_range_gray(self) -> Samples:
-        """H x W, uint8: the luma in the full range of 0 to 255, of "gbrp" that of BT.601: what `airtruth detect` shows a network of grey
+        """H x W, uint8: `gray` in the full range of 0 to 255: what `airtruth detect` shows a network of grey
         pictures. Computed at each access."""
-        if self.pixel_format != "gbrp":
-            limited: Samples = _FULL_FROM_LIMITED[self.gray]
-            return self.gray.copy() if self.is_full_range else limited
-        green, blue, red = (plane.astype(np.uint32) for plane in self.planes)
-        luma: Samples = ((9798 * red + 19235 * green + 3735 * blue + 16384) >> 15).astype(np.uint8)  # OpenCV's integers
-        return luma
+        gray = self.gray
+        limited: Samples = _FULL_FROM_LIMITED[gray]
+        return gray.copy() if self.is_full_range else limited
 
     @property
     def intruders(self) -> List[Intruder]:

@@ -9,8 +9,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "camera/motion/corners.h"
 #include "foundation/base/error.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::air {
 namespace {
@@ -99,7 +99,7 @@ Rectified rectified(const Scenery& scenery,
                     const Quaternion& level_from_world,
                     double cell) {
   const GroundView& view = scenery.views[k];
-  const cv::Mat grey = motion::luma_of(*view.picture);
+  const cv::Mat grey = image::luma_of(*view.picture);
   const Matrix3 cam_from_level =
       (view.cam_from_world * level_from_world.conjugate()).toRotationMatrix();
   const int side = side_of(cell);

@@ -11,9 +11,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/optics/edge_fit.h"
-#include "camera/motion/corners.h"
 #include "foundation/geometry/transform.h"
 #include "foundation/image/colour.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::optics {
 namespace {
@@ -205,7 +205,7 @@ std::vector<double> chroma_variances(const image::Picture& picture, const EdgeLi
 void EdgeMeter::add(const image::Picture& frame,
                     const std::optional<Homography>& frame_from_before) {
   if (edges_.size() >= kMaxEdges) return;
-  const cv::Mat grey = motion::luma_of(frame);
+  const cv::Mat grey = image::luma_of(frame);
   const image::ColourCode code(frame.colour);
   const double dark = double(code.ycc_from_rgb({0, 0, 0}).y);
   const double unit = double(code.ycc_from_rgb({1, 1, 1}).y) - dark;

@@ -48,7 +48,7 @@ struct Statistics {
 
 // Statistics of a block after the best-fitting plane is subtracted. The plane has three degrees of
 // freedom and takes a little of the noise with it; the divisor n - 3 corrects for that.
-Statistics statistics_of(const image::Plane& luma, int x0, int y0) {
+Statistics statistics_of(const image::Picture& picture, int x0, int y0) {
   // Middle of the block and number of its pixels.
   constexpr double kHalf = (kSide - 1) / 2.0;
   constexpr double kCount = kSide * kSide;
@@ -56,7 +56,7 @@ Statistics statistics_of(const image::Plane& luma, int x0, int y0) {
   Statistics result;
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
-      const int v = luma.row(y0 + y)[x0 + x];
+      const int v = image::luma_at(picture, x0 + x, y0 + y);
       result.clipped = result.clipped || v <= kDarkestCode || v >= kBrightestCode;
       sum += v;
       sum_x += v * (x - kHalf);
@@ -70,7 +70,8 @@ Statistics statistics_of(const image::Plane& luma, int x0, int y0) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x)
       rest[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] =
-          luma.row(y0 + y)[x0 + x] - result.mean - slope_x * (x - kHalf) - slope_y * (y - kHalf);
+          image::luma_at(picture, x0 + x, y0 + y) - result.mean - slope_x * (x - kHalf) -
+          slope_y * (y - kHalf);
   double same = 0, beside = 0;
   for (std::size_t y = 0; y < kSide; ++y)
     for (std::size_t x = 0; x < kSide; ++x) {
@@ -181,8 +182,8 @@ void NoiseMeter::add(const image::Picture& frame, const image::Picture& next) {
   for (int y = kSide; y + 2 * kSide <= frame.height; y += 2 * kSide)
     for (int x = kSide; x + 2 * kSide <= frame.width; x += 2 * kSide) {
       if (!is_free(x, y)) continue;
-      const Statistics deciding = statistics_of(frame.luma(), x, y);
-      const Statistics taken = statistics_of(next.luma(), x, y);
+      const Statistics deciding = statistics_of(frame, x, y);
+      const Statistics taken = statistics_of(next, x, y);
       if (deciding.clipped || taken.clipped) continue;
       blocks_.push_back({(taken.mean - dark) / codes_per_unit_,
                          taken.variance,

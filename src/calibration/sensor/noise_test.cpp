@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -74,6 +75,35 @@ TEST(NoiseMeter, MeasuresTheCurve) {
                    truth);
     }
   }
+}
+
+// Noise of its own in each of red, green and blue is less in luma, by the root of the sum of the
+// squares of their weights.
+TEST(NoiseMeter, OfRedGreenAndBlueItMeasuresLuma) {
+  const std::vector<double> lumas{8.5 / 24, 14.5 / 24, 20.5 / 24};
+  const composite::Sensor truth{.noise_gain = 4e-4, .noise_floor = 1e-4};
+  NoiseMeter meter(nullptr, truth.tone);
+  Random random = Seed(5).stream("noise");
+  const auto colour = [&] {
+    image::Picture first = stripes(lumas, truth, random);
+    image::Picture picture =
+        image::make_picture(first.width,
+                            first.height,
+                            {image::Chroma::k444, image::Matrix::kRgb, image::Range::kLimited});
+    picture.planes[0] = std::move(first.planes[0]);
+    for (const std::size_t p : {1U, 2U})
+      picture.planes[p] = std::move(stripes(lumas, truth, random).planes[0]);
+    return picture;
+  };
+  for (int pair = 0; pair < 4; ++pair) {
+    const image::Picture frame = colour();
+    meter.add(frame, colour());
+  }
+  const std::vector<NoisePoint> points = meter.points();
+  ASSERT_EQ(points.size(), lumas.size());
+  const double share = std::hypot(0.299, 0.587, 0.114);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    expect_sigma(points[i].sigma_codes / share, lumas[i], truth);
 }
 
 TEST(NoiseMeter, OneBrightnessIsNoCurve) {

@@ -8,9 +8,9 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "camera/motion/corners.h"
 #include "camera/motion/shake.h"
 #include "foundation/base/median.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::sensor {
 namespace {
@@ -152,7 +152,7 @@ void BlurMeter::add(const image::Picture& frame, const std::optional<Pixel>& mov
   const Pixel before = shot.places.empty() ? Pixel(0, 0) : shot.places.back();
   shot.places.push_back(before + moved.value_or(Pixel(0, 0)));
   shot.known.push_back(moved.has_value());
-  const cv::Mat luma = motion::luma_of(frame);
+  const cv::Mat luma = image::luma_of(frame);
   const int width = std::min(kCropWidth, luma.cols);
   const int height = std::min(kCropHeight, luma.rows);
   const int x0 = (luma.cols - width) / 2;

@@ -14,6 +14,7 @@
 #include "camera/motion/corners.h"
 #include "camera/motion/rotation_fit.h"
 #include "foundation/base/median.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::focal_length {
 
@@ -214,7 +215,7 @@ LensEstimator::LensEstimator(int width, int height, const image::Mask* own_aircr
 LensEstimator::~LensEstimator() = default;
 
 void LensEstimator::add(const image::Picture& picture, bool begins_shot) {
-  impl_->add(motion::luma_of(picture), begins_shot);
+  impl_->add(image::luma_of(picture), begins_shot);
 }
 
 std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) const {

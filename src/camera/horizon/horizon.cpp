@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "foundation/geometry/within_frame.h"
+#include "foundation/image/colour.h"
 
 namespace airtruth::horizon {
 namespace {
@@ -92,12 +93,12 @@ bool is_sky(const Samples& samples, const Vector3& up) {
 }
 
 // Mean and standard deviation of luma over the block of `side` pixels at (x0, y0), and the chroma
-// at its middle.
+// at its middle: Cb and Cr, or blue and red less luma.
 Feature feature_of(const image::Picture& picture, int x0, int y0, int side) {
   double sum = 0, squares = 0;
   for (int y = y0; y < y0 + side; y += 2)
     for (int x = x0; x < x0 + side; x += 2) {
-      const double v = picture.planes[0].row(y)[x];
+      const double v = image::luma_at(picture, x, y);
       sum += v, squares += v * v;
     }
   const int samples_along = (side + 1) / 2;
@@ -105,10 +106,13 @@ Feature feature_of(const image::Picture& picture, int x0, int y0, int side) {
   const double mean = sum / n;
   Feature f(mean, 0, 0, std::sqrt(std::max(0.0, squares / n - mean * mean)));
   if (picture.plane_count == 3) {
-    const int cx = (x0 + side / 2) >> image::log2_chroma_width(picture.colour.chroma);
-    const int cy = (y0 + side / 2) >> image::log2_chroma_height(picture.colour.chroma);
-    f[1] = picture.planes[1].row(cy)[cx] - 128.0;
-    f[2] = picture.planes[2].row(cy)[cx] - 128.0;
+    const int x = x0 + side / 2, y = y0 + side / 2;
+    const int cx = x >> image::log2_chroma_width(picture.colour.chroma);
+    const int cy = y >> image::log2_chroma_height(picture.colour.chroma);
+    const bool is_rgb = picture.colour.matrix == image::Matrix::kRgb;
+    const double grey = is_rgb ? image::luma_at(picture, x, y) : 128;
+    f[1] = picture.planes[1].row(cy)[cx] - grey;
+    f[2] = picture.planes[2].row(cy)[cx] - grey;
   }
   return f;
 }

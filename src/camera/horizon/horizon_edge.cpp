@@ -10,7 +10,7 @@
 
 #include "camera/lens/lens.h"
 #include "foundation/geometry/transform.h"
-#include "foundation/image/picture.h"
+#include "foundation/image/colour.h"
 
 namespace airtruth::horizon {
 namespace {
@@ -57,11 +57,11 @@ float luma_at(const Sight& sight, const Pixel& p) {
   if (sight.own_aircraft != nullptr && !sight.own_aircraft->is_free(ix, iy)) return kNothing;
   const auto fx = static_cast<float>(x - ix);
   const auto fy = static_cast<float>(y - iy);
-  const std::uint8_t* upper = picture.planes[0].row(iy) + ix;
-  const std::uint8_t* lower = picture.planes[0].row(iy + 1) + ix;
-  const float a = static_cast<float>(upper[0]) * (1 - fx) + static_cast<float>(upper[1]) * fx;
-  const float b = static_cast<float>(lower[0]) * (1 - fx) + static_cast<float>(lower[1]) * fx;
-  return a * (1 - fy) + b * fy;
+  const auto along = [&](int row) {
+    return static_cast<float>(image::luma_at(picture, ix, row)) * (1 - fx) +
+           static_cast<float>(image::luma_at(picture, ix + 1, row)) * fx;
+  };
+  return along(iy) * (1 - fy) + along(iy + 1) * fy;
 }
 
 // The mean of `across` rows above a row less the mean of as many rows below it.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -96,6 +97,28 @@ TEST(Horizon, ASharpLineIsFoundWithItsRollAndItsPlace) {
     EXPECT_TRUE(followed.is_sharp());
     EXPECT_LT(degrees(std::acos(std::min(1.0, followed.up_in_cam.dot(found->up_in_cam)))), 0.15);
   }
+}
+
+// Red alone steps at the horizon; green has none.
+TEST(Horizon, OfRedGreenAndBlueItIsThatOfTheirLuma) {
+  image::Picture red = drawn(5, 10, 2, [](double azimuth_deg, double elevation_deg) {
+    Paint paint = elevation_deg > 0 ? kSky : kGround;
+    if (elevation_deg <= 0) paint.luma += field(azimuth_deg, elevation_deg);
+    return paint;
+  });
+  image::Picture picture = image::make_picture(
+      kSkyWidth, kSkyHeight, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  Random random(8);
+  for (const std::size_t p : {0U, 1U})
+    for (int y = 0; y < kSkyHeight; ++y)
+      for (int x = 0; x < kSkyWidth; ++x)
+        picture.planes[p].row(y)[x] =
+            static_cast<std::uint8_t>(std::lround(120 + 2 * random.normal()));
+  picture.planes[2] = std::move(red.planes[0]);
+  const auto found = HorizonFinder(the_lens(), nullptr).find(picture);
+  ASSERT_TRUE(found && found->is_sharp());
+  EXPECT_NEAR(attitude_from_up(found->up_in_cam).roll_deg, 10, 0.3);
+  EXPECT_NEAR(attitude_from_up(found->up_in_cam).pitch_deg, 5, 0.3);
 }
 
 // Hills of half a degree and haze that halves the step leave a detectable horizon.

@@ -38,8 +38,6 @@ constexpr int kFarInCell = 3;
 
 }  // namespace
 
-cv::Mat luma_of(const image::Picture& picture) { return image::mat_of(picture.luma()); }
-
 Pyramid pyramid_of(const cv::Mat& grey) {
   Pyramid pyramid;
   opencv_plugin::functions().build_optical_flow_pyramid(grey,

@@ -9,7 +9,6 @@
 
 #include "camera/motion/patch.h"
 #include "foundation/image/layer.h"
-#include "foundation/image/picture.h"
 
 // Selects corners and tracks them from one picture to another, for both models of motion. All
 // positions are OpenCV's integer-centred pixels.
@@ -17,7 +16,6 @@ namespace airtruth::motion {
 
 using Pyramid = std::vector<cv::Mat>;
 
-cv::Mat luma_of(const image::Picture& picture);  // shares the samples
 Pyramid pyramid_of(const cv::Mat& grey);
 
 // A mask that is 255 where corners are allowed, which is at a distance from the own aircraft.

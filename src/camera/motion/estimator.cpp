@@ -5,6 +5,7 @@
 #include "camera/motion/corners.h"
 #include "camera/motion/follower.h"
 #include "foundation/base/error.h"
+#include "foundation/image/mats.h"
 
 namespace airtruth::motion {
 namespace {
@@ -91,7 +92,7 @@ FrameMotion Estimator::next(const image::Picture& picture,
                             bool damaged,
                             bool begins_shot) {
   check(picture.width == impl_->width && picture.height == impl_->height, "frames keep their size");
-  FrameMotion motion = impl_->follower->next(luma_of(picture), damaged, begins_shot);
+  FrameMotion motion = impl_->follower->next(image::luma_of(picture), damaged, begins_shot);
   motion.time_s = time_s;
   if (impl_->horizon)
     impl_->follower->set_up(impl_->horizon->hold(motion, picture, impl_->follower->stray_rad()));

@@ -18,7 +18,7 @@ constexpr double kMinResponse = 0.15;  // of the correlation's peak, 1: all powe
 std::optional<Pixel> BackgroundShift::add(const image::Picture& picture,
                                           const std::vector<Box>& aircraft) {
   cv::Mat small, coarse;
-  cv::resize(luma_of(picture, {0, 0, picture.width, picture.height}),
+  cv::resize(float_luma(picture, {0, 0, picture.width, picture.height}),
              small,
              {picture.width / kHalving, picture.height / kHalving},
              0,

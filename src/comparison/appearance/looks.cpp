@@ -199,7 +199,7 @@ std::optional<Patch> patch_of(const image::Picture& picture, const Box& box) {
   patch.x = x;
   patch.y = y;
   patch.rgb = image::mat_of(crop).clone();
-  patch.grey = luma_of(picture, {x, y, side, side});
+  patch.grey = float_luma(picture, {x, y, side, side});
   patch.silhouette = silhouette_of(patch.grey, kPatchReach * side);
   return patch;
 }

@@ -65,13 +65,12 @@ cv::Mat rim_of(const cv::Size& size) {
 
 }  // namespace
 
-cv::Mat luma_of(const image::Picture& picture, const PixelBox& area) {
+cv::Mat float_luma(const image::Picture& picture, const PixelBox& area) {
   check(area.x >= 0 && area.y >= 0 && area.right() <= picture.width &&
             area.bottom() <= picture.height,
         "an area of luma lies within its picture");
   cv::Mat grey;
-  const cv::Rect part(area.x, area.y, area.width, area.height);
-  image::mat_of(picture.luma())(part).convertTo(grey, CV_32F);
+  image::luma_of(picture, area).convertTo(grey, CV_32F);
   return grey;
 }
 
@@ -112,7 +111,7 @@ std::optional<Seen> seen_in(const image::Picture& picture, const Box& loose) {
   if (wide.x < 0 || wide.y < 0 || wide.right() > picture.width || wide.bottom() > picture.height)
     return std::nullopt;
   const cv::Mat mask =
-      silhouette_of(luma_of(picture, wide), std::hypot(loose.width, loose.height) / 2);
+      silhouette_of(float_luma(picture, wide), std::hypot(loose.width, loose.height) / 2);
   const cv::Rect bounds = cv::boundingRect(mask);
   if (bounds.empty() || std::max(bounds.width, bounds.height) < 3) return std::nullopt;
   if (bounds.x == 0 || bounds.y == 0 || bounds.x + bounds.width == mask.cols ||

@@ -12,7 +12,7 @@
 namespace airtruth::appearance {
 
 // Luma of a part of a picture as float code values. The area lies within the picture.
-cv::Mat luma_of(const image::Picture& picture, const PixelBox& area);
+cv::Mat float_luma(const image::Picture& picture, const PixelBox& area);
 
 // The surroundings as a plane through the samples where `where` is not 0, by least squares, fitted
 // once more without what lies far from the first fit; a float picture of the size of `grey`. Where

@@ -151,7 +151,7 @@ image::Picture seen_through(const OtherCamera& camera,
   for (int i = 0; i < shown.plane_count; ++i) {
     image::Plane& plane = shown.planes[static_cast<std::size_t>(i)];
     if (i == 0 || picture.colour.matrix == image::Matrix::kRgb)
-      show_light(camera, low, is_full ? 255 : 235, seed + static_cast<std::uint64_t>(i), plane);
+      show_light(camera, low, is_full ? 255 : 235, seed, plane);
     else
       show_chroma(camera,
                   picture.colour.chroma,

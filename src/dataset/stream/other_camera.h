@@ -21,7 +21,7 @@ struct OtherCamera {
   double gain = 1;
   // Standard deviation of the noise of luma at half the range, in shares of the range; its variance
   // grows with the luma. Its spatial correlation is that of white noise after a Gaussian of
-  // noise_correlation_px.
+  // noise_correlation_px. Red, green and blue have the same noise.
   double noise = 0;
   double noise_correlation_px = 0;
   // Unsharp mask: v + sharpening (v - G v), where G is a Gaussian of one pixel.

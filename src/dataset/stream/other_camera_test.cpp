@@ -177,6 +177,21 @@ TEST(OtherCamera, PicturesOfAnyLayoutAndSizeAreShown) {
   EXPECT_EQ(shown.planes[1].row(0)[0], 64);
 }
 
+// Noise of luma is the same in red, green and blue.
+TEST(OtherCamera, NoiseLeavesGreyPlanesOfRedGreenAndBlueGrey) {
+  const Picture grey = picture_of(32,
+                                  32,
+                                  [](int, int) { return 128; },
+                                  {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  const Picture shown = seen_through({.noise = 0.02}, grey, 3);
+  EXPECT_FALSE(image::identical(shown, grey));
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      ASSERT_EQ(shown.planes[1].row(y)[x], shown.planes[0].row(y)[x]);
+      ASSERT_EQ(shown.planes[2].row(y)[x], shown.planes[0].row(y)[x]);
+    }
+}
+
 TEST(OtherCamera, CamerasDifferAndAreThoseOfTheirSeed) {
   const OtherCamera a = drawn_camera(Random(1)), b = drawn_camera(Random(2));
   EXPECT_NE(a.spread_px, b.spread_px);

@@ -159,6 +159,14 @@ AIRTRUTH_FOR_VECTORS void mark_light_by_vectors(const std::uint8_t* red,
     target[x] = (red[x] + 2 * green[x] + blue[x]) / 4 >= least ? 255 : 0;
 }
 
+AIRTRUTH_FOR_VECTORS void luma_of_rgb_by_vectors(const std::uint8_t* red,
+                                                 const std::uint8_t* green,
+                                                 const std::uint8_t* blue,
+                                                 int count,
+                                                 std::uint8_t* target) {
+  for (int x = 0; x < count; ++x) target[x] = luma_of_rgb(red[x], green[x], blue[x]);
+}
+
 }  // namespace
 
 void take_every(const std::uint8_t* source, int step, int count, std::uint8_t* target) {
@@ -175,6 +183,14 @@ void mark_light(const std::uint8_t* red,
                 int count,
                 std::uint8_t* target) {
   mark_light_by_vectors(red, green, blue, least, count, target);
+}
+
+void copy_luma(const Picture& picture, int x, int y, int count, std::uint8_t* target) {
+  const auto from = [&](std::size_t plane) { return picture.planes[plane].row(y) + x; };
+  if (picture.colour.matrix == Matrix::kRgb)
+    luma_of_rgb_by_vectors(from(2), from(0), from(1), count, target);
+  else
+    std::copy_n(from(0), count, target);
 }
 
 Rgb8 rgb8_from_picture(const Picture& picture, const PixelBox& part) {

@@ -71,6 +71,19 @@ inline Ycc ColourCode::ycc_from_rgb(const Rgb& rgb) const {
 Rgb linear_at(
     const Picture& picture, const ColourCode& code, int x, int y, const ToneCurve& tone = {});
 
+// The luma of a pixel in code values, Y as it is, or of red, green and blue that of BT.601 in the
+// integers of OpenCV.
+inline std::uint8_t luma_of_rgb(int red, int green, int blue) {
+  return static_cast<std::uint8_t>((9798 * red + 19235 * green + 3735 * blue + 16384) >> 15);
+}
+inline std::uint8_t luma_at(const Picture& picture, int x, int y) {
+  const std::uint8_t first = picture.planes[0].row(y)[x];
+  if (picture.colour.matrix != Matrix::kRgb) return first;
+  return luma_of_rgb(picture.planes[2].row(y)[x], first, picture.planes[1].row(y)[x]);
+}
+// That of `count` pixels of a row, from (x, y) on.
+void copy_luma(const Picture& picture, int x, int y, int count, std::uint8_t* target);
+
 // The whole picture as packed sRGB for previews and stills. All pixels of a chroma block have the
 // block's chroma.
 Rgb8 rgb8_from_picture(const Picture& picture);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "foundation/base/median.h"
+#include "foundation/image/colour.h"
 
 namespace airtruth::image {
 namespace {
@@ -35,7 +36,7 @@ std::vector<std::uint8_t> luma_in(const Picture& picture,
   if (!seen) return values;
   for (int y = seen->y; y < seen->bottom(); ++y)
     for (int x = seen->x; x < seen->right(); ++x)
-      if (!hole.contains(x, y)) values.push_back(picture.luma().row(y)[x]);
+      if (!hole.contains(x, y)) values.push_back(luma_at(picture, x, y));
   return values;
 }
 

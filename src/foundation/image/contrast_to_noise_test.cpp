@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/image/contrast_to_noise.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -36,6 +37,15 @@ TEST(ContrastToNoise, IsTheContrastOverTheNoise) {
   // Half of the box filled: sqrt(1 / 2) of it.
   const PixelBox half{80, 60, 48, 16};
   EXPECT_NEAR(*contrast_to_noise(picture, half), std::hypot(20 / std::sqrt(2.0), 2) / 2, 0.3);
+}
+
+TEST(ContrastToNoise, OfRedGreenAndBlueItIsThatOfLuma) {
+  Picture picture = make_picture(60, 60, {Chroma::k444, Matrix::kRgb, Range::kFull});
+  for (Plane& plane : picture.planes)
+    for (int y = 0; y < 60; ++y) std::fill_n(plane.row(y), 60, std::uint8_t{120});
+  for (int y = 20; y < 30; ++y) std::fill_n(picture.planes[2].row(y) + 20, 12, std::uint8_t{20});
+  EXPECT_NEAR(contrast(picture, {20, 20, 12, 10}), 30, 0.5);  // 0.299 of 100
+  EXPECT_NEAR(*contrast_to_noise(picture, {20, 20, 12, 10}), 30 * std::sqrt(12.0), 2);
 }
 
 TEST(ContrastToNoise, NothingHasAboutOne) {

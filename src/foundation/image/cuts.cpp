@@ -82,6 +82,7 @@ std::vector<double> means_by_cell(const Plane& luma) {
 }  // namespace
 
 std::optional<double> Differences::add(const Picture& picture) {
+  // Of R'G'B' the green plane, in which a cut shows as well.
   std::vector<double> cells = means_by_cell(picture.luma());
   std::optional<double> difference;
   if (!before_.empty()) {

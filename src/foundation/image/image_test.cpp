@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <thread>
@@ -72,6 +73,27 @@ TEST(ColourCode, RoundTripsForEveryMatrixAndRange) {
         }
       }
     }
+  }
+}
+
+TEST(Luma, OfRedGreenAndBlueIsThatOfBt601AndElseTheFirstPlane) {
+  Rgb8 rgb = make_rgb8(70, 3);
+  for (int i = 0; i < 3 * 70 * 3; ++i)
+    rgb.samples[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(37 * i % 256);
+  for (int c = 0; c < 3; ++c) rgb.at(5, 1)[c] = 255;
+  for (const Matrix matrix : {Matrix::kRgb, Matrix::kBt709}) {
+    const Picture picture = picture_from_rgb8(rgb, {Chroma::k444, matrix, Range::kFull});
+    std::array<std::uint8_t, 66> row;
+    copy_luma(picture, 3, 1, 66, row.data());
+    for (int x = 3; x < 69; ++x) {
+      const std::uint8_t* at = rgb.at(x, 1);
+      const double expected = matrix == Matrix::kRgb
+                                  ? 0.299 * at[0] + 0.587 * at[1] + 0.114 * at[2]
+                                  : static_cast<double>(picture.planes[0].row(1)[x]);
+      EXPECT_NEAR(luma_at(picture, x, 1), expected, 0.51) << x;
+      EXPECT_EQ(row[static_cast<std::size_t>(x - 3)], luma_at(picture, x, 1)) << x;
+    }
+    EXPECT_EQ(luma_at(picture, 5, 1), 255);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "foundation/image/colour.h"
 #include "foundation/image/layer.h"
 #include "foundation/image/picture.h"
 
@@ -22,6 +23,20 @@ inline cv::Mat mat_of(const Mask& mask) {
 }
 inline cv::Mat mat_of(const Rgb8& rgb) {
   return {rgb.height, rgb.width, CV_8UC3, rgb.samples.get()};
+}
+
+// The luma of a part of a picture, inside it. It shares the picture's samples; of red, green and
+// blue it is a matrix of its own.
+inline cv::Mat luma_of(const Picture& picture, const PixelBox& part) {
+  if (picture.colour.matrix != Matrix::kRgb)
+    return mat_of(picture.luma())(cv::Rect(part.x, part.y, part.width, part.height));
+  cv::Mat luma(part.height, part.width, CV_8UC1);
+  for (int y = 0; y < part.height; ++y)
+    copy_luma(picture, part.x, part.y + y, part.width, luma.ptr(y));
+  return luma;
+}
+inline cv::Mat luma_of(const Picture& picture) {
+  return luma_of(picture, {0, 0, picture.width, picture.height});
 }
 
 // Copies the samples.

@@ -53,7 +53,8 @@ struct Picture {
   int plane_count = 0;
   std::array<Plane, 3> planes;
 
-  const Plane& luma() const { return planes[0]; }  // for kRgb: the green plane
+  // The first plane: for kRgb green, of which luma_at() and copy_luma() (colour.h) make luma.
+  const Plane& luma() const { return planes[0]; }
   Picture clone() const;
   std::size_t bytes() const;  // of all planes
 };

@@ -63,7 +63,7 @@ FreeView::FreeView(const image::Mask* own_aircraft) {
 }
 
 cv::Mat FreeView::luma(const image::Picture& picture) const {
-  const cv::Mat luma = image::mat_of(picture.luma());
+  const cv::Mat luma = image::luma_of(picture);
   if (is_whole() || luma.size() != hidden_.front().size()) return luma;
   cv::Mat visible, cells;
   luma.copyTo(visible);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -61,6 +62,16 @@ TEST(Classical, SeesNothingOnTheOwnAircraft) {
     EXPECT_GE(on_target[0], 14) << name;
     EXPECT_GE(on_target[1], on_target[0]) << name;
   }
+}
+
+TEST(FreeView, OfRedGreenAndBlueIsTheirLuma) {
+  image::Picture picture =
+      image::make_picture(40, 30, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  const std::uint8_t green_blue_red[] = {100, 50, 200};
+  for (std::size_t p = 0; p < 3; ++p)
+    for (int y = 0; y < 30; ++y) std::fill_n(picture.planes[p].row(y), 40, green_blue_red[p]);
+  const cv::Mat luma = FreeView(nullptr).luma(picture);
+  EXPECT_EQ(luma.at<std::uint8_t>(29, 39), 124);  // 0.299 * 200 + 0.587 * 100 + 0.114 * 50
 }
 
 TEST(FreeView, ReplacesTheOwnAircraftByWhatIsAround) {

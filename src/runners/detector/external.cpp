@@ -26,10 +26,10 @@ constexpr double kEndS = 1;     // to end after it
 // Rows of samples without padding: red, green and blue, or luma alone as the video has it.
 std::string samples_of(const image::Picture& picture, SampleOrder samples) {
   if (samples == SampleOrder::kRgb) return std::string(image::rgb8_from_picture(picture).bytes());
-  std::string bytes;
-  const auto width = static_cast<std::size_t>(picture.width);
-  for (int y = 0; y < picture.height; ++y)
-    bytes.append(reinterpret_cast<const char*>(picture.luma().row(y)), width);
+  std::string bytes(pixels_in(picture.width, picture.height), '\0');
+  auto* target = reinterpret_cast<std::uint8_t*>(bytes.data());
+  for (int y = 0; y < picture.height; ++y, target += picture.width)
+    image::copy_luma(picture, 0, y, picture.width, target);
   return bytes;
 }
 

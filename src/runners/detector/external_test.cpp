@@ -145,6 +145,26 @@ TEST(External, GetsItsFramesInSharedMemory) {
             "");
 }
 
+// The program answers with the first of the samples as a place.
+TEST(External, GreyOfRedGreenAndBlueIsTheirLuma) {
+  image::Picture colour =
+      image::make_picture(32, 24, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  const std::uint8_t green_blue_red[] = {100, 50, 200};
+  for (std::size_t p = 0; p < 3; ++p)
+    for (int y = 0; y < 24; ++y) std::fill_n(colour.planes[p].row(y), 32, green_blue_red[p]);
+  const auto detector = external(
+      R"(echo '{"hello":{"protocol":1,"samples":"gray","frames":"shared_memory"}}'; read -r line
+      f=${line#*shared_memory\":\"}; f=${f%%\"*}; [ $(wc -c < "$f") = 768 ] || exit 5
+      while read -r line; do case "$line" in
+        '{"frame":'*) v=$(od -An -tu1 -N1 "$f" | tr -d ' ')
+          echo "{\"frame\":0,\"detections\":[{\"box\":[$v,2,3,4],\"score\":1}]}";;
+        *) exit 0;; esac; done)");
+  detector->begin(sequence());
+  const auto found = detector->detect({0, 0, &colour, true, CameraTurn{}});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].box_px.x, 124);  // 0.299 * 200 + 0.587 * 100 + 0.114 * 50
+}
+
 TEST(External, ThatGoesWrongSaysHow) {
   EXPECT_THAT(fault_of("no_such_detector_4711"), HasSubstr("not found"));
   EXPECT_THAT(fault_of("exit 0"), HasSubstr("ended with status 0"));

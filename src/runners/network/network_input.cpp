@@ -64,17 +64,16 @@ std::vector<Piece> letterbox(const cv::Mat& frame, const NetworkInput& input) {
 
 cv::Mat samples_of(const image::Picture& picture, NetworkInput::Layout layout) {
   cv::Mat samples;
-  const bool is_grey = layout == NetworkInput::Layout::kGrey;
-  if (is_grey && picture.colour.matrix != image::Matrix::kRgb) {
+  if (layout == NetworkInput::Layout::kGrey) {
     const bool is_full = picture.colour.range == image::Range::kFull;
     const double scale = is_full ? 1 : 255.0 / 219;  // from 16..235
-    image::mat_of(picture.luma()).convertTo(samples, CV_8U, scale, is_full ? 0 : -16 * scale);
+    image::luma_of(picture).convertTo(samples, CV_8U, scale, is_full ? 0 : -16 * scale);
     return samples;
   }
   const image::Rgb8 rgb = image::rgb8_from_picture(picture);
   const cv::Mat shared = image::mat_of(rgb);
   if (layout == NetworkInput::Layout::kRgb) return shared.clone();
-  cv::cvtColor(shared, samples, is_grey ? cv::COLOR_RGB2GRAY : cv::COLOR_RGB2BGR);
+  cv::cvtColor(shared, samples, cv::COLOR_RGB2BGR);
   return samples;
 }
 

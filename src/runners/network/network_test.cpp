@@ -292,5 +292,14 @@ TEST(NetworkInput, GreyIsLumaInFullRange) {
   EXPECT_EQ(samples, (std::vector<std::uint8_t>{0, 255, 128, 0}));
 }
 
+TEST(NetworkInput, GreyOfRedGreenAndBlueIsTheirLuma) {
+  image::Picture picture =
+      image::make_picture(2, 1, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
+  const std::uint8_t green_blue_red[][2] = {{100, 255}, {50, 255}, {200, 255}};
+  for (std::size_t p = 0; p < 3; ++p) std::copy_n(green_blue_red[p], 2, picture.planes[p].row(0));
+  const std::vector<std::uint8_t> samples = samples_of(picture, NetworkInput::Layout::kGrey);
+  EXPECT_EQ(samples, (std::vector<std::uint8_t>{124, 255}));
+}
+
 }  // namespace
 }  // namespace airtruth::network

@@ -192,6 +192,7 @@ class Am3 : public Tracker {
   explicit Am3(const Am3Options& options)
       : options_(options), random_(Seed(options.seed).stream("negatives")) {}
 
+  // Of R'G'B' the green plane, in which an aircraft's pattern is followed as well.
   void load(const image::Picture& picture) override { luma_ = &picture.luma(); }
 
   void init(const Box& box) override {

@@ -198,7 +198,7 @@ double difference(const image::Picture& a, const image::Picture& b, const PixelB
   std::int64_t sum = 0;
   for (int y = area.y; y < area.bottom(); ++y)
     for (int x = area.x; x < area.right(); ++x)
-      sum += std::abs(int{a.luma().row(y)[x]} - int{b.luma().row(y)[x]});
+      sum += std::abs(int{image::luma_at(a, x, y)} - int{image::luma_at(b, x, y)});
   return static_cast<double>(sum) / (static_cast<double>(area.width) * area.height);
 }
 
