@@ -33,7 +33,7 @@ EXIT_CODES = """
 | code | meaning |
 |---|---|
 | 0 | The command did its work. |
-| 1 | A check found a fault (`dataset verify`), one part failed while the others went on (`dataset build`, `track`), or airtruth has a fault, which the message states. |
+| 1 | A check found a fault (`dataset verify`), one part failed while the others went on (`dataset build`, `track`, `detect`), or airtruth has a fault, which the message states. |
 | 2 | An input is wrong, or a disk refused a file. One line names the file and the line, what was found and what was expected. |
 | 130 | The command was interrupted. |
 """

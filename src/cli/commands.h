@@ -94,6 +94,18 @@ void follow(Options& options, Context& context, const char* stage, const char* u
   };
 }
 
+// How fast trackers or detectors were, what an earlier call had made, and what they broke off, for
+// which the exit code is 1.
+template <typename Summary>
+std::string rest_of(const Summary& summary, Context& context) {
+  if (summary.broken > 0) context.exit_code = 1;
+  const double rate =
+      summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
+  return (rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "") +
+         (summary.kept > 0 ? fmt::format(", {} were there", summary.kept) : "") +
+         (summary.broken > 0 ? fmt::format(", {} broken off", summary.broken) : "");
+}
+
 // --jobs, of what works on several sequences or files at a time.
 inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
   command.add_option("--jobs,-j", jobs, about)->check(CLI::Range(1, 1024));

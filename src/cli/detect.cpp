@@ -28,18 +28,12 @@ struct Detect {
 };
 
 void tell(const runs::DetectSummary& summary, Context& context) {
-  const double rate =
-      summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
-  context.console().result(
-      fmt::format("{}: {} detections in {} frames of {} sequences{}{}{}",
-                  summary.folder.string(),
-                  summary.detections,
-                  summary.frames,
-                  summary.made,
-                  rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "",
-                  summary.kept > 0 ? fmt::format(", {} were there", summary.kept) : "",
-                  summary.broken > 0 ? fmt::format(", {} broken off", summary.broken) : ""));
-  if (summary.broken > 0) context.exit_code = 1;
+  context.console().result(fmt::format("{}: {} detections in {} frames of {} sequences{}",
+                                       summary.folder.string(),
+                                       summary.detections,
+                                       summary.frames,
+                                       summary.made,
+                                       rest_of(summary, context)));
 }
 
 // "3/5"

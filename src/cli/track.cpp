@@ -44,17 +44,12 @@ Box box_of(const std::string& text) {
   return {n[0], n[1], n[2], n[3]};
 }
 
-void tell(const runs::TrackSummary& summary, const char* unit, Console& console) {
-  const double rate =
-      summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
-  console.result(
-      fmt::format("{}: {} {} tracked{}{}{}",
-                  summary.folder.string(),
-                  summary.made,
-                  unit,
-                  rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "",
-                  summary.kept > 0 ? fmt::format(", {} were there", summary.kept) : "",
-                  summary.broken > 0 ? fmt::format(", {} broken off", summary.broken) : ""));
+void tell(const runs::TrackSummary& summary, const char* unit, Context& context) {
+  context.console().result(fmt::format("{}: {} {} tracked{}",
+                                       summary.folder.string(),
+                                       summary.made,
+                                       unit,
+                                       rest_of(summary, context)));
 }
 
 void refuse_mixed(const Track& arguments, bool is_video) {
@@ -93,9 +88,9 @@ void run_track(Track arguments, Context& context) {
     if (is_video)
       tell(runs::track_video(arguments.source, init, arguments.first_frame, arguments.out, options),
            "video",
-           console);
+           context);
     else
-      tell(runs::track(arguments.source, arguments.out, options), "runs", console);
+      tell(runs::track(arguments.source, arguments.out, options), "runs", context);
   }
 }
 

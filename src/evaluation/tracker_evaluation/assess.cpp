@@ -55,7 +55,7 @@ void add_one_pass(const TruthClip& truth,
 }
 
 // Reads the results of a folder for each truth. Throws Error where there are none. Warns of results
-// for sequences that the set lacks, and of sequences without results.
+// for sequences that the set lacks, of runs that were broken off, and of sequences without results.
 std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                                 const std::vector<TruthClip>& truths,
                                                 const AssessOptions& options) {
@@ -76,10 +76,23 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
   }
   std::vector<std::string> unknown = results::tracked_sequences_in(folder);
   std::erase_if(unknown, [&](const std::string& name) { return known.contains(name); });
+  const std::vector<std::string> broken = results::broken_runs_in(folder);
+  const std::string broken_off =
+      broken.empty()
+          ? ""
+          : fmt::format(
+                "{} runs were broken off (logs/{}.log says how)", broken.size(), broken.front());
   if (missing == truths.size())
     throw Error("holds no result for any sequence of the data set; expected SEQUENCE.txt" +
-                    (unknown.empty() ? "" : " (found one for '" + unknown.front() + "')"),
+                    (!unknown.empty()  ? " (found one for '" + unknown.front() + "')"
+                     : !broken.empty() ? "; " + broken_off
+                                       : ""),
                 {folder.string()});
+  if (!broken.empty())
+    airtruth::warn(options.warn,
+                   fmt::format("{}: {}, and have no results; `airtruth track` tries them again",
+                               folder.string(),
+                               broken_off));
   if (!unknown.empty())
     airtruth::warn(options.warn,
                    fmt::format("{}: {} results are for no sequence of the data set (the first: {})",

@@ -218,6 +218,16 @@ bool is_results_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), is_of_results_name);
 }
 
+void write_log(const fs::path& folder, const std::string& run, const std::string& text) {
+  const fs::path file = folder / "logs" / (run + ".log");
+  if (text.empty()) {
+    fs::remove(file);
+    return;
+  }
+  fs::create_directories(file.parent_path());
+  write_file(file, text);
+}
+
 void write_sequence(const fs::path& folder, const SequenceDetections& detections) {
   const fs::path text = text_file(folder, detections.name);
   const fs::path facts = facts_file(folder, detections.name);

@@ -44,6 +44,10 @@ struct ExpectedSequence {
   std::map<std::int64_t, std::string> category_ids = {};
 };
 
+// Writes FOLDER/logs/RUN.log: what a tracker or detector printed, and how its run was broken off.
+// Without text there is no such file, nor that of an earlier try.
+void write_log(const fs::path& folder, const std::string& run, const std::string& text);
+
 // Writes SEQUENCE.txt and SEQUENCE.json. Throws Error where a file cannot be written.
 void write_sequence(const fs::path& folder, const SequenceDetections& detections);
 // True where both files of a sequence are there.

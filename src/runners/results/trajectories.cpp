@@ -314,4 +314,13 @@ std::vector<std::string> tracked_sequences_in(const fs::path& folder) {
   return {names.begin(), names.end()};
 }
 
+std::vector<std::string> broken_runs_in(const fs::path& folder) {
+  std::vector<std::string> runs;
+  const fs::path logs = folder / "logs";
+  if (!fs::is_directory(logs)) return runs;
+  for (const fs::path& file : files_with(logs, ".log"))
+    if (read_file(file).find(kBrokenOff) != std::string::npos) runs.push_back(file.stem().string());
+  return runs;
+}
+
 }  // namespace airtruth::results

@@ -79,4 +79,9 @@ evaluation::VotTruth vot_truth(const exchange::Clip& clip);
 // Returns the sorted names of the sequences for which a folder has results.
 std::vector<std::string> tracked_sequences_in(const fs::path& folder);
 
+// In the log of a run that was broken off, before the words that say how.
+constexpr std::string_view kBrokenOff = "airtruth: the tracker ";
+// Returns the sorted names of the runs whose last try was broken off: the stems of their files.
+std::vector<std::string> broken_runs_in(const fs::path& folder);
+
 }  // namespace airtruth::results

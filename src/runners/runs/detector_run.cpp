@@ -191,7 +191,7 @@ class DetectorResults {
            const std::string& log) {
     const fs::path folder = summary_.folder / part;
     fs::create_directories(folder);
-    write_log(detections.name, log);
+    results::write_log(summary_.folder, detections.name, log);
     results::write_sequence(folder, detections);
     const std::lock_guard lock(mutex_);
     ++summary_.made;
@@ -201,7 +201,7 @@ class DetectorResults {
   }
 
   void add_broken(const std::string& sequence, const std::string& fault, const std::string& log) {
-    write_log(sequence, log + "airtruth: the detector " + fault + "\n");
+    results::write_log(summary_.folder, sequence, log + "airtruth: the detector " + fault + "\n");
     const std::lock_guard lock(mutex_);
     ++summary_.broken;
     airtruth::warn(options_.warn,
@@ -223,12 +223,6 @@ class DetectorResults {
 
  private:
   bool is_open() const { return is_record_of(summary_.folder / kRecord, settings_); }
-
-  void write_log(const std::string& sequence, const std::string& log) const {
-    if (log.empty()) return;
-    fs::create_directories(summary_.folder / "logs");
-    write_file(summary_.folder / "logs" / (sequence + ".log"), log);
-  }
 
   DetectorName detector_;
   const DetectOptions& options_;

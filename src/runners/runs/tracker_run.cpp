@@ -26,6 +26,7 @@
 #include "foundation/run_files/run_files.h"
 #include "labels/exchange/exchange.h"
 #include "picture/video/numbered_frames.h"
+#include "runners/results/results_folder.h"
 #include "runners/tracking/tracker.h"
 
 namespace airtruth::runs {
@@ -37,11 +38,8 @@ using evaluation::Trajectory;
 
 // Number of frames from a failure to the next start (VOT2013).
 constexpr std::int64_t kSkip = 5;
-// Crashes allowed in a run with restarts; after them each start counts as a failure.
-constexpr int kMaxCrashes = 3;
 
-// One run of a tracker, with its answers and its times. A failed tracker gives no more answers
-// until begin() starts it anew.
+// One run of a tracker, with its answers and its times. A tracker that fails breaks the run off.
 class Follower {
  public:
   Follower(const std::string& command, const TrackOptions& options, std::uint64_t seed)
@@ -49,9 +47,9 @@ class Follower {
     options_.seed = seed;
   }
 
-  // Starts the tracker on a picture. Returns false where it failed.
-  bool begin(const image::Picture& picture, const Box& box) {
-    return guarded([&] {
+  // Starts the tracker on a picture.
+  void begin(const image::Picture& picture, const Box& box) {
+    guarded([&] {
       if (!tracker_) tracker_ = tracking::make_tracker(command_, options_);
       tracker_->load(picture);
       const Stopwatch watch;
@@ -63,7 +61,6 @@ class Follower {
   // Empty where the tracker lost the object or has failed.
   std::optional<Box> next(const image::Picture& picture) {
     std::optional<Box> box;
-    if (!tracker_) return box;
     guarded([&] {
       tracker_->load(picture);
       const Stopwatch watch;
@@ -78,7 +75,7 @@ class Follower {
     return box;
   }
 
-  bool is_broken() const { return !tracker_; }
+  bool is_broken() const { return !fault_.empty(); }
   // Takes a frame down, with the duration of the call of the tracker for it; 0 without one, and
   // where it failed.
   void add(Mark mark, const std::optional<Box>& box) {
@@ -87,9 +84,12 @@ class Follower {
   }
   const Trajectory& frames() const { return frames_; }
   const std::vector<double>& times_s() const { return times_s_; }
-  // The last failure; empty where there was none.
+  // The failure; empty where there was none.
   const std::string& fault() const { return fault_; }
-  std::string log() const { return log_ + (tracker_ ? tracker_->log() : ""); }
+  std::string log() const {
+    return (tracker_ ? tracker_->log() : "") +
+           (is_broken() ? std::string(results::kBrokenOff) + fault_ + "\n" : "");
+  }
   std::int64_t answers() const { return answers_; }
   // Of the answers without a box those with a width or height below 0.
   std::int64_t negative_boxes() const { return negative_boxes_; }
@@ -97,16 +97,11 @@ class Follower {
   double spent_s() const { return spent_s_; }
 
  private:
-  bool guarded(const auto& work) {
+  void guarded(const auto& work) {
     try {
       work();
-      return true;
     } catch (const process::Failure& error) {
       fault_ = error.what();
-      if (tracker_) log_ += tracker_->log();
-      log_ += "airtruth: the tracker " + fault_ + "\n";
-      tracker_.reset();
-      return false;
     }
   }
 
@@ -117,7 +112,6 @@ class Follower {
   Trajectory frames_;
   std::vector<double> times_s_;
   std::string fault_;
-  std::string log_;
   std::int64_t answers_ = 0;
   std::int64_t negative_boxes_ = 0;
   double spent_s_ = 0;
@@ -173,7 +167,9 @@ class TrackerRun {
     }
     follower.begin(*picture, init);
     follower.add(Mark::kAnswer, init);
-    for (std::int64_t i = first_frame + 1; (picture = frames.at(i)) != nullptr; ++i) {
+    for (std::int64_t i = first_frame + 1;
+         !follower.is_broken() && (picture = frames.at(i)) != nullptr;
+         ++i) {
       if (options_.stop.stop_requested()) throw Interrupted();
       const auto box = follower.next(*picture);
       follower.add(Mark::kAnswer, box);
@@ -230,11 +226,15 @@ class TrackerRun {
              results::Protocol protocol,
              const std::string& name,
              const Follower& follower) {
-    fs::create_directories(file.parent_path());
-    if (const std::string log = follower.log(); !log.empty()) {
-      fs::create_directories(summary_.folder / "logs");
-      write_file(summary_.folder / "logs" / (file.stem().string() + ".log"), log);
+    results::write_log(summary_.folder, file.stem().string(), follower.log());
+    if (follower.is_broken()) {
+      const std::lock_guard lock(mutex_);
+      ++summary_.broken;
+      return airtruth::warn(
+          options_.warn,
+          fmt::format("{} on {}: the tracker {}", options_.tracker, name, follower.fault()));
     }
+    fs::create_directories(file.parent_path());
     const fs::path times = results::times_file(file, protocol);
     RunFiles files;
     files.writes(times, true).writes(file, true);
@@ -255,11 +255,6 @@ class TrackerRun {
                                  options_.tracker,
                                  name,
                                  follower.negative_boxes()));
-    if (follower.fault().empty()) return;
-    ++summary_.broken;
-    airtruth::warn(
-        options_.warn,
-        fmt::format("{} on {}: the tracker {}", options_.tracker, name, follower.fault()));
   }
 
   void follow(const exchange::Clip& clip) {
@@ -295,15 +290,15 @@ class TrackerRun {
     if (is_there(file)) return;
     Follower follower(command_, options_, options_.seed);
     const std::int64_t way = anchor.is_backward ? -1 : 1;
-    for (std::int64_t i = anchor.frame; i >= 0 && i < std::ssize(clip.frames); i += way) {
+    for (std::int64_t i = anchor.frame;
+         i >= 0 && i < std::ssize(clip.frames) && !follower.is_broken();
+         i += way) {
       const auto at = static_cast<std::size_t>(i);
       if (i == anchor.frame) {
         const Box box = *results::box_of(clip.frames[at]);
         follower.begin(picture_of(frames, clip, at), box);
         const bool marks = protocol == results::Protocol::kMultiStart;
         follower.add(marks ? Mark::kBegun : Mark::kAnswer, box);
-      } else if (follower.is_broken()) {
-        follower.add(Mark::kAnswer, {});
       } else {
         const auto box = follower.next(picture_of(frames, clip, at));
         follower.add(Mark::kAnswer, box);
@@ -320,10 +315,9 @@ class TrackerRun {
     if (is_there(file)) return;
     Follower follower(
         command_, options_, options_.seed + static_cast<std::uint64_t>(repetition) - 1);
-    int crashes = 0;
     bool is_begun = false;
     std::int64_t skip = 0;
-    for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+    for (std::size_t i = 0; i < clip.frames.size() && !follower.is_broken(); ++i) {
       const auto truth = results::box_of(clip.frames[i]);
       if (!is_begun && (skip > 0 || !truth)) {
         skip -= skip > 0 ? 1 : 0;
@@ -331,18 +325,15 @@ class TrackerRun {
         continue;
       }
       if (!is_begun) {
-        is_begun = crashes < kMaxCrashes && follower.begin(picture_of(frames, clip, i), *truth);
-        follower.add(is_begun ? Mark::kBegun : Mark::kFailed, {});
-        crashes += is_begun ? 0 : 1;
-        if (!is_begun) skip = kSkip - 1;
+        follower.begin(picture_of(frames, clip, i), *truth);
+        follower.add(Mark::kBegun, {});
+        is_begun = true;
         continue;
       }
       const auto box = follower.next(picture_of(frames, clip, i));
-      crashes += follower.is_broken() ? 1 : 0;
       const evaluation::VotFrame answer{Mark::kAnswer, box};
       const bool failed =
-          follower.is_broken() ||
-          (truth && evaluation::frame_overlap(answer, *truth, clip.width, clip.height) <= 0);
+          truth && evaluation::frame_overlap(answer, *truth, clip.width, clip.height) <= 0;
       follower.add(failed ? Mark::kFailed : Mark::kAnswer, failed ? std::nullopt : box);
       is_begun = !failed;
       if (failed) skip = kSkip - 1;

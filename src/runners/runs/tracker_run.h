@@ -30,9 +30,9 @@ struct TrackOptions : tracking::TrackerOptions {
 
 struct TrackSummary {
   fs::path folder;          // folder of the tracker's results
-  std::int64_t made = 0;    // runs
+  std::int64_t made = 0;    // runs with results
   std::int64_t kept = 0;    // runs that an earlier call had made
-  std::int64_t broken = 0;  // runs that ended because the tracker crashed or hung
+  std::int64_t broken = 0;  // runs that the tracker did not finish; they have no results
   std::int64_t frames = 0;  // frames with an answer
   double seconds = 0;       // time of the tracker alone, without its starts
 };
@@ -48,9 +48,9 @@ struct TrackSummary {
 // logs/SEQUENCE.log with a TraX tracker's output beside its answers. The seconds are the tracker's
 // own: they begin with the picture in the tracker's own form and end with the answer. They exclude
 // decoding, conversion and, for TraX, writing the picture, but include reading it. The results of a
-// run appear whole or not at all, and existing results are kept. A tracker that fails gives no more
-// answers in that run. Throws Error where the tracker cannot be started at all, or where `out`
-// holds results of other settings.
+// run appear whole or not at all, and existing results are kept. A run in which the tracker fails
+// has none, and the next call tries it again. Throws Error where the tracker cannot be started at
+// all, or where `out` holds results of other settings.
 TrackSummary track(const fs::path& set, const fs::path& out, const TrackOptions& options);
 
 // Throws Error in the cases in which track() fails before the first frame: no such tracker, or
