@@ -182,6 +182,21 @@ class EarlyErrors(unittest.TestCase):
                 self.assert_says(run(*words), message)
                 self.assertEqual(sorted(os.listdir(ROOT)), before)
 
+    def test_a_number_that_is_not_finite(self):
+        """CLI11's ranges let NaN through, and options without a range take inf."""
+        for text in ("nan", "-NaN", "inf", "-inf"):
+            for command, option in ((["detect", "odd.mkv", "-d", "exec:cat", "-o", "out"], "--timeout"),
+                                    (["track", "odd.mkv", "--init", "1,2,30,40", "-t", "trax:cat", "-o", "out"], "--start-timeout"),
+                                    (["synth", "-o", "new.mkv"], "--duration"), (["synth", "-o", "new.mkv"], "--sun-azimuth"),
+                                    (["dataset", "export", "set", "-f", "coco", "-o", "out"], "--min-contrast"),
+                                    (["calibrate", "odd.mkv", "-o", "out.toml"], "--heading"),
+                                    (["evaluate", "set", "results", "-o", "out"], "--score")):
+                with self.subTest(option + " " + text):
+                    self.assert_says(run(*command, option + "=" + text), option)
+        for shares in (("nan", "1", "1"), ("1e308", "1e308", "1e308")):
+            self.assert_says(run("dataset", "export", "set", "-f", "coco", "-o", "out", "--shares", *shares), "--shares")
+        self.assertFalse(os.path.exists(path("out")))
+
     def test_a_catalogue(self):
         catalogue = """name = "set"
 [[background]]

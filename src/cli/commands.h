@@ -35,6 +35,17 @@ struct Context {
   Console& console() { return opened ? *opened : opened.emplace(options); }
 };
 
+// CLI11 takes "nan" and "inf" for numbers, and its ranges let NaN through. Throws Error for either
+// in any option of a command.
+inline void expect_finite_numbers(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_type_name().starts_with("FLOAT")) continue;
+    for (const std::string& text : option->results())
+      if (double number = 0; CLI::detail::lexical_cast(text, number) && !std::isfinite(number))
+        throw Error(fmt::format("{} is '{}'; expected a finite number", option->get_name(), text));
+  }
+}
+
 // Declares a command that calls run(arguments, context) after its arguments are parsed. Returns the
 // command, and the arguments that its options are to set.
 template <typename Parameter>
@@ -44,7 +55,8 @@ auto add_command(CLI::App& group,
                  void (*run)(Parameter, Context&)) {
   CLI::App* command = group.add_subcommand(name);
   auto arguments = std::make_shared<std::remove_cvref_t<Parameter>>();
-  command->callback([run, arguments, &context] {
+  command->callback([run, arguments, command, &context] {
+    expect_finite_numbers(*command);
     for (const auto& check : context.checks) check();
     run(*arguments, context);
   });
@@ -112,19 +124,14 @@ inline void add_jobs(CLI::App& command, int& jobs, const char* about) {
 }
 
 // The words of CLI11's own checks hold the largest number of a double.
-inline CLI::Validator number_check(bool zero_is_allowed) {
-  const char* expected = zero_is_allowed ? "0 or more" : "a number above 0";
-  return {[zero_is_allowed, expected](std::string& text) {
+inline CLI::Validator above_0() {
+  return {[](std::string& text) {
             const auto number = number_from_text<double>(text);
-            return number && std::isfinite(*number) &&
-                           (zero_is_allowed ? *number >= 0 : *number > 0)
-                       ? std::string()
-                       : fmt::format("is '{}'; expected {}", text, expected);
+            return number && *number > 0 ? std::string()
+                                         : fmt::format("is '{}'; expected a number above 0", text);
           },
-          zero_is_allowed ? "NONNEGATIVE" : "POSITIVE"};
+          "POSITIVE"};
 }
-inline CLI::Validator above_0() { return number_check(false); }
-inline CLI::Validator from_0_on() { return number_check(true); }
 
 // A number from `low` to `high`, whose default the help states.
 template <typename Number>

@@ -166,7 +166,7 @@ void add_export(CLI::App& group, Context& context) {
                       "none");
   command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
       ->expected(3)
-      ->check(from_0_on());
+      ->check(CLI::Range(0.0, 1e6));
   command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
   command->add_flag(
       "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
@@ -517,7 +517,7 @@ void add_work(CLI::App& group, Context& context) {
   add_build_options(*command, *arguments);
   command->add_option("--index", arguments->build.share, "This worker's number, from 0")
       ->required()
-      ->check(from_0_on());
+      ->check(CLI::Range(0, 1'000'000'000));
   command->add_option("--of", arguments->build.shares, "How many workers there are")
       ->required()
       ->check(above_0());

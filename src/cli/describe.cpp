@@ -79,7 +79,7 @@ Value value_of(const CLI::Option& option) {
   } else if (const std::size_t open = rest.find('['); open != std::string::npos) {
     value.limits = rest.substr(open + 1, rest.find(']') - open - 1);
   } else {
-    value.limits = rest == "POSITIVE" ? "more than 0" : rest == "NONNEGATIVE" ? "0 or more" : rest;
+    value.limits = rest == "POSITIVE" ? "more than 0" : rest;
   }
   return value;
 }
