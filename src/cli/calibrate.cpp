@@ -135,8 +135,7 @@ struct MaskArguments {
 };
 
 void find_mask(const MaskArguments& arguments, Context& context) {
-  video::check_still_output(arguments.out, arguments.overwrite);
-  RunFiles().reads(arguments.video).writes(arguments.out, arguments.overwrite).check();
+  RunFiles().reads(arguments.video).writes(arguments.out, arguments.overwrite, {".png"}).check();
   Console& console = context.console();
   own_aircraft::MaskOptions options;
   follow(options, context, "looking");
@@ -187,7 +186,7 @@ void add_calibrate(CLI::App& app, Context& context) {
       "--list-profiles",
       [] { throw CLI::CallForVersion(profile_lines(), 0); },
       "List the known cameras");
-  command->add_option("--plot", arguments->plot, "Draw what was measured here (.png)");
+  command->add_option("--plot", arguments->plot, "Draw what was measured here (.png or .jpg)");
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that exist");
 }
 

@@ -139,7 +139,7 @@ void add_motion(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow), for rotation");
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
-  command->add_option("--plot", arguments->plot, "Draw the motion here (.png)");
+  command->add_option("--plot", arguments->plot, "Draw the motion here (.png or .jpg)");
   command->add_option(
       "--stabilised", arguments->stabilised, "Write a steadied copy of the video here");
   command->add_option("--reference", arguments->reference_name, "first_frame or smoothed")

@@ -44,10 +44,9 @@ int frames_of(const SynthArguments& arguments) {
 void synth(SynthArguments arguments, Context& context) {
   RunFiles files;
   files.reads(arguments.lens_file);
-  files.writes(arguments.truth, arguments.overwrite, {".csv"});
-  for (const std::string& file : {arguments.out, arguments.mask})
-    files.writes(file, arguments.overwrite);
-  video::check_still_output(arguments.mask, arguments.overwrite);
+  files.writes(arguments.truth, arguments.overwrite, {".csv"})
+      .writes(arguments.mask, arguments.overwrite, {".png"})
+      .writes(arguments.out, arguments.overwrite);
   synthetic::FlightOptions& options = arguments.flight;
   if (arguments.duration_s > 0) options.frame_count = frames_of(arguments);
   options.own_aircraft = !arguments.no_own_aircraft;
