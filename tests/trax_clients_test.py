@@ -53,9 +53,9 @@ ODD = {
     "crashes": (LOOP % "kill -SEGV $$", "was ended by signal 11"),
     "hangs": (LOOP % "sleep 100", "did not answer in time"),
     "babbles": (LOOP % "yes something", "did not answer in time"),
-    "lies": (LOOP % "echo '@@TRAX:state here and there'", "expected one"),
-    "quits": (LOOP % "echo '@@TRAX:quit'; exit", "it quit"),
-    "answers-twice": (LOOP % "printf '@@TRAX:state 1,2,3,4\\n@@TRAX:state 1,2,3,4\\n'", "before it was asked"),
+    "lies": (LOOP % "echo '@@TRAX:state here and there'", "the tracker sent a state with 3 regions; expected one"),
+    "quits": (LOOP % "echo '@@TRAX:quit'; exit", "the tracker quit"),
+    "answers-twice": (LOOP % "printf '@@TRAX:state 1,2,3,4\\n@@TRAX:state 1,2,3,4\\n'", "the tracker answered before it was asked"),
 }
 
 

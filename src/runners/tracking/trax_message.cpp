@@ -55,7 +55,7 @@ std::string next_word(std::string_view& rest) {
       word += c;
     }
   }
-  if (is_quoted) throw process::Failure("a quote is never closed");
+  if (is_quoted) throw process::Failure("sent a quote that is never closed");
   return word;
 }
 
@@ -82,7 +82,8 @@ std::vector<double> numbers_of(std::string_view text) {
     const auto [stop, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || (fault != std::errc() && fault != std::errc::result_out_of_range) ||
         stop != word.data() + word.size())
-      throw process::Failure("'" + std::string(word.substr(0, 40)) + "' is no number of a region");
+      throw process::Failure("sent '" + std::string(word.substr(0, 40)) +
+                             "', which is no number of a region");
     numbers.push_back(fault == std::errc() ? value : INFINITY);
     if (end == text.size()) return numbers;
     text.remove_prefix(end + 1);
@@ -112,7 +113,8 @@ std::optional<Message> parse_line(std::string_view line) {
   const std::string word = lower_case(rest.substr(0, end));
   const auto* type = std::ranges::find(kTypes, word, [](const auto& one) { return one.first; });
   if (type == kTypes.end())
-    throw process::Failure(quoted_excerpt(rest.substr(0, end), 40) + " is no type of message");
+    throw process::Failure("sent " + quoted_excerpt(rest.substr(0, end), 40) +
+                           ", which is no type of message");
   rest.remove_prefix(end);
   Message message;
   message.type = type->second;
@@ -143,14 +145,14 @@ std::optional<Box> box_of(std::string_view region) {
   if (region.starts_with(kMask)) {
     const std::vector<double> mask = numbers_of(region.substr(kMask.size()));
     if (const auto fault = results::fault_of_mask(mask))
-      throw process::Failure("what it reports " + *fault);
+      throw process::Failure("reported what " + *fault);
     return sound(results::bounds_of_mask(mask));
   }
   const std::vector<double> n = numbers_of(region);
   if (n.size() == 1) return std::nullopt;
   if (n.size() == 4) return sound(Box{n[0], n[1], n[2], n[3]});
   if (n.size() < 6 || n.size() % 2 != 0)
-    throw process::Failure(fmt::format("a region has {} numbers", n.size()));
+    throw process::Failure(fmt::format("sent a region of {} numbers", n.size()));
   return sound(results::bounds_of_polygon(n));
 }
 

@@ -54,10 +54,10 @@ std::string_view property(const Message& message, std::string_view name, std::st
 void expect(const Message& message, Type type, const char* name) {
   if (message.type == Type::kQuit) {
     const std::string_view reason = message.property("trax.reason");
-    throw process::Failure("it quit" +
+    throw process::Failure("quit" +
                            (reason.empty() ? "" : ": " + std::string(reason.substr(0, 200))));
   }
-  if (message.type != type) throw process::Failure(std::string("it sent no ") + name);
+  if (message.type != type) throw process::Failure(std::string("sent no ") + name);
 }
 
 // Pictures for one tracker. Files lie in memory (/dev/shm) where that exists. The last two files
@@ -101,7 +101,7 @@ Hello hello_of(const Message& message) {
   if (const std::string_view version = message.property("trax.version"); !version.empty())
     hello.version = number_from_text<int>(version).value_or(-1);
   if (hello.version < 1 || hello.version > kNewest)
-    throw process::Failure("it speaks version '" +
+    throw process::Failure("speaks version '" +
                            std::string(message.property("trax.version").substr(0, 20)) +
                            "'; expected 1 to 4");
   const auto images = list_of(property(message, "trax.image", "trax.format.image"));
@@ -110,17 +110,17 @@ Hello hello_of(const Message& message) {
       return image_kind_of(name).has_value();
     });
     if (first == images.end())
-      throw process::Failure("it takes no pictures by path, memory or buffer");
+      throw process::Failure("takes no pictures by path, memory or buffer");
     hello.images = *image_kind_of(*first);
   }
   const auto regions = list_of(property(message, "trax.region", "trax.format.region"));
   hello.takes_rectangles = regions.empty() || holds(regions, "rectangle");
   hello.takes_polygons = holds(regions, "polygon");
   if (!hello.takes_rectangles && !hello.takes_polygons && !holds(regions, "mask"))
-    throw process::Failure("it takes no rectangle, polygon or mask");
+    throw process::Failure("takes no rectangle, polygon or mask");
   for (const std::string& channel : list_of(message.property("trax.channels")))
     if (channel != "color")
-      throw process::Failure("it asks for the channel '" + channel.substr(0, 20) +
+      throw process::Failure("asks for the channel '" + channel.substr(0, 20) +
                              "'; a video has color alone");
   hello.is_for_one_run =
       std::any_of(message.properties.begin(), message.properties.end(), [](const auto& property) {
@@ -218,7 +218,7 @@ class TraxTracker : public Tracker {
   }
 
   Answer ask(const std::vector<Message>& requests) {
-    if (child_->read_if_there()) throw process::Failure("it answered before it was asked");
+    if (child_->read_if_there()) throw process::Failure("answered before it was asked");
     const auto deadline = process::in(options_.answer_s);
     for (const Message& request : requests) child_->write(line_of(request), deadline);
     const Message message = *parse_line(child_->read(deadline));
@@ -226,7 +226,7 @@ class TraxTracker : public Tracker {
         std::chrono::duration<double>(process::Clock::now() - child_->asked_at()).count();
     expect(message, Type::kState, "state");
     if (message.arguments.size() != 1)
-      throw process::Failure("its state has " + std::to_string(message.arguments.size()) +
+      throw process::Failure("sent a state with " + std::to_string(message.arguments.size()) +
                              " regions; expected one");
     const std::string& region = message.arguments.front();
     const std::optional<Box> box = box_of(region);
