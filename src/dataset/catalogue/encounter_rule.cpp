@@ -95,8 +95,7 @@ void read_geometry(const TableReader& table, EncounterRule& rule) {
   geometry.vmd_m = distribution_in(table, "vmd_m", "vmd_shares", scene::kMiss, geometry.vmd_m);
   geometry.course_deg = distribution_in(table, "course_deg", "", scene::kTurn, geometry.course_deg);
   rule.states_speed = table.has("speed_mps");
-  geometry.speed_mps =
-      distribution_in(table, "speed_mps", "", scene::kOwnSpeed, geometry.speed_mps);
+  geometry.speed_mps = distribution_in(table, "speed_mps", "", scene::kSpeed, geometry.speed_mps);
   geometry.climb_mps = distribution_in(table, "climb_mps", "", kClimb, geometry.climb_mps);
   geometry.turn_rate_dps =
       distribution_in(table, "turn_rate_dps", "", scene::kTurnRate, geometry.turn_rate_dps);

@@ -231,6 +231,8 @@ TEST_F(EncounterModel, EachFaultNamesItsLine) {
               HasSubstr("hmd_shares is for hmd_m"));
   EXPECT_THAT(fault_of("kind = \"geometric\"\ncpa_time_s = 99\n"),
               HasSubstr("outside of the clip"));
+  EXPECT_THAT(fault_of("kind = \"geometric\"\nspeed_mps = 0\n"),
+              HasSubstr("speed_mps is 0; expected metres a second from 0.001"));
   EXPECT_THAT(fault_of("kind = \"geometric\"\nnegatives = 2\n"), HasSubstr("a share from 0 to 1"));
   EXPECT_THAT(fault_of("kind = \"geometric\"\nname = \"e\"\n"), HasSubstr("name has no {index}"));
   EXPECT_THAT(fault_of("kind = \"geometric\"\nname = \"{background}-{index}\"\n"),
