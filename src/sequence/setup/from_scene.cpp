@@ -149,21 +149,25 @@ trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {
 
 namespace {
 
-// Nose down for each metre a second of a multirotor's speed, and at most: a camera drone leans by
-// 25 to 35 degrees at its greatest speed, 16 to 20 m/s.
+// Nose down for each metre a second of a multirotor's speed over the ground, and at most: a camera
+// drone leans by 25 to 35 degrees at its greatest speed, 16 to 20 m/s, and climbs level.
 constexpr double kLeanDegPerMps = 1.6;
 constexpr double kMostLeanDeg = 30;
 
-// The speed of an intruder over its whole path, as far as its scene states it.
-double stated_speed_mps(const scene::Intruder& intruder) {
-  if (intruder.position_ned_m) return intruder.velocity_ned_mps.norm();
-  if (intruder.encounter) return intruder.encounter->speed_mps;
-  if (intruder.speed_mps) return *intruder.speed_mps;
-  if (intruder.times_s.size() < 2) return 0;
-  double length_m = 0;
-  for (std::size_t i = 1; i < intruder.waypoints_ned_m.size(); ++i)
-    length_m += (intruder.waypoints_ned_m[i] - intruder.waypoints_ned_m[i - 1]).norm();
-  return length_m / (intruder.times_s.back() - intruder.times_s.front());
+// The speed of an intruder over the ground, over its whole path, as far as its scene states it.
+double stated_ground_mps(const scene::Intruder& intruder) {
+  if (intruder.position_ned_m) return intruder.velocity_ned_mps.head<2>().norm();
+  if (const auto& encounter = intruder.encounter)
+    return std::sqrt(std::pow(encounter->speed_mps, 2) - std::pow(encounter->climb_mps, 2));
+  if (intruder.waypoints_ned_m.size() < 2) return 0;
+  double length_m = 0, over_ground_m = 0;
+  for (std::size_t i = 1; i < intruder.waypoints_ned_m.size(); ++i) {
+    const Vector3 step = intruder.waypoints_ned_m[i] - intruder.waypoints_ned_m[i - 1];
+    length_m += step.norm();
+    over_ground_m += step.head<2>().norm();
+  }
+  return over_ground_m / (intruder.speed_mps ? length_m / *intruder.speed_mps
+                                             : intruder.times_s.back() - intruder.times_s.front());
 }
 
 // A balloon hangs upright and a multirotor leans into its flight, whatever way the path goes.
@@ -173,7 +177,7 @@ trajectory::AttitudeOverride attitude_of(const scene::Intruder& intruder) {
     return attitude;
   const bool leans = intruder.distractor->kind == scene::DistractorKind::kMultirotor;
   const double lean_deg =
-      leans ? std::min(kMostLeanDeg, kLeanDegPerMps * stated_speed_mps(intruder)) : 0;
+      leans ? std::min(kMostLeanDeg, kLeanDegPerMps * stated_ground_mps(intruder)) : 0;
   if (!attitude.pitch_deg) attitude.pitch_deg = -lean_deg;
   if (!attitude.roll_deg) attitude.roll_deg = 0;
   return attitude;

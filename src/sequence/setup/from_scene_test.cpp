@@ -143,5 +143,31 @@ TEST_F(OwnLog, WhatDoesNotFitIsAnErrorAtTheScenesLine) {
               testing::HasSubstr("path_file"));
 }
 
+TEST(Multirotor, LeansByItsSpeedOverTheGround) {
+  const auto pitch_deg = [](const std::string& path) {
+    const scene::Scene scene = scene::parse_scene(
+        "[background]\nvideo = \"a.mp4\"\n[lens]\nvertical_fov_deg = 60\n"
+        "[camera]\nposition_ned_m = [0, 0, -100]\nvelocity_ned_mps = [20, 0, 0]\n"
+        "[[distractor]]\nkind = \"multirotor\"\nsize_m = 0.8\n" +
+            path,
+        "s.toml");
+    const auto flown = path_of(scene.intruders.at(0), camera_path(scene.camera));
+    return yaw_pitch_roll(flown.at(1)->world_from_body).pitch_deg;
+  };
+  const std::string place = "position_ned_m = [60, 0, -100]\nvelocity_ned_mps = ";
+  EXPECT_NEAR(pitch_deg(place + "[0, 0, -9]\n"), 0, 1e-6);
+  EXPECT_NEAR(pitch_deg(place + "[0, 5, -9]\n"), -8, 1e-6);
+  const std::string up = "waypoints_ned_m = [[60, 0, -100], [60, 0, -136]]\n";
+  EXPECT_NEAR(pitch_deg(up + "speed_mps = 9\n"), 0, 1e-6);
+  EXPECT_NEAR(pitch_deg(up + "times_s = [0, 4]\n"), 0, 1e-6);
+  const std::string slope = "waypoints_ned_m = [[60, 0, -100], [60, 30, -140]]\n";
+  EXPECT_NEAR(pitch_deg(slope + "speed_mps = 10\n"), -1.6 * 6, 1e-6);
+  EXPECT_NEAR(pitch_deg(slope + "times_s = [0, 5]\n"), -1.6 * 6, 1e-6);
+  EXPECT_NEAR(pitch_deg("encounter = { cpa_time_s = 2, cpa_right_m = 0, cpa_above_m = 10, "
+                        "course_deg = 90, speed_mps = 10, climb_mps = 8 }\n"),
+              -1.6 * 6,
+              1e-6);
+}
+
 }  // namespace
 }  // namespace airtruth::setup
