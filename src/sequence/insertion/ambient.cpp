@@ -438,7 +438,7 @@ Ambient AmbientEstimator::with_scene(Ambient measured) const {
       measured.sun[c] = static_cast<float>(*light_.exposure) * kSunColour[c];
   }
   if (light_.sun_elevation_deg < kSunsetDeg) measured.sun = {};
-  // A stated sky is uniform, as an overcast sky nearly is.
+  // A stated sky is overcast.
   if (light_.sky_colour) measured.blue = {}, measured.cloud = floats(*light_.sky_colour);
   if (light_.ground_colour) measured.ground = floats(*light_.ground_colour);
   if (light_.ground_albedo) {

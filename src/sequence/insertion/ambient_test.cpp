@@ -160,6 +160,18 @@ Ambient light_over_ground(float sky, float ground) {
   return AmbientEstimator(level.light, {}, nullptr).next(picture, level.sight, {});
 }
 
+TEST(Ambient, AStatedSkyIsOvercast) {
+  ClearSky sky(25, 180, 40);
+  sky.light.sky_colour = {0.2, 0.4, 0.8};
+  sky.light.ground_colour = {0, 0, 0};
+  const shade::Environment light = sky.seen().surroundings;
+  EXPECT_NEAR(light.irradiance_over_pi({0, 0, -1})[1], 0.4, 0.02);
+  for (const float side : {-1.0F, 1.0F}) {
+    EXPECT_NEAR(light.irradiance_over_pi({side, 0, 0})[1], 0.4 * 0.396, 0.02);
+    EXPECT_NEAR(light.irradiance_over_pi({0, side, 0})[2], 0.8 * 0.396, 0.03);
+  }
+}
+
 // Four times the exposure clips the sky; the ground, whose light grows as it should, shows it. A
 // ground that is darker than its albedo under that sky says nothing against the sky.
 TEST(Ambient, AGroundShowsHowMuchBrighterThanWhiteAClippedSkyIs) {
