@@ -437,6 +437,17 @@ TEST_F(Made, WhatIsImportedCanBeLookedAt) {
   EXPECT_THROW(import_set(csv, out, options), Error);
 }
 
+// A folder whose name begins with a dot is none of the set's sequences.
+TEST_F(Made, ANameThatBeginsWithADotIsImportedInSight) {
+  const fs::path out = fresh();
+  ImportOptions options;
+  options.format = exchange::Format::kCsv;
+  const fs::path csv = root_ / ".q.csv";
+  write_file(csv, "frame,x,y,w,h\n0,10,20,30,40\n");
+  import_set(csv, out, options);
+  EXPECT_THAT(LabelledSet(out).names(), ElementsAre("-q"));
+}
+
 // What a format cannot hold, and what the set lacks, is said before a folder is made.
 TEST_F(Made, AnErrorLeavesNoFolder) {
   const auto refused = [&](const fs::path& from, exchange::Format format, const char* words) {

@@ -148,6 +148,7 @@ std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
     if (c == '/' || byte < 0x20 || (byte >= 0x80 && !is_utf8)) c = '-';
   }
   if (name.empty() || name == "." || name == "..") name = "clip";
+  if (name.front() == '.') name.front() = '-';  // the folder would be hidden
   if (name.size() > 200) {
     std::size_t end = 200;
     while (is_utf8 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;

@@ -147,11 +147,12 @@ TEST(SceneErrors, OutOfRange) {
             "s.toml:4:15: frame_count is 0; expected a whole number from 1 to 1000000000");
   EXPECT_EQ(with_background("video = ''"), "s.toml:3:9: video is empty; expected a text");
   EXPECT_EQ(with_top("name = 'a/b'\n"),
-            "s.toml:1:8: name is 'a/b'; expected a plain file name: no slash, not '.' or '..', at "
+            "s.toml:1:8: name is 'a/b'; expected a plain file name: no slash, no dot in front, at "
             "most 200 bytes");
-  EXPECT_EQ(with_top("name = '..'\n"),
-            "s.toml:1:8: name is '..'; expected a plain file name: no slash, not '.' or '..', at "
-            "most 200 bytes");
+  for (const std::string name : {".", "..", ".q"})
+    EXPECT_EQ(with_top("name = '" + name + "'\n"),
+              "s.toml:1:8: name is '" + name +
+                  "'; expected a plain file name: no slash, no dot in front, at most 200 bytes");
 }
 
 TEST(SceneErrors, Choices) {
