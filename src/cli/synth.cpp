@@ -7,6 +7,7 @@
 #include "foundation/base/files.h"
 #include "foundation/run_files/run_files.h"
 #include "picture/video/still.h"
+#include "scene/scene/limits.h"
 #include "sequence/demo/demo.h"
 #include "sequence/insertion/masks.h"
 
@@ -104,14 +105,17 @@ void add_camera_options(CLI::App& command, SynthArguments& arguments, Context& c
 
 void add_world_options(CLI::App& command, SynthArguments& arguments) {
   synthetic::FlightOptions& flight = arguments.flight;
-  add_number(command, "--speed", flight.speed_mps, 0.0, 400.0)->description("Metres a second");
-  add_number(command, "--altitude", flight.altitude_m, 20.0, 900.0)
+  const auto add_limited = [&](const char* name, double& value, const scene::Limits& limits) {
+    return add_number(command, name, value, limits.low, limits.high);
+  };
+  add_limited("--speed", flight.speed_mps, scene::kFlightSpeed)->description("Metres a second");
+  add_limited("--altitude", flight.altitude_m, scene::kFlightAltitude)
       ->description("Metres above the ground");
   command.add_option("--sun-azimuth", flight.sun_azimuth_deg, "Degrees from north towards east")
       ->capture_default_str();
-  add_number(command, "--sun-elevation", flight.sun_elevation_deg, 2.0, 90.0)
+  add_limited("--sun-elevation", flight.sun_elevation_deg, scene::kFlightSunElevation)
       ->description("Degrees");
-  add_number(command, "--clouds", flight.cloud_cover, 0.0, 1.0)->description("Cloud cover, 0 to 1");
+  add_limited("--clouds", flight.cloud_cover, scene::kShare)->description("Cloud cover, 0 to 1");
   add_number(command, "--extinction", flight.extinction_per_km, 0.0, 10.0)
       ->description("Of the air, per km; 0 is none");
 }

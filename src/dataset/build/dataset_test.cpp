@@ -13,6 +13,7 @@
 #include "dataset/labelled/import.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "sequence/demo/demo.h"
 #include "support/error_of.h"
 #include "support/small_catalogue.h"
 #include "support/temporary_folder.h"
@@ -57,14 +58,23 @@ TEST(Catalogue, WhatItNamesMustBeThere) {
   EXPECT_THAT(error_of("name = \"empty\"\n"), HasSubstr("makes no sequence"));
 }
 
-TEST(Catalogue, WhatItsFormatCannotHoldIsRefusedAtTheBackground) {
-  std::string text = test_support::kCatalogue;
-  const std::string size = "width = 160, height = 120 }";
-  text.replace(text.find(size), size.size(), "width = 161, height = 121 }");
-  text.replace(text.find("\"mkv\""), 5, "\"mp4\"");
+TEST(Catalogue, AFlightThatCannotBeMadeIsRefusedAtItsLine) {
+  const auto with = [](const std::string& flight, const std::string& light) {
+    std::string text = test_support::kCatalogue;
+    const std::string size = "height = 120 }\n";
+    text.replace(text.find(size), size.size(), flight + " }\n" + light);
+    return error_of(text);
+  };
+  EXPECT_THAT(with("height = 121", ""),
+              HasSubstr("c.toml:5:61: height is 121; expected an even number of pixels"));
+  EXPECT_THAT(with("altitude_m = 5000", ""),
+              HasSubstr("altitude_m is 5000; expected metres from 20 to 900, below the clouds"));
+  EXPECT_THAT(with("altitude_m = 5000", ""), HasSubstr("c.toml:5:"));
+  EXPECT_THAT(with("speed_mps = 401", ""),
+              HasSubstr("speed_mps is 401; expected metres a second from 0 to 400"));
   EXPECT_THAT(
-      test_support::error_of([&] { check_sources(catalogue::parse_catalogue(text, "c.toml")); }),
-      testing::AllOf(HasSubstr("c.toml:3"), HasSubstr("an odd size")));
+      with("height = 120", "light = { sun_elevation_deg = 1 }\n"),
+      HasSubstr("c.toml:6:9: sun_elevation_deg is 1; expected degrees from 2 to 90 over a flight"));
 }
 
 TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
@@ -144,6 +154,20 @@ class Build : public testing::Test {
   test_support::TemporaryFolder temporary_;
   fs::path root_ = temporary_.path();
 };
+
+TEST_F(Build, WhatItsFormatCannotHoldIsRefusedAtTheBackground) {
+  synthetic::FlightOptions odd;
+  odd.width = 161;
+  odd.height = 121;
+  odd.frame_count = 1;
+  demo::write_flight(
+      synthetic::Flight(odd), root_ / "odd.mkv", {.format = image::VideoFormat::kMkv});
+  catalogue::Catalogue catalogue = build::with_videos(
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), {{"sky", root_ / "odd.mkv"}});
+  catalogue.output.video = image::VideoFormat::kMp4;
+  EXPECT_THAT(test_support::error_of([&] { check_sources(catalogue); }),
+              testing::AllOf(HasSubstr("c.toml:3"), HasSubstr("an odd size")));
+}
 
 TEST_F(Build, AFolderOfAnotherCatalogueSaysWhetherItHoldsAnything) {
   const std::string text = test_support::kCatalogue;

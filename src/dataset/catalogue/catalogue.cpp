@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "dataset/catalogue/slurm_options.h"
 #include "foundation/base/files.h"
 #include "scene/scene/tables.h"
@@ -31,11 +33,18 @@ synthetic::FlightOptions flight_from(const TableReader& table) {
       table.whole("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(1));
   flight.frame_count =
       static_cast<int>(table.whole("frame_count", 1, 1'000'000).value_or(flight.frame_count));
-  flight.width = static_cast<int>(table.whole("width", 64, 8192).value_or(flight.width));
-  flight.height = static_cast<int>(table.whole("height", 64, 8192).value_or(flight.height));
+  const auto side = [&](const char* key, int usual) {
+    const auto pixels = static_cast<int>(table.whole(key, 64, 8192).value_or(usual));
+    if (pixels % 2 != 0)  // its video is H.264 with halved chroma
+      table.fail(key, fmt::format("{} is {}; expected an even number of pixels", key, pixels));
+    return pixels;
+  };
+  flight.width = side("width", flight.width);
+  flight.height = side("height", flight.height);
   flight.cloud_cover = table.number("cloud_cover", scene::kShare).value_or(flight.cloud_cover);
-  flight.speed_mps = table.number("speed_mps", scene::kOwnSpeed).value_or(flight.speed_mps);
-  flight.altitude_m = table.number("altitude_m", scene::kAltitude).value_or(flight.altitude_m);
+  flight.speed_mps = table.number("speed_mps", scene::kFlightSpeed).value_or(flight.speed_mps);
+  flight.altitude_m =
+      table.number("altitude_m", scene::kFlightAltitude).value_or(flight.altitude_m);
   return flight;
 }
 
@@ -70,6 +79,12 @@ Background background_from(const TableReader& table) {
   background.camera_model = scene::camera_model_in(table);
   background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);
+  if (std::holds_alternative<synthetic::FlightOptions>(background.source) &&
+      !scene::kFlightSunElevation.holds(background.light.sun_elevation_deg))
+    throw Error(fmt::format("sun_elevation_deg is {}; expected {} over a flight",
+                            background.light.sun_elevation_deg,
+                            scene::kFlightSunElevation.expected),
+                table.where("light"));
   background.occluders = scene::occluders_in(table);
   return background;
 }

@@ -85,8 +85,12 @@ inline constexpr Limits kVisibility{"metres from 1 to 1e6", 1, 1e6};
 // Catalogues.
 inline constexpr Limits kShare{"a number from 0 to 1", 0, 1};
 inline constexpr Limits kOwnSpeed{"metres a second from 0 to 1000", 0, 1000};
-inline constexpr Limits kAltitude{"metres from 1 to 20000", 1, 20000};
 inline constexpr Limits kRangeToAircraft{"metres from 0.1 to 1e6", 0.1, 1e6};
+
+// Virtual flights (scene/synthetic/flight.h).
+inline constexpr Limits kFlightSpeed{"metres a second from 0 to 400", 0, 400};
+inline constexpr Limits kFlightAltitude{"metres from 20 to 900, below the clouds", 20, 900};
+inline constexpr Limits kFlightSunElevation{"degrees from 2 to 90", 2, 90};
 
 inline constexpr Limits kApparentSize{"pixels from 0.1 to 1e5", 0.1, 1e5};
 

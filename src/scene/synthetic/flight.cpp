@@ -16,6 +16,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
 #include "foundation/geometry/units.h"
+#include "scene/scene/limits.h"
 #include "scene/synthetic/ground.h"
 #include "scene/synthetic/own_aircraft.h"
 #include "scene/synthetic/rays.h"
@@ -26,34 +27,36 @@ namespace airtruth::synthetic {
 namespace {
 
 const FlightOptions& validated(const FlightOptions& o) {
-  struct Limits {
+  struct Number {
     std::string_view name;
-    double value, low, high;
-    std::string_view expected;
+    double value;
+    scene::Limits limits;
   };
   constexpr double kAny = std::numeric_limits<double>::max();
-  const Limits all[] = {
-      {"width", double(o.width), 16, 16384, "16 to 16384 px"},
-      {"height", double(o.height), 16, 16384, "16 to 16384 px"},
-      {"frame rate", o.frame_rate_hz, 1e-300, 1000, "more than 0, at most 1000 Hz"},
-      {"frame count", double(o.frame_count), 1, kAny, "at least 1"},
-      {"altitude", o.altitude_m, 20, 900, "20 to 900 m (below the clouds)"},
-      {"speed", o.speed_mps, 0, 400, "0 to 400 m/s"},
-      {"heading", o.heading_deg, -kAny, kAny, "a number"},
-      {"sun azimuth", o.sun_azimuth_deg, -kAny, kAny, "a number"},
-      {"sun elevation", o.sun_elevation_deg, 2, 90, "2 to 90 deg"},
-      {"cloud cover", o.cloud_cover, 0, 1, "0 to 1"},
-      {"hills", o.hills_deg, 0, 5, "0 to 5 deg"},
-      {"extinction", o.extinction_per_km, 0, 10, "0 to 10 per km"},
-      {"shake", o.shake_deg, 0, 5, "0 to 5 deg"},
-      {"roll", o.roll_deg, -45, 45, "-45 to 45 deg"},
-      {"noise", o.noise, 0, 20, "0 to 20"},
-      {"clutter", o.clutter, 0, 1, "0 to 1"},
+  const Number all[] = {
+      {"width", double(o.width), {"16 to 16384 px", 16, 16384}},
+      {"height", double(o.height), {"16 to 16384 px", 16, 16384}},
+      {"frame rate", o.frame_rate_hz, {"more than 0, at most 1000 Hz", 1e-300, 1000}},
+      {"frame count", double(o.frame_count), {"at least 1", 1, kAny}},
+      {"altitude", o.altitude_m, scene::kFlightAltitude},
+      {"speed", o.speed_mps, scene::kFlightSpeed},
+      {"heading", o.heading_deg, {"a number", -kAny, kAny}},
+      {"sun azimuth", o.sun_azimuth_deg, {"a number", -kAny, kAny}},
+      {"sun elevation", o.sun_elevation_deg, scene::kFlightSunElevation},
+      {"cloud cover", o.cloud_cover, scene::kShare},
+      {"hills", o.hills_deg, {"0 to 5 deg", 0, 5}},
+      {"extinction", o.extinction_per_km, {"0 to 10 per km", 0, 10}},
+      {"shake", o.shake_deg, {"0 to 5 deg", 0, 5}},
+      {"roll", o.roll_deg, {"-45 to 45 deg", -45, 45}},
+      {"noise", o.noise, {"0 to 20", 0, 20}},
+      {"clutter", o.clutter, scene::kShare},
   };
-  for (const Limits& limits : all)
-    if (!(limits.value >= limits.low && limits.value <= limits.high))
-      throw Error(fmt::format(
-          "virtual flight: {} is {}; expected {}", limits.name, limits.value, limits.expected));
+  for (const Number& number : all)
+    if (!number.limits.holds(number.value))
+      throw Error(fmt::format("virtual flight: {} is {}; expected {}",
+                              number.name,
+                              number.value,
+                              number.limits.expected));
   if (o.lens && !(o.lens->size() == lens::ImageSize{o.width, o.height}))
     throw Error(
         fmt::format("virtual flight: the lens is for {} x {} px; expected the picture's {} x {}",
