@@ -25,6 +25,7 @@ name = "<script><b onclick=x>set"
 name = "sky"
 flight = { seed = 3, frame_count = 40, width = 320, height = 240 }
 lens = { vertical_fov_deg = 75 }
+camera = { position_ned_m = [0, 0, -150] }
 [[aircraft]]
 name = "b737"
 aircraft = "738/738-Ryanair"

@@ -77,6 +77,24 @@ TEST(Catalogue, AFlightThatCannotBeMadeIsRefusedAtItsLine) {
       HasSubstr("c.toml:6:9: sun_elevation_deg is 1; expected degrees from 2 to 90 over a flight"));
 }
 
+// A camera that is stated, as that of the other background, stays as it is.
+TEST(Catalogue, TheCameraOfAFlightFliesAsTheFlightDoes) {
+  std::string text = test_support::kCatalogue;
+  const std::string stated =
+      "height = 120 }\nlens = { vertical_fov_deg = 75 }\ncamera = { "
+      "position_ned_m = [0, 0, -150] }\n";
+  text.replace(text.find(stated),
+               stated.size(),
+               "height = 120, altitude_m = 300, speed_mps = 40 }\nlens = { vertical_fov_deg = 75 "
+               "}\n");
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(text, "c.toml");
+  const scene::Camera& flown = catalogue.backgrounds.at(0).camera;
+  EXPECT_EQ(flown.position_ned_m, Vector3(0, 0, -300));
+  EXPECT_EQ(flown.velocity_ned_mps, Vector3(40, 0, 0));
+  EXPECT_EQ(catalogue.backgrounds.at(1).camera.position_ned_m, Vector3(0, 0, -150));
+  EXPECT_EQ(catalogue.backgrounds.at(1).camera.velocity_ned_mps, Vector3(0, 0, 0));
+}
+
 TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
   const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
       std::string(test_support::kCatalogue) +

@@ -71,6 +71,11 @@ Background background_from(const TableReader& table) {
   background.lens = scene::lens_in(table);
   background.motion = scene::motion_in(table);
   background.camera = scene::camera_in(table, background.motion);
+  const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
+  if (flight != nullptr && !table.has("camera")) {
+    background.camera.position_ned_m = Vector3(0, 0, -flight->altitude_m);
+    background.camera.velocity_ned_mps = Vector3(flight->speed_mps, 0, 0);  // heads north
+  }
   // Encounters are drawn before a frame is read, so that no horizon gives an attitude. That of a
   // log without one is that of BackgroundFiles::camera.
   if (!background.camera.log && !background.camera.path_file &&
@@ -79,8 +84,7 @@ Background background_from(const TableReader& table) {
   background.camera_model = scene::camera_model_in(table);
   background.realism = scene::realism_in(table);
   background.light = scene::light_in(table);
-  if (std::holds_alternative<synthetic::FlightOptions>(background.source) &&
-      !scene::kFlightSunElevation.holds(background.light.sun_elevation_deg))
+  if (flight != nullptr && !scene::kFlightSunElevation.holds(background.light.sun_elevation_deg))
     throw Error(fmt::format("sun_elevation_deg is {}; expected {} over a flight",
                             background.light.sun_elevation_deg,
                             scene::kFlightSunElevation.expected),

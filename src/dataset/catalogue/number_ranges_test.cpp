@@ -376,7 +376,7 @@ const std::string kTables =
     "[[background]]\nname = 'sky'\nlens = { vertical_fov_deg = 60 }\n"
     "flight = { seed = 1, frame_count = 2, width = 64, height = 64, cloud_cover = 0.3, speed_mps = "
     "30, "
-    "altitude_m = 200 }\n"
+    "altitude_m = 200 }\ncamera = { position_ned_m = [0, 0, -150] }\n"
     "[[aircraft]]\nname = 'box'\naircraft = 'box.obj'\n"
     "[[trajectory]]\nname = 'a'\nwaypoints_ned_m = [[60, -3, -150], [60, 20, -150]]\nspeed_mps = "
     "20\n"
