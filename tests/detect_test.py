@@ -168,6 +168,11 @@ class OwnAircraft(Case):
 
 
 class OverAVideo(Case):
+    def test_a_rate_of_a_video_is_refused(self):
+        made("synth", "-o", "flown.mkv", "--frames", "2", "--width", "64", "--height", "64")
+        self.assert_refused(run("detect", "flown.mkv", "-d", "cmo", "--frame-rate", "25", "-o", "flown"), "flown.mkv", "states its own rate")
+        self.assertFalse(os.path.exists(path("flown")))
+
     def test_its_name_is_that_of_its_file(self):
         made("detect", "otb/one/img", "-d", "cmo", "--frame-rate", "25", "-o", "video")
         self.assertEqual(sorted(os.listdir(path("video", "cmo"))), ["detector.json", "img.detections.json", "img.json", "img.txt"])

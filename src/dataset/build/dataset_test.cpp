@@ -95,6 +95,15 @@ TEST(Catalogue, TheCameraOfAFlightFliesAsTheFlightDoes) {
   EXPECT_EQ(catalogue.backgrounds.at(1).camera.velocity_ned_mps, Vector3(0, 0, 0));
 }
 
+TEST(Catalogue, ARateOfAVideoIsRefusedAtItsBackground) {
+  std::string text = test_support::kCatalogue;
+  text.replace(text.find("[[aircraft]]"), 0, "frame_rate_hz = 60\n");
+  EXPECT_THAT(
+      test_support::error_of([&] { check_sources(catalogue::parse_catalogue(text, "c.toml")); }),
+      testing::AllOf(HasSubstr("c.toml:8:"),
+                     HasSubstr("frame_rate_hz is 60, and the background is a video")));
+}
+
 TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
   const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
       std::string(test_support::kCatalogue) +

@@ -10,6 +10,7 @@
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "picture/video/numbered_images.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
@@ -175,6 +176,7 @@ catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
       throw Error("there is no background '" + name + "' to replace", {catalogue.file.string()});
     replaced->source = video;
     replaced->mask.reset();
+    if (!video::numbered_images(video)) replaced->frame_rate_hz.reset();
     std::erase_if(replaced->occluders, [](const scene::Occluder& one) { return one.mask; });
   }
   return catalogue;

@@ -42,7 +42,8 @@ void check_sources(const catalogue::Catalogue& catalogue);
 bool is_another(const fs::path& input, const std::string& sha256, setup::SharedInputs& inputs);
 
 // The catalogue with these videos, by the background's name, in place of its own; the masks of
-// these backgrounds are left out. Throws Error for a background that the catalogue lacks.
+// these backgrounds are left out, and the rate where it is no series of pictures. Throws Error for
+// a background that the catalogue lacks.
 catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,
                                  const std::map<std::string, fs::path>& videos);
 

@@ -137,6 +137,7 @@ struct Reader::State {
                                    images->doubt,
                                    images->files.size()));
       pictures = std::move(images->files);
+      info.is_of_pictures = true;
       info.is_rate_stated = options.picture_rate_hz.has_value();
       if (options.picture_rate_hz) {
         const AVRational stated = av_d2q(*options.picture_rate_hz, kMaxRateTerm);

@@ -63,6 +63,8 @@ struct StreamInfo {
   // False for numbered images whose rate ReaderOptions does not state: frame_rate is then libav's
   // own 25, and times follow from it.
   bool is_rate_stated = true;
+  // True for numbered images, which have no rate of their own.
+  bool is_of_pictures = false;
   Rational sample_aspect{1, 1};
   // The rotation that the reader has applied, clockwise: 0, 90, 180 or 270 degrees.
   int rotation_deg = 0;

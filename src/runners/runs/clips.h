@@ -62,6 +62,7 @@ class ClipFrames {
   ClipFrames(const DetectionClip& clip, bool with_motion, const Warn& warn);
 
   const detector::SequenceInput& sequence() const { return sequence_; }
+  const video::StreamInfo& info() const { return reader_.info(); }
   // The next frame of the clip; its picture is valid until the next call. Empty at the end. Throws
   // Error where the video ends before the clip does.
   std::optional<detector::FrameInput> next();

@@ -18,6 +18,7 @@
 #include "picture/video/still.h"
 #include "sequence/demo/demo.h"
 #include "sequence/replay/finished.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::pipeline {
@@ -445,6 +446,16 @@ TEST_F(Sequence, AClipThatRunsAcrossACutIsNamed) {
   options.warn = [&](const std::string& w) { warnings.push_back(w); };
   rendered(scene, options);
   EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("the clip is cut at its frame 6:")));
+}
+
+TEST_F(Sequence, ARateOfAVideoIsRefused) {
+  EXPECT_THAT(
+      test_support::error_of([&] {
+        rendered(scene_of("rate", crossing("a", "c172/news", 60), "frame_rate_hz = 60\n"));
+      }),
+      testing::AllOf(testing::HasSubstr("scene.toml:2:"),
+                     testing::HasSubstr("frame_rate_hz is 60, and the background is a video")));
+  EXPECT_FALSE(fs::exists(out_ / "rate"));
 }
 
 // A virtual flight states its attitude; its first frame is banked by more than 10 degrees.

@@ -351,6 +351,19 @@ scene::Scene with_measured_camera(StatedScene stated,
   return std::move(stated.scene);
 }
 
+void check_rate(const scene::Background& background, const video::StreamInfo& info) {
+  if (!info.is_rate_stated)
+    throw Error(
+        "the background is of numbered pictures, which state no rate; expected "
+        "frame_rate_hz, their frames a second, in [background]",
+        background.where);
+  if (background.frame_rate_hz && !info.is_of_pictures)
+    throw Error(fmt::format("frame_rate_hz is {}, and the background is a video, which has its own "
+                            "rate; expected frame_rate_hz for numbered pictures alone",
+                            *background.frame_rate_hz),
+                background.where);
+}
+
 video::Reader open_background(const scene::Scene& scene, const Options& options) {
   expect_there({scene.background.video, scene.background.where});
   video::Reader reader(scene.background.video,
@@ -360,11 +373,7 @@ video::Reader open_background(const scene::Scene& scene, const Options& options)
                         .threads = options.threads,
                         .with_cuts = true},
                        options.warn);
-  if (!reader.info().is_rate_stated)
-    throw Error(
-        "the background is of numbered pictures, which state no rate; expected "
-        "frame_rate_hz, their frames a second, in [background]",
-        scene.background.where);
+  check_rate(scene.background, reader.info());
   return reader;
 }
 
@@ -528,6 +537,7 @@ camera_file::Calibration calibration_of(const scene::Scene& scene, const Options
 
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info) {
   const lens::ImageSize size{info.width, info.height};
+  check_rate(scene.background, info);
   const StatedScene with_camera = stated(scene, info);
   const auto mask = insertion::read_mask(scene, size);
   const lens::Lens lens = setup::lens_of(scene.lens, size);

@@ -74,8 +74,10 @@ OpenedScene open_scene(const scene::Scene& scene, const Options& options);
 OpenedScene open_over(const video::StreamInfo& info,
                       const scene::Scene& scene,
                       const Options& options);
-// A reader of the scene's part of its background. Throws Error as video::Reader does, and for
-// numbered pictures whose rate the scene does not state.
+// Throws Error where the scene states no rate of numbered pictures, or one of a video.
+void check_rate(const scene::Background& background, const video::StreamInfo& info);
+// A reader of the scene's part of its background. Throws Error as video::Reader and check_rate()
+// do.
 video::Reader open_background(const scene::Scene& scene, const Options& options);
 
 // A scene with all that must be known of the whole clip before its first frame: frames are made
@@ -110,9 +112,9 @@ setup::MotionInputs motion_inputs(const OpenedScene& opened,
                                   const Options& options);
 
 // Throws Error for every fault of a scene that can be found before a frame of its clip is read: in
-// the mask, the lens, the camera file, the paths of camera and intruders, the aircraft's names, and
-// where the method cannot render through this lens with this camera model. `info` describes the
-// background, or the one that will be made.
+// the rate, the mask, the lens, the camera file, the paths of camera and intruders, the aircraft's
+// names, and where the method cannot render through this lens with this camera model. `info`
+// describes the background, or the one that will be made.
 void check_scene(const scene::Scene& scene, const video::StreamInfo& info);
 
 // The motion of every frame of the scene's background: from the cache, else by a pass over the clip
