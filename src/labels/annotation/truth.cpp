@@ -188,8 +188,13 @@ Truth read_truth(const std::filesystem::path& file) {
   int number = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    Line line =
-        line_from(std::string_view(text).substr(at, end - at), {file.string(), ++number, 0});
+    const Where where{file.string(), ++number, 0};
+    Line line = line_from(std::string_view(text).substr(at, end - at), where);
+    if (line.frame.frame != number - 1)
+      throw Error(fmt::format("frame is {}; expected {}: the lines are the video's frames in order",
+                              line.frame.frame,
+                              number - 1),
+                  where);
     if (number == 1) truth.lens = std::move(line.lens);
     truth.frames.push_back(std::move(line.frame));
     at = end + 1;

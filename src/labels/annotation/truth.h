@@ -58,6 +58,7 @@ std::string jsonl_line(const Frame& frame, const lens::Facts& lens);
 
 // Parses such a line. Errors carry file and line.
 Frame parse_jsonl_line(std::string_view line, const std::filesystem::path& file, int line_number);
+// Line n of the file is frame n - 1.
 struct Truth {
   lens::Facts lens;
   std::vector<Frame> frames;

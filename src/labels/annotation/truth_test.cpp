@@ -199,13 +199,32 @@ TEST(Truth, DeeplyNestedJsonDoesNotExhaustTheStack) {
 TEST(Truth, AFileReadsBackWithItsLens) {
   const auto file = std::filesystem::path(testing::TempDir()) / "airtruth_truth_test.jsonl";
   const std::string line = jsonl_line(frame_of_two(), kLens);
-  write_file(file, line + "\n" + line + "\n");
+  const Json json = Json::parse(line);
+  const auto lines = [&](const std::vector<int>& frames) {
+    std::string text;
+    for (const int frame : frames) {
+      Json one = json;
+      one["frame"] = frame;
+      text += one.dump() + "\n";
+    }
+    return text;
+  };
+  write_file(file, lines({0, 1}));
   const Truth truth = read_truth(file);
   EXPECT_EQ(truth.frames.size(), 2u);
   EXPECT_EQ(truth.lens.model, "fisheye");
   EXPECT_EQ(truth.lens.width, 1280);
   EXPECT_EQ(truth.lens.focal_px[1], 480.5);
   EXPECT_EQ(truth.lens.distortion, kLens.distortion);
+  for (const std::vector<int>& frames :
+       std::vector<std::vector<int>>{{0, 1, 1}, {0, 1, 3}, {0, 1, 0}}) {
+    write_file(file, lines(frames));
+    EXPECT_EQ(test_support::error_of([&] { read_truth(file); }),
+              file.string() + ":3: frame is " + std::to_string(frames[2]) +
+                  "; expected 2: the lines are the video's frames in order");
+  }
+  write_file(file, lines({1, 0}));
+  EXPECT_THROW(read_truth(file), Error);
   write_file(file, "");
   EXPECT_THROW(read_truth(file), Error);
   std::filesystem::remove(file);

@@ -117,7 +117,14 @@ Finished open_finished(const fs::path& folder) {
   finished.video = folder / (finished.name + video::extension(format));
   if (!fs::exists(finished.video))
     throw Error("is missing; the folder is not whole", {finished.video.string()});
-  finished.truth = annotation::read_truth(folder / "truth.jsonl");
+  const fs::path truth_file = folder / "truth.jsonl";
+  finished.truth = annotation::read_truth(truth_file);
+  const std::int64_t frames = record.object("summary").count("frames");
+  if (std::ssize(finished.truth.frames) != frames)
+    throw Error(fmt::format("has {} lines; expected {}, one for each frame of the video",
+                            finished.truth.frames.size(),
+                            frames),
+                {truth_file.string()});
   return finished;
 }
 
@@ -139,6 +146,7 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
   video::Writer writer(out, info, writer_options);
   const auto total = static_cast<std::int64_t>(sequence.truth.frames.size());
   const std::vector<std::string> ids = intruder_ids(sequence.truth);
+  std::int64_t shown = 0;
   while (auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
     if (frame->index >= total) {
@@ -150,8 +158,13 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
     frame->picture = image::picture_from_rgb8(drawing::overlay(frame->picture, truth, ids),
                                               frame->picture.colour);
     writer.write(*frame);
-    if (options.progress) options.progress(frame->index + 1, total);
+    shown = frame->index + 1;
+    if (options.progress) options.progress(shown, total);
   }
+  if (sequence.scene && shown < total)
+    throw Error(
+        fmt::format("holds {} frames; expected {}, one for each line of truth.jsonl", shown, total),
+        {sequence.video.string()});
   writer.finish();
 }
 

@@ -18,6 +18,7 @@
 #include "sequence/replay/finished.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/world.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::replay {
@@ -206,6 +207,19 @@ TEST_F(TruthOf, TheCoveredBoxDoesNotFollowWhatTheCameraDoesToTheSamples) {
     EXPECT_NEAR(a.covered_box_px->bottom(), exact.bottom(), 2) << k;
   }
   EXPECT_GT(wider, 0);
+}
+
+TEST_F(TruthOf, ATruthOfAnotherLengthThanItsVideoIsRefused) {
+  Finished finished = rendered(
+      replayed_intruder("one", "c172/news", "[[100, -20, -150], [100, 20, -150]]"), kStill);
+  const fs::path file = finished.folder / "truth.jsonl";
+  const std::string text = read_file(file);
+  write_file(file, text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+  EXPECT_EQ(test_support::error_of([&] { open_finished(finished.folder); }),
+            file.string() + ": has 7 lines; expected 8, one for each frame of the video");
+  finished.truth.frames.push_back(finished.truth.frames.back());
+  EXPECT_THAT(test_support::error_of([&] { write_overlay(finished, root_ / "look.mkv", {}); }),
+              testing::HasSubstr("holds 8 frames; expected 9, one for each line of truth.jsonl"));
 }
 
 TEST_F(TruthOf, AnAircraftThatCoversNoPixelFarEnoughHasNoCoveredBox) {
