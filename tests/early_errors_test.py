@@ -91,7 +91,11 @@ class EarlyErrors(unittest.TestCase):
         faults = {
             "the camera's path file": (scene(camera='path_file = "bad.csv"').replace("position_ned_m = [0, 0, -150]\n", ""), "bad.csv"),
             "a camera's path that begins late": (
-                scene(camera='path_file = "late.csv"').replace("position_ned_m = [0, 0, -150]\n", ""), "begins at 1.000 s"),
+                scene(camera='path_file = "late.csv"').replace("position_ned_m = [0, 0, -150]\n", ""), "scene.toml:7:1: the camera's path begins at 1.000 s"),
+            "a camera's path that ends early": (
+                scene(camera='path_file = "early.csv"', realism='[motion]\nmodel = "none"').replace("position_ned_m = [0, 0, -150]\n", ""),
+                "scene.toml:7:1: the camera's path ends at 0.01"),
+            "a first frame past the end": (scene(background="first_frame = 99"), f"scene.toml:2:1: {path('short.mkv')} holds "),
             "the intruder's path file": (scene(path='path_file = "bad.csv"'), "bad.csv"),
             "a path file that is missing": (scene(path='path_file = "none.csv"'), f"scene.toml:12:1: {path('none.csv')} does not exist"),
             "the mask's size": (scene(background='mask = "small.pgm"'), "16x12"),
@@ -240,6 +244,7 @@ def make_inputs():
     write("small.pgm", b"P5\n16 12\n255\n" + b"\xff" * (16 * 12))
     write("bad.csv", "this is a letter\n")
     write("late.csv", "time_s,north_m,east_m,down_m\n1,0,0,-150\n2,10,0,-150\n")
+    write("early.csv", "time_s,north_m,east_m,down_m\n0,0,0,-150\n0.01,1,0,-150\n")
     write("bad.yml", "this is a letter\n")
     write("bad.toml", "this is = a = letter\n")
     made = run("render", write("made.toml", scene(realism="[motion]\nmodel = \"none\"")), "--out", path("made"))

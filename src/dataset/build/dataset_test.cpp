@@ -51,6 +51,10 @@ TEST(Catalogue, WhatItNamesMustBeThere) {
                    "[[sequence]]\nname = \"a\"\nbackground = \"sky\"\ntrajectory = "
                    "\"across\"\naircraft = \"c172\"\n"),
               HasSubstr("two sequences are named 'a'"));
+  EXPECT_THAT(with("[[aircraft]]\nname = \"c172\"\naircraft = \"c172/news\"\n"),
+              HasSubstr("c.toml:28:8: two tables [[aircraft]] are named 'c172'"));
+  EXPECT_THAT(with("[[background]]\nname = \"bare\"\nvideo = \"a.mp4\"\n"),
+              testing::MatchesRegex("c.toml:27:.*: .lens. has no focal length.*"));
   EXPECT_THAT(with("[[sequense]]\n"), HasSubstr("sequence"));
   EXPECT_THAT(with("[[random]]\naircraft = [\"nosuch/*\"]\n"),
               HasSubstr("no aircraft fits 'nosuch/*'"));
@@ -290,7 +294,10 @@ TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
               HasSubstr("the video of background 'gone', nowhere.mp4, does not exist"));
   EXPECT_THAT(error(text + "[[sequence]]\nname = \"sky-across-b737\"\nbackground = "
                            "\"sky\"\ntrajectory = \"across\"\naircraft = \"b737\"\n"),
-              HasSubstr("two sequences are named 'sky-across-b737'"));
+              testing::MatchesRegex("c.toml:23:.*two sequences are named 'sky-across-b737'.*"));
+  EXPECT_THAT(error(text + "[[random]]\naircraft = [\"738/*\"]\n[[random]]\naircraft = "
+                           "[\"c172/*\"]\n"),
+              testing::MatchesRegex("c.toml:29:.*two sequences are named 'r000000'.*"));
   EXPECT_FALSE(fs::exists(root_ / "never"));
 }
 

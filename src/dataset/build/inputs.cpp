@@ -143,8 +143,9 @@ void check_names(const catalogue::Catalogue& catalogue) {
   const auto first = std::find(hashes.begin(), hashes.end(), *twin);
   const auto second = std::find(first + 1, hashes.end(), *twin);
   const std::string name = expansion.at(first - hashes.begin()).name;
-  if (expansion.at(second - hashes.begin()).name == name)
-    throw Error("two sequences are named '" + name + "'", {catalogue.file.string()});
+  const catalogue::Item other = expansion.at(second - hashes.begin());
+  if (other.name == name)
+    throw Error("two sequences are named '" + name + "'; expected another name here", other.where);
 }
 
 }  // namespace

@@ -121,13 +121,11 @@ Trajectory trajectory_from(const TableReader& table) {
   return trajectory;
 }
 
-template <typename Things>
-void refuse_twice(const Things& things, const char* what, const std::string& file) {
-  std::set<std::string> seen;
-  for (const auto& thing : things)
-    if (!seen.insert(thing.name).second)
-      throw Error("two tables [[" + std::string(what) + "]] are named '" + thing.name + "'",
-                  {file});
+// Throws Error where the name of a table is one of those before it.
+void refuse_twice(std::set<std::string>& names, const TableReader& table, const char* what) {
+  const std::string name = required_name(table);
+  if (!names.insert(name).second)
+    throw Error(fmt::format("two {} are named '{}'", what, name), table.where("name"));
 }
 
 Product listed_from(const TableReader& table, const Catalogue& catalogue) {
@@ -139,11 +137,13 @@ Product listed_from(const TableReader& table, const Catalogue& catalogue) {
           only("trajectory", catalogue.trajectories),
           only("aircraft", catalogue.aircraft),
           table.whole("frame_count", 1, kMost),
-          0};
+          0,
+          table.where()};
 }
 
 Product product_from(const TableReader& table, const Catalogue& catalogue) {
   Product product;
+  product.where = table.where();
   product.name = table.file_name("name").value_or("{background}{trajectory}{aircraft}");
   expect_parts(table, product.name, {"{background}", "{trajectory}", "{aircraft}"});
   product.backgrounds = places_of(table, "backgrounds", catalogue.backgrounds, "background");
@@ -165,24 +165,32 @@ Product product_from(const TableReader& table, const Catalogue& catalogue) {
 
 // The parts from which sequences are made: backgrounds, aircraft and trajectories.
 void add_parts(const TableReader& root, Catalogue& catalogue) {
+  std::set<std::string> backgrounds, aircraft, trajectories;
   for (const TableReader& table : root.tables(
            "background",
            scene::with_camera_tables(
                scene::keys("name video flight mask first_frame frame_count frame_rate_hz weight "
                            "lens camera motion light"),
-               {"realism", "occluder"})))
+               {"realism", "occluder"}))) {
+    refuse_twice(backgrounds, table, "tables [[background]]");
     catalogue.backgrounds.push_back(background_from(table));
-  for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"}))
+  }
+  for (const TableReader& table : root.tables("aircraft", {"name", "aircraft"})) {
+    refuse_twice(aircraft, table, "tables [[aircraft]]");
     catalogue.aircraft.push_back(
         {required_name(table), scene::aircraft_in(table), table.where("aircraft")});
-  for (const TableReader& table : root.tables(
-           "trajectory",
-           {"name", "waypoints_ned_m", "times_s", "speed_mps", "encounter", "seen", "frame_count"}))
+  }
+  for (const TableReader& table : root.tables("trajectory",
+                                              {"name",
+                                               "waypoints_ned_m",
+                                               "times_s",
+                                               "speed_mps",
+                                               "encounter",
+                                               "seen",
+                                               "frame_count"})) {
+    refuse_twice(trajectories, table, "tables [[trajectory]]");
     catalogue.trajectories.push_back(trajectory_from(table));
-  const std::string file = catalogue.file.string();
-  refuse_twice(catalogue.backgrounds, "background", file);
-  refuse_twice(catalogue.aircraft, "aircraft", file);
-  refuse_twice(catalogue.trajectories, "trajectory", file);
+  }
 }
 
 // The rules by which sequences are made from the parts.
@@ -190,10 +198,8 @@ void add_rules(const TableReader& root, Catalogue& catalogue) {
   std::set<std::string> names;
   for (const TableReader& table :
        root.tables("sequence", {"name", "background", "trajectory", "aircraft", "frame_count"})) {
-    Product listed = listed_from(table, catalogue);
-    if (!names.insert(listed.name).second)
-      throw Error("two sequences are named '" + listed.name + "'", table.where("name"));
-    catalogue.rules.emplace_back(std::move(listed));
+    refuse_twice(names, table, "sequences");
+    catalogue.rules.emplace_back(listed_from(table, catalogue));
   }
   for (const TableReader& table :
        root.tables("product",

@@ -67,6 +67,7 @@ struct Product {
   std::optional<std::int64_t> frame_count;
   // Share of sequences without an intruder, from 0 to 1.
   double negatives = 0;
+  Where where;
 };
 
 // [stream]: how a training stream draws pictures from the rules (dataset/stream/stream.h). Data

@@ -215,6 +215,7 @@ Item Expansion::at(std::int64_t index) const {
       std::visit([&](const auto& r) { return item_of(catalogue_, r, index - first_[rule]); },
                  catalogue_.rules[rule]);
   item.index = index;
+  item.where = std::visit([](const auto& r) { return r.where; }, catalogue_.rules[rule]);
   item.scene.name = item.name;
   item.distractors = draw_distractors(catalogue_.distractors, catalogue_.seed, index);
   const std::int64_t frames = item.frame_count > 0 ? item.frame_count : kProvisionalFrames;

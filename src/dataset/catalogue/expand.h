@@ -33,6 +33,7 @@ struct BackgroundFiles {
 struct Item {
   std::int64_t index = 0;
   std::string name;
+  Where where;  // of the table that makes it
   std::size_t background = 0;
   std::int64_t frame_count = 0;
   // place() fills in [background]. Until then the paths of random intruders are provisional.

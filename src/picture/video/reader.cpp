@@ -507,8 +507,11 @@ Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, 
         fmt::format("holds no frame of at most {} million px that can be decoded; expected a video",
                     kMaxPixels / 1'000'000));
   if (!options.frame_count || *options.frame_count > 0)
-    state_->fail("holds " + std::to_string(state_->decoded) + " frames; first_frame = " +
-                 std::to_string(options.first_frame) + " is past its end");
+    throw Error(fmt::format("{}holds {} frames; first_frame = {} is past its end",
+                            options.where.file.empty() ? "" : path.string() + " ",
+                            state_->decoded,
+                            options.first_frame),
+                options.where.file.empty() ? Where{path.string()} : options.where);
 }
 
 Reader::~Reader() = default;

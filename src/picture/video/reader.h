@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "foundation/base/error.h"
 #include "foundation/base/log.h"
 #include "foundation/image/picture.h"
 
@@ -98,6 +99,8 @@ struct ReaderOptions {
   // False: one picture is wanted, and no duration, rate or shape of its pixels. A picture file is
   // then decoded once and not twice.
   bool with_timing = true;
+  // What states first_frame, for the message about one past the end.
+  Where where = {};
 };
 
 // Reads a video (H.264, HEVC, MJPEG, MPEG-4, VP9, FFV1, ProRes, ... in mp4, mov, avi, mkv, webm) or

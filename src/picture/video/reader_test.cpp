@@ -308,7 +308,9 @@ TEST_F(Video, SaysWhatIsWrongWithAFile) {
   write_file(folder_ / "cut.mp4", whole.substr(0, whole.size() / 2));
   EXPECT_THAT(error_of(folder_ / "cut.mp4"), testing::HasSubstr("cut.mp4: "));
   EXPECT_THAT(error_of(folder_ / "whole.mp4", {.first_frame = 10}),
-              testing::HasSubstr("holds 10 frames"));
+              testing::HasSubstr("whole.mp4: holds 10 frames"));
+  EXPECT_THAT(error_of(folder_ / "whole.mp4", {.first_frame = 10, .where = {"s.toml", 2, 1}}),
+              testing::HasSubstr("whole.mp4 holds 10 frames; first_frame = 10 is past its end"));
 }
 
 TEST_F(Video, CorruptPacketsAreFlaggedAndTheRestGoesOn) {

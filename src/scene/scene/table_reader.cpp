@@ -88,6 +88,7 @@ TableReader::TableReader(const toml::table& table,
       title_(std::move(title)),
       path_(std::move(path)),
       file_(file),
+      where_(place(table)),
       keys_(keys.begin(), keys.end()) {
   for (const std::string& key : keys_) note(key, KnownKey{});
   refuse_unknown();
@@ -137,7 +138,7 @@ bool TableReader::is_table(std::string_view key) const {
   return toml::node_view(node(key)).is_table();
 }
 
-Where TableReader::where() const { return place(*table_); }
+Where TableReader::where() const { return where_; }
 
 Where TableReader::where(std::string_view key) const {
   const toml::node* const value = node(key);
@@ -315,7 +316,11 @@ std::optional<std::vector<Vector3>> TableReader::points(std::string_view key,
 TableReader TableReader::table(std::string_view key, const Keys& keys) const {
   const toml::node* const value = node(key);
   const std::string title = fmt::format("[{}]", key);
-  if (!value) return TableReader(kAbsent, title, file_, keys, path_of(key));
+  if (!value) {
+    TableReader absent(kAbsent, title, file_, keys, path_of(key));
+    if (!path_.empty()) absent.where_ = where_;
+    return absent;
+  }
   if (value->is_array_of_tables())
     fail_at(place(*value), key, "an array of tables", title + ", with single brackets");
   if (!value->is_table()) fail_at(place(*value), key, words_of(value->type()), "a table: " + title);

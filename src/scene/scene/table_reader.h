@@ -64,7 +64,8 @@ class TableReader {
   // True where the value is an array; a table.
   bool is_array(std::string_view key) const;
   bool is_table(std::string_view key) const;
-  // The place of the table; without a line where the file lacks the table.
+  // The place of the table. Where the file lacks it, that of the table which could hold it; without
+  // a line at the top of the file.
   Where where() const;
   // The place of the value.
   Where where(std::string_view key) const;
@@ -139,6 +140,7 @@ class TableReader {
   std::string title_;
   std::string path_;
   std::string file_;
+  Where where_;
   std::vector<std::string> keys_;
 };
 

@@ -371,7 +371,8 @@ video::Reader open_background(const scene::Scene& scene, const Options& options)
                         .frame_count = scene.background.frame_count,
                         .picture_rate_hz = scene.background.frame_rate_hz,
                         .threads = options.threads,
-                        .with_cuts = true},
+                        .with_cuts = true,
+                        .where = scene.background.where},
                        options.warn);
   check_rate(scene.background, reader.info());
   return reader;
@@ -417,7 +418,7 @@ OpenedScene open_over(const video::StreamInfo& of_video,
     if (const double scale = world.actors[i].type->aircraft->catalogue_scale; scale != 1)
       opened.intruders[i].catalogue_scale = scale;
   const video::StreamInfo info = used_stream(of_video, scene.background);
-  setup::check_camera_path(world.camera, info);
+  setup::check_camera_path(world, info);
   // A container may state a frame or two more than it holds.
   const std::int64_t at_least = scene.background.frame_count.value_or(
       std::max<std::int64_t>(0, info.frame_count_estimate - 2));

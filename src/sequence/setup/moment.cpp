@@ -190,8 +190,9 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
   const auto camera = world.camera.at(time_s);
   if (!camera)
     throw Error("the camera's path ends at " + std::to_string(world.camera.end_s()) +
-                " s, but the clip goes on at " + std::to_string(time_s) +
-                " s; expected a path as long as the clip");
+                    " s, but the clip goes on at " + std::to_string(time_s) +
+                    " s; expected a path as long as the clip",
+                world.camera_where);
   Moment moment;
   moment.frame = frame;
   moment.time_s = time_s;

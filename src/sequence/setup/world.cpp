@@ -99,7 +99,8 @@ World without_actors(const scene::Scene& scene, lens::ImageSize size, const Warn
           scene.truth.lookahead_s,
           scene.lens_marks,
           to_sun_in_world(scene.light),
-          scene.seed};
+          scene.seed,
+          scene.camera.where};
 }
 
 }  // namespace
@@ -165,14 +166,15 @@ void place_seen(scene::Scene& scene,
   }
 }
 
-void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info) {
+void check_camera_path(const World& world, const video::StreamInfo& info) {
+  const trajectory::Path& camera = world.camera;
   const auto refuse = [&](const char* what, double path_s, double clip_s) {
-    throw Error(
-        fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
-                    "{:.3f} s; expected a path as long as the clip, or a frame_count",
-                    what,
-                    path_s,
-                    clip_s));
+    throw Error(fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
+                            "{:.3f} s; expected a path as long as the clip, or a frame_count",
+                            what,
+                            path_s,
+                            clip_s),
+                world.camera_where);
   };
   const double rate_hz = info.frame_rate.value();
   const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
@@ -185,7 +187,7 @@ void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& 
 
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   const World world = without_actors(scene, {info.width, info.height}, {});
-  check_camera_path(world.camera, info);
+  check_camera_path(world, info);
   for (const scene::Intruder& intruder : scene.intruders) {
     if (is_aircraft(intruder))
       at_place(intruder.where, [&] { return fleet::aircraft_file(intruder.aircraft); });

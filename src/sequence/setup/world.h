@@ -59,6 +59,8 @@ struct World {
   // (pipeline/resolved_scene.h).
   Vector3 to_sun_in_world{0, 0, -1};
   std::uint64_t seed = 1;
+  // Where the camera's path is stated.
+  Where camera_where = {};
 };
 
 // How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
@@ -93,7 +95,7 @@ void place_seen(scene::Scene& scene,
 
 // Throws Error where the camera's path begins after the clip, or ends earlier than the clip by more
 // than the uncertainty of the clip's stated length.
-void check_camera_path(const trajectory::Path& camera, const video::StreamInfo& info);
+void check_camera_path(const World& world, const video::StreamInfo& info);
 
 // Makes the same check for a scene that is not loaded, including the intruders' paths and aircraft.
 // Throws Error where one of them is missing or cannot be read.
