@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -137,6 +138,16 @@ TEST_F(DrawnSet, ThePlanAddsUpWhatScalingMdStates) {
               1e-9);
   EXPECT_NEAR(
       said("realism = { auto = true }\n", ""), plain_s + 3 * 10 * 0.002 + 16 * 0.044 / 16, 1e-9);
+}
+
+TEST_F(DrawnSet, ThePlanCutsSequencesToTheirVideo) {
+  const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
+      text("", "count = 2\nframe_count = 500\naircraft = [\"c172/news\"]\n"), "c.toml");
+  std::vector<std::int64_t> frames;
+  const Plan plan = plan_of(
+      catalogue, [&](const catalogue::Item& item) { frames.push_back(item.frame_count); }, {});
+  EXPECT_EQ(frames, (std::vector<std::int64_t>{16, 16}));
+  EXPECT_EQ(plan.frames, 32);
 }
 
 // Two sequences over different parts of one clip share one camera, which is measured once.

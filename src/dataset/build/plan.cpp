@@ -62,6 +62,7 @@ class Planner {
     plan_.draws += draws.drawn;
     plan_.never_in_view += draws.unseen;
     const std::int64_t frames = frames_of(item, facts);
+    if (item.frame_count > 0) item.frame_count = frames;
     ++plan_.sequences;
     plan_.frames += frames;
     plan_.open_ended += frames == 0 ? 1 : 0;
@@ -162,7 +163,7 @@ class Planner {
     const std::int64_t left =
         std::max<std::int64_t>(0, end_of(background, facts.files.frames) - background.first_frame);
     if (item.frame_count == 0) return left;
-    return background.frame_count && left > 0 ? std::min(item.frame_count, left) : item.frame_count;
+    return left > 0 ? std::min(item.frame_count, left) : item.frame_count;
   }
 
   // Why an intruder cannot fly its path, or has none; "" where it can.
