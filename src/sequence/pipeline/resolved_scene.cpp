@@ -175,6 +175,8 @@ void take_measured(scene::Scene& scene,
       [&](const char* key, auto& value, const auto& seen) {
         if (std::ranges::count(stated.to_measure, key) == 0) return;
         value = seen;
+        if (key == std::string_view("air.extinction_per_km") && !of_clip.extinction.note.empty())
+          warn(to_warn, fmt::format("{} is {}", key, of_clip.extinction.note));
         if (value && (realism.profile || of_clip.at(key).missing.empty())) return;
         std::string what = fmt::format("{} cannot be measured: {}", key, of_clip.at(key).missing);
         if (key == std::string_view("air.airlight") && !found.no_horizon.empty())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/pipeline/resolved_scene.h"
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -128,6 +129,22 @@ TEST_F(Resolve, WhatTheClipCannotTellIsTheProfiles) {
   EXPECT_EQ(
       resolve().camera_model.point_spread_px,
       camera_file::camera_profile("fixed-wing-nose").values.at("optics.point_spread_px").value);
+}
+
+TEST_F(Resolve, AnExtinctionThatIsNotMeasuredIsSaid) {
+  constexpr const char* kKey = "air.extinction_per_km";
+  camera_file::Calibration found;
+  found.width = info_.width, found.height = info_.height;
+  found.quantities.at(kKey).values.assign(3, {0, 0.1});
+  found.quantities.at(kKey).note = "not measured, and drawn as clear air: no ground";
+  keep(found);
+  scene_.camera_model.automatic = {kKey};
+  std::vector<std::string> warnings;
+  options_.warn = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_EQ(resolve().camera_model.extinction_per_km, (std::array<double, 3>{}));
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{
+                "air.extinction_per_km is not measured, and drawn as clear air: no ground"}));
 }
 
 TEST_F(Resolve, AClipWithoutEdgesOfColourIsNoReasonToStop) {
