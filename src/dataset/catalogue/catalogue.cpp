@@ -180,14 +180,9 @@ void add_parts(const TableReader& root, Catalogue& catalogue) {
     catalogue.aircraft.push_back(
         {required_name(table), scene::aircraft_in(table), table.where("aircraft")});
   }
-  for (const TableReader& table : root.tables("trajectory",
-                                              {"name",
-                                               "waypoints_ned_m",
-                                               "times_s",
-                                               "speed_mps",
-                                               "encounter",
-                                               "seen",
-                                               "frame_count"})) {
+  for (const TableReader& table : root.tables(
+           "trajectory",
+           scene::keys("name waypoints_ned_m times_s speed_mps encounter seen frame_count"))) {
     refuse_twice(trajectories, table, "tables [[trajectory]]");
     catalogue.trajectories.push_back(trajectory_from(table));
   }
