@@ -114,7 +114,7 @@ CameraFile parse_camera_file(std::string_view text, const fs::path& file) {
   camera.height = static_cast<int>(clip.whole("height", 1, 1 << 16).value_or(0));
   if (camera.width == 0 || camera.height == 0)
     throw Error("[clip] has no width and height; expected a file that airtruth calibrate wrote",
-                {file.string()});
+                clip.where());
   camera.lens = clip.text("lens").value_or("");
   camera.gamma = clip.number("gamma", kGamma);
   camera.model = camera_model_in(root);

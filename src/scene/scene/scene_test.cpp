@@ -10,6 +10,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
 #include "scene/scene/camera_keys.h"
+#include "support/error_of.h"
 #include "support/source_folder.h"
 
 namespace airtruth::scene {
@@ -263,6 +264,9 @@ TEST(CameraFile, IsReadStrictly) {
   EXPECT_EQ(file.gamma, 1.8);
   EXPECT_EQ(file.sun_azimuth_deg, 30);
   EXPECT_THROW(parse_camera_file("[optics]\npoint_spread_px = 1\n", "c.toml"), Error);
+  EXPECT_EQ(test_support::error_of([] { parse_camera_file("\n[clip]\nwidth = 9\n", "c.toml"); }),
+            "c.toml:2:1: [clip] has no width and height; expected a file that airtruth calibrate "
+            "wrote");
   EXPECT_THROW(parse_camera_file("[clip]\nwidth = 1\nheight = 1\n[optics]\nspread = 1\n", "c.toml"),
                Error);
 }
