@@ -199,7 +199,9 @@ TEST(Matte, OnRedGreenAndBlueASensorKeepsGreyGreyAndTheRestUntouched) {
       ASSERT_NEAR(picture.planes[1].row(y)[x], green, 1);
       ASSERT_NEAR(picture.planes[2].row(y)[x], green, 1);
       brightest = std::max(brightest, green);
-      if (!visible[0].box->contains(x, y)) ASSERT_EQ(green, 120);
+      if (!visible[0].box->contains(x, y)) {
+        ASSERT_EQ(green, 120);
+      }
     }
   EXPECT_GT(brightest, 124);  // the halo
 }
