@@ -30,6 +30,7 @@ camera = { position_ned_m = [0, 0, -150], velocity_ned_mps = [20, 0, 0] }
 [[background]]
 name = "more & <i>more"
 flight = { seed = 4, frame_count = 6, width = 160, height = 120 }
+camera = { position_ned_m = [0, 0, -150] }
 lens = { vertical_fov_deg = 75 }
 [[aircraft]]
 name = "b737"

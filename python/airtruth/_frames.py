@@ -183,9 +183,10 @@ class Frame:
     def full_range_gray(self) -> Samples:
         """H x W, uint8: `gray` in the full range of 0 to 255: what `airtruth detect` shows a network of grey
         pictures. Computed at each access."""
-        gray = self.gray
-        limited: Samples = _FULL_FROM_LIMITED[gray]
-        return gray.copy() if self.is_full_range else limited
+        if self.is_full_range:
+            return self.gray.copy()
+        full: Samples = _FULL_FROM_LIMITED[self.gray]
+        return full
 
     @property
     def intruders(self) -> List[Intruder]:

@@ -22,8 +22,8 @@ class Estimator {
             const image::Mask* own_aircraft = nullptr);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
-  // The motion of the next frame against the first frame. The model homography reads the luma plane
-  // alone. A `damaged` frame is bridged. A frame that begins a shot (foundation/image/cuts.h) is a
+  // The motion of the next frame against the first frame. The model homography reads luma alone.
+  // A `damaged` frame is bridged. A frame that begins a shot (foundation/image/cuts.h) is a
   // cut, unless most corners are tracked into it; this happens when an object suddenly covers a
   // part of the view.
   FrameMotion next(const image::Picture& picture,

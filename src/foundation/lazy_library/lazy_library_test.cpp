@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/lazy_library/lazy_library.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/error.h"
+#include "support/environment_variable.h"
 
 namespace airtruth::lazy_library {
 namespace {
@@ -25,10 +25,9 @@ std::string reason_of(const Library& library, const std::string& symbol) {
 // The C library's mathematics stand for a library of ours, in the place that the variable names.
 TEST(LazyLibrary, GivesTheAddressOfASymbol) {
   const Library library{"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"};
-  ::setenv("AIRTRUTH_TEST_LATE", "libm.so.6", 1);
+  const test_support::EnvironmentVariable stated("AIRTRUTH_TEST_LATE", "libm.so.6");
   EXPECT_EQ(reinterpret_cast<double (*)(double)>(symbol_of(library, "fabs"))(-3), 3);
   EXPECT_THAT(reason_of(library, "no_such_function"), testing::HasSubstr("no_such_function"));
-  ::unsetenv("AIRTRUTH_TEST_LATE");
 }
 
 TEST(LazyLibrary, IsNamedWhereItIsNotThere) {
@@ -41,11 +40,10 @@ TEST(LazyLibrary, IsNamedWhereItIsNotThere) {
 TEST(LazyLibrary, OfAnotherBuildIsRefused) {
   EXPECT_THAT(of_build("fabs"), testing::MatchesRegex("fabs_[0-9a-f]*"));
   EXPECT_NE(of_build("fabs"), "fabs_");
-  ::setenv("AIRTRUTH_TEST_LATE", "libm.so.6", 1);
+  const test_support::EnvironmentVariable stated("AIRTRUTH_TEST_LATE", "libm.so.6");
   EXPECT_THAT(reason_of({"no-such.so", "AIRTRUTH_TEST_LATE", "the tested part"}, of_build("fabs")),
               testing::AllOf(testing::HasSubstr("cannot be loaded"),
                              testing::HasSubstr("install airtruth whole")));
-  ::unsetenv("AIRTRUTH_TEST_LATE");
 }
 
 TEST(Places, OfAChildAndOfDataAreBesideTheProgramFirstAndThenInItsPrefix) {

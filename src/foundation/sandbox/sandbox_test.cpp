@@ -1,27 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/sandbox/sandbox.h"
 
-#include <cstdlib>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <signal.h>
 
 #include "foundation/base/error.h"
+#include "support/environment_variable.h"
 
 namespace airtruth::sandbox {
 namespace {
 
 TEST(Sandbox, AMissingProgramIsOneLine) {
-  ::setenv("AIRTRUTH_NO_HELPER", "/nowhere/helper", 1);
-  try {
-    path_of({"no-helper", "AIRTRUTH_NO_HELPER", "the reader of nothing"});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "/nowhere/helper: is what AIRTRUTH_NO_HELPER names, but no program");
+  {
+    const test_support::EnvironmentVariable stated("AIRTRUTH_NO_HELPER", "/nowhere/helper");
+    try {
+      path_of({"no-helper", "AIRTRUTH_NO_HELPER", "the reader of nothing"});
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()),
+                "/nowhere/helper: is what AIRTRUTH_NO_HELPER names, but no program");
+    }
   }
-  ::unsetenv("AIRTRUTH_NO_HELPER");
   EXPECT_THROW(path_of({"no-helper", "AIRTRUTH_NO_HELPER", "the reader of nothing"}), Error);
 }
 

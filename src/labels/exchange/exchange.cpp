@@ -179,11 +179,11 @@ void classify(std::vector<Clip>& clips,
                                words.size(),
                                fmt::join(words, ", ")));
   if (marked > 0 && marked == labels)
-    airtruth::warn(warn,
-                   fmt::format("{} of {} boxes are marked as counting neither way (iscrowd, "
-                               "difficult, or 0 in MOT's seventh column), so that none counts",
-                               marked,
-                               labels));
+    airtruth::warn(
+        warn,
+        fmt::format("all {} boxes are marked as counting neither way (iscrowd, difficult, "
+                    "or 0 in MOT's seventh column), so that none counts",
+                    labels));
 }
 
 WriteOptions options_of(std::span<const Part> parts) {

@@ -138,7 +138,7 @@ TEST(Coco, ASetOfCrowdsAloneIsSaid) {
     read_clips(Format::kCoco, file, {}, [&](const std::string& w) { warnings += w + "\n"; });
     return warnings;
   };
-  EXPECT_NE(warnings_of("1").find("2 of 2 boxes are marked as counting neither way"),
+  EXPECT_NE(warnings_of("1").find("all 2 boxes are marked as counting neither way"),
             std::string::npos);
   EXPECT_EQ(warnings_of("0").find("neither way"), std::string::npos);
 }

@@ -234,7 +234,8 @@ class Matte {
         for (int x = patch.x; x < patch.right(); ++x) {
           const std::size_t i = layer_.index(x, y);
           if (!drawn_[i]) continue;
-          const float under = luma_under(x, y);
+          const auto under =
+              static_cast<float>(image::luma_at(picture_, x, y));  // not drawn on yet
           const float wanted = sigma_at(under + luma[i]);
           const float left = (1 - layer_.pixels[i].alpha) * sigma_at(under);
           luma[i] += field[i] * std::sqrt(std::max(0.0F, wanted * wanted - left * left));
@@ -247,13 +248,6 @@ class Matte {
       change = is_rgb() ? image::Ycc{change.y + added, change.cb + added, change.cr + added}
                         : image::Ycc{luma[i], change.cb, change.cr};
     }
-  }
-
-  // Luma of the background.
-  float luma_under(int x, int y) const {
-    image::Ycc under = chroma_at(x >> log2_width_, y >> log2_height_);
-    under.y = static_cast<float>(first_[layer_.index(x, y)]);
-    return colour_code_.luma(under);
   }
 
   // Blurs what the layer changes of blue and red less luma, and keeps its change of luma.
@@ -477,7 +471,7 @@ class Matte {
   Footprint down_;
   // 1: the layer is open.
   std::vector<std::uint8_t> free_;
-  // 1: alpha > 0 and free.
+  // 1: free, and changed by the layer, its blur or its halo.
   std::vector<std::uint8_t> drawn_;
   // 1: drawn, and a sample differs.
   std::vector<std::uint8_t> changed_;

@@ -506,12 +506,12 @@ Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, 
     state_->fail(
         fmt::format("holds no frame of at most {} million px that can be decoded; expected a video",
                     kMaxPixels / 1'000'000));
-  if (!options.frame_count || *options.frame_count > 0)
-    throw Error(fmt::format("{}holds {} frames; first_frame = {} is past its end",
-                            options.where.file.empty() ? "" : path.string() + " ",
-                            state_->decoded,
-                            options.first_frame),
-                options.where.file.empty() ? Where{path.string()} : options.where);
+  if (!options.frame_count || *options.frame_count > 0) {
+    const std::string fault = fmt::format(
+        "holds {} frames; first_frame = {} is past its end", state_->decoded, options.first_frame);
+    if (options.where.file.empty()) state_->fail(fault);
+    throw Error(path.string() + " " + fault, options.where);
+  }
 }
 
 Reader::~Reader() = default;
