@@ -372,7 +372,7 @@ double seen_s(const scene::Intruder& intruder, const scene::Camera& camera, cons
 std::vector<std::int64_t> frames_in_view(const scene::Intruder& intruder,
                                          const scene::Camera& camera,
                                          const Views& views) {
-  const trajectory::Path own = setup::camera_path(camera);
+  const trajectory::Path own = setup::unmeasured_camera_path(camera);
   const trajectory::Path path = setup::path_of(intruder, own);
   std::vector<std::int64_t> frames;
   for (std::int64_t i = 0; i < views.frames; i += look_step(views)) {

@@ -305,6 +305,23 @@ TEST_F(EncounterModel, WhatIsNeverInViewIsCounted) {
               HasSubstr("seen_s is for in_view = true"));
 }
 
+// The camera turns from north to east in ten seconds, and no motion is measured yet.
+TEST_F(EncounterModel, WhatIsInViewFollowsTheAttitudeOfAPathFile) {
+  std::string path = "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n";
+  for (int i = 0; i <= 10; ++i) path += fmt::format("{},{},0,-100,{},0,0\n", i, i, 9 * i);
+  write_file(folder_ / "own.csv", path);
+  scene::Camera camera;
+  camera.path_file = folder_ / "own.csv";
+  scene::Intruder intruder;
+  intruder.aircraft = "c172/c-fgfs";
+  intruder.position_ned_m = Vector3(0, 1000, -100);
+  const lens::Lens lens(lens::Pinhole{{100, 100}, {100, 100}}, {200, 200});  // 90 degrees wide
+  const auto frames = frames_in_view(intruder, camera, {lens, 241, 24});
+  ASSERT_FALSE(frames.empty());
+  EXPECT_NEAR(static_cast<double>(frames.front()), 120, 3);  // at 45 degrees
+  EXPECT_EQ(frames.back(), 240);
+}
+
 // 9 sequences of three types, and of backgrounds whose weights are 1 and 2.
 TEST_F(EncounterModel, TypesAndBackgroundsComeInTheirShares) {
   const std::string second = R"([[background]]

@@ -173,7 +173,7 @@ void meet(scene::Intruder& intruder,
   constexpr double kUsualLengthM = 15;
   if (lay_stated_path(intruder, encounter, clip)) return;
   const double meets_s = meeting_s(encounter, clip);
-  const trajectory::Path own = setup::camera_path(scene.camera);
+  const trajectory::Path own = setup::unmeasured_camera_path(scene.camera);
   const trajectory::State camera = state_at(own, meets_s, scene.camera.where);
   const Vector3 direction = direction_in_world(encounter, camera.world_from_body);
   if (encounter.range_m) {

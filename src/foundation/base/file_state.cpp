@@ -20,6 +20,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 
 namespace airtruth {
 
@@ -135,7 +136,8 @@ void check_output_file(const fs::path& path,
   refuse_existing(path, overwrite);
   if (fs::is_directory(path)) throw Error("is a folder; expected a file to write", {path.string()});
   const std::string ending = path.extension().string();
-  if (endings.size() > 0 && std::find(endings.begin(), endings.end(), ending) == endings.end())
+  if (endings.size() > 0 &&
+      std::find(endings.begin(), endings.end(), lower_case(ending)) == endings.end())
     throw Error(fmt::format("has {}; expected {}",
                             ending.empty() ? "no ending" : "the ending " + ending,
                             fmt::join(endings, " or ")),

@@ -514,6 +514,14 @@ Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, 
   }
 }
 
+void refuse_rate_of_video(const std::filesystem::path& video,
+                          const StreamInfo& info,
+                          const std::optional<double>& rate_hz) {
+  if (rate_hz && !info.is_of_pictures)
+    throw Error("is a video, which states its own rate; --frame-rate is for numbered pictures",
+                {video.string()});
+}
+
 Reader::~Reader() = default;
 Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;

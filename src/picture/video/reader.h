@@ -79,6 +79,11 @@ struct StreamInfo {
   std::map<std::string, std::string> tags;
 };
 
+// Throws Error where --frame-rate is given for a video, which has a rate of its own.
+void refuse_rate_of_video(const std::filesystem::path& video,
+                          const StreamInfo& info,
+                          const std::optional<double>& rate_hz);
+
 // What the reader delivers.
 struct ReaderOptions {
   // The first frame that is handed out. Decoding begins at the key frame before it. Where the file

@@ -362,10 +362,8 @@ class DetectorRun {
   std::vector<DetectSummary> over(const fs::path& video) {
     const DetectionClip clip = clip_of(video);
     // Errors come before anything is made.
-    if (!ClipFrames(with_facts(clip), false, options_.warn).info().is_of_pictures &&
-        options_.frame_rate_hz)
-      throw Error("is a video, which states its own rate; --frame-rate is for numbered pictures",
-                  {video.string()});
+    video::refuse_rate_of_video(
+        video, ClipFrames(with_facts(clip), false, options_.warn).info(), options_.frame_rate_hz);
     open();
     over(
         "", clip.name, [&] { return clip; }, options_.progress);

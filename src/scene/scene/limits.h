@@ -84,7 +84,6 @@ inline constexpr Limits kVisibility{"metres from 1 to 1e6", 1, 1e6};
 
 // Catalogues.
 inline constexpr Limits kShare{"a number from 0 to 1", 0, 1};
-inline constexpr Limits kOwnSpeed{"metres a second from 0 to 1000", 0, 1000};
 inline constexpr Limits kRangeToAircraft{"metres from 0.1 to 1e6", 0.1, 1e6};
 
 // Virtual flights (scene/synthetic/flight.h).

@@ -388,6 +388,14 @@ Path displaced(const Path& path, const Vector3& offset_ned_m) {
   });
 }
 
+Path at_attitude(const Path& path, const YawPitchRoll& attitude) {
+  return Path(path.start_s(), path.end_s(), [path, turn = world_from_body(attitude)](double t) {
+    State state = *path.at(t);
+    state.world_from_body = turn;
+    return state;
+  });
+}
+
 Path shifted(const Path& path, double start_s) {
   return Path(path.start_s() + start_s, path.end_s() + start_s, [path, start_s](double t) {
     return *path.at(std::clamp(t - start_s, path.start_s(), path.end_s()));

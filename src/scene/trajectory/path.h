@@ -82,6 +82,9 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
 // The same path, delayed by `start_s` seconds.
 Path shifted(const Path& path, double start_s);
 
+// The same path, at one attitude throughout.
+Path at_attitude(const Path& path, const YawPitchRoll& attitude);
+
 // The same path, displaced by a constant vector.
 Path displaced(const Path& path, const Vector3& offset_ned_m);
 

@@ -384,9 +384,7 @@ std::string background_words(const std::string& video,
 // Throws Error where the rate is not stated, or stated twice.
 video::StreamInfo info_of(const fs::path& video, const NewSceneOptions& options) {
   video::StreamInfo info = video::Reader(video, {.frame_count = 1}, options.warn).info();
-  if (info.is_rate_stated && options.picture_rate_hz)
-    throw Error("is a video, which states its own rate; --frame-rate is for numbered pictures",
-                {video.string()});
+  video::refuse_rate_of_video(video, info, options.picture_rate_hz);
   if (info.is_rate_stated) return info;
   if (!options.picture_rate_hz)
     throw Error(

@@ -103,9 +103,7 @@ trajectory::Path path_from_file(const scene::Camera& camera) {
   const trajectory::Path path = trajectory::read_path_file(*camera.path_file);
   const auto first = path.at(0);
   if (camera.follows_attitude || !first) return path;
-  const YawPitchRoll held = yaw_pitch_roll(first->world_from_body);
-  return trajectory::read_path_file(*camera.path_file,
-                                    {held.yaw_deg, held.pitch_deg, held.roll_deg});
+  return trajectory::at_attitude(path, yaw_pitch_roll(first->world_from_body));
 }
 
 trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
@@ -145,6 +143,11 @@ trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {
   return trajectory::uniform(camera.position_ned_m,
                              camera.velocity_ned_mps,
                              camera.attitude_yaw_pitch_roll_deg.value_or(YawPitchRoll{}));
+}
+
+trajectory::Path unmeasured_camera_path(scene::Camera camera) {
+  camera.follows_attitude = true;
+  return camera_path(camera);
 }
 
 namespace {

@@ -38,6 +38,8 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
 // Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
 // not cover the first frame.
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn = {});
+// The same where no motion is measured yet: the file's attitude is all that turns the camera.
+trajectory::Path unmeasured_camera_path(scene::Camera camera);
 
 // [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is
 // `seen` must have been placed (seen.h).

@@ -102,8 +102,9 @@ TEST_F(OwnLog, AnAttitudeOfAPathFileIsHeldUnlessItIsAllThatTurnsTheCamera) {
   write("curve.csv", curve);
   for (const char* file : {"stated.csv", "curve.csv"}) {
     EXPECT_NEAR(turning(file, ""), 0, 1e-6) << file;
-    EXPECT_NEAR(turning(file, "reference = \"smoothed\"\n"), 30, 0.5) << file;
-    EXPECT_NEAR(turning(file, "model = \"none\"\n"), 30, 0.5) << file;
+    // The ends of a natural spline are straight.
+    EXPECT_NEAR(turning(file, "reference = \"smoothed\"\n"), 30, 2) << file;
+    EXPECT_NEAR(turning(file, "model = \"none\"\n"), 30, 2) << file;
   }
 }
 

@@ -224,6 +224,7 @@ function horizonAt(plan: Plan, frame: number, x: number): number|null {
   const after = plan.horizon.findIndex((one) => one[0] >= frame);
   if (after < 0) return null;
   const [a, b] = [plan.horizon[Math.max(0, after - 1)], plan.horizon[after]];
+  if (a[1][0] === a[1][2] || b[1][0] === b[1][2]) return null;
   const [from, to] = [a, b].map(([, [x1, y1, x2, y2]]) => mix(y1, y2, (x - x1) / (x2 - x1)));
   return mix(from, to, b[0] > a[0] ? clamp((frame - a[0]) / (b[0] - a[0]), 0, 1) : 0);
 }
