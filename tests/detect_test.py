@@ -272,7 +272,7 @@ class Refusals(Case):
         self.assert_refused(run("detect", "set", "-d", "cmo", "-d", "cmo=cmo-hmm", "-o", "x"), "two detectors are named 'cmo'")
         self.assert_refused(run("detect", "set", "-d", "../a=cmo", "-o", "x"), "no name")
         self.assert_refused(run("detect", "set", "-d", "exec: ", "-o", "x"), "names no command")
-        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--min-score", "nan"), "--min-score is nan")
+        self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--min-score", "nan"), "--min-score is 'nan'")
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--lens", "no.yml"), "no.yml")
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "x", "--mask", "no.png"), "no.png")
         self.assert_refused(run("detect", "nowhere", "-d", "cmo", "-o", "x"), "does not exist")

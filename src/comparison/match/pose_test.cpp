@@ -40,9 +40,10 @@ cv::Mat mask_in_the_sky(const model::Mesh& mesh, const YawPitchRoll& attitude, d
       sky, {image::Chroma::k444, image::Matrix::kRgb, image::Range::kFull});
   composite::composite_matte(picture, layer, {});
   // What a camera's spread makes of it.
-  cv::Mat green(
-      kHeight, kWidth, CV_8UC1, picture.planes[0].samples.get(), picture.planes[0].stride);
-  cv::GaussianBlur(green, green, {}, 0.8);
+  for (image::Plane& plane : picture.planes) {
+    cv::Mat samples(kHeight, kWidth, CV_8UC1, plane.samples.get(), plane.stride);
+    cv::GaussianBlur(samples, samples, {}, 0.8);
+  }
   const auto seen = appearance::seen_in(picture, *box);
   return seen ? seen->mask : cv::Mat();
 }

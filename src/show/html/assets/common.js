@@ -34,7 +34,7 @@ const airtruth = (() => {
   // names, upright where they do not fit beside each other; numbers lie flat.
   const isPower = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-9;
   const briefly = (value) => (value >= 1e4 || value < 1e-3 ? `1e${Math.round(Math.log10(value))}` : String(Number(value.toPrecision(1))));
-  const longestName = 20;  // characters; "crossing from right" has 19
+  const longestName = 16;
   const described = ({ label, min, max, names, logarithmic }, bounds, areWhole = false) => ({
     ...(names.length
       ? { type: 'category', grid: { display: false },
