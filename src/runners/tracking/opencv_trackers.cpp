@@ -108,7 +108,7 @@ class OpenCvTracker : public Tracker {
     }
   }
   Answer update() override {
-    if (broken_) return {last_, 0, true};
+    if (broken_) return {.box_px = last_, .lost = true};
     Rectangle found;
     bool is_found = false;
     try {
@@ -120,9 +120,10 @@ class OpenCvTracker : public Tracker {
     }
     const Box b = window_.object_in(
         {double(found.x), double(found.y), double(found.width), double(found.height)});
-    if (!is_found || !std::isfinite(b.x + b.y + b.width + b.height)) return {last_, 0, true};
+    if (!is_found || !std::isfinite(b.x + b.y + b.width + b.height))
+      return {.box_px = last_, .lost = true};
     last_ = b;
-    return {b, 1, false};
+    return {.box_px = b};
   }
 
  private:

@@ -255,6 +255,21 @@ TEST(Trackers, OfOpenCvFollow) {
   EXPECT_EQ(followed, 7);
 }
 
+TEST(Trackers, OfOpenCvSayWhatTheyFoundAndWhatTheyLost) {
+  const auto tracker = make_tracker("opencv-kcf", {});
+  const Box box{60, 80, 36, 20};
+  const image::Picture picture = scene(box.x, box.y, 36, 20, 1);
+  tracker->load(picture);
+  tracker->init(box);
+  const Answer found = tracker->update();
+  EXPECT_FALSE(found.lost);
+  EXPECT_EQ(found.box_px, box);
+  tracker->load(scene(250, 180, 36, 20, 1));
+  const Answer lost = tracker->update();
+  EXPECT_TRUE(lost.lost);
+  EXPECT_EQ(lost.box_px, box);
+}
+
 // Also where nothing of what they look for fits in.
 TEST(Trackers, AnswerOnAnObjectOfAFewPixels) {
   for (const std::string& name : tracker_names())

@@ -231,7 +231,10 @@ class TraxTracker : public Tracker {
     const std::string& region = message.arguments.front();
     const std::optional<Box> box = box_of(region);
     if (box) last_ = *box;
-    return {last_, !box, took, !box && has_negative_side(region)};
+    return {.box_px = last_,
+            .lost = !box,
+            .seconds = took,
+            .has_negative_side = !box && has_negative_side(region)};
   }
 
   void guarded(const auto& work) {
