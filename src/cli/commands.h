@@ -106,11 +106,9 @@ void follow(Options& options, Context& context, const char* stage, const char* u
   };
 }
 
-// How fast trackers or detectors were, what an earlier call had made, and what they broke off, for
-// which the exit code is 1.
+// How fast trackers or detectors were, what an earlier call had made, and what they broke off.
 template <typename Summary>
-std::string rest_of(const Summary& summary, Context& context) {
-  if (summary.broken > 0) context.exit_code = 1;
+std::string rest_of(const Summary& summary) {
   const double rate =
       summary.seconds > 0 ? static_cast<double>(summary.frames) / summary.seconds : 0;
   return (rate > 0 ? fmt::format(" at {:.0f} frames/s", rate) : "") +

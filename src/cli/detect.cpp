@@ -33,7 +33,8 @@ void tell(const runs::DetectSummary& summary, Context& context) {
                                        summary.detections,
                                        summary.frames,
                                        summary.made,
-                                       rest_of(summary, context)));
+                                       rest_of(summary)));
+  if (summary.broken > 0) context.exit_code = 1;
 }
 
 // "3/5"

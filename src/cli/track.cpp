@@ -45,11 +45,9 @@ Box box_of(const std::string& text) {
 }
 
 void tell(const runs::TrackSummary& summary, const char* unit, Context& context) {
-  context.console().result(fmt::format("{}: {} {} tracked{}",
-                                       summary.folder.string(),
-                                       summary.made,
-                                       unit,
-                                       rest_of(summary, context)));
+  context.console().result(fmt::format(
+      "{}: {} {} tracked{}", summary.folder.string(), summary.made, unit, rest_of(summary)));
+  if (summary.broken > 0) context.exit_code = 1;
 }
 
 void refuse_mixed(const Track& arguments, bool is_video) {

@@ -112,9 +112,7 @@ void extend(trajectory::Samples& samples) {
 
 }  // namespace
 
-trajectory::Path local_path(const FlightLog& log,
-                            const Placement& placement,
-                            const trajectory::AttitudeOverride& stated) {
+trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
   require_covered(log, placement.offset_s);
   trajectory::Samples samples = local_positions(log, placement);
   if (samples.times_s.size() < 2)
@@ -133,7 +131,7 @@ trajectory::Path local_path(const FlightLog& log,
   const Vector3 first = trajectory::path_through_samples(samples).at(0)->position_in_world;
   for (Vector3& position : samples.positions_ned_m)
     position += placement.first_position_ned_m - first;
-  return trajectory::path_through_samples(samples, stated);
+  return trajectory::path_through_samples(samples);
 }
 
 std::optional<double> height_at(const FlightLog& log, double time_s) {

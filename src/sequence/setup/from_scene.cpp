@@ -89,14 +89,13 @@ double offset_of(const scene::Camera& camera, const flight_log::FlightLog& log) 
 }
 
 // The attitude that is held from the first frame on.
-trajectory::AttitudeOverride held(const scene::Camera& camera,
-                                  const flight_log::FlightLog& log,
-                                  const trajectory::Path& path,
-                                  double offset_s) {
-  std::optional<YawPitchRoll> attitude = camera.attitude_yaw_pitch_roll_deg;
-  if (!attitude) attitude = flight_log::attitude_at(log, offset_s);
-  if (!attitude) attitude = YawPitchRoll{yaw_pitch_roll(path.at(0)->world_from_body).yaw_deg, 0, 0};
-  return {attitude->yaw_deg, attitude->pitch_deg, attitude->roll_deg};
+YawPitchRoll held(const scene::Camera& camera,
+                  const flight_log::FlightLog& log,
+                  const trajectory::Path& path,
+                  double offset_s) {
+  if (const auto& stated = camera.attitude_yaw_pitch_roll_deg) return *stated;
+  if (const auto logged = flight_log::attitude_at(log, offset_s)) return *logged;
+  return {yaw_pitch_roll(path.at(0)->world_from_body).yaw_deg, 0, 0};
 }
 
 trajectory::Path path_from_file(const scene::Camera& camera) {
@@ -123,7 +122,7 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
     const trajectory::Path path = flight_log::local_path(log, placement);
     if (camera.follows_attitude && !camera.attitude_yaw_pitch_roll_deg && !log.attitudes.empty())
       return path;
-    return flight_log::local_path(log, placement, held(camera, log, path, offset_s));
+    return trajectory::at_attitude(path, held(camera, log, path, offset_s));
   } catch (const Error& error) {
     throw Error(error.message(), camera.where);
   }
