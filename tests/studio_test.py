@@ -621,6 +621,7 @@ range_m = 250
     check(browser.run("numbersShown()")[1] - first)
     # Opened again, and of another film, it is at the frame of the picture, wherever it was.
     browser.key("Escape")
+    browser.wait(f"{STORE}.dialog === null")
     browser.run("airtruthStudio.studio.show(11)")
     page.rest()
     browser.key("r")

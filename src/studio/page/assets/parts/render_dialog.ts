@@ -66,9 +66,9 @@ export class RenderDialog extends DialogPart {
       if (event.buttons & 1) this.swipeTo(event);
     });
     this.stage.addEventListener('pointerdown', (event) => this.swipeTo(event));
-    watch(this.rendered, (time_s) => this.came(Math.round(time_s * this.rate_hz)));
-    watch(this.original, (time_s) => {
-      this.originalFrame = Math.round(time_s * this.rate_hz);
+    this.tellFrames(this.rendered, (frame) => this.came(frame));
+    this.tellFrames(this.original, (frame) => {
+      this.originalFrame = frame;
       this.follow();
     });
     this.rendered.addEventListener('ended', () => this.pause());
@@ -136,6 +136,16 @@ export class RenderDialog extends DialogPart {
     attribute(this.time, 'max', (this.now.clip?.frames ?? 1) - 1);
     this.sought = this.originalFrame = -1;
     this.partFilms();
+  }
+
+  // Tells each frame that a film shows. A browser may leave out the callback of a frame, but never that a seek has ended.
+  private tellFrames(film: HTMLVideoElement, came: (frame: number) => void): void {
+    const next = (_: number, {mediaTime}: {mediaTime: number}) => {
+      film.requestVideoFrameCallback(next);
+      came(Math.round(mediaTime * this.rate_hz));
+    };
+    film.requestVideoFrameCallback?.(next);
+    film.addEventListener('seeked', () => came(Math.round(film.currentTime * this.rate_hz - 0.5)));
   }
 
   // As large as there is room for, with the boxes in the film's own pixels.
@@ -215,13 +225,4 @@ export class RenderDialog extends DialogPart {
 // By the middle of the frame, so that no rounding shows the one before.
 function seek(film: HTMLVideoElement, frame: number, rate_hz: number): void {
   film.currentTime = (frame + 0.5) / rate_hz;
-}
-
-// Tells the time of each frame that a film shows.
-function watch(film: HTMLVideoElement, came: (time_s: number) => void): void {
-  const next = (_: number, {mediaTime}: {mediaTime: number}) => {
-    film.requestVideoFrameCallback(next);
-    came(mediaTime);
-  };
-  film.requestVideoFrameCallback?.(next);
 }
