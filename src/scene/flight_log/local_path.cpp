@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <fmt/format.h>
@@ -110,6 +111,16 @@ void extend(trajectory::Samples& samples) {
   positions.insert(positions.begin(), before);
 }
 
+// The path at the log's attitudes, which are recorded more often than positions are averaged.
+trajectory::Path at_attitudes(const trajectory::Path& path, const FlightLog& log, double offset_s) {
+  const auto attitudes = std::make_shared<const FlightLog>(FlightLog{.attitudes = log.attitudes});
+  return {path.start_s(), path.end_s(), [path, attitudes, offset_s](double time_s) {
+            trajectory::State state = *path.at(time_s);
+            state.world_from_body = world_from_body(*attitude_at(*attitudes, time_s + offset_s));
+            return state;
+          }};
+}
+
 }  // namespace
 
 trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
@@ -121,17 +132,10 @@ trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
         "more");
   require_flyable(samples, placement.offset_s);
   extend(samples);
-  if (!log.attitudes.empty()) {
-    samples.has_angle = {true, true, true};
-    for (const double time_s : samples.times_s) {
-      const YawPitchRoll a = *attitude_at(log, time_s + placement.offset_s);
-      samples.angles_deg.emplace_back(a.yaw_deg, a.pitch_deg, a.roll_deg);
-    }
-  }
-  const Vector3 first = trajectory::path_through_samples(samples).at(0)->position_in_world;
-  for (Vector3& position : samples.positions_ned_m)
-    position += placement.first_position_ned_m - first;
-  return trajectory::path_through_samples(samples);
+  const trajectory::Path flown = trajectory::path_through_samples(samples);
+  const trajectory::Path placed =
+      trajectory::displaced(flown, placement.first_position_ned_m - flown.at(0)->position_in_world);
+  return log.attitudes.empty() ? placed : at_attitudes(placed, log, placement.offset_s);
 }
 
 std::optional<double> height_at(const FlightLog& log, double time_s) {

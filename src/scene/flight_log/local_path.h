@@ -17,8 +17,9 @@ struct Placement {
 // The path of the aircraft on the clip's clock. Positions go from the ellipsoid to a local
 // north-east-down frame that touches it near the position of the clip's first frame
 // (GeographicLib's LocalCartesian, Karney 2011). A C2 spline runs through the means of half
-// seconds; the attitude is the log's where it has one, else it follows from the path. The path is
-// extended by 1.5 s at both ends, for logs of one record a second.
+// seconds. The attitude is the log's where it has one, and changes linearly from record to record;
+// else it follows from the path. The path is extended by 1.5 s at both ends, for logs of one record
+// a second.
 //
 // Throws Error (without a file) where the log's positions do not cover the clip's first frame; the
 // message states the range of time that they cover. Likewise where they are faster than 10 km/s.

@@ -77,6 +77,16 @@ TEST(LocalPath, AttitudesAreInterpolatedAcrossNorth) {
   EXPECT_NEAR(height_at(straight(0, 10, 2, 1), 25).value(), 90, 1e-9);
 }
 
+// Positions are averaged over half seconds, attitudes are not.
+TEST(LocalPath, ARollOfTwoHertzIsFollowed) {
+  FlightLog log = straight(30, 0, 0, 5);
+  const auto roll_deg = [](double log_s) { return 8 * std::sin(2 * kPi * 2 * log_s); };
+  for (int i = 0; i <= 3000; ++i) log.attitudes.push_back({i / 50.0, {0, 0, roll_deg(i / 50.0)}});
+  const auto path = local_path(log, {20, {0, 0, 0}});
+  for (const double t : {0.0, 0.125, 0.21, 0.375, 3.333, 9.9})
+    EXPECT_NEAR(yaw_pitch_roll(path.at(t)->world_from_body).roll_deg, roll_deg(20 + t), 0.07) << t;
+}
+
 TEST(LocalPath, AJumpAcrossTheWorldIsRefused) {
   FlightLog log = straight(30, -20, 2, 1);
   log.fixes[31].latitude_deg += 2;
