@@ -338,6 +338,23 @@ TEST(Drawing, TheTimeOfDaySuitsTheTypeAndIsLight) {
   }
 }
 
+// Of a video the sun may be measured; a drawn one is not replaced by that, nor is a flight's.
+TEST(Drawing, ADrawnSunAndAFlightsAreStated) {
+  const std::string clip = "[[background]]\nname = \"clip\"\nvideo = \"clip.mp4\"\n";
+  const std::string flight = "[[background]]\nname = \"sky\"\nflight = { seed = 3 }\n";
+  const std::string rest =
+      "lens = { vertical_fov_deg = 60 }\n[[random]]\naircraft = [\"c172/*\"]\n";
+  const auto light = [&](const std::string& text) {
+    return Expansion(parse_catalogue(text, "c.toml")).at(0).scene.light;
+  };
+  EXPECT_FALSE(light(clip + rest).sun_is_stated);
+  EXPECT_TRUE(light(flight + rest).sun_is_stated);
+  const scene::Light drawn = light(clip + rest + "sun_elevation_deg = [20, 20]\n");
+  EXPECT_TRUE(drawn.sun_is_stated);
+  EXPECT_EQ(drawn.sun_elevation_deg, 20);
+  EXPECT_EQ(drawn.sun_azimuth_deg, scene::Light().sun_azimuth_deg);
+}
+
 TEST(Drawing, KeysThatMakeNoSenseAreOneLineAtTheirPlace) {
   const std::string aircraft = "aircraft = [\"c172/*\"]\n";
   const auto error = [&](const std::string& keys) { return random_error(aircraft + keys); };

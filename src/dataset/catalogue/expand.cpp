@@ -72,6 +72,13 @@ Item item_of(const Catalogue& catalogue, const Product& rule, std::int64_t index
   return item;
 }
 
+// A drawn sun takes the place of the background's, which is then not measured.
+void take_sun(const DrawnSequence& drawn, scene::Light& light) {
+  light.sun_azimuth_deg = drawn.sun_azimuth_deg.value_or(light.sun_azimuth_deg);
+  light.sun_elevation_deg = drawn.sun_elevation_deg.value_or(light.sun_elevation_deg);
+  if (drawn.sun_azimuth_deg || drawn.sun_elevation_deg) light.sun_is_stated = true;
+}
+
 // A drawn visibility takes the place of the background's extinction, which is then not measured.
 void take_weather(const DrawnSequence& drawn, scene::Scene& scene) {
   scene.weather = drawn.weather;
@@ -105,9 +112,7 @@ Item item_of(const Catalogue& catalogue,
   Item item = empty_item(catalogue, rule, index, drawn.background);
   item.rule = &rule;
   item.drawn = std::move(drawn);
-  if (item.drawn.sun_azimuth_deg) item.scene.light.sun_azimuth_deg = *item.drawn.sun_azimuth_deg;
-  if (item.drawn.sun_elevation_deg)
-    item.scene.light.sun_elevation_deg = *item.drawn.sun_elevation_deg;
+  take_sun(item.drawn, item.scene.light);
   take_weather(item.drawn, item.scene);
   const DrawnClip clip{rule.frame_count, kAssumedRateHz};
   for (std::size_t k = 0; k < item.drawn.encounters.size(); ++k) {
@@ -162,6 +167,9 @@ scene::Scene scene_over(const Catalogue& catalogue, std::size_t place) {
   const Background& background = catalogue.backgrounds[place];
   scene::Scene scene;
   static_cast<scene::CameraTables&>(scene) = background;
+  // A virtual flight is made with that sun.
+  if (std::holds_alternative<synthetic::FlightOptions>(background.source))
+    scene.light.sun_is_stated = true;
   static_cast<scene::OutputTables&>(scene) = catalogue;
   scene.seed = catalogue.seed;
   scene.file = catalogue.file;
