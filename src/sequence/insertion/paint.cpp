@@ -78,25 +78,45 @@ bool differs(const image::Picture& a, const image::Picture& b, int x, int y) {
          a.planes[2].row(cy)[cx] != b.planes[2].row(cy)[cx];
 }
 
-// The changed pixels, divided among the intruders by their geometry.
+// Reach of the Lanczos kernel: its 8x8 samples spread an edge by four pixels.
+constexpr int kLanczosReachPx = 5;
+
+// Rows and columns from a pixel to the nearest that intruder i covers; one more than the kernel
+// reaches: it covers none so near.
+int distance_px(const image::Layer& layer, std::size_t i, int x, int y) {
+  int nearest = kLanczosReachPx + 1;
+  if (i >= layer.coverage.size()) return nearest;
+  for (int dy = -kLanczosReachPx; dy <= kLanczosReachPx; ++dy)
+    for (int dx = -kLanczosReachPx; dx <= kLanczosReachPx; ++dx)
+      if (layer.coverage[i].at(x + dx, y + dy) > 0)
+        nearest = std::min(nearest, std::max(std::abs(dx), std::abs(dy)));
+  return nearest;
+}
+
+// The changed pixels. One where several intruders are searched is of those that cover a pixel
+// nearest to it.
 std::vector<composite::Visible> changed(const image::Picture& before,
                                         const image::Picture& after,
                                         const image::Layer& layer,
                                         const setup::Moment& moment) {
-  // Reach of the Lanczos kernel: its 8x8 samples spread an edge by four pixels.
-  constexpr double kLanczosReachPx = 5;
   std::vector<composite::Visible> visible(moment.search.size());
+  std::vector<std::optional<PixelBox>> searched(moment.search.size());
+  for (std::size_t i = 0; i < searched.size(); ++i)
+    if (moment.search[i])
+      searched[i] = intersection(wider(pixels_of(*moment.search[i]), kLanczosReachPx),
+                                 {0, 0, after.width, after.height});
+  const auto is_of = [&](std::size_t i, int x, int y) {
+    for (std::size_t other = 0; other < searched.size(); ++other)
+      if (other != i && searched[other] && searched[other]->contains(x, y) &&
+          distance_px(layer, other, x, y) < distance_px(layer, i, x, y))
+        return false;
+    return true;
+  };
   for (std::size_t i = 0; i < visible.size(); ++i) {
-    if (!moment.search[i]) continue;
-    const Box& box = *moment.search[i];
-    const int x1 =
-        std::min(after.width, static_cast<int>(std::ceil(box.right() + kLanczosReachPx)));
-    const int y1 =
-        std::min(after.height, static_cast<int>(std::ceil(box.bottom() + kLanczosReachPx)));
-    for (int y = std::max(0, static_cast<int>(box.y - kLanczosReachPx)); y < y1; ++y) {
-      for (int x = std::max(0, static_cast<int>(box.x - kLanczosReachPx)); x < x1; ++x)
-        if (differs(before, after, x, y)) visible[i].add(x, y);
-    }
+    if (!searched[i]) continue;
+    for (int y = searched[i]->y; y < searched[i]->bottom(); ++y)
+      for (int x = searched[i]->x; x < searched[i]->right(); ++x)
+        if (differs(before, after, x, y) && is_of(i, x, y)) visible[i].add(x, y);
     if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
     visible[i].covered = composite::covered(layer, i);
     each_pixel(layer.coverage[i], [&](int x, int y, float share) {
@@ -194,7 +214,7 @@ void Painter::compose_by_key(image::Picture& picture,
     if (!moment.search[i]) continue;
     instances.push_back({&world_.actors[i].type->aircraft->mesh,
                          moment.states[i]->world_from_body_rigid(),
-                         moment.time_s});
+                         world_.actors[i].turned_s(moment.time_s)});
   }
   if (instances.empty()) return;
   const shade::Light light{

@@ -58,7 +58,8 @@ Drawn drawn(const scene::Scene& scene, double time_s, const image::Mask* own = n
   video::Frame frame;
   frame.picture = result.before.clone();
   frame.time_s = time_s;
-  Painter painter(scene, world, Occluders(own));
+  Painter painter(
+      scene, world, Occluders(own), open_backdrop(scene, world.lens, {.software = true}));
   const Painted painted = painter.paint(frame.picture, moment, Ambient{});
   result.truth = frame_truth(world, frame, "none", {}, moment, painted);
   result.after = std::move(frame.picture);
@@ -121,6 +122,56 @@ TEST(Distractors, BoxesOfMultirotorsAndBalloonsAgree) {
     EXPECT_NEAR(made.truth.intruders[1].attitude_yaw_pitch_roll_deg->at(1), 0, 1e-9);
     EXPECT_NEAR(made.truth.intruders[0].attitude_yaw_pitch_roll_deg->at(1), -6.4, 1e-6);
   }
+}
+
+// OpenGL draws a bird's wings where they are at its own time of the beat.
+TEST(ChromaKey, ABirdIsDrawnInThePoseOfItsBox) {
+  for (const double spin_s : {0.0, 0.05, 0.1, 0.15}) {
+    const Drawn made = drawn(
+        scene_with(fmt::format("[composite]\nmethod = \"chroma-key\"\n[[distractor]]\nkind = "
+                               "\"bird\"\nglide = 0\nspin_time_s = {}\nwaypoints_ned_m = [[15, -6, "
+                               "-150], [25, -6, -150]]\nspeed_mps = 12\n",
+                               spin_s)),
+        0.2);
+    ASSERT_EQ(made.truth.intruders.size(), 1U);
+    const annotation::Intruder& bird = made.truth.intruders[0];
+    ASSERT_TRUE(bird.visible_box_px && bird.exact_box_px);
+    // The kernel spreads an edge.
+    const Box spread = wider(*bird.exact_box_px, 5);
+    const Box seen = floating(*bird.visible_box_px);
+    EXPECT_GE(seen.x, spread.x) << spin_s;
+    EXPECT_GE(seen.y, spread.y) << spin_s;
+    EXPECT_LE(seen.right(), spread.right()) << spin_s;
+    EXPECT_LE(seen.bottom(), spread.bottom()) << spin_s;
+    EXPECT_GE(seen.width, bird.exact_box_px->width - 4) << spin_s;
+    EXPECT_GE(seen.height, bird.exact_box_px->height - 4) << spin_s;
+  }
+}
+
+// A small one between the wings of a large one changes its own pixels alone.
+TEST(ChromaKey, AChangedPixelIsOfTheNearestIntruder) {
+  const auto at = [](double range_m, double right_m, double down_m) {
+    return fmt::format(
+        "[[intruder]]\naircraft = \"c172/g-boix\"\nwaypoints_ned_m = [[{}, {}, {}], [{}, {}, "
+        "{}]]\nspeed_mps = 30\n",
+        range_m,
+        right_m,
+        -150 + down_m,
+        range_m - 60,
+        right_m,
+        -150 + down_m);
+  };
+  const Drawn made = drawn(
+      scene_with("[composite]\nmethod = \"chroma-key\"\n" + at(60, 0, 0) + at(600, 25, -7)), 0);
+  ASSERT_EQ(made.truth.intruders.size(), 2U);
+  const annotation::Intruder &near = made.truth.intruders[0], &far = made.truth.intruders[1];
+  ASSERT_TRUE(far.visible_box_px && far.exact_box_px && near.exact_box_px);
+  ASSERT_TRUE(intersection(wider(*near.exact_box_px, 5), *far.exact_box_px));
+  const Box spread = wider(*far.exact_box_px, 5), seen = floating(*far.visible_box_px);
+  EXPECT_GE(seen.x, spread.x);
+  EXPECT_GE(seen.y, spread.y);
+  EXPECT_LE(seen.right(), spread.right());
+  EXPECT_LE(seen.bottom(), spread.bottom());
 }
 
 // The bird as a rigid mesh in the pose of one moment.
