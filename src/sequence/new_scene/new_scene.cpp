@@ -26,6 +26,7 @@
 #include "picture/video/numbered_frames.h"
 #include "picture/video/reader.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/level_camera.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/motion_source.h"
 
@@ -268,46 +269,6 @@ std::optional<fs::path> log_of(const fs::path& video) {
   return std::nullopt;
 }
 
-struct CameraWords {
-  scene::Camera camera;
-  std::string table;
-};
-
-CameraWords camera_for(const fs::path& video,
-                       const std::optional<YawPitchRoll>& attitude,
-                       const NewSceneOptions& options) {
-  CameraWords words;
-  words.table = "[camera]\n";
-  const auto log = log_of(video);
-  if (log) {
-    words.camera.log = log;
-    words.table +=
-        fmt::format("log = {}                  # where the aircraft flew: airtruth log show\n",
-                    as_written(*log, options));
-  } else {
-    words.camera.position_ned_m = {0, 0, -150};
-    words.camera.velocity_ned_mps = {20, 0, 0};
-    words.table +=
-        "position_ned_m = [0, 0, -150]          # north, east, down of the first frame: 150 m high "
-        "(a guess)\n"
-        "velocity_ned_mps = [20, 0, 0]          # the own speed (a guess); a flight log is better: "
-        "log = \"flight.srt\"\n";
-  }
-  if (attitude) {
-    words.camera.attitude_yaw_pitch_roll_deg =
-        YawPitchRoll{0, attitude->pitch_deg, attitude->roll_deg};
-    words.table += fmt::format(
-        "attitude_yaw_pitch_roll_deg = [0, {:.1f}, {:.1f}]   # pitch and roll are those of the "
-        "horizon in the first frame used: leave this line out with another first_frame\n",
-        attitude->pitch_deg,
-        attitude->roll_deg);
-  } else if (!log) {
-    words.table +=
-        "attitude_yaw_pitch_roll_deg = [0, 0, 0]  # no horizon was found in the first frame\n";
-  }
-  return words;
-}
-
 // The frames that the scene uses, and what is known of them.
 struct Part {
   std::int64_t first_frame = 0;
@@ -361,6 +322,60 @@ Part part_of(const fs::path& video,
   return part;
 }
 
+struct CameraWords {
+  scene::Camera camera;
+  std::string table;
+};
+
+// A camera with a log takes its heading, and where it has attitudes those, from it; its pitch and
+// roll are else those of the horizon, which every render finds anew.
+CameraWords camera_of_log(const fs::path& log,
+                          double clip_start_s,
+                          const YawPitchRoll& level,
+                          const NewSceneOptions& options) {
+  CameraWords words;
+  words.table = fmt::format(
+      "[camera]\nlog = {}                  # where the aircraft flew: airtruth log show\n",
+      as_written(log, options));
+  words.camera.log = log;
+  words.camera.clip_start_s = clip_start_s;
+  if (const auto heading = setup::level_attitude(words.camera))
+    words.camera.attitude_yaw_pitch_roll_deg =
+        YawPitchRoll{heading->yaw_deg, level.pitch_deg, level.roll_deg};
+  return words;
+}
+
+CameraWords camera_for(const fs::path& video, const Part& part, const NewSceneOptions& options) {
+  const YawPitchRoll attitude = part.attitude.value_or(YawPitchRoll{});
+  if (const auto log = log_of(video))
+    return camera_of_log(
+        *log,
+        video::time_of_first_frame_s(
+            video, {.first_frame = part.first_frame, .picture_rate_hz = options.picture_rate_hz}),
+        attitude,
+        options);
+  CameraWords words;
+  words.camera.position_ned_m = {0, 0, -150};
+  words.camera.velocity_ned_mps = {20, 0, 0};
+  words.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{0, attitude.pitch_deg, attitude.roll_deg};
+  words.table =
+      "[camera]\n"
+      "position_ned_m = [0, 0, -150]          # north, east, down of the first frame: 150 m high "
+      "(a guess)\n"
+      "velocity_ned_mps = [20, 0, 0]          # the own speed (a guess); a flight log is better: "
+      "log = \"flight.srt\"\n";
+  words.table +=
+      part.attitude
+          ? fmt::format(
+                "attitude_yaw_pitch_roll_deg = [0, {:.1f}, {:.1f}]   # pitch and roll are those of "
+                "the horizon in the first frame used: leave this line out with another "
+                "first_frame\n",
+                attitude.pitch_deg,
+                attitude.roll_deg)
+          : "attitude_yaw_pitch_roll_deg = [0, 0, 0]  # no horizon was found in the first frame\n";
+  return words;
+}
+
 std::string background_words(const std::string& video,
                              const Part& part,
                              double duration_s,
@@ -381,18 +396,13 @@ std::string background_words(const std::string& video,
   return words;
 }
 
-// Throws Error where the rate is not stated, or stated twice.
 video::StreamInfo info_of(const fs::path& video, const NewSceneOptions& options) {
-  video::StreamInfo info = video::Reader(video, {.frame_count = 1}, options.warn).info();
-  video::refuse_rate_of_video(video, info, options.picture_rate_hz);
-  if (info.is_rate_stated) return info;
-  if (!options.picture_rate_hz)
-    throw Error(
-        "holds numbered pictures, which state no rate; expected --frame-rate, their frames "
-        "a second",
-        {video.string()});
-  return video::Reader(video, {.frame_count = 1, .picture_rate_hz = options.picture_rate_hz})
-      .info();
+  const video::StreamInfo info =
+      video::Reader(
+          video, {.frame_count = 1, .picture_rate_hz = options.picture_rate_hz}, options.warn)
+          .info();
+  video::expect_rate(video, info, options.picture_rate_hz);
+  return info;
 }
 
 // The known cameras whose clips are of this size, each as a line to uncomment; none where the
@@ -500,9 +510,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const lens::ImageSize size{info.width, info.height};
   const LensWords lens = lens_for(video, size, options);
   const Part part = part_of(video, info, lens.lens, options);
-  CameraWords camera = camera_for(video, part.attitude, options);
-  camera.camera.clip_start_s = video::time_of_first_frame_s(
-      video, {.first_frame = part.first_frame, .picture_rate_hz = options.picture_rate_hz});
+  const CameraWords camera = camera_for(video, part, options);
   const double rate_hz = info.frame_rate.value();
   const auto seconds_of = [&](std::int64_t frames) {
     return rate_hz > 0 ? static_cast<double>(std::max<std::int64_t>(1, frames) - 1) / rate_hz : 0;

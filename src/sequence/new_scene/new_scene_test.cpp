@@ -84,15 +84,17 @@ TEST(NewScene, ItParsesPreviewsAndItsEncounterIsInView) {
   flight.height = 480;
   demo::write_flight(synthetic::Flight(flight), video, {});
   std::ofstream(folder / "flight.srt")
-      << "1\n00:00:00,000 --> 00:00:01,000\n[focal_len: 240] [latitude: 47.0] [longitude: 8.0] "
+      << "1\n00:00:00,000 --> 00:00:01,000\n[focal_len: 240] [latitude: 47.0008] [longitude: 8.0] "
          "[rel_alt: 120 abs_alt: 500]\n\n"
          "2\n00:00:02,000 --> 00:00:03,000\n[latitude: 47.0004] [longitude: 8.0] [rel_alt: 120 "
          "abs_alt: 500]\n\n"
-         "3\n00:00:04,000 --> 00:00:05,000\n[latitude: 47.0008] [longitude: 8.0] [rel_alt: 120 "
+         "3\n00:00:04,000 --> 00:00:05,000\n[latitude: 47.0] [longitude: 8.0] [rel_alt: 120 "
          "abs_alt: 500]\n";
   const std::string text = scene_text(video, {});
   EXPECT_THAT(text, testing::HasSubstr("flight.srt states 24 mm"));
   EXPECT_THAT(text, testing::HasSubstr("log = "));
+  // It flies south, and the camera looks there.
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("attitude_yaw_pitch_roll_deg")));
   NewSceneOptions empty;
   empty.has_encounter = false;
   const std::string begun = scene_text(video, empty);
