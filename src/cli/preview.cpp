@@ -25,11 +25,8 @@ struct PreviewArguments {
   bool motion = false;
 };
 
-void draw(const PreviewArguments& arguments, Context& context) {
+void draw(const PreviewArguments& arguments, pipeline::Options options, Context& context) {
   Console& console = context.console();
-  pipeline::Options options;
-  options.warn = console.warn();
-  options.stop = context.stop;
   const scene::Scene scene = scene::read_scene(arguments.scene);
   RunFiles files;
   files.reads(arguments.scene);
@@ -60,7 +57,7 @@ std::filesystem::file_time_type changed(const std::string& file) {
 
 // Draws anew whenever the scene file is saved, until the user interrupts. A fault of the scene is
 // said, and the picture stays as it was.
-void watch(const PreviewArguments& arguments, Context& context) {
+void watch(const PreviewArguments& arguments, const pipeline::Options& options, Context& context) {
   using namespace std::chrono_literals;
   if (!std::filesystem::is_regular_file(arguments.scene))
     throw Error("is not there; expected a scene file to watch", {arguments.scene});
@@ -73,7 +70,7 @@ void watch(const PreviewArguments& arguments, Context& context) {
     }
     drawn = now;
     try {
-      draw(arguments, context);
+      draw(arguments, options, context);
     } catch (const Error& error) {
       context.console().error(error.what());
     }
@@ -83,7 +80,11 @@ void watch(const PreviewArguments& arguments, Context& context) {
 
 void preview(const PreviewArguments& arguments, Context& context) {
   video::check_still_output(arguments.out, true);
-  arguments.watch ? watch(arguments, context) : draw(arguments, context);
+  pipeline::Options options;
+  options.warn = context.console().warn();
+  options.stop = context.stop;
+  options.shared = pipeline::inputs_of(options);
+  arguments.watch ? watch(arguments, options, context) : draw(arguments, options, context);
 }
 
 }  // namespace

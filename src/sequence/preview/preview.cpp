@@ -37,9 +37,6 @@ constexpr int kSideHeightPx = 300;
 // Number of moments that are shown: the contact sheet has as many tiles in a row.
 constexpr std::size_t kTiles = 3;
 constexpr double kPathStepS = 0.05;  // between the points of a drawn path: chosen
-// A motion that is kept is found by the hash of the video, some 2 s for each GB; of a larger video
-// none is looked for.
-constexpr std::uintmax_t kMaxHashedBytes = std::uintmax_t{512} << 20;
 
 // What the pictures are made from.
 class Previewer {
@@ -89,12 +86,8 @@ class Previewer {
 
   // The motion that an earlier run has measured; empty without one.
   std::optional<setup::MotionSource> known_motion() const {
-    const std::filesystem::path& video = scene().background.video;
-    std::error_code unknown;
-    const auto bytes = std::filesystem::file_size(video, unknown);
-    if (unknown || bytes > kMaxHashedBytes) return std::nullopt;
-    return setup::MotionSource::from_cache(
-        pipeline::motion_inputs(opened_, setup::sha256_of_video(video, *opened_.inputs), options_));
+    return setup::MotionSource::from_cache(pipeline::motion_inputs(
+        opened_, setup::sha256_of_video(scene().background.video, *opened_.inputs), options_));
   }
   // The clip's length is its container's; render() refuses what no frame is at.
   void check_seen() const {
