@@ -32,14 +32,9 @@ std::optional<exchange::PixelMask> pixels_of_mask(const replay::Finished& finish
   });
 }
 
-// The rate of the video; of numbered pictures, which state none, that of the truth's times.
 std::optional<double> rate_of(const replay::Finished& finished) {
   const video::StreamInfo info = video::Reader(finished.video, {.threads = 1}).info();
-  if (info.is_rate_stated) return info.frame_rate.value();
-  const std::vector<annotation::Frame>& frames = finished.truth.frames;
-  if (frames.size() < 2 || !(frames.back().time_s > frames.front().time_s)) return std::nullopt;
-  return static_cast<double>(frames.back().frame - frames.front().frame) /
-         (frames.back().time_s - frames.front().time_s);
+  return info.is_rate_stated ? info.frame_rate.value() : finished.picture_rate_hz;
 }
 
 exchange::Clip clip_of(const replay::Finished& finished, dataset::Boxes boxes, bool with_masks) {

@@ -50,7 +50,9 @@ Portrait portrait_of(const labelled::LabelledSet& set,
                      const std::stop_token& stop) {
   Portrait portrait;
   portrait.facts = set.facts(name);
-  portrait.info = video::Reader(finished.video, {.threads = 1}).info();
+  portrait.info =
+      video::Reader(finished.video, {.picture_rate_hz = finished.picture_rate_hz, .threads = 1})
+          .info();
   portrait.scene = finished.scene;
   portrait.encounters = finished.encounters;
   count(finished, portrait);

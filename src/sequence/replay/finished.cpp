@@ -20,9 +20,7 @@
 #include "sequence/insertion/paint.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/resolved_scene.h"
-#include "sequence/setup/from_scene.h"
 #include "sequence/setup/moment.h"
-#include "sequence/setup/world.h"
 #include "show/drawing/pictures.h"
 
 namespace airtruth::replay {
@@ -79,9 +77,19 @@ annotation::Frame frame_of(const exchange::LabelledFrame& labelled) {
   return frame;
 }
 
+// The mean rate of the frames' times.
+std::optional<double> rate_of(const std::vector<annotation::Frame>& frames) {
+  if (frames.size() < 2 || !(frames.back().time_s > frames.front().time_s)) return std::nullopt;
+  return static_cast<double>(frames.back().frame - frames.front().frame) /
+         (frames.back().time_s - frames.front().time_s);
+}
+
 Finished open_labelled(const fs::path& folder) {
   const exchange::Clip clip = exchange::read_labels(folder / "labels.jsonl");
-  Finished finished{.folder = folder, .name = clip.name, .video = clip.media};
+  Finished finished{.folder = folder,
+                    .name = clip.name,
+                    .video = clip.media,
+                    .picture_rate_hz = clip.frame_rate_hz};
   if (clip.media.empty()) throw Error("names no video", {(folder / "labels.jsonl").string()});
   for (const exchange::LabelledFrame& frame : clip.frames) {
     if (frame.frame >= kMaxFrames)
@@ -125,6 +133,7 @@ Finished open_finished(const fs::path& folder) {
                             finished.truth.frames.size(),
                             frames),
                 {truth_file.string()});
+  finished.picture_rate_hz = rate_of(finished.truth.frames);
   return finished;
 }
 
@@ -141,7 +150,7 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
   video::WriterOptions writer_options;
   writer_options.format = video::format_of_file(out);
   if (sequence.scene) writer_options.quality = sequence.scene->output.quality;
-  video::Reader reader(sequence.video);
+  video::Reader reader(sequence.video, {.picture_rate_hz = sequence.picture_rate_hz});
   video::StreamInfo info = reader.info();
   video::Writer writer(out, info, writer_options);
   const auto total = static_cast<std::int64_t>(sequence.truth.frames.size());
@@ -185,19 +194,18 @@ image::Rgb8 inspect(const Finished& sequence,
   const video::Frame before =
       frame_at(scene.background.video, scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);
-  const setup::World world =
-      setup::load_world(scene, {before.picture.width, before.picture.height}, {});
+  // Of the chroma-key method, whose layer is not shown, no OpenGL is opened.
+  const pipeline::ResolvedScene resolved = pipeline::resolved_by_truth(
+      pipeline::open_scene(scene, {.use_cache = false, .is_preview = true}));
   const setup::Moment moment =
-      setup::moment_at(world, truth.frame, truth.time_s, annotation::shake_of(truth));
+      setup::moment_at(resolved.world, truth.frame, truth.time_s, annotation::shake_of(truth));
   const bool matte = scene.composite.method == scene::CompositeMethod::kMatte;
-  const auto mask = insertion::read_mask(scene, world.lens.size());
-  const insertion::Occluders occluders(scene, world.lens, mask ? &*mask : nullptr, 0);
   const image::Layer layer =
-      insertion::render_layer(scene,
-                              world,
+      insertion::render_layer(resolved.scene,
+                              resolved.world,
                               moment,
                               insertion::Ambient{},
-                              occluders.in_frame(moment, before.picture).occlusion);
+                              resolved.occluders.in_frame(moment, before.picture).occlusion);
   return drawing::closeup({&before.picture, &after.picture, matte ? &layer : nullptr},
                           truth,
                           area_around(*truth.intruders[i].exact_box_px, sequence.truth.lens),

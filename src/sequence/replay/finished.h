@@ -22,6 +22,9 @@ struct Finished {
   fs::path folder;
   std::string name;
   fs::path video;
+  // Of numbered pictures, which state none: that of the truth's times, or of the labels of an
+  // imported clip. Empty: it is not known.
+  std::optional<double> picture_rate_hz;
   // Empty for an imported clip, whose truth holds only boxes and ranges.
   std::optional<scene::Scene> scene;
   annotation::Truth truth;
