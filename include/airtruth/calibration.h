@@ -34,6 +34,8 @@ struct CalibrateOptions {
   // A name of camera_profiles(), for what the clip does not show; "none": the clip's values alone;
   // empty: the one that the first clip's tags and size tell, else the median over all.
   std::string profile;
+  // Of numbered pictures, which state none.
+  std::optional<double> frame_rate_hz;
   Warn warn;
   // As in MotionOptions.
   std::function<void(std::int64_t done, std::int64_t total)> progress;

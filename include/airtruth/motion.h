@@ -32,6 +32,8 @@ struct MotionOptions {
   // deviation.
   std::string reference = "first_frame";
   double smoothing_s = 1;
+  // Of numbered pictures, which state none.
+  std::optional<double> frame_rate_hz;
   // As in RenderOptions, whose measured motion is the same.
   bool use_cache = true;
   std::filesystem::path cache;

@@ -65,6 +65,7 @@ def calibrate(
     heading_deg: float = 0,
     gamma: float = 0,
     profile: str = "",
+    frame_rate_hz: Optional[float] = None,
     progress: Optional[Progress] = None,
 ) -> Calibration:
     """Measures what a clip's camera and air do to light, as `airtruth calibrate` does. Several clips of one camera give the values of
@@ -74,7 +75,7 @@ def calibrate(
     aircraft is. `altitude_m`: height of the camera above the ground, for the extinction. `heading_deg`: where it looks in the first
     frame, from north, for the sun. `gamma`: exponent of the camera's tone curve, 1.2 to 3; 0: sRGB's curve. `profile`: a name of
     camera_profiles() for what the clip does not show; "none": its values alone; empty: the one that the first clip's tags and size tell, else the
-    median over all. `progress` as in motion().
+    median over all. `frame_rate_hz`: of numbered pictures, which state none. `progress` as in motion().
 
     What the clip does not show is no error; airtruth.Error for files that cannot be read, clips of several sizes and arguments out of
     their range. Ctrl-C ends the work within 2 s.
@@ -92,7 +93,7 @@ def calibrate(
     several = [videos] if isinstance(videos, (str, bytes, os.PathLike)) else videos
     paths = [os.fspath(video) for video in several]
     with shown("measuring", progress) as tell:
-        fields = _core.calibrate(paths, os.fspath(lens or ""), os.fspath(mask or ""), altitude_m, heading_deg, gamma, profile, tell)
+        fields = _core.calibrate(paths, os.fspath(lens or ""), os.fspath(mask or ""), altitude_m, heading_deg, gamma, profile, frame_rate_hz, tell)
     quantities: Dict[str, Dict[str, Measured]] = {}
     for name, quantity in fields["quantities"].items():
         table, key = name.split(".")

@@ -50,6 +50,7 @@ def motion(
     mask: Optional[Path] = None,
     reference: str = "first_frame",
     smoothing_s: float = 1,
+    frame_rate_hz: Optional[float] = None,
     cache: Union[bool, Path] = True,
     progress: Optional[Progress] = None,
 ) -> Motion:
@@ -57,8 +58,9 @@ def motion(
 
     `model`: "rotation", on the sphere, through a known lens; "homography", of one plane; "auto": a rotation with a lens, a homography
     without. `lens`: a calibration as of Lens.from_file(). `mask`: a picture that is black where the own aircraft is.
-    `reference`: "first_frame", or "smoothed": the camera's path under a window of `smoothing_s`. `cache` as in render(), whose
-    measured motion is the same. `progress(done, total)` is called as the frames are measured; without it a terminal shows a line.
+    `reference`: "first_frame", or "smoothed": the camera's path under a window of `smoothing_s`. `frame_rate_hz`: of numbered
+    pictures, which state none. `cache` as in render(), whose measured motion is the same. `progress(done, total)` is called as the
+    frames are measured; without it a terminal shows a line.
 
     airtruth.Error for a file that cannot be read and for arguments that do not fit together. Ctrl-C ends the work within 2 s.
 
@@ -68,7 +70,7 @@ def motion(
     """
     with shown("measuring", progress) as tell:
         fields = _core.motion(
-            os.fspath(video), model, os.fspath(lens or ""), os.fspath(mask or ""), reference, smoothing_s, cache_of(cache), tell
+            os.fspath(video), model, os.fspath(lens or ""), os.fspath(mask or ""), reference, smoothing_s, frame_rate_hz, cache_of(cache), tell
         )
     fields["lens"] = fields["lens"] and Lens(fields["lens"])
     fields["gyro"] = fields["gyro"] and GyroAgreement(**fields["gyro"])

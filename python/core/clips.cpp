@@ -52,6 +52,7 @@ py::dict motion(const fs::path& video,
                 const fs::path& mask,
                 const std::string& reference,
                 double smoothing_s,
+                std::optional<double> frame_rate_hz,
                 const py::object& cache,
                 const py::object& progress) {
   MotionOptions options;
@@ -60,6 +61,7 @@ py::dict motion(const fs::path& video,
   options.mask = mask;
   options.reference = reference;
   options.smoothing_s = smoothing_s;
+  options.frame_rate_hz = frame_rate_hz;
   take_cache(cache, options);
   const ClipMotion found = stoppable(
       options, [&](const MotionOptions& o) { return measure_motion(video, o); }, progress);
@@ -112,6 +114,7 @@ py::dict calibration(const std::vector<fs::path>& videos,
                      double heading_deg,
                      double gamma,
                      const std::string& profile,
+                     std::optional<double> frame_rate_hz,
                      const py::object& progress) {
   CalibrateOptions options;
   options.lens = lens;
@@ -120,6 +123,7 @@ py::dict calibration(const std::vector<fs::path>& videos,
   options.heading_deg = heading_deg;
   options.gamma = gamma;
   options.profile = profile;
+  options.frame_rate_hz = frame_rate_hz;
   const Calibration found = stoppable(
       options, [&](const CalibrateOptions& o) { return calibrate(videos, o); }, progress);
   py::dict quantities;
@@ -169,6 +173,7 @@ void bind_clips(py::module_& core) {
                  "mask",
                  "reference",
                  "smoothing_s",
+                 "frame_rate_hz",
                  "cache",
                  "progress"));
   core.def("calibrate",
@@ -180,6 +185,7 @@ void bind_clips(py::module_& core) {
                  "heading_deg",
                  "gamma",
                  "profile",
+                 "frame_rate_hz",
                  "progress"));
   core.def("camera_profiles", &profiles);
 }

@@ -178,6 +178,7 @@ void add_calibrate(CLI::App& app, Context& context) {
       ->required();
   command->add_option("-o,--out", arguments->out, "Camera file to write (.toml)")->required();
   add_known_facts(command, *arguments);
+  add_frame_rate(*command, arguments->frame_rate_hz);
   command->add_option("--profile", arguments->profile)
       ->description(
           "Known camera, for what the clip does not show; none: the clip's values alone "

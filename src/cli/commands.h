@@ -131,6 +131,13 @@ inline CLI::Validator above_0() {
           "POSITIVE"};
 }
 
+// The rate of numbered pictures, which state none.
+inline CLI::Option* add_frame_rate(CLI::App& command, std::optional<double>& rate_hz) {
+  return command.add_option("--frame-rate", rate_hz)
+      ->description("Frames a second of numbered pictures, where nothing states it")
+      ->check(above_0());
+}
+
 // A number from `low` to `high`, whose default the help states.
 template <typename Number>
 CLI::Option* add_number(

@@ -226,9 +226,7 @@ void add_import(CLI::App& group, Context& context) {
       context, origin, [&format] { return format == "csv"; }, "without --format csv");
   command->add_option(
       "--category", in->options.read.category, "Where the labels name none (default: aircraft)");
-  command->add_option("--frame-rate", in->options.frame_rate_hz)
-      ->description("Frames a second of numbered pictures, where nothing says it")
-      ->check(above_0());
+  add_frame_rate(*command, in->options.frame_rate_hz);
   command->add_option("--class-of", in->classes_of_categories)
       ->description("CATEGORY=CLASS, for a category whose word states no class or another one");
   command->add_option("--class", in->classes)

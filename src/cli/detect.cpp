@@ -103,9 +103,7 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
       backgrounds,
       [&arguments] { return !arguments.options.backgrounds || runs::is_set(arguments.source); },
       "on a video");
-  command.add_option("--frame-rate", options.frame_rate_hz)
-      ->description("Frames a second of numbered pictures, where nothing states it")
-      ->check(above_0());
+  add_frame_rate(command, options.frame_rate_hz);
   command.add_option("--lens", arguments.lens)
       ->description("Calibration file for what states no lens (default: a guess of 60 degrees)");
   command.add_option(

@@ -97,6 +97,7 @@ struct AlignArguments {
   std::string mask;
   double fov_deg = 0;
   std::int64_t first_frame = 0;
+  std::optional<double> frame_rate_hz;
 };
 
 lens::Lens lens_of(const AlignArguments& arguments, lens::ImageSize size, const Warn& warn) {
@@ -109,8 +110,10 @@ std::vector<motion::FrameMotion> motion_of(const AlignArguments& arguments, Cont
   Console& console = context.console();
   video::ReaderOptions options;
   options.first_frame = arguments.first_frame;
+  options.picture_rate_hz = arguments.frame_rate_hz;
   options.with_cuts = true;
   video::Reader reader(arguments.video, options, console.warn());
+  video::expect_rate(arguments.video, reader.info(), arguments.frame_rate_hz);
   const lens::ImageSize size{reader.info().width, reader.info().height};
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, size.width, size.height);
@@ -170,6 +173,7 @@ void add_align(CLI::App& group, Context& context) {
   expect_effect(
       context, view, [&lens] { return lens.empty(); }, "with --lens");
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
+  add_frame_rate(*command, arguments->frame_rate_hz);
   command->add_option("--first-frame", arguments->first_frame)
       ->description("First frame of the video that counts [0]")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));

@@ -41,7 +41,7 @@ void stabilise(const MotionArguments& arguments,
                Context& context) {
   video::WriterOptions options;
   options.format = video::format_of_file(out);
-  video::Reader reader(arguments.video);
+  video::Reader reader(arguments.video, {.picture_rate_hz = arguments.picture_rate_hz});
   video::Writer writer(out, reader.info(), options);
   while (auto frame = reader.next()) {
     if (context.stop.stop_requested()) throw Interrupted();
@@ -139,6 +139,7 @@ void add_motion(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow), for rotation");
   command->add_option("--mask", arguments->mask, "Own-aircraft mask: black = own aircraft");
+  add_frame_rate(*command, arguments->picture_rate_hz);
   command->add_option("--plot", arguments->plot, "Draw the motion here (.png or .jpg)");
   command->add_option(
       "--stabilised", arguments->stabilised, "Write a steadied copy of the video here");

@@ -71,9 +71,7 @@ void add_scene(CLI::App& app, Context& context) {
   command->add_option("-o,--out", arguments->out)
       ->description("Scene file to write (default: the video's name with .toml, here)");
   command->add_option("--lens", arguments->lens, "Calibration (OpenCV or Gyroflow)");
-  command->add_option("--frame-rate", arguments->frame_rate_hz)
-      ->description("Frames a second of numbered pictures, which state none")
-      ->check(above_0());
+  add_frame_rate(*command, arguments->frame_rate_hz);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the file where it exists");
 }
 

@@ -122,10 +122,7 @@ void add_studio(CLI::App& app, Context& context) {
   const CLI::Option* lens =
       command->add_option("--lens", arguments->lens)
           ->description("For a video: calibration (OpenCV or Gyroflow) of its camera");
-  const CLI::Option* rate =
-      command->add_option("--frame-rate", arguments->frame_rate_hz)
-          ->description("Frames a second of numbered pictures, which state none")
-          ->check(above_0());
+  const CLI::Option* rate = add_frame_rate(*command, arguments->frame_rate_hz);
   const std::string& input = arguments->input;
   for (const CLI::Option* option : {lens, rate})
     expect_effect(

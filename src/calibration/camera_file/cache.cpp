@@ -78,6 +78,7 @@ disk_cache::Key CacheKey::entry() const {
   disk_cache::Key key("calibration");
   key.add(video_sha256).add(mask_sha256).add(lens).add(altitude_m.has_value());
   key.add(altitude_m.value_or(0)).add(tone.gamma);
+  if (picture_rate_hz) key.add(*picture_rate_hz);
   return key;
 }
 

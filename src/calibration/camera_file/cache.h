@@ -20,6 +20,8 @@ struct CacheKey {
   std::string lens;
   std::optional<double> altitude_m;
   image::ToneCurve tone;
+  // Of numbered pictures; empty for a video.
+  std::optional<double> picture_rate_hz;
 
   disk_cache::Key entry() const;
 };

@@ -83,12 +83,18 @@ class Session {
       : options_(options),
         // A single decoder thread: with several, the decoder exports the quantisers of a frame
         // while another thread still fills them in, and the codec's step changes from run to run.
-        reader_(video, {.threads = 1, .with_quantiser = true, .with_cuts = true}, options.warn),
+        reader_(video,
+                {.picture_rate_hz = options.picture_rate_hz,
+                 .threads = 1,
+                 .with_quantiser = true,
+                 .with_cuts = true},
+                options.warn),
         noise_(options.own_aircraft, options.tone),
         edges_(options.own_aircraft, options.tone),
         blur_(options.own_aircraft),
         planar_(reader_.info().width, reader_.info().height, options.own_aircraft) {
     const video::StreamInfo& info = reader_.info();
+    video::expect_rate(video, info, options.picture_rate_hz);
     result_.video = video;
     result_.width = info.width;
     result_.height = info.height;
@@ -388,6 +394,7 @@ Calibration calibrate_camera(const std::vector<fs::path>& clips, const Calibrate
   how.own_aircraft = mask ? &*mask : nullptr;
   how.altitude_m = options.altitude_m;
   how.heading_deg = options.heading_deg;
+  how.picture_rate_hz = options.frame_rate_hz;
   how.tone.gamma = options.gamma;
   how.warn = options.warn;
   how.stop = options.stop;

@@ -30,6 +30,8 @@ struct Options {
   std::optional<double> altitude_m;
   // Heading of the camera in the first frame, degrees. The azimuth of the sun is relative to it.
   double heading_deg = 0;
+  // Of numbered pictures, which state none.
+  std::optional<double> picture_rate_hz;
   // The camera's tone curve. It is an input because one clip does not determine it.
   image::ToneCurve tone;
   Warn warn;

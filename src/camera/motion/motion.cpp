@@ -155,12 +155,10 @@ std::optional<Kept> kept_in(const std::optional<std::string>& body) {
 
 disk_cache::Key CacheKey::entry() const {
   // Smoothing is applied after the measurement, so the measured motion does not depend on it.
-  return disk_cache::Key("motion")
-      .add(video_sha256)
-      .add(mask_sha256)
-      .add(first_frame)
-      .add(lens)
-      .add(options.seed);
+  disk_cache::Key key("motion");
+  key.add(video_sha256).add(mask_sha256).add(first_frame).add(lens).add(options.seed);
+  if (picture_rate_hz) key.add(*picture_rate_hz);
+  return key;
 }
 
 void pack(const FrameMotion& motion, std::string& packed) {

@@ -122,6 +122,8 @@ struct CacheKey {
   std::int64_t frame_count = -1;  // -1: to the end
   std::string lens;               // the lens's parameters as text; "" for the model homography
   Options options;
+  // Of numbered pictures, whose times follow from it; empty for a video.
+  std::optional<double> picture_rate_hz = {};
   // Everything but frame_count.
   disk_cache::Key entry() const;
 };

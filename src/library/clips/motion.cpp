@@ -45,6 +45,7 @@ ClipMotion measure_motion(const std::filesystem::path& video, const MotionOption
   how.mask = options.mask;
   how.reference = choice<scene::MotionReference>("reference", options.reference);
   how.smoothing_s = options.smoothing_s;
+  how.picture_rate_hz = options.frame_rate_hz;
   how.cache = disk_cache::Cache(pipeline::cache_folder(cache_options(options), "motion"));
   how.warn = options.warn;
   how.progress = options.progress;

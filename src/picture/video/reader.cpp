@@ -514,9 +514,14 @@ Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, 
   }
 }
 
-void refuse_rate_of_video(const std::filesystem::path& video,
-                          const StreamInfo& info,
-                          const std::optional<double>& rate_hz) {
+void expect_rate(const std::filesystem::path& video,
+                 const StreamInfo& info,
+                 const std::optional<double>& rate_hz) {
+  if (!info.is_rate_stated)
+    throw Error(
+        "holds numbered pictures, which state no rate; expected their frames a second "
+        "(--frame-rate, in a call frame_rate_hz)",
+        {video.string()});
   if (rate_hz && !info.is_of_pictures)
     throw Error("is a video, which states its own rate; --frame-rate is for numbered pictures",
                 {video.string()});

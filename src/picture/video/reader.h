@@ -79,10 +79,11 @@ struct StreamInfo {
   std::map<std::string, std::string> tags;
 };
 
-// Throws Error where --frame-rate is given for a video, which has a rate of its own.
-void refuse_rate_of_video(const std::filesystem::path& video,
-                          const StreamInfo& info,
-                          const std::optional<double>& rate_hz);
+// Throws Error where numbered pictures are given no rate, or --frame-rate is given for a video,
+// which has its own. `rate_hz` is that which the user states.
+void expect_rate(const std::filesystem::path& video,
+                 const StreamInfo& info,
+                 const std::optional<double>& rate_hz);
 
 // What the reader delivers.
 struct ReaderOptions {

@@ -362,7 +362,7 @@ class DetectorRun {
   std::vector<DetectSummary> over(const fs::path& video) {
     const DetectionClip clip = clip_of(video);
     // Errors come before anything is made.
-    video::refuse_rate_of_video(
+    video::expect_rate(
         video, ClipFrames(with_facts(clip), false, options_.warn).info(), options_.frame_rate_hz);
     open();
     over(

@@ -63,6 +63,7 @@ camera_file::Calibration measured_on(const scene::Scene& scene,
   how.own_aircraft = mask;
   if (!scene.camera.path_file && !scene.camera.log && scene.camera.position_ned_m.z() < 0)
     how.altitude_m = -scene.camera.position_ned_m.z();
+  how.picture_rate_hz = scene.background.frame_rate_hz;
   how.tone = setup::tone_of(scene.camera_model);
   how.stop = options.stop;
   how.warn = options.warn;
@@ -74,7 +75,8 @@ camera_file::Calibration measured_on(const scene::Scene& scene,
       scene.background.mask ? sha256_of_file(*scene.background.mask) : "",
       setup::words_of(*how.lens),
       how.altitude_m,
-      how.tone};
+      how.tone,
+      how.picture_rate_hz};
   return camera_file::calibrate_once(
       scene.background.video, how, cache_of(options, "calibration"), key);
 }

@@ -146,6 +146,7 @@ MotionSource::MotionSource(const MotionInputs& inputs)
   key_.frame_count = scene.background.frame_count.value_or(-1);
   if (lens_) key_.lens = words_of(*lens_);
   key_.options = options_;
+  key_.picture_rate_hz = scene.background.frame_rate_hz;
   if (!cache_.keeps()) return;
   if (auto found = motion::cached(cache_, key_)) set_pass(std::move(*found));
 }
@@ -256,14 +257,17 @@ ClipMotion clip_motion(const fs::path& video, const ClipMotionOptions& options) 
   if (!(options.smoothing_s > 0) || !std::isfinite(options.smoothing_s))
     throw Error(
         fmt::format("the smoothing is {} s; expected a number above 0", options.smoothing_s));
-  video::Reader reader(video, {.with_cuts = true}, options.warn);
+  video::Reader reader(
+      video, {.picture_rate_hz = options.picture_rate_hz, .with_cuts = true}, options.warn);
   ClipMotion result;
   result.info = reader.info();
+  video::expect_rate(video, result.info, options.picture_rate_hz);
   const lens::ImageSize size{result.info.width, result.info.height};
   result.lens = lens_of_options(options, size);
   std::optional<image::Mask> mask;
   scene::Scene scene;
   scene.background.video = video;
+  scene.background.frame_rate_hz = options.picture_rate_hz;
   if (!options.mask.empty()) {
     scene.background.mask = options.mask;
     mask = video::read_mask(options.mask, size.width, size.height);

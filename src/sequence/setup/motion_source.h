@@ -121,6 +121,8 @@ struct ClipMotionOptions {
   scene::MotionModel model = scene::MotionModel::kAuto;
   fs::path lens;  // calibration; empty: none
   fs::path mask;  // of the own aircraft; empty: none
+  // Of numbered pictures, which state none.
+  std::optional<double> picture_rate_hz;
   scene::MotionReference reference = scene::MotionReference::kFirstFrame;
   double smoothing_s = 1;
   disk_cache::Cache cache;
