@@ -88,14 +88,31 @@ double offset_of(const scene::Camera& camera, const flight_log::FlightLog& log) 
               camera.where);
 }
 
-// The attitude that is held from the first frame on.
-YawPitchRoll held(const scene::Camera& camera,
-                  const flight_log::FlightLog& log,
-                  const trajectory::Path& path,
-                  double offset_s) {
+// The attitude at the first frame.
+YawPitchRoll first_attitude(const scene::Camera& camera,
+                            const flight_log::FlightLog& log,
+                            const trajectory::Path& path,
+                            double offset_s) {
   if (const auto& stated = camera.attitude_yaw_pitch_roll_deg) return *stated;
   if (const auto logged = flight_log::attitude_at(log, offset_s)) return *logged;
   return {yaw_pitch_roll(path.at(0)->world_from_body).yaw_deg, 0, 0};
+}
+
+// The path with that attitude at the first frame, turned from there as the log's attitudes turn, or
+// as a level aircraft along its path where the log has none.
+trajectory::Path turning(const trajectory::Path& path,
+                         const YawPitchRoll& first,
+                         bool has_attitudes) {
+  const auto flown = [has_attitudes](const trajectory::State& state) {
+    if (has_attitudes) return state.world_from_body;
+    return world_from_body({yaw_pitch_roll(state.world_from_body).yaw_deg, 0, 0});
+  };
+  const Quaternion mount = flown(*path.at(0)).conjugate() * world_from_body(first);
+  return {path.start_s(), path.end_s(), [path, flown, mount](double time_s) {
+            trajectory::State state = *path.at(time_s);
+            state.world_from_body = flown(state) * mount;
+            return state;
+          }};
 }
 
 trajectory::Path path_from_file(const scene::Camera& camera) {
@@ -120,9 +137,12 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   const flight_log::Placement placement{offset_s, first};
   try {
     const trajectory::Path path = flight_log::local_path(log, placement);
-    if (camera.follows_attitude && !camera.attitude_yaw_pitch_roll_deg && !log.attitudes.empty())
+    const bool has_attitudes = !log.attitudes.empty();
+    if (camera.follows_attitude && has_attitudes && !camera.attitude_yaw_pitch_roll_deg)
       return path;
-    return trajectory::at_attitude(path, held(camera, log, path, offset_s));
+    const YawPitchRoll first = first_attitude(camera, log, path, offset_s);
+    return camera.follows_attitude ? turning(path, first, has_attitudes)
+                                   : trajectory::at_attitude(path, first);
   } catch (const Error& error) {
     throw Error(error.message(), camera.where);
   }
@@ -134,6 +154,13 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
   return at_place(lens.where, [&] {
     return lens.file ? lens::read_calibration(*lens.file, size, warn) : stated_lens(lens, size);
   });
+}
+
+void take_pixel_shape(scene::Lens& lens, lens::ImageSize size, double width_of_height) {
+  if (!lens.vertical_fov_deg || !(width_of_height > 0) || width_of_height == 1) return;
+  const double focal_px = lens_of(lens, size).focal_px();
+  lens.focal_px = {focal_px / width_of_height, focal_px};
+  lens.vertical_fov_deg.reset();
 }
 
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {

@@ -25,6 +25,10 @@ namespace airtruth::setup {
 // Error where a calibration cannot be read or is of another size.
 lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& warn = {});
 
+// Of pixels that are not square the focal lengths in their widths and heights differ: states both
+// in place of a view. `width_of_height` is the pixels' shape; 0: unknown.
+void take_pixel_shape(scene::Lens& lens, lens::ImageSize size, double width_of_height);
+
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
 //
 // The attitude of a path file or a log is that at the first frame, and is held, since the measured
@@ -33,7 +37,8 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
 // Of a log the position at the first frame is the stated one; without it the aircraft is over the
 // origin at the log's height above take-off, or at the default height of a scene where the log
 // states none. The attitude at the first frame is the stated one; without it it is the log's, and
-// for a log without attitudes the aircraft is level and heads along its path.
+// for a log without attitudes the aircraft is level and heads along its path. Where
+// follows_attitude is true the stated one turns from there as the log's does.
 //
 // Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
 // not cover the first frame.

@@ -78,6 +78,36 @@ TEST_F(OwnLog, TheAttitudeIsHeldUnlessTheMotionIsSmoothed) {
   EXPECT_NEAR(attitude(stated, 10).yaw_deg, 7, 1e-6);
 }
 
+// A stated attitude, and that of a horizon, is the first frame's: from there the camera turns with
+// the log.
+TEST_F(OwnLog, AStatedAttitudeTurnsWithTheLogUnlessTheMotionDoesSo) {
+  // It turns by 3 degrees a second at 20 m/s.
+  std::string curve, stated;
+  for (int i = 0; i <= 30; ++i) {
+    const double turned = radians(3 * i);
+    const std::string at =
+        fmt::format("{},{:.9f},{:.9f},500",
+                    i,
+                    47 + degrees(382 * std::sin(turned) / 6368000),
+                    8 + degrees(382 * (1 - std::cos(turned)) / (6389000 * std::cos(radians(47)))));
+    curve += at + "\n";
+    stated += fmt::format("{},{},0,0\n", at, 3 * i);
+  }
+  const std::string columns = "time_s,latitude_deg,longitude_deg,altitude_m";
+  const fs::path logs[] = {write("curve.csv", columns + "\n" + curve),
+                           write("stated.csv", columns + ",yaw_deg,pitch_deg,roll_deg\n" + stated)};
+  for (const fs::path& log : logs) {
+    const std::string camera = "log_offset_s = 10\nattitude_yaw_pitch_roll_deg = [40, -5, 2]\n";
+    const auto held = camera_path(scene_of(log, camera).camera);
+    EXPECT_NEAR(attitude(held, 10).yaw_deg, 40, 1e-6);
+    const auto turning = camera_path(scene_of(log, camera, "[motion]\nmodel = \"none\"\n").camera);
+    EXPECT_NEAR(attitude(turning, 0).yaw_deg, 40, 1e-6);
+    EXPECT_NEAR(attitude(turning, 10).yaw_deg, 70, 0.2) << log;
+    EXPECT_NEAR(attitude(turning, 10).pitch_deg, -5, 0.01) << log;
+    EXPECT_NEAR(attitude(turning, 10).roll_deg, 2, 0.01) << log;
+  }
+}
+
 // With columns of angles, and along a curve without: the measured motion turns the camera as well.
 TEST_F(OwnLog, AnAttitudeOfAPathFileIsHeldUnlessItIsAllThatTurnsTheCamera) {
   const auto turning = [&](const std::string& file, const std::string& motion) {
