@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dataset/labelled/truth_table.h"
+#include "dataset/sequences/layout.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
@@ -49,11 +50,22 @@ Images images_of(const ExportOptions& options) {
   return *options.images;
 }
 
+// Changes with what a set holds: of one that was built, its record; else those of its sequences.
+std::string sha256_of_set(const fs::path& set, const LabelledSet& labelled) {
+  if (const fs::path record = set / "dataset.json"; fs::exists(record))
+    return sha256_of_file(record);
+  std::string all;
+  for (const std::string& name : labelled.names()) {
+    const char* record = labelled.is_imported(name) ? sequences::kLabels : "sequence.json";
+    all += name + ' ' + sha256_of_file(labelled.folder(name) / record) + '\n';
+  }
+  return sha256_of(all);
+}
+
 // The options that determine every byte of an export.
-Json options_json(const fs::path& set, const ExportOptions& options) {
-  const fs::path record = set / "dataset.json";
+Json options_json(const fs::path& set, const LabelledSet& labelled, const ExportOptions& options) {
   Json json = {{"set", fs::absolute(set).lexically_normal().string()},
-               {"set_sha256", fs::exists(record) ? sha256_of_file(record) : ""},
+               {"set_sha256", sha256_of_set(set, labelled)},
                {"format", exchange::name(options.format)},
                {"images", enum_name(*options.images)},
                {"every", options.every},
@@ -127,8 +139,9 @@ class Place {
     if (fs::exists(record())) {
       const Json found = parse_json(read_file(record()));
       if (!found.is_object() || found.value("options", Json()) != options_)
-        throw Error("holds an export made with other options; expected a new folder",
-                    {root_.string()});
+        throw Error(
+            "holds an export of another set, or made with other options; expected a new folder",
+            {root_.string()});
       complete_ = true;
       // A run that ended between its last two steps leaves this folder.
       fs::remove_all(root_ / kOwnFolder);
@@ -137,7 +150,9 @@ class Place {
     const bool begun = fs::exists(begun_file());
     if (begun && parse_json(read_file(begun_file())) != options_)
       throw Error(
-          "holds an unfinished export with other options; expected the same, or a new folder",
+          "holds an unfinished export of another set, or with other options; expected the same, or "
+          "a "
+          "new folder",
           {root_.string()});
     if (!begun && fs::exists(root_) && !holds_only_own_folder())
       throw Error("exists and is not empty; expected a new folder", {root_.string()});
@@ -460,7 +475,7 @@ ExportSummary export_set(const fs::path& set, const fs::path& out, const ExportO
   require_utf8(fs::absolute(set));
   require_utf8(fs::absolute(out));
   for (const std::string& name : labelled.names()) require_utf8(labelled.folder(name));
-  Place place(out, options_json(set, options));
+  Place place(out, options_json(set, labelled, options));
   if (place.is_complete()) {
     ExportSummary summary;
     const JsonDocument file(place.record());
