@@ -75,6 +75,7 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
 void take_facts(const video::StreamInfo& info, catalogue::BackgroundFiles& files) {
   files.width = info.width;
   files.height = info.height;
+  files.pixel_aspect = info.sample_aspect.value();
   files.frame_rate_hz = info.frame_rate.value();
   files.frames = info.frame_count_estimate;
 }

@@ -58,10 +58,10 @@ class Planner {
 
   void add(catalogue::Item& item) {
     const Facts& facts = facts_of(item.background);
-    const catalogue::Draws draws = catalogue::draw_in_view(item, facts.files);
+    const catalogue::Draws draws = catalogue::draw_in_view(item, catalogue_, facts.files);
     plan_.draws += draws.drawn;
     plan_.never_in_view += draws.unseen;
-    const std::int64_t frames = frames_of(item, facts);
+    const std::int64_t frames = catalogue::clip_frames(item, catalogue_, facts.files);
     if (item.frame_count > 0) item.frame_count = frames;
     ++plan_.sequences;
     plan_.frames += frames;
@@ -156,14 +156,6 @@ class Planner {
       plan_.core_s += whole * kCosts.calibrated;
     }
     return facts;
-  }
-
-  std::int64_t frames_of(const catalogue::Item& item, const Facts& facts) const {
-    const catalogue::Background& background = catalogue_.backgrounds[item.background];
-    const std::int64_t left =
-        std::max<std::int64_t>(0, end_of(background, facts.files.frames) - background.first_frame);
-    if (item.frame_count == 0) return left;
-    return left > 0 ? std::min(item.frame_count, left) : item.frame_count;
   }
 
   // Why an intruder cannot fly its path, or has none; "" where it can.

@@ -120,7 +120,14 @@ TEST_F(EncounterModel, OverALogTheyPassTheCameraAsItFliesFromTheFirstFrameOn) {
     Item item = expansion.at(i);
     scene::Camera camera = item.scene.camera;
     camera.clip_start_s = 18;  // as render finds it in the video
-    place(item, catalogue, {"v.mp4", {}, 160, 120, 30, 1000, camera});
+    place(item,
+          catalogue,
+          {.video = "v.mp4",
+           .width = 160,
+           .height = 120,
+           .frame_rate_hz = 30,
+           .frames = 1000,
+           .camera = camera});
     const Closest closest = closest_of(item.scene, item.scene.intruders.at(0), 8);
     EXPECT_LE(closest.distance_m, 51) << i;
   }
@@ -205,7 +212,8 @@ TEST_F(EncounterModel, ADataSetKeepsItsModel) {
 TEST_F(EncounterModel, AClipLongerThanItsTracksIsAnError) {
   const Catalogue catalogue = with("kind = \"geometric\"\ncount = 1\nframe_count = 240\n");
   Item item = Expansion(catalogue).at(0);
-  BackgroundFiles files{"v.mp4", {}, 160, 120, 25, 240};
+  BackgroundFiles files{
+      .video = "v.mp4", .width = 160, .height = 120, .frame_rate_hz = 25, .frames = 240};
   EXPECT_NO_THROW(place(item, catalogue, files));
   files.frame_rate_hz = 10;
   EXPECT_THROW(place(item, catalogue, files), Error);
@@ -258,12 +266,12 @@ const BackgroundFiles kFilesOfSky = {
     .video = "sky.mkv", .width = 160, .height = 120, .frame_rate_hz = 30, .frames = 240};
 
 // The pinhole of kBackground by its angles: tan of half of 75 degrees upright, 4/3 of it across.
-double in_view_s(const Item& item) {
+double in_view_s(const Item& item, int within = 240) {
   const trajectory::Path own = setup::camera_path(item.scene.camera);
   const trajectory::Path path = setup::path_of(item.scene.intruders[0], own);
   const double up = std::tan(radians(37.5));
   int frames = 0;
-  for (int i = 0; i < 240; ++i) {
+  for (int i = 0; i < within; ++i) {
     const auto camera = own.at(i / 30.0);
     const Vector3 p = camera->world_from_body.conjugate() *
                       (path.at(i / 30.0)->position_in_world - camera->position_in_world);
@@ -280,7 +288,7 @@ TEST_F(EncounterModel, AnIntruderIsDrawnUntilTheCameraSeesIt) {
     std::int64_t draws = 0, unseen_of_any = 0;
     for (std::int64_t i = 0; i < Expansion(seen).size(); ++i) {
       Item item = Expansion(seen).at(i);
-      const Draws of_one = draw_in_view(item, kFilesOfSky);
+      const Draws of_one = draw_in_view(item, seen, kFilesOfSky);
       draws += of_one.drawn;
       EXPECT_EQ(of_one.unseen, 0);
       EXPECT_GE(in_view_s(item), 2.5 - 1e-9) << i;
@@ -288,11 +296,25 @@ TEST_F(EncounterModel, AnIntruderIsDrawnUntilTheCameraSeesIt) {
       place(placed, seen, kFilesOfSky);
       EXPECT_EQ(placed.scene.intruders[0].waypoints_ned_m, item.scene.intruders[0].waypoints_ned_m);
       Item first = Expansion(any).at(i);
-      EXPECT_EQ(draw_in_view(first, kFilesOfSky).drawn, 0);
+      EXPECT_EQ(draw_in_view(first, any, kFilesOfSky).drawn, 0);
       unseen_of_any += in_view_s(first) < 2.5 ? 1 : 0;
     }
     EXPECT_GT(unseen_of_any, 0);
     EXPECT_GE(draws, Expansion(seen).size() + unseen_of_any);
+  }
+}
+
+// What would be seen after the end of the background is not.
+TEST_F(EncounterModel, ViewsEndWithTheBackground) {
+  const Catalogue catalogue = with("kind = \"geometric\"\ncount = 30\nseen_s = 2.5\n");
+  BackgroundFiles files = kFilesOfSky;
+  files.frames = 120;
+  for (std::int64_t i = 0; i < Expansion(catalogue).size(); ++i) {
+    Item item = Expansion(catalogue).at(i);
+    const Draws draws = draw_in_view(item, catalogue, files);
+    if (draws.unseen == 0) {
+      EXPECT_GE(in_view_s(item, 120), 2.5 - 1e-9) << i;
+    }
   }
 }
 
@@ -338,7 +360,7 @@ camera = { position_ned_m = [0, 0, -900], velocity_ned_mps = [40, 10, -1] }
   for (std::int64_t i = 0; i < 9; ++i) {
     Item item = Expansion(catalogue).at(i);
     ++backgrounds[item.background];
-    draw_in_view(item, kFilesOfSky);
+    draw_in_view(item, catalogue, kFilesOfSky);
     const std::string name = item.scene.intruders[0].aircraft;
     ++types[name.substr(0, name.find('/'))];
   }

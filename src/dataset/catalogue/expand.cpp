@@ -250,12 +250,23 @@ std::int64_t random_first_frame(const Item& item,
 
 }  // namespace
 
-Draws draw_in_view(Item& item, const BackgroundFiles& files) {
+std::int64_t clip_frames(const Item& item,
+                         const Catalogue& catalogue,
+                         const BackgroundFiles& files) {
+  const Background& background = catalogue.backgrounds[item.background];
+  const std::int64_t left = end_of(background, files.frames) - background.first_frame;
+  if (left <= 0) return item.frame_count;
+  return item.frame_count > 0 ? std::min(item.frame_count, left) : left;
+}
+
+Draws draw_in_view(Item& item, const Catalogue& catalogue, const BackgroundFiles& files) {
   if (files.camera) item.scene.camera = *files.camera;
+  setup::take_pixel_shape(item.scene.lens, {files.width, files.height}, files.pixel_aspect);
   if (item.encounter_rule == nullptr) return {};
   check_length(item, files);
+  // A sample of a stream shows a part of the sequence, wherever that is over its background.
   const Views views{setup::lens_of(item.scene.lens, {files.width, files.height}),
-                    item.frame_count,
+                    item.first_frame ? item.frame_count : clip_frames(item, catalogue, files),
                     files.frame_rate_hz > 0 ? files.frame_rate_hz : kAssumedRateHz};
   std::erase_if(item.scene.intruders, scene::is_aircraft);
   std::vector<scene::Intruder> distractors = std::exchange(item.scene.intruders, {});
@@ -274,7 +285,7 @@ void place(Item& item,
   placed.mask = files.mask;
   placed.first_frame = item.first_frame.value_or(background.first_frame);
   if (item.frame_count > 0) placed.frame_count = item.frame_count;
-  draw_in_view(item, files);
+  draw_in_view(item, catalogue, files);
   if (!item.first_frame && item.has_random_start())
     placed.first_frame = random_first_frame(item, background.first_frame, files);
   DrawnClip clip{item.frame_count,

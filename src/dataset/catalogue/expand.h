@@ -22,6 +22,7 @@ struct BackgroundFiles {
   std::optional<fs::path> mask;
   int width = 0;
   int height = 0;
+  double pixel_aspect = 1;   // width over height of a pixel
   double frame_rate_hz = 0;  // 0: unknown
   std::int64_t frames = 0;   // counted from the video's first frame; 0: unknown
   // Of a background with a flight log: its camera with the time of first_frame on the video's clock
@@ -90,9 +91,16 @@ Item stream_item(const Catalogue& catalogue,
 // intruders and name.
 scene::Scene scene_over(const Catalogue& catalogue, std::size_t background);
 
-// Draws the intruders of a sequence of [[encounter_model]] for the size and rate of its
-// background's pictures, which `files` states. Any other item stays as it is.
-Draws draw_in_view(Item& item, const BackgroundFiles& files);
+// The frames of an item's clip: as many as it states, else all, as far as its background goes; 0:
+// it states none, and the length of its background is unknown.
+std::int64_t clip_frames(const Item& item,
+                         const Catalogue& catalogue,
+                         const BackgroundFiles& files);
+
+// Gives an item's scene the camera and the pixels' shape of its background, and draws the intruders
+// of a sequence of [[encounter_model]] for the size, rate and number of its
+// background's pictures, which `files` states.
+Draws draw_in_view(Item& item, const Catalogue& catalogue, const BackgroundFiles& files);
 
 // Gives an item's scene the files of its background, and gives random values their place in time
 // and space: the first frame, the meeting moment, and the range at which an aircraft has the
