@@ -218,8 +218,8 @@ class Comparing {
       within.push_back(appearance::distance(
           all_[i].real.histogram, all_[(i + all_.size() / 2) % all_.size()].real.histogram));
     }
-    result.colour_distance = median_or_0(between);
-    result.colour_distance_within = median_or_0(within);
+    result.colour_distance = median_between(std::move(between));
+    result.colour_distance_within = median_between(std::move(within));
     const fs::path& part = staged_.path();
     video::write_still(part / "figure.png", figure_of(figure_));
     write_file(part / "comparison.md", table_of(result));

@@ -26,7 +26,7 @@ Pair pair_from(const std::string& name, const auto& values_of) {
   const std::vector<double> real = values_of(&Compared::real);
   const std::vector<double> made = values_of(&Compared::made);
   if (real.empty() || made.empty()) return {name, kUnknown, 0, kUnknown, 0};
-  return {name, median(real), spread(real), median(made), spread(made)};
+  return {name, median_between(real), spread(real), median_between(made), spread(made)};
 }
 
 // What has a value in one frame.
