@@ -141,6 +141,7 @@ void open_standard_streams() {
       // The lowest number that is free: this one.
       ::open("/dev/null", file == STDIN_FILENO ? O_RDONLY : O_WRONLY);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` fails, and is said
 }
 
 namespace {

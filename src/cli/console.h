@@ -58,7 +58,8 @@ inline constexpr int kInterrupted = 130;  // exit code of an interrupted run
 
 // Opens /dev/null as standard input, output or error where the caller closed it, so that no file
 // opened later gets its number and receives messages. Also makes writing to a pipe that is closed
-// at its other end an error of the write. It is called before any file is opened.
+// at its other end, and beyond the limit of a file's size, an error of the write. It is called
+// before any file is opened.
 void open_standard_streams();
 
 // Turns SIGINT, SIGTERM and SIGHUP into a request to stop. Where the process has not ended within

@@ -172,7 +172,8 @@ void write_file(const fs::path& path,
       throw Error("cannot write: " + reason(), {path.string()});
     // A network's file system tells of a full disk when a descriptor is closed. The lock is held on
     // the other one until the file has its name, so that nobody takes it for a dead writer's.
-    if (::close(::dup(file.get())) != 0) throw Error("cannot write: " + reason(), {path.string()});
+    const int other = ::dup(file.get());
+    if (other < 0 || ::close(other) != 0) throw Error("cannot write: " + reason(), {path.string()});
     unfinished.finish([&] {
       if (::rename(part.c_str(), path.c_str()) != 0)
         throw Error("cannot create: " + reason(), {path.string()});
