@@ -161,7 +161,7 @@ TEST(NewScene, PicturesAskForTheirRate) {
   fs::create_directories(folder / "frames");
   for (int k = 0; k < options.frame_count; ++k)
     video::write_still(folder / "frames" / ("000" + std::to_string(k) + ".png"), flight.frame(k));
-  EXPECT_THAT(fault_of(folder / "frames", {}), testing::HasSubstr("expected --frame-rate"));
+  EXPECT_THAT(fault_of(folder / "frames", {}), testing::HasSubstr("state no rate"));
   NewSceneOptions stated;
   stated.picture_rate_hz = 12.5;
   const std::string text = scene_text(folder / "frames", stated);

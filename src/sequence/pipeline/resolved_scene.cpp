@@ -82,11 +82,12 @@ camera_file::Calibration measured_on(const scene::Scene& scene,
 }
 
 // From north, where the calibration has it from the heading of the camera in the clip's first
-// frame.
-double sun_azimuth_deg(const scene::Scene& scene, const camera_file::Calibration& found) {
+// frame. Empty where the scene begins after a cut, beyond which no heading is known.
+std::optional<double> sun_azimuth_deg(const scene::Scene& scene,
+                                      const camera_file::Calibration& found) {
   const auto first = static_cast<std::size_t>(scene.background.first_frame);
-  const double turned_deg =
-      first < found.yaw_from_first_deg.size() ? found.yaw_from_first_deg[first] : 0;
+  if (first > 0 && first >= found.yaw_from_first_deg.size()) return std::nullopt;
+  const double turned_deg = first > 0 ? found.yaw_from_first_deg[first] : 0;
   const auto camera = setup::camera_path(scene.camera).at(0);
   const double heading_deg = camera ? yaw_pitch_roll(camera->world_from_body).yaw_deg : 0;
   const double azimuth_deg =
@@ -202,7 +203,12 @@ void take_measured(scene::Scene& scene,
         warn(to_warn, key + " is doubtful: " + doubt);
   if (!scene.camera_model.readout) scene.camera_model.readout = from_clip.readout;
   if (stated.sun_is_known || !found.quantities.sun_azimuth.is_measured()) return;
-  scene.light.sun_azimuth_deg = sun_azimuth_deg(scene, found);
+  const auto azimuth_deg = sun_azimuth_deg(scene, found);
+  if (!azimuth_deg)
+    return warn(to_warn,
+                "the sun is measured before a cut, and the scene begins after it: its direction is "
+                "not known there; [light] sun_azimuth_deg and sun_elevation_deg state it");
+  scene.light.sun_azimuth_deg = *azimuth_deg;
   scene.light.sun_elevation_deg = found.quantities.sun_elevation.value().value;
 }
 
@@ -258,15 +264,6 @@ void simplify_for_preview(scene::Scene& scene) {
   scene.camera_model.codec_step.reset();
 }
 
-// Of pixels that are not square, the focal lengths in their widths and heights differ.
-void take_pixel_shape(scene::Scene& scene, const video::StreamInfo& info) {
-  const double width_of_height = info.sample_aspect.value();
-  if (!scene.lens.vertical_fov_deg || !(width_of_height > 0) || width_of_height == 1) return;
-  const double focal_px = setup::lens_of(scene.lens, size_of(info)).focal_px();
-  scene.lens.focal_px = {focal_px / width_of_height, focal_px};
-  scene.lens.vertical_fov_deg.reset();
-}
-
 // Codes of a curve for high dynamic range are no light that a camera of standard range records.
 void expect_standard_range(const scene::Scene& scene, const video::StreamInfo& info) {
   constexpr int kPq = 16;   // AVCOL_TRC_SMPTE2084
@@ -317,7 +314,7 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   StatedScene result{scene, scene.realism, {}, scene.light.sun_is_stated};
   refuse_with_chroma_key(scene);
   expect_standard_range(scene, info);
-  take_pixel_shape(result.scene, info);
+  setup::take_pixel_shape(result.scene.lens, size_of(info), info.sample_aspect.value());
   take_angle(result.scene, info);
   if (scene.camera.log)
     result.scene.camera.clip_start_s =

@@ -75,6 +75,11 @@ TEST_F(Resolve, TheSunIsTurnedToTheFrameWithWhichTheSceneBegins) {
   EXPECT_EQ(second.camera_model.codec_step, 7);
   scene_.background.first_frame = 0;
   EXPECT_NEAR(resolve().light.sun_azimuth_deg, 110, 1e-9);
+  // The clip is cut after four frames.
+  scene_.background.first_frame = 4;
+  EXPECT_EQ(resolve().light.sun_azimuth_deg, scene::Light().sun_azimuth_deg);
+  EXPECT_EQ(resolve().light.sun_elevation_deg, scene::Light().sun_elevation_deg);
+  scene_.background.first_frame = 0;
   // From 0 to 360.
   scene_.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{-150, 0, 0};
   EXPECT_NEAR(resolve().light.sun_azimuth_deg, 310, 1e-9);
