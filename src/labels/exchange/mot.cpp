@@ -151,6 +151,10 @@ class SequenceFolder {
     expect_no_visdrone(rows);
     for (const auto& [numbers, where] : rows) look_at_columns(numbers, where);
     for (const auto& [numbers, where] : rows) add(numbers, where);
+    bool are_counted = false;
+    for (LabelledFrame& frame : clip_.frames)
+      if (number_tracks(frame.labels)) are_counted = true;
+    if (are_counted) warn(in_.warn, file.string() + kTracksCounted);
     if (!pictures_in(folder_ / "img1").empty())
       join_by_number(clip_, folder_ / "img1", 1, in_.warn);
     return clip_;
@@ -225,7 +229,7 @@ class SequenceFolder {
     if (n.size() < 6) throw Error(fmt::format("has {} columns; expected 6 to 10", n.size()), where);
     const auto frame = whole_in(n[0], 1, kMaxFrames);
     if (!frame) throw Error("the frame is no whole number from 1 on", where);
-    const auto track = whole_in(n[1], -1, kMaxTracks);
+    const auto track = whole_in(n[1], kNoTrack, kMaxTracks);
     if (!track) throw Error("the id is no whole number", where);
     Label label;
     label.track = *track;

@@ -2,6 +2,7 @@
 #include "labels/exchange/parts.h"
 
 #include <algorithm>
+#include <set>
 
 #include "foundation/base/error.h"
 
@@ -26,6 +27,18 @@ LabelledFrame& frame_at(Clip& clip, std::size_t number) {
   for (std::size_t i = clip.frames.size(); i <= number; ++i)
     clip.frames.push_back({static_cast<std::int64_t>(i), std::nullopt, {}});
   return clip.frames[number];
+}
+
+bool number_tracks(std::vector<Label>& labels) {
+  std::set<std::int64_t> taken;
+  for (const Label& label : labels) taken.insert(label.track);
+  std::int64_t next = 1;
+  for (Label& label : labels) {
+    if (label.track >= 0) continue;
+    while (taken.contains(next)) ++next;
+    label.track = next++;
+  }
+  return !taken.empty() && *taken.begin() < 0;
 }
 
 std::vector<fs::path> files_of(const fs::path& source,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -87,6 +88,17 @@ void add_label(std::vector<Label>& labels,
   else
     left_out.add(kOutside, place);
 }
+
+// A label has this track until number_tracks() where the set states none.
+inline constexpr std::int64_t kNoTrack = -1;
+// What a reader warns of behind the file's name, where number_tracks() found such labels.
+inline constexpr const char* kTracksCounted =
+    ": holds boxes without a track; in each frame they count as the tracks from 1 on that no other "
+    "box has";
+
+// Gives the labels of a frame whose track is below 0 the numbers from 1 on that no other label of
+// the frame has, in their order. True where there are such labels.
+bool number_tracks(std::vector<Label>& labels);
 
 // The source where it is a file; of a folder the files that were found in it. Throws Error where
 // these are none: "holds no ...".

@@ -203,6 +203,21 @@ TEST(Mot, LinesThatAreNotToBeConsideredCountNeitherWay) {
   EXPECT_EQ(warnings.find("left out"), std::string::npos) << warnings;
 }
 
+// The id -1 is that of no track: two such boxes of a frame are two aircraft.
+TEST(Mot, BoxesWithoutATrackAreObjectsOfTheirOwn) {
+  const Folder folder;
+  folder.file("a/gt/gt.txt",
+              "1,-1,5,5,9,9,1,1,1\n1,1,15,5,9,9,1,1,1\n1,-1,25,5,9,9,1,1,1\n2,-1,5,5,9,9,1,1,1\n");
+  std::string warnings;
+  const auto clips = read_clips(
+      Format::kMot, folder.path(), {}, [&](const std::string& w) { warnings += w + "\n"; });
+  std::vector<std::int64_t> tracks;
+  for (const LabelledFrame& frame : clips.at(0).frames)
+    for (const Label& label : frame.labels) tracks.push_back(label.track);
+  EXPECT_EQ(tracks, (std::vector<std::int64_t>{2, 1, 3, 1}));
+  EXPECT_NE(warnings.find("gt.txt: holds boxes without a track"), std::string::npos) << warnings;
+}
+
 // An entity of the published training set, as docs/DATASET.md prints it, with the NaN that Python
 // writes. Times count from 1970.
 TEST(Aot, ThePublishedFilesHoldNanAndTimesSince1970) {
