@@ -3,6 +3,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,7 @@ class CocoReader {
         json_(python_json(file)),
         left_out_(in.warn),
         warn_(in.warn),
+        options_(in.options),
         classes_(in.classes) {}
 
   Clips read() {
@@ -109,16 +111,22 @@ class CocoReader {
     return {own, own / "images", root / "images" / part, root / "images", root / part, root};
   }
 
-  // The track of an annotation, where it has one; CVAT writes it as an attribute.
-  static std::optional<std::int64_t> track_of(const JsonObject& annotation) {
+  // The track of an annotation; CVAT writes it as an attribute.
+  static std::int64_t track_of(const JsonObject& annotation) {
     for (const char* key : {"track_id", "instance_id"})
-      if (const auto track = annotation.maybe_integer(key)) return track;
-    if (!annotation.has("attributes")) return std::nullopt;
-    return annotation.object("attributes").maybe_integer("track_id");
+      if (const auto track = annotation.maybe_integer(key)) return *track;
+    if (!annotation.has("attributes")) return kNoTrack;
+    return annotation.object("attributes").maybe_integer("track_id").value_or(kNoTrack);
+  }
+
+  // Regions in which detections count neither way may share a track.
+  bool is_region(const Label& label) const {
+    return label.object_class == label_file::kIgnore ||
+           stated_class(label.category, options_) == label_file::kIgnore;
   }
 
   void annotations() {
-    std::map<std::int64_t, std::int64_t> labels_without_track;
+    std::set<std::pair<std::int64_t, std::int64_t>> tracks_of_images;
     for (const JsonObject& annotation : json_.objects("annotations")) {
       const std::int64_t image = annotation.whole("image_id");
       const auto found = images_.find(image);
@@ -129,18 +137,20 @@ class CocoReader {
       LabelledPicture& picture = found->second.picture;
       std::optional<Label> label = label_of(annotation, picture);
       if (!label) continue;
-      const auto track = track_of(annotation);
-      label->track = track ? *track : ++labels_without_track[image];
+      label->track = track_of(annotation);
+      if (label->track >= 0 && !is_region(*label) &&
+          !tracks_of_images.emplace(image, label->track).second)
+        annotation.fail(
+            fmt::format("has the track {} a second time in image {}", label->track, image));
       label_file::get_known(annotation, *label, "visibility");
       if (annotation.has("attributes") && !label->occluded)
         label->occluded = annotation.object("attributes").maybe_truth("occluded");
       picture.labels.push_back(*std::move(label));
     }
-    if (!labels_without_track.empty())
-      warn(warn_,
-           file_.string() +
-               ": holds annotations without a track; the k-th of each image counts as "
-               "track k");
+    bool are_counted = false;
+    for (auto& [id, image] : images_)
+      if (number_tracks(image.picture.labels)) are_counted = true;
+    if (are_counted) warn(warn_, file_.string() + kTracksCounted);
   }
 
   // Category and box of an annotation; empty if it is left out.
@@ -183,6 +193,7 @@ class CocoReader {
   JsonDocument json_;
   LeftOut left_out_;
   const Warn& warn_;
+  const ReadOptions& options_;
   std::map<std::string, std::string>& classes_;  // Reading::classes
   std::map<std::int64_t, std::string> categories_;
   std::map<std::int64_t, Image> images_;

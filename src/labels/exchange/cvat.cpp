@@ -374,11 +374,11 @@ Clips read_images(const fs::path& file,
         in.left_out.add(kNoBox, file.string() + ", <" + shape.name() + ">");
         continue;
       }
-      Label label =
-          label_of(xml, shape, shape.attribute("label").value(), std::ssize(picture.labels) + 1);
+      Label label = label_of(xml, shape, shape.attribute("label").value(), kNoTrack);
       label.box_px = *box;
       add_label(picture.labels, std::move(label), picture, in.left_out, file.string());
     }
+    number_tracks(picture.labels);
     subsets[subset].push_back(std::move(picture));
   }
   Clips clips;

@@ -143,6 +143,32 @@ TEST(Coco, ASetOfCrowdsAloneIsSaid) {
   EXPECT_EQ(warnings_of("0").find("neither way"), std::string::npos);
 }
 
+TEST(Coco, CountedTracksAreNoneOfThoseThatAreStated) {
+  const Folder folder;
+  const auto file = [&](const std::string& second) {
+    return folder.file("tracks.json",
+                       R"({"categories": [{"id": 1, "name": "plane"}, {"id": 2, "name": "ignored"}],
+      "images": [{"id": 9, "file_name": "1.png", "width": 64, "height": 48}],
+      "annotations": [
+        {"id": 1, "image_id": 9, "category_id": 1, "bbox": [1, 2, 3, 4]},
+        {"id": 2, "image_id": 9, "category_id": 1, "bbox": [1, 2, 3, 4], "track_id": 1},
+        {"id": 3, "image_id": 9, "category_id": 1, "bbox": [1, 2, 3, 4], "track_id": -1},
+        {"id": 4, "image_id": 9, "category_id": 2, "bbox": [1, 2, 3, 4], "track_id": 1},
+        {"id": 5, "image_id": 9, "category_id": 1, "bbox": [1, 2, 3, 4], "instance_id": )" +
+                           second + "}]}");
+  };
+  std::string warnings;
+  const auto clips =
+      read_clips(Format::kCoco, file("3"), {}, [&](const std::string& w) { warnings += w + "\n"; });
+  std::vector<std::int64_t> tracks;
+  for (const Label& label : clips.at(0).frames.at(0).labels) tracks.push_back(label.track);
+  EXPECT_EQ(tracks, (std::vector<std::int64_t>{2, 1, 4, 1, 3}));
+  EXPECT_NE(warnings.find("tracks.json: holds boxes without a track"), std::string::npos)
+      << warnings;
+  const std::string error = error_of(Format::kCoco, file("1"));
+  EXPECT_TRUE(error.ends_with("annotations[4]: has the track 1 a second time in image 9")) << error;
+}
+
 TEST(Coco, ASupercategoryStatesTheClassThatTheNameDoesNot) {
   const Folder folder;
   const fs::path file = folder.file("sky.json", R"({
@@ -296,20 +322,25 @@ TEST(Cvat, ForImagesHasItsBoxesInThePictures) {
   <image id="1" name="a_02.jpg" width="64" height="48">
     <box label="plane" source="manual" occluded="1" xtl="3.5" ytl="4" xbr="13.5" ybr="9" z_order="0">
       <attribute name="range_m">700</attribute></box>
-    <box label="bird" occluded="0" xtl="30" ytl="4" xbr="32" ybr="9"/></image>
+    <box label="bird" occluded="0" xtl="30" ytl="4" xbr="32" ybr="9"/>
+    <box label="bird" occluded="0" xtl="40" ytl="4" xbr="42" ybr="9">
+      <attribute name="track_id">2</attribute></box></image>
 </annotations>)");
   const auto clips = read_clips(Format::kCvat, file, {}, {});
   ASSERT_EQ(clips.size(), 1u);
   EXPECT_EQ(clips[0].width, 64);
   ASSERT_EQ(clips[0].frames.size(), 2u);
   EXPECT_TRUE(clips[0].frames[0].labels.empty());
-  ASSERT_EQ(clips[0].frames[1].labels.size(), 2u);
+  ASSERT_EQ(clips[0].frames[1].labels.size(), 3u);
   const Label& plane = clips[0].frames[1].labels[0];
   EXPECT_EQ(plane.box_px, (Box{3.5, 4, 10, 5}));
   EXPECT_EQ(plane.category, "plane");
   EXPECT_EQ(plane.occluded, true);
   EXPECT_EQ(plane.range_m, 700);
-  EXPECT_EQ(clips[0].frames[1].labels[1].track, 2);
+  // A counted track is none that the picture states.
+  EXPECT_EQ(plane.track, 1);
+  EXPECT_EQ(clips[0].frames[1].labels[1].track, 3);
+  EXPECT_EQ(clips[0].frames[1].labels[2].track, 2);
 }
 
 TEST(Format, IsKnownByNameAndNearMissesAreHelped) {
