@@ -39,7 +39,12 @@ class CvatWriter : public FolderWriter {
     add_text(top, "version", "1.1");
     add_task(top.append_child("meta").append_child("task"), clip);
     if (options_.with_images) add_images(top, clip);
-    for (const std::int64_t track : tracks_of(clip)) add_track(top, clip, track);
+    // The ids are those of the tracks less 1; where one would be none of the format's, their
+    // places.
+    const std::vector<std::int64_t> tracks = tracks_of(clip);
+    const bool are_ids = tracks.empty() || (tracks.front() >= 1 && tracks.back() <= kMaxTracks + 1);
+    for (std::size_t i = 0; i < tracks.size(); ++i)
+      add_track(top, clip, tracks[i], are_ids ? tracks[i] - 1 : static_cast<std::int64_t>(i));
     fs::create_directories(root_ / part / clip.name);
     write_file(root_ / part / clip.name / "annotations.xml", text_of(document));
   }
@@ -92,16 +97,19 @@ class CvatWriter : public FolderWriter {
     add_text(size, "height", std::to_string(clip.height));
   }
 
-  static void add_track(pugi::xml_node top, const Clip& clip, std::int64_t id) {
+  static void add_track(pugi::xml_node top,
+                        const Clip& clip,
+                        std::int64_t number,
+                        std::int64_t id) {
     pugi::xml_node track;
     const Label* last = nullptr;
     for (std::size_t i = 0; i < clip.frames.size(); ++i) {
       const auto& labels = clip.frames[i].labels;
-      const auto found = std::ranges::find(labels, id, &Label::track);
+      const auto found = std::ranges::find(labels, number, &Label::track);
       const bool shown = found != labels.end();
       if (shown && !track) {
         track = top.append_child("track");
-        track.append_attribute("id") = static_cast<long long>(id - 1);
+        track.append_attribute("id") = static_cast<long long>(id);
         track.append_attribute("label") = found->category.c_str();
         track.append_attribute("source") = "file";
       }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <map>
 #include <random>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -248,6 +250,30 @@ TEST(RoundTrip, WhatIsUnknownComesBackAsUnknown) {
       EXPECT_EQ(got, expected.frames[i].labels[0]);
     }
   }
+}
+
+// Ids of tracks in CVAT are whole numbers from 0 on, in COCO any.
+TEST(RoundTrip, CvatTakesTracksOfAnyNumber) {
+  const Label first{.track = 2, .category = "738", .box_px = {3, 4, 8, 5}};
+  Label second = first;
+  second.box_px.x = 40;
+  Clip clip;
+  clip.name = "s";
+  const auto tracks_after = [&](std::int64_t other) {
+    second.track = other;
+    clip.frames = {{0, std::nullopt, {first, second}}};
+    const Folder folder;
+    const Part part{"train", {clip}};
+    write_clips(Format::kCvat, folder.path() / "cvat", {&part, 1});
+    std::map<double, std::int64_t> tracks;
+    for (const Label& label :
+         read_clips(Format::kCvat, folder.path() / "cvat", {}, {}).at(0).frames.at(0).labels)
+      tracks[label.box_px.x] = label.track;
+    return std::pair(tracks[3], tracks[40]);
+  };
+  EXPECT_EQ(tracks_after(7), std::pair(std::int64_t{2}, std::int64_t{7}));
+  EXPECT_EQ(tracks_after(0), std::pair(std::int64_t{2}, std::int64_t{1}));
+  EXPECT_EQ(tracks_after(std::int64_t{1} << 40), std::pair(std::int64_t{1}, std::int64_t{2}));
 }
 
 // An aircraft that is too faint in the second frame, and a bird.
