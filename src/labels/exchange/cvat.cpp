@@ -345,7 +345,14 @@ class TrackReader {
     for (const pugi::xml_node& image : top.children("image")) {
       const std::string name = image.attribute("name").value();
       expect_inside(name, {file_.string()});
-      clip_.frames.at(place_of(frame_of(image, "id"))).picture = name;
+      const std::size_t place = place_of(frame_of(image, "id"));
+      if (place >= clip_.frames.size())
+        xml_.fail(image,
+                  fmt::format("has the id {}, and the boxes' frames count from 0; expected an id "
+                              "below {}",
+                              place,
+                              clip_.frames.size()));
+      clip_.frames[place].picture = name;
     }
     join_by_name(clip_, images, in_.warn);
   }

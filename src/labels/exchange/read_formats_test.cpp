@@ -343,6 +343,21 @@ TEST(Cvat, ForImagesHasItsBoxesInThePictures) {
   EXPECT_EQ(clips[0].frames[1].labels[2].track, 2);
 }
 
+// Boxes of frames before start_frame count within the task, and so must the pictures.
+TEST(Cvat, APictureOfNoFrameIsNamed) {
+  const Folder folder;
+  folder.file("images/a.png", "no picture");
+  const std::string error = error_of(Format::kCvat, folder.file("annotations.xml", R"(<annotations>
+<meta><task><size>2</size><start_frame>100</start_frame></task></meta>
+<image id="100" name="a.png"/>
+<track id="0" label="plane"><box frame="0" xtl="1" ytl="1" xbr="5" ybr="5"/></track>
+</annotations>)"));
+  EXPECT_TRUE(
+      error.ends_with("annotations.xml:3: <image> has the id 100, and the boxes' frames "
+                      "count from 0; expected an id below 2"))
+      << error;
+}
+
 TEST(Format, IsKnownByNameAndNearMissesAreHelped) {
   for (const Format format : kWritten) EXPECT_EQ(format_from_name(name(format)), format);
   try {
