@@ -358,6 +358,14 @@ class Sets(unittest.TestCase):
         self.assertTrue(same_frame(sequence.frame(-1), sequence.frame(5)))
         self.assertTrue(same_frame(pickle.loads(pickle.dumps(sequence)).frame(2), sequence.frame(2)))
 
+    def test_a_pickled_sequence_keeps_the_kind_of_its_boxes(self):
+        def boxes(sequence):
+            return [label.box_px.tolist() for frame in sequence.labels.frames for label in frame.labels]
+
+        exact = airtruth.DataSet("set", boxes="exact")["across"]
+        self.assertNotEqual(boxes(exact), boxes(airtruth.DataSet("set")["across"]))
+        self.assertEqual(boxes(pickle.loads(pickle.dumps(exact))), boxes(exact))
+
     def test_a_table_is_flat(self):
         table = airtruth.DataSet("set").table()
         self.assertEqual({(column.ndim, len(column)) for column in table.values()}, {(1, 6)})

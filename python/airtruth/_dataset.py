@@ -37,8 +37,9 @@ class Sequence:
     ((6,), array([43., 57., 31., 11.]))
     """
 
-    def __init__(self, core: _core.Sequence) -> None:
+    def __init__(self, core: _core.Sequence, boxes: str) -> None:
         self._core = core
+        self._boxes = boxes
         self._truth: Optional[Columns] = None
         self._reader: Optional[Tuple[int, int, VideoReader]] = None  # process, the next frame's number, reader
 
@@ -117,11 +118,12 @@ class Sequence:
     def __iter__(self) -> Iterator[Frame]:
         return (self.frame(k) for k in range(len(self)))
 
-    def __getstate__(self) -> Tuple[pathlib.Path, str]:
-        return self.folder, self.name
+    def __getstate__(self) -> Tuple[pathlib.Path, str, str]:
+        return self.folder, self.name, self._boxes
 
-    def __setstate__(self, state: Tuple[pathlib.Path, str]) -> None:
-        self.__init__(_core.DataSet(os.fspath(state[0])).sequence(state[1], "covered"))  # type: ignore[misc]
+    def __setstate__(self, state: Tuple[pathlib.Path, str, str]) -> None:
+        folder, name, boxes = state
+        self.__init__(_core.DataSet(os.fspath(folder)).sequence(name, boxes), boxes)  # type: ignore[misc]
 
 
 class DataSet:
@@ -158,7 +160,7 @@ class DataSet:
 
     def __getitem__(self, name: str) -> Sequence:
         """Reads a sequence. airtruth.Error for a name that the set lacks, and for a file that is missing or broken."""
-        return Sequence(self._core.sequence(name, self.boxes))
+        return Sequence(self._core.sequence(name, self.boxes), self.boxes)
 
     def table(self) -> Columns:
         """One-dimensional columns over all sequences, a row for each intruder and frame, as pandas.DataFrame() takes them: `sequence`
