@@ -588,7 +588,9 @@ bool Reader::ends_early() const {
   // Matroska stores no number of frames, so the duration decides. One second of slack allows for
   // sound that is longer than the picture.
   if (s.input->duration <= 0 || !s.first_pts || s.options.first_frame > 0) return false;
-  const double seen_s = static_cast<double>(s.last_pts - *s.first_pts) * s.info.time_base.value();
+  // The duration counts from the time 0, or from a first frame that is shown before it.
+  const std::int64_t begin_pts = std::min<std::int64_t>(*s.first_pts, 0);
+  const double seen_s = static_cast<double>(s.last_pts - begin_pts) * s.info.time_base.value();
   return seen_s + 1.0 < static_cast<double>(s.input->duration) / AV_TIME_BASE;
 }
 

@@ -351,12 +351,16 @@ TEST_F(Video, TruncatedMatroskaEndsEarlyToo) {
   ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=4 -c:v libx264 -g 5 whole.mkv");
   const std::string bytes = read_file(folder_ / "whole.mkv");
   write_file(folder_ / "cut.mkv", bytes.substr(0, bytes.size() / 2));
+  ffmpeg("-i whole.mkv -c copy -copyts -output_ts_offset 1.7 later.mkv");
   Reader cut(folder_ / "cut.mkv");
   Reader whole(folder_ / "whole.mkv");
+  Reader later(folder_ / "later.mkv");  // its first frame is shown at 1.7 s
   all_planes(cut);
   all_planes(whole);
+  all_planes(later);
   EXPECT_TRUE(cut.ends_early());
   EXPECT_FALSE(whole.ends_early());
+  EXPECT_FALSE(later.ends_early());
 }
 
 }  // namespace
