@@ -50,9 +50,10 @@ constexpr double kMinElevationDeg = 1, kMaxElevationDeg = 89;
 // flights (surroundings_slow_test.cpp).
 constexpr double kMaxExcessCostShare = 0.06;
 // Bounds of the angle, degrees, to the farthest such direction.
-constexpr double kMinSpreadDeg = 4, kMaxSpreadDeg = 45;
-// Least ratio between the greatest and the least cost.
-constexpr double kMinCostRatio = 1.03;
+constexpr double kMinSpreadDeg = 10, kMaxSpreadDeg = 45;
+// Least ratio between the greatest and the least cost. Where the sun is out of the picture, the
+// bright edge of a bank of clouds is found in its place, with a ratio of up to 1.5.
+constexpr double kMinCostRatio = 1.6;
 
 // Light that arrives from one direction above the horizon.
 struct SkySample {
@@ -163,7 +164,9 @@ Measured<Sun> sun_of(const std::vector<SkySample>& sky) {
   if (search.all.empty()) return NotMeasured{"the sky is brightest nowhere"};
   refine(search, samples);
   const double spread = spread_deg(search);
-  if (spread > kMaxSpreadDeg || search.greatest < kMinCostRatio * search.least)
+  if (search.greatest < kMinCostRatio * search.least)
+    return NotMeasured{"no direction explains the sky much better than others"};
+  if (spread > kMaxSpreadDeg)
     return NotMeasured{"the sky does not say where it is (it would be known to " +
                        std::to_string(static_cast<int>(spread)) + " degrees)"};
   const double azimuth = search.best.azimuth_deg;

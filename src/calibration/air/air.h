@@ -75,8 +75,9 @@ class AirMeter {
   // refined; its error is half of the angle to the farthest direction that explains the sky nearly
   // as well.
   //
-  // Not measured with fewer than 2000 samples, where no direction brightens the sky, and where the
-  // directions that explain the sky nearly as well span more than 45 degrees.
+  // Not measured with fewer than 2000 samples, where no direction explains the sky much better than
+  // the worst (most often the sun is then out of the picture), and where the directions that
+  // explain it nearly as well span more than 45 degrees.
   Measured<Sun> sun() const;
 
  private:

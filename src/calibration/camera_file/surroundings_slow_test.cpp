@@ -51,6 +51,23 @@ TEST(Calibrate, FindsTheSun) {
   }
 }
 
+// With the sun out of the picture, the bright edge of a bank of clouds is not taken for it.
+TEST(Calibrate, TakesNoCloudForTheSun) {
+  for (const std::uint64_t seed : {1, 2, 3, 4})
+    for (const double azimuth : {120.0, -60.0}) {
+      synthetic::FlightOptions o = ideal(seed);
+      o.width = 640, o.height = 480;
+      o.lens = lens::pinhole_from_vertical_fov(75, {o.width, o.height});
+      o.sun_azimuth_deg = azimuth;
+      o.sun_elevation_deg = 40;
+      o.cloud_cover = 0.5;
+      o.own_aircraft = false;
+      o.frame_count = 24;
+      const Quantity sun = calibrate_flight(o, {}).quantities.at("light.sun_azimuth_deg");
+      EXPECT_FALSE(sun.is_measured()) << seed << ", " << azimuth;
+    }
+}
+
 // Flights over two kilometres, so that the ground consists of many fields, with the sun aside and
 // ahead.
 TEST(Calibrate, MeasuresTheAir) {
