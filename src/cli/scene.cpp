@@ -13,6 +13,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
 #include "foundation/run_files/run_files.h"
+#include "picture/video/numbered_images.h"
 #include "sequence/new_scene/new_scene.h"
 
 namespace airtruth::cli {
@@ -38,9 +39,8 @@ std::string pasted(const std::string& file) {
 }
 
 void new_scene(const NewArguments& arguments, Context& context) {
-  const auto video = std::filesystem::absolute(arguments.video).lexically_normal();
-  const std::string stem = (video.has_filename() ? video : video.parent_path()).stem().string();
-  const std::string out = !arguments.out.empty() ? arguments.out : stem + ".toml";
+  const std::string out =
+      !arguments.out.empty() ? arguments.out : video::clip_name(arguments.video) + ".toml";
   RunFiles()
       .reads(arguments.video)
       .reads(arguments.lens)

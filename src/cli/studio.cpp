@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "picture/video/numbered_images.h"
 #include "sequence/new_scene/new_scene.h"
 #include "studio/document/document.h"
 #include "studio/server/server.h"
@@ -34,8 +35,7 @@ struct StudioArguments {
 // The scene file; for a video that of its name in the folder where the command runs.
 fs::path scene_file(const fs::path& input) {
   if (input.extension() == ".toml") return input;
-  const fs::path video = fs::absolute(input).lexically_normal();
-  return (video.has_filename() ? video : video.parent_path()).stem().string() + ".toml";
+  return video::clip_name(input) + ".toml";
 }
 
 std::unique_ptr<document::Document> document_of(const StudioArguments& arguments,

@@ -88,6 +88,13 @@ def make_inputs():
     write("black.pgm", b"P5\n160 120\n255\n" + b"\x00" * (160 * 120))
 
 
+def write_pictures(folder):
+    """Three numbered pictures with a pattern as fine as noise."""
+    os.makedirs(path(folder), exist_ok=True)
+    for number in range(3):
+        write(f"{folder}/{number:05}.pgm", b"P5\n160 120\n255\n" + bytes((x * 7919 + number) % 251 for x in range(160 * 120)))
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         self.out = os.path.join(ROOT, "out-" + self.id().split(".")[-1])
@@ -303,6 +310,13 @@ class Track(Case):
             refused = self.track(*other)
             self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
             self.assertIn(word, refused.stderr)
+
+    def test_the_results_of_pictures_are_named_by_their_folder(self):
+        for name, source in (("pics", "pics/"), ("pics2", "pics2/%05d.pgm")):
+            write_pictures(name)
+            done = self.track("--init", "60,40,30,20", source=source)
+            self.assertEqual((done.returncode, "were there" in done.stdout), (0, False), done.stderr)
+            self.assertTrue(os.path.exists(path(self.out, "results", "am3", name + ".txt")))
 
     def test_what_is_wrong_is_said_before_anything_is_made(self):
         for arguments, word in (([], "--init"), (["--init", "1,2,3"], "x,y,width,height"), (["--init", "1,2,0,4"], "above 0"),

@@ -156,4 +156,18 @@ std::optional<NumberedImages> numbered_images(const fs::path& path) {
   return of_pattern(path, number->first, number->second);
 }
 
+fs::path whole_path(const fs::path& video) {
+  const fs::path whole = fs::absolute(video).lexically_normal();
+  return whole.has_filename() ? whole : whole.parent_path();
+}
+
+std::string clip_name(const fs::path& video) {
+  fs::path named = whole_path(video);
+  std::error_code ignored;
+  if (number_in_pattern(named.filename().string()) && !fs::exists(named, ignored))
+    named = named.parent_path();
+  const std::string name = named.stem().string();
+  return name.empty() ? "video" : name;
+}
+
 }  // namespace airtruth::video

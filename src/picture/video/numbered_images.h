@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace airtruth::video {
@@ -23,5 +24,14 @@ struct NumberedImages {
 // digits as numbers. Throws Error for a folder of several series, for a pattern that matches no
 // file, and for a line of a list that is no picture's path.
 std::optional<NumberedImages> numbered_images(const std::filesystem::path& path);
+
+// The absolute path of a video, a folder of pictures or a pattern of their names, without a slash
+// at its end.
+std::filesystem::path whole_path(const std::filesystem::path& video);
+
+// What is made of a video is named by this.
+//
+//   clip_name("pics.mp4") == clip_name("pics/") == clip_name("pics/%06d.png") == "pics"
+std::string clip_name(const std::filesystem::path& video);
 
 }  // namespace airtruth::video

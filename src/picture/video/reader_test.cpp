@@ -9,6 +9,7 @@
 #include "foundation/base/seed.h"
 #include "foundation/image/colour.h"
 #include "picture/video/libav.h"
+#include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
 #include "picture/video/writer.h"
 #include "support/error_of.h"
@@ -77,6 +78,20 @@ TEST_F(Video, OddSizesAndNumberedImages) {
     EXPECT_TRUE(all_planes(images, &frames) == expected) << path;
     EXPECT_EQ(frames, 5);
   }
+}
+
+TEST_F(Video, AClipIsNamedByItsFileOrItsFolder) {
+  const auto name_of = [&](const char* video) { return clip_name(folder_ / video); };
+  EXPECT_EQ(name_of("clip.mp4"), "clip");
+  EXPECT_EQ(name_of("pics"), "pics");
+  EXPECT_EQ(name_of("pics/"), "pics");
+  EXPECT_EQ(name_of("pics/."), "pics");
+  EXPECT_EQ(name_of("pics/%05d.png"), "pics");
+  EXPECT_EQ(name_of("pics/img_%d.png"), "pics");
+  EXPECT_EQ(name_of("50% of it.mp4"), "50% of it");
+  write_file(folder_ / "%05d.mkv", "a file, not a pattern");
+  EXPECT_EQ(name_of("%05d.mkv"), "%05d");
+  EXPECT_EQ(clip_name("/"), "video");
 }
 
 // COCO's names have 12 digits and gaps between them; Airborne Object Tracking's are a time in

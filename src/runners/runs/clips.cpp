@@ -14,19 +14,13 @@
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"
+#include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
 #include "scene/scene/scene.h"
 #include "sequence/replay/finished.h"
 
 namespace airtruth::runs {
 namespace {
-
-std::string name_of(fs::path video) {
-  if (!video.has_filename()) video = video.parent_path();
-  std::string name = video.stem().string();
-  if (name.find('%') != std::string::npos) name = video.parent_path().filename().string();
-  return name.empty() ? "video" : name;
-}
 
 video::ReaderOptions with_cuts(video::ReaderOptions options, bool wanted) {
   options.with_cuts = wanted;
@@ -55,7 +49,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
 
 DetectionClip clip_of(const fs::path& video) {
   DetectionClip clip;
-  clip.name = name_of(video);
+  clip.name = video::clip_name(video);
   clip.media = video;
   return clip;
 }

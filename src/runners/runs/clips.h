@@ -42,7 +42,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
 std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
                                           const std::vector<std::string>& names,
                                           const Warn& warn);
-// A video as a clip of the name of its file.
+// A video as a clip of the name that video::clip_name() gives.
 DetectionClip clip_of(const fs::path& video);
 
 // What detections of the set have to fit: every sequence, in the order of the set. The size of the

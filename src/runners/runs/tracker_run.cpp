@@ -26,6 +26,7 @@
 #include "foundation/run_files/run_files.h"
 #include "labels/exchange/exchange.h"
 #include "picture/video/numbered_frames.h"
+#include "picture/video/numbered_images.h"
 #include "runners/results/results_folder.h"
 #include "runners/tracking/tracker.h"
 
@@ -151,7 +152,7 @@ class TrackerRun {
   }
 
   TrackSummary over(const fs::path& video, const Box& init, std::int64_t first_frame) {
-    const std::string name = video.stem().string();
+    const std::string name = video::clip_name(video);
     const fs::path file =
         results::trajectory_file(summary_.folder, results::Protocol::kOnePass, name, 0);
     video::NumberedFrames frames(video, options_.warn);
