@@ -138,21 +138,24 @@ std::int64_t ClipFrames::count_estimate() const {
 
 std::optional<detector::FrameInput> ClipFrames::next() {
   if (!clip_.frames.empty() && index_ == std::ssize(clip_.frames)) return std::nullopt;
+  // A cut among the frames without labels parts the labelled ones.
+  bool begins_shot = false;
   do {
     frame_ = reader_.next();
     if (!frame_) {
       if (clip_.frames.empty()) return std::nullopt;
       throw Error("ends before the labels of " + clip_.name + " do", {clip_.media.string()});
     }
+    begins_shot = begins_shot || frame_->begins_shot;
   } while (!clip_.frames.empty() && frame_->index < clip_.frames[static_cast<std::size_t>(index_)]);
   detector::FrameInput input;
   input.index = index_++;
   input.time_s = frame_->time_s;
   input.picture = &frame_->picture;
-  input.begins_shot = input.index == 0 || frame_->begins_shot;
+  input.begins_shot = input.index == 0 || begins_shot;
   if (estimator_)
-    input.turn = turn_of(
-        estimator_->next(frame_->picture, frame_->time_s, frame_->damaged, frame_->begins_shot));
+    input.turn =
+        turn_of(estimator_->next(frame_->picture, frame_->time_s, frame_->damaged, begins_shot));
   return input;
 }
 
