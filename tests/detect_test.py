@@ -115,6 +115,14 @@ class OverASet(Case):
         self.assertTrue(os.path.exists(path("parts", "cmo", "detections.json")))
         self.assert_refused(run("detect", "set", "-d", "cmo", "-o", "parts", "--min-score", "9"), "min_score", "give another --out")
 
+    def test_coco_results_of_fewer_sequences_do_not_outlive_a_new_one(self):
+        made("detect", "set", "-d", "cmo", "-o", "grown", "--only", "two")
+        write("grown/cmo/detections.json", "[]")  # of a set of this one sequence
+        made("detect", "set", "-d", "cmo", "-o", "grown", "--only", "three")  # a run that ends before the last sequence
+        self.assertFalse(os.path.exists(path("grown", "cmo", "detections.json")))
+        made("detect", "set", "-d", "cmo", "-o", "grown")
+        self.assertTrue(json.loads(read("grown", "cmo", "detections.json")))
+
     def test_scores_and_numbers_are_limited(self):
         made("detect", "set", "-d", "few=cmo", "-o", "few", "--max-per-frame", "2", "--min-score", "5")
         lines = [line.split(",") for line in read("few", "few", "one.txt").splitlines()]

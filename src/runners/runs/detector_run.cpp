@@ -166,8 +166,9 @@ class DetectorResults {
     is_open();
   }
 
-  // Creates the folder and its record.
-  void open() {
+  // Creates the folder and its record. `coco_name` is the file of the COCO results.
+  void open(const std::string& coco_name) {
+    coco_file_ = summary_.folder / coco_name;
     make_folders(summary_.folder);
     lock_.emplace(summary_.folder, summary_.folder, options_.warn);
     if (is_open()) return;
@@ -192,6 +193,8 @@ class DetectorResults {
     const fs::path folder = summary_.folder / part;
     fs::create_directories(folder);
     results::write_log(summary_.folder, detections.name, log);
+    // COCO results that are there are of fewer sequences.
+    if (part.empty()) fs::remove(coco_file_);
     results::write_sequence(folder, detections);
     const std::lock_guard lock(mutex_);
     ++summary_.made;
@@ -209,13 +212,12 @@ class DetectorResults {
   }
 
   // Writes the COCO results of a set of which every sequence is there.
-  void finish(std::span<const results::ExpectedSequence> set, const std::string& file_name) const {
+  void finish(std::span<const results::ExpectedSequence> set) const {
     const bool is_whole = std::ranges::all_of(set, [&](const results::ExpectedSequence& one) {
       return results::has_sequence(summary_.folder, one.name);
     });
-    const fs::path file = summary_.folder / file_name;
-    if (!is_whole || (fs::exists(file) && summary_.made == 0)) return;
-    results::write_coco_results(file, summary_.folder, set);
+    if (!is_whole || fs::exists(coco_file_)) return;
+    results::write_coco_results(coco_file_, summary_.folder, set);
   }
 
   const std::string& command() const { return detector_.command; }
@@ -229,6 +231,7 @@ class DetectorResults {
   Json settings_;
   std::mutex mutex_;
   DetectSummary summary_;
+  fs::path coco_file_;
   std::optional<RunLock> lock_;
 };
 
@@ -348,7 +351,7 @@ class DetectorRun {
     for (const std::string& name : set.names())
       if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
-    open();
+    open("detections.json");
     std::vector<DetectionClip> backgrounds;
     if (options_.backgrounds) backgrounds = backgrounds_of(set, names, options_.warn);
     in_parallel(names.size() + backgrounds.size(), options_, [&](std::size_t i) {
@@ -356,7 +359,7 @@ class DetectorRun {
       const DetectionClip& background = backgrounds[i - names.size()];
       over(kBackgrounds, background.name, [&] { return background; });
     });
-    return summaries(sequences_of(set), "detections.json");
+    return summaries(sequences_of(set));
   }
 
   std::vector<DetectSummary> over(const fs::path& video) {
@@ -364,18 +367,17 @@ class DetectorRun {
     // Errors come before anything is made.
     video::expect_rate(
         video, ClipFrames(with_facts(clip), false, options_.warn).info(), options_.frame_rate_hz);
-    open();
+    open(clip.name + ".detections.json");
     over(
         "", clip.name, [&] { return clip; }, options_.progress);
-    return summaries(std::vector<results::ExpectedSequence>{{clip.name, 0, 0, 0}},
-                     clip.name + ".detections.json");
+    return summaries(std::vector<results::ExpectedSequence>{{clip.name, 0, 0, 0}});
   }
 
  private:
   using Progress = std::function<void(std::int64_t, std::int64_t)>;
 
-  void open() const {
-    for (const auto& results : results_) results->open();
+  void open(const std::string& coco_name) const {
+    for (const auto& results : results_) results->open(coco_name);
   }
 
   // The lens and the mask that the user states, for a clip that states none.
@@ -417,11 +419,10 @@ class DetectorRun {
     for (Following& detector : detectors) detector.finish();
   }
 
-  std::vector<DetectSummary> summaries(std::span<const results::ExpectedSequence> set,
-                                       const std::string& coco_name) const {
+  std::vector<DetectSummary> summaries(std::span<const results::ExpectedSequence> set) const {
     std::vector<DetectSummary> all;
     for (const auto& results : results_) {
-      results->finish(set, coco_name);
+      results->finish(set);
       all.push_back(results->summary());
     }
     return all;
