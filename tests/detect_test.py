@@ -24,6 +24,7 @@ ODD = {
     "disorder": ("echo '{\"frame\":1,\"detections\":[]}'", "answered out of order: frame '1', when asked for frame 3"),
     "nan": ("echo '{\"frame\":3,\"detections\":[{\"box\":[1,1,5,5],\"score\":NaN}]}'", "sent NaN"),
     "outside": ("echo '{\"frame\":3,\"detections\":[{\"box\":[999,1,5,5],\"score\":1}]}'", "lies outside its image of 320x240"),
+    "edge": ("echo '{\"frame\":3,\"detections\":[{\"box\":[319.9997,1,5,5],\"score\":1}]}'", "lies outside its image of 320x240"),
     "empty": ("echo '{\"frame\":3,\"detections\":[{\"box\":[9,1,0,5],\"score\":1}]}'", "has no area"),
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/network/network_detector.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "runners/network/network_child.h"
 #include "runners/network/network_input.h"
 #include "runners/network/network_output.h"
+#include "runners/results/results_folder.h"
 
 namespace airtruth::network {
 namespace {
@@ -47,13 +49,14 @@ bool is_cut(const Box& box, const Piece& tile, const image::Picture& picture) {
          (place.y_px + samples.rows < picture.height && box.bottom() >= samples.rows);
 }
 
-// Boxes end at the picture's edges; those that have nothing in it are left out.
+// Boxes end at the picture's edges; those that have nothing in it, or less than is written, are
+// left out.
 std::vector<results::Detection> cut_to(const Box& frame,
                                        std::vector<results::Detection> detections) {
   std::vector<results::Detection> kept;
   for (results::Detection& one : detections) {
     const auto inside = intersection(one.box_px, frame);
-    if (!inside) continue;
+    if (!inside || std::min(inside->width, inside->height) < results::kWrittenStep_px) continue;
     one.box_px = *inside;
     kept.push_back(std::move(one));
   }

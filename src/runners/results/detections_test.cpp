@@ -66,6 +66,24 @@ TEST_F(Results, OfASequenceAreReadAsTheyWereWritten) {
             "2,4,11.5,-1,20,8.125,7.5,-1,-1,-1\n2,-1,1,1,3,3,-1e-09,-1,-1,-1\n");
 }
 
+// Rounding carries a box over the edge of the picture, or not, before it is judged.
+TEST_F(Results, AreReadAsTheyWereJudged) {
+  const auto is_possible = [](const Box& box) {
+    return !fault_of({as_written(box), 1, "aircraft", {}}, 320, 240);
+  };
+  EXPECT_FALSE(is_possible({319.9997, 20, 8, 6}));
+  EXPECT_FALSE(is_possible({10, -5.9996, 8, 6}));
+  SequenceDetections written{"b", 320, 240, {{}}, {}};
+  for (const Box& box :
+       {Box{319.9993, 20, 8, 6}, Box{0.1, -5.9994, 1. / 3, 6}, Box{7, 7, 1e-9, 2}}) {
+    EXPECT_TRUE(is_possible(box)) << box.x;
+    written.frames[0].push_back({as_written(box), 1, "aircraft", {}});
+  }
+  write_sequence(folder_, written);
+  EXPECT_EQ(read_sequence(folder_, "b").frames, written.frames);
+  EXPECT_EQ(as_written({0, 0, -1, 0}), (Box{0, 0, -1, 0}));
+}
+
 TEST_F(Results, OfAFolderOfOursAreThoseOfItsSequences) {
   put("detector.json", "{}");
   write_sequence(folder_, one_of_each_kind());

@@ -27,7 +27,6 @@ constexpr int kMaxSide = 65'536;  // px, of a picture
 // 46 hours at 30 frames/s.
 constexpr std::int64_t kMaxFramesOfRun = 5'000'000;
 
-// To 1/1000 px.
 double rounded_px(double coordinate_px) { return std::round(coordinate_px * 1000) / 1000; }
 
 constexpr std::int64_t kMaxTrack = 1'000'000'000'000;  // an id; a double holds it exactly
@@ -55,16 +54,18 @@ void read_mot_text(const fs::path& file, FrameList& frames) {
 std::string mot_text_of(const SequenceDetections& detections) {
   std::string text;
   for (std::size_t i = 0; i < detections.frames.size(); ++i)
-    for (const Detection& d : detections.frames[i])
+    for (const Detection& d : detections.frames[i]) {
+      const Box box = as_written(d.box_px);
       fmt::format_to(std::back_inserter(text),
                      "{},{},{},{},{},{},{:.9g},-1,-1,-1\n",
                      i + 1,
                      d.track.value_or(-1),
-                     rounded_px(d.box_px.x + 1),
-                     rounded_px(d.box_px.y + 1),
-                     std::max(0.001, rounded_px(d.box_px.width)),
-                     std::max(0.001, rounded_px(d.box_px.height)),
+                     rounded_px(box.x + 1),
+                     rounded_px(box.y + 1),
+                     box.width,
+                     box.height,
                      d.score);
+    }
   return text;
 }
 
@@ -216,6 +217,13 @@ bool is_of_results_name(char c) {
 bool is_results_name(std::string_view name) {
   return !name.empty() && name.size() <= 80 && name.front() != '.' &&
          std::all_of(name.begin(), name.end(), is_of_results_name);
+}
+
+Box as_written(const Box& box) {
+  const auto side = [](double length) {
+    return length > 0 ? std::max(kWrittenStep_px, rounded_px(length)) : length;
+  };
+  return {rounded_px(box.x + 1) - 1, rounded_px(box.y + 1) - 1, side(box.width), side(box.height)};
 }
 
 void write_log(const fs::path& folder, const std::string& run, const std::string& text) {

@@ -21,7 +21,7 @@
 //                     after the text, so a sequence that has it is whole
 //   detections.json   COCO results of all sequences
 //   backgrounds/      .txt and .json of the videos that the set was made over, where that is asked
-// Coordinates are written to 1/1000 px and scores with 9 digits.
+// Coordinates are written to 1/1000 px (as_written()) and scores with 9 digits.
 namespace airtruth::results {
 
 // Whether a tracker's or detector's results can have this name: 1 to 80 of letters, digits, '-',
@@ -43,6 +43,11 @@ struct ExpectedSequence {
   // The categories by their numbers in that set.
   std::map<std::int64_t, std::string> category_ids = {};
 };
+
+// Coordinates are written as multiples of it.
+inline constexpr double kWrittenStep_px = 0.001;
+// The box as it is read again once it was written. Sides above 0 stay so.
+Box as_written(const Box& box);
 
 // Writes FOLDER/logs/RUN.log: what a tracker or detector printed, and how its run was broken off.
 // Without text there is no such file, nor that of an earlier try.

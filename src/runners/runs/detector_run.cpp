@@ -281,10 +281,13 @@ class Following {
       const Stopwatch watch;
       std::vector<results::Detection> detections = detector_->detect(frame);
       const double took_s = watch.seconds();
-      for (const results::Detection& detection : detections)
+      for (results::Detection& detection : detections) {
+        // What is judged is what is written: rounding can carry a box over the picture's edge.
+        detection.box_px = results::as_written(detection.box_px);
         if (const auto fault = results::fault_of(detection, found_.width, found_.height))
           throw process::Failure(
               fmt::format("answered what is no detection for frame {}: {}", frame.index, *fault));
+      }
       results::sort_by_score(detections);
       if (own_aircraft_)
         std::erase_if(detections, [&](const results::Detection& d) {
