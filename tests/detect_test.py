@@ -182,6 +182,30 @@ class OverAVideo(Case):
         self.assert_refused(run("detect", "flown.mkv", "-d", "cmo", "--frame-rate", "25", "-o", "flown"), "flown.mkv", "states its own rate")
         self.assertFalse(os.path.exists(path("flown")))
 
+    def test_results_of_another_video_or_rate_are_not_kept(self):
+        for folder in ("v1", "v2"):
+            made("synth", "-o", write(f"{folder}/clip.mkv", ""), "--frames", "2", "--width", "64", "--height", "64", "--overwrite")
+        detect = lambda video, *more: run("detect", video, "-d", "frame-difference", "-o", "origin", *more)
+        self.assertEqual(detect("v1/clip.mkv").returncode, 0)
+        self.assert_refused(detect("v2/clip.mkv"), "holds results with source", "v1/clip.mkv", "v2/clip.mkv")
+        self.assertIn("1 were there", detect(path("v1", "clip.mkv")).stdout)
+        self.assertEqual(detect("otb/one/img/", "--frame-rate", "10").returncode, 0)
+        self.assert_refused(detect("otb/one/img", "--frame-rate", "100"), "frame_rate_hz 10.0; this run has 100.0")
+        self.assertIn("1 were there", detect("otb/one/img", "--frame-rate", "10").stdout)
+        facts = json.loads(read("origin", "frame-difference", "img.json"))
+        for key in ("source", "frame_rate_hz"):  # as an older airtruth left it
+            del facts[key]
+        write("origin/frame-difference/img.json", json.dumps(facts))
+        self.assertIn("1 were there", detect("otb/one/img", "--frame-rate", "100").stdout)
+
+    def test_the_rate_that_is_stated_for_a_set_without_one_is_of_its_results(self):
+        made("dataset", "import", "otb", "-f", "otb", "-o", "rateless")
+        detect = lambda *more: run("detect", "rateless", "--only", "one", "-d", "frame-difference", "-o", "rates", *more)
+        self.assertEqual(detect("--frame-rate", "10").returncode, 0)
+        self.assert_refused(detect("--frame-rate", "100"), "frame_rate_hz 10.0; this run has 100.0")
+        made("detect", "set", "--only", "one", "-d", "frame-difference", "-o", "own-rate")
+        self.assertEqual(set(json.loads(read("own-rate", "frame-difference", "one.json"))), {"format", "sequence", "width", "height", "frames", "seconds"})
+
     def test_its_name_is_that_of_its_file(self):
         made("detect", "otb/one/img", "-d", "cmo", "--frame-rate", "25", "-o", "video")
         self.assertEqual(sorted(os.listdir(path("video", "cmo"))), ["detector.json", "img.detections.json", "img.json", "img.txt"])

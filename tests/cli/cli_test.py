@@ -311,6 +311,19 @@ class Track(Case):
             self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
             self.assertIn(word, refused.stderr)
 
+    def test_results_of_another_frame_or_video_are_not_kept(self):
+        os.makedirs(path("elsewhere"), exist_ok=True)
+        shutil.copy(path("flight.mkv"), path("elsewhere"))
+        box = ["--init", "60,40,30.5,20"]
+        self.assertEqual(self.track(*box).returncode, 0)
+        for arguments, source, word in ((box + ["--first-frame", "2"], "flight.mkv", "first_frame 0"), (box, "elsewhere/flight.mkv", "elsewhere")):
+            refused = self.track(*arguments, source=source)
+            self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
+            self.assertIn(word, refused.stderr)
+        self.assertIn("1 were there", self.track(*box, source=path("flight.mkv")).stdout)
+        os.remove(path(self.out, "results", "am3", "flight.run.json"))  # as an older airtruth left it
+        self.assertIn("1 were there", self.track(*box, source="elsewhere/flight.mkv").stdout)
+
     def test_the_results_of_pictures_are_named_by_their_folder(self):
         for name, source in (("pics", "pics/"), ("pics2", "pics2/%05d.pgm")):
             write_pictures(name)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foundation/json/settings_record.h"
 
+#include <string>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -21,6 +23,19 @@ nlohmann::ordered_json record_in(const std::filesystem::path& file) {
   return record;
 }
 
+void expect_same(const std::filesystem::path& file,
+                 const std::string& key,
+                 const nlohmann::ordered_json& there,
+                 const nlohmann::ordered_json& mine) {
+  if (there != mine)
+    throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out or "
+                            "remove the folder",
+                            key,
+                            there.dump(),
+                            mine.dump()),
+                {file.parent_path().string()});
+}
+
 }  // namespace
 
 void check_record(const std::filesystem::path& file) {
@@ -34,18 +49,18 @@ bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_jso
   }
   try {
     const auto there = record_in(file);
-    for (const auto& [key, value] : settings.items())
-      if (there.at(key) != value)
-        throw Error(fmt::format("holds results with {} {}; this run has {}: give another --out or "
-                                "remove the folder",
-                                key,
-                                there.at(key).dump(),
-                                value.dump()),
-                    {file.parent_path().string()});
+    for (const auto& [key, value] : settings.items()) expect_same(file, key, there.at(key), value);
   } catch (const nlohmann::ordered_json::exception&) {  // a key is missing
     fail_no_record(file);
   }
   return true;
+}
+
+void refuse_other(const std::filesystem::path& file, const nlohmann::ordered_json& settings) {
+  if (settings.empty() || !std::filesystem::exists(file)) return;
+  const auto there = record_in(file);
+  for (const auto& [key, value] : settings.items())
+    if (there.contains(key)) expect_same(file, key, there.at(key), value);
 }
 
 }  // namespace airtruth

@@ -15,6 +15,10 @@ namespace airtruth {
 // keys; further keys of the file do not matter.
 bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_json& settings);
 
+// Throws Error where the file, the record of one of the results in its folder, holds another value
+// than `settings` for a key that both have, or is no record. Without the file there is none.
+void refuse_other(const std::filesystem::path& file, const nlohmann::ordered_json& settings);
+
 // Throws Error where the file is there and is no record.
 void check_record(const std::filesystem::path& file);
 

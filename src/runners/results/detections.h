@@ -41,6 +41,10 @@ struct SequenceDetections {
   std::vector<std::vector<Detection>> frames;
   // The detector's own time for each frame, in seconds; empty where it is unknown.
   std::vector<double> seconds;
+  // Path of the video or the pictures that were named alone; "": it is a sequence of a set.
+  std::string source = {};
+  // The rate of pictures, frames a second, where the call that made these stated one.
+  std::optional<double> stated_rate_hz = {};
 };
 
 // True for a box of finite numbers that has an area.

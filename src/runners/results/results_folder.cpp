@@ -13,6 +13,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "foundation/json/json_object.h"
+#include "foundation/json/settings_record.h"
 #include "foundation/run_files/run_files.h"
 #include "labels/exchange/text.h"
 
@@ -76,12 +77,20 @@ fs::path facts_file(const fs::path& folder, const std::string& name) {
   return folder / (name + ".json");
 }
 
+Json origin_of(const SequenceDetections& detections) {
+  Json origin = Json::object();
+  if (!detections.source.empty()) origin["source"] = detections.source;
+  if (detections.stated_rate_hz) origin["frame_rate_hz"] = *detections.stated_rate_hz;
+  return origin;
+}
+
 Json facts_of(const SequenceDetections& detections) {
   Json facts = {{"format", kFormat},
                 {"sequence", detections.name},
                 {"width", detections.width},
                 {"height", detections.height},
                 {"frames", detections.frames.size()}};
+  facts.update(origin_of(detections));
   Json categories = Json::array();
   bool are_all_aircraft = true;
   for (const auto& frame : detections.frames)
@@ -250,6 +259,10 @@ void write_sequence(const fs::path& folder, const SequenceDetections& detections
 
 bool has_sequence(const fs::path& folder, const std::string& name) {
   return fs::exists(facts_file(folder, name)) && fs::exists(text_file(folder, name));
+}
+
+void expect_made_of(const fs::path& folder, const SequenceDetections& detections) {
+  refuse_other(facts_file(folder, detections.name), origin_of(detections));
 }
 
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name) {

@@ -24,6 +24,7 @@
 #include "foundation/base/stopwatch.h"
 #include "foundation/json/settings_record.h"
 #include "foundation/lazy_library/lazy_library.h"
+#include "picture/video/numbered_images.h"
 #include "runners/classical/classical.h"
 #include "runners/detector/detector.h"
 #include "runners/network/model_description.h"
@@ -179,9 +180,11 @@ class DetectorResults {
     write_file(summary_.folder / kRecord, record.dump(1) + "\n");
   }
 
-  // Counts a sequence that is there.
-  bool keeps(const std::string& part, const std::string& sequence) {
-    if (!results::has_sequence(summary_.folder / part, sequence)) return false;
+  // Counts a sequence that is there. Throws Error where it was made of something else.
+  bool keeps(const std::string& part, const results::SequenceDetections& begun) {
+    const fs::path folder = summary_.folder / part;
+    if (!results::has_sequence(folder, begun.name)) return false;
+    results::expect_made_of(folder, begun);
     const std::lock_guard lock(mutex_);
     ++summary_.kept;
     return true;
@@ -251,17 +254,22 @@ double hidden_share(const Box& box, const image::Mask& own_aircraft) {
 // One detector within one sequence.
 class Following {
  public:
-  Following(DetectorResults& results, std::string part, const DetectOptions& run, int threads)
+  // `begun` is what is known of the detections before there are any.
+  Following(DetectorResults& results,
+            std::string part,
+            results::SequenceDetections begun,
+            const DetectOptions& run,
+            int threads)
       : results_(&results),
         part_(std::move(part)),
         run_(&run),
-        detector_(make_detector(results.command(), run, threads)) {}
+        detector_(make_detector(results.command(), run, threads)),
+        found_(std::move(begun)) {}
 
   bool needs_motion() const { return run_->association || detector_->needs_motion(); }
   bool is_broken() const { return !detector_; }
 
   void begin(const detector::SequenceInput& sequence) {
-    found_.name = sequence.name;
     found_.width = sequence.width;
     found_.height = sequence.height;
     guarded([&] {
@@ -366,6 +374,8 @@ class DetectorRun {
   }
 
   std::vector<DetectSummary> over(const fs::path& video) {
+    source_ = video::whole_path(video).string();
+    require_utf8(source_);
     const DetectionClip clip = clip_of(video);
     // Errors come before anything is made.
     video::expect_rate(
@@ -405,9 +415,14 @@ class DetectorRun {
             const std::string& name,
             const auto& make_clip,
             const Progress& progress = {}) {
+    results::SequenceDetections begun;
+    begun.name = name;
+    begun.source = source_;
+    begun.stated_rate_hz = options_.frame_rate_hz;
     std::vector<Following> detectors;
     for (const auto& results : results_)
-      if (!results->keeps(part, name)) detectors.emplace_back(*results, part, options_, threads_);
+      if (!results->keeps(part, begun))
+        detectors.emplace_back(*results, part, begun, options_, threads_);
     if (detectors.empty()) return;
     const DetectionClip clip = with_facts(make_clip());
     const bool with_motion = std::ranges::any_of(detectors, &Following::needs_motion);
@@ -432,7 +447,8 @@ class DetectorRun {
   }
 
   const DetectOptions& options_;
-  int threads_;  // of a network
+  int threads_;         // of a network
+  std::string source_;  // of a video; "" for a set
   std::vector<std::unique_ptr<DetectorResults>> results_;
 };
 

@@ -153,6 +153,10 @@ class TrackerRun {
 
   TrackSummary over(const fs::path& video, const Box& init, std::int64_t first_frame) {
     const std::string name = video::clip_name(video);
+    const fs::path source = video::whole_path(video);
+    require_utf8(source);
+    const Json origin = {{"source", source.string()}, {"first_frame", first_frame}};
+    const fs::path record = summary_.folder / (name + ".run.json");
     const fs::path file =
         results::trajectory_file(summary_.folder, results::Protocol::kOnePass, name, 0);
     video::NumberedFrames frames(video, options_.warn);
@@ -164,6 +168,7 @@ class TrackerRun {
     open_folder();
     if (is_there(file)) {
       expect_begun_at(init, file);
+      refuse_other(record, origin);
       return summary_;
     }
     follower.begin(*picture, init);
@@ -176,7 +181,7 @@ class TrackerRun {
       follower.add(Mark::kAnswer, box);
       if (options_.progress) options_.progress(i - first_frame, std::max(i, total) - first_frame);
     }
-    write(file, results::Protocol::kOnePass, name, follower);
+    write(file, results::Protocol::kOnePass, name, follower, record, origin);
     return summary_;
   }
 
@@ -223,10 +228,13 @@ class TrackerRun {
     return true;
   }
 
+  // `record` states the origin of a video's results; those of a set have none.
   void write(const fs::path& file,
              results::Protocol protocol,
              const std::string& name,
-             const Follower& follower) {
+             const Follower& follower,
+             const fs::path& record = {},
+             const Json& origin = {}) {
     results::write_log(summary_.folder, file.stem().string(), follower.log());
     if (follower.is_broken()) {
       const std::lock_guard lock(mutex_);
@@ -238,8 +246,9 @@ class TrackerRun {
     fs::create_directories(file.parent_path());
     const fs::path times = results::times_file(file, protocol);
     RunFiles files;
-    files.writes(times, true).writes(file, true);
+    files.writes(record, true).writes(times, true).writes(file, true);
     files.begin();
+    files.write(record, [&](const fs::path& at) { write_file(at, origin.dump(1) + "\n"); });
     files.write(times,
                 [&](const fs::path& at) { write_file(at, results::text_of(follower.times_s())); });
     files.write(file,

@@ -58,7 +58,8 @@ TrackSummary track(const fs::path& set, const fs::path& out, const TrackOptions&
 void check_track(const fs::path& out, const TrackOptions& options);
 
 // Runs one pass over a video without truth, from a box in `first_frame` to the end, and writes
-// out/TRACKER/VIDEO.txt.
+// out/TRACKER/VIDEO.txt and, with the video's path and the first frame, VIDEO.run.json. Throws
+// Error where `out` holds results of another video of that name, or from another frame or box.
 TrackSummary track_video(const fs::path& video,
                          const Box& init,
                          std::int64_t first_frame,
