@@ -65,6 +65,7 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
   std::size_t missing = 0;
   std::int64_t negative = 0;
   Where first_negative;
+  std::vector<std::string> doubts;
   std::set<std::string> known;
   for (const TruthClip& truth : truths) {
     results.push_back(results::read_results(folder, truth.clip, options.origin_px));
@@ -72,6 +73,7 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
     missing += read.empty() ? 1 : 0;
     if (negative == 0) first_negative = read.first_negative;
     negative += read.negative_boxes;
+    if (!read.doubt.empty()) doubts.push_back(read.doubt);
     known.insert(truth.clip.name);
   }
   std::vector<std::string> unknown = results::tracked_sequences_in(folder);
@@ -105,6 +107,9 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                "have, and counts as no answer; expected x,y,width,height",
                                to_string(first_negative),
                                negative));
+  if (!doubts.empty())
+    airtruth::warn(options.warn,
+                   fmt::format("{} ({} of these results fit both)", doubts.front(), doubts.size()));
   if (missing > 0)
     airtruth::warn(options.warn,
                    fmt::format("{}: has results for {} of {} sequences; its score is of those",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -96,20 +97,27 @@ std::optional<std::int64_t> overlapping_track(const Tracks& tracks, const exchan
   return std::nullopt;
 }
 
+using FrameAndId = std::pair<std::int64_t, std::int64_t>;
+
+// The frame, from 1, and the id with which a line of MOTChallenge begins; empty for other lines.
+std::optional<FrameAndId> frame_and_id(const std::vector<double>& n) {
+  if (n.size() < kMotColumns) return std::nullopt;
+  const auto frame = exchange::whole_in(n[0], 1, exchange::kMaxFrames);
+  const auto id = exchange::whole_in(n[1], -1, std::int64_t{1} << 52);
+  return frame && id ? std::optional(FrameAndId(*frame, *id)) : std::nullopt;
+}
+
 // "frame,id,x,y,w,h,confidence,..." with frames of the video from 1.
 Trajectory read_mot(const fs::path& file, const exchange::Clip& clip, TrackerResults& results) {
   Tracks tracks;
   for (const exchange::Line& line : exchange::lines_of(file)) {
     const std::vector<double> n = exchange::numbers_of(line, file);
-    const auto frame =
-        n.size() < kMotColumns ? std::nullopt : exchange::whole_in(n[0], 1, exchange::kMaxFrames);
-    const auto id =
-        n.size() < kMotColumns ? std::nullopt : exchange::whole_in(n[1], -1, std::int64_t{1} << 52);
-    if (!frame || !id)
+    const auto at = frame_and_id(n);
+    if (!at)
       throw Error("is no line of MOTChallenge; expected frame,id,x,y,width,height,...",
                   {file.string(), line.number});
     if (const auto box = box_from(n, 2, 1))
-      tracks[*frame - 1][*id] = *box;
+      tracks[at->first - 1][at->second] = *box;
     else if (n[4] < 0 || n[5] < 0)
       add_negative({file.string(), line.number}, results);
   }
@@ -125,13 +133,45 @@ Trajectory read_mot(const fs::path& file, const exchange::Clip& clip, TrackerRes
   return trajectory;
 }
 
-bool is_mot(const fs::path& file) {
-  const auto lines = exchange::lines_of(file);
-  if (lines.empty() || lines.front().text.starts_with('m')) return false;
-  const std::size_t count = exchange::numbers_of(lines.front(), file).size();
-  // MOTChallenge's lines have seven or more columns here. Eight columns are a polygon, unless the
-  // line begins like a frame and an id.
-  return count == 7 || count >= 9;
+// MOTChallenge's lines are sorted by frame, or by id and within it by frame, and a track has one
+// box in a frame.
+bool are_of_tracks(std::vector<FrameAndId> lines) {
+  const bool by_frame = std::ranges::is_sorted(lines, {}, &FrameAndId::first);
+  const bool by_id = std::ranges::is_sorted(
+      lines, {}, [](const FrameAndId& line) { return FrameAndId(line.second, line.first); });
+  std::ranges::sort(lines);
+  const auto twice = std::ranges::adjacent_find(
+      lines, [](const FrameAndId& a, const FrameAndId& b) { return a == b && a.second >= 0; });
+  return (by_frame || by_id) && twice == lines.end();
+}
+
+// MOTChallenge's lines have seven or more columns here. An even number of numbers is also that of a
+// polygon: there the whole file decides. Where it fits both, with a line for each frame of the
+// clip, it is MOTChallenge's if the clip has its frames, and `results` say so.
+bool is_mot(const fs::path& file, const exchange::Clip& clip, TrackerResults& results) {
+  std::vector<FrameAndId> lines;
+  for (const exchange::Line& line : exchange::lines_of(file)) {
+    if (line.text.starts_with('m')) return false;
+    const std::vector<double> n = exchange::numbers_of(line, file);
+    if (n.size() <= kMotColumns) return false;
+    if (n.size() % 2 == 1) return true;
+    const auto at = frame_and_id(n);
+    if (!at) return false;
+    lines.push_back(*at);
+  }
+  if (lines.empty() || !are_of_tracks(lines)) return false;
+  if (lines.size() != clip.frames.size()) return true;
+  const auto is_at = [](const FrameAndId& line, const exchange::LabelledFrame& frame) {
+    return line.first == frame.frame + 1;
+  };
+  if (std::ranges::equal(lines, clip.frames, is_at)) return true;
+  const bool are_in_clip = std::ranges::all_of(lines, [&](const FrameAndId& line) {
+    return line.first > clip.frames.front().frame && line.first <= clip.frames.back().frame + 1;
+  });
+  results.doubt = fmt::format("{}: fits MOTChallenge and polygons alike, and is read as {}",
+                              file.string(),
+                              are_in_clip ? "MOTChallenge" : "polygons");
+  return are_in_clip;
 }
 
 void expect_length(const Trajectory& trajectory, const exchange::Clip& clip, const fs::path& file) {
@@ -153,8 +193,8 @@ Trajectory one_pass_run(const fs::path& file,
                         const exchange::Clip& clip,
                         int origin_px,
                         TrackerResults& results) {
-  Trajectory run =
-      is_mot(file) ? read_mot(file, clip, results) : read_trajectory(file, origin_px, results);
+  Trajectory run = is_mot(file, clip, results) ? read_mot(file, clip, results)
+                                               : read_trajectory(file, origin_px, results);
   // VOT's unsupervised runs mark their start.
   for (VotFrame& frame : run)
     if (frame.mark != Mark::kAnswer) frame = {Mark::kAnswer, {}};

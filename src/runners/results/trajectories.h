@@ -60,16 +60,20 @@ struct TrackerResults {
   // Boxes with a width or height below 0, which are answers without a box, and the first's place.
   std::int64_t negative_boxes = 0;
   Where first_negative;
+  // How the file of one pass was read, where it fits MOTChallenge and polygons alike; else "".
+  std::string doubt;
   bool empty() const { return !one_pass && restart.empty() && multistart.empty(); }
 };
 
 // `origin_px` is the coordinate that the results give to the first pixel, 0 or 1 (always 1 for
 // MOTChallenge). In one pass, a box without area or with a NaN is an answer without a box. In VOT's
 // runs a box without area is an answer without a box, and a box with a NaN is kUnknown, as in VOT's
-// toolkit. Polygons and masks become their bounding box. Of MOTChallenge's tracks the function
-// takes the track that has the greatest overlap with the truth at the first frame on which any
-// track overlaps it. Throws Error with file and line for text that is not a result, for a run whose
-// length differs from the clip's, and for times whose number differs from their run's.
+// toolkit. Polygons and masks become their bounding box. Lines with an even number of columns,
+// eight or more, are MOTChallenge's where all begin with a whole frame and id, sorted. Of
+// MOTChallenge's tracks the function takes the track that has the greatest overlap with the truth
+// at the first frame on which any track overlaps it. Throws Error with file and line for text that
+// is not a result, for a run whose length differs from the clip's, and for times whose number
+// differs from their run's.
 TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px);
 
 // The box of a clip's object in a frame; empty where it is not shown.

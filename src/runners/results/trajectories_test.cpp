@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runners/results/trajectories.h"
 
+#include <functional>
 #include <random>
 #include <string>
 #include <string_view>
@@ -67,6 +68,17 @@ const exchange::Clip& clip() {
     return made;
   }();
   return six;
+}
+
+// The same with an object, at (10 + frame, 20).
+exchange::Clip with_truth() {
+  exchange::Clip made = clip();
+  for (exchange::LabelledFrame& frame : made.frames) {
+    exchange::Label label;
+    label.box_px = {10. + static_cast<double>(frame.frame), 20, 8, 6};
+    frame.labels.push_back(label);
+  }
+  return made;
 }
 
 std::string fault_of(const ResultsFolder& folder) {
@@ -194,6 +206,72 @@ TEST(MotTracks, ASideBelow0IsTold) {
   const TrackerResults results = read_results(folder.path(), clip(), 0);
   EXPECT_EQ(results.negative_boxes, 1);
   EXPECT_EQ(to_string(results.first_negative), (folder.path() / "a.txt").string() + ":2");
+}
+
+std::string lines_of(int count, const std::function<std::string(int)>& line) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += line(i) + "\n";
+  return text;
+}
+
+TEST(MotTracks, HaveAnyNumberOfColumnsFromSevenOn) {
+  const std::string columns = ",1,1,0.5,-1,-1,-1,-1";
+  for (const std::size_t length : {2, 4, 8, 11, 14}) {
+    const ResultsFolder folder;
+    folder.file("a.txt", lines_of(6, [&](int i) {
+                  return std::to_string(i + 1) + ",1," + std::to_string(11 + i) + ",21,8,6" +
+                         columns.substr(0, length);
+                }));
+    const TrackerResults read = read_results(folder.path(), with_truth(), 0);
+    for (int i = 0; i < 6; ++i)
+      EXPECT_EQ(read.one_pass->frames.at(static_cast<std::size_t>(i)).box, (Box{10. + i, 20, 8, 6}))
+          << length;
+    EXPECT_EQ(read.doubt, "");
+  }
+}
+
+TEST(MotTracks, AreSortedByFrameOrById) {
+  for (const char* text :
+       {"1,4,11,21,8,6,1,1\n1,2,99,99,8,6,1,1\n2,4,12,21,8,6,1,1\n",
+        "1,2,99,99,8,6,1,1\n2,2,99,99,8,6,1,1\n1,4,11,21,8,6,1,1\n2,4,12,21,8,6,1,1\n"}) {
+    const ResultsFolder folder;
+    folder.file("a.txt", text);
+    const TrackerResults read = read_results(folder.path(), with_truth(), 0);
+    EXPECT_EQ(read.one_pass->frames.at(1).box, (Box{11, 20, 8, 6})) << text;
+  }
+}
+
+TEST(Polygons, OfWholeNumbersAreToldFromMotChallengeByAllLines) {
+  // Four and five corners; the first line alone could be of frame 50 and id 30.
+  for (const char* corners : {",58,30,58,36,50,36", ",58,30,58,36,54,39,50,36"}) {
+    const ResultsFolder folder;
+    folder.file("a.txt",
+                lines_of(6, [&](int i) { return std::to_string(50 - i) + ",30" + corners; }));
+    const TrackerResults read = read_results(folder.path(), clip(), 0);
+    EXPECT_EQ(read.one_pass->frames.at(3).box->x, 47) << corners;
+    EXPECT_EQ(read.doubt, "");
+  }
+}
+
+TEST(Polygons, AreReadWhereTheClipHasNoSuchFramesWhichIsTold) {
+  const ResultsFolder folder;
+  const auto read_from = [&](int first, int step) {
+    folder.file("a.txt", lines_of(6, [&](int i) {
+                  return std::to_string(first + step * i) + ",30,99,30,99,36,50,36";
+                }));
+    return read_results(folder.path(), clip(), 0);
+  };
+  const TrackerResults polygons = read_from(50, 2);
+  EXPECT_EQ(polygons.one_pass->frames.at(3).box->x, 50);
+  EXPECT_THAT(polygons.doubt,
+              HasSubstr("a.txt: fits MOTChallenge and polygons alike, and is read "
+                        "as polygons"));
+  EXPECT_EQ(read_from(1, 1).doubt, "");
+  // A line for each frame of the clip, of two tracks in some and of none in others.
+  folder.file("a.txt",
+              "1,1,5,5,9,9,1,1\n1,2,5,5,9,9,1,1\n2,1,5,5,9,9,1,1\n3,1,5,5,9,9,1,1\n"
+              "5,1,5,5,9,9,1,1\n6,1,5,5,9,9,1,1\n");
+  EXPECT_THAT(read_results(folder.path(), clip(), 0).doubt, HasSubstr("read as MOTChallenge"));
 }
 
 TEST(VotRuns, ThatAreNoneSaySo) {
