@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 #include "evaluation/scores/detector_score.h"
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
+#include "foundation/base/text.h"
 #include "foundation/json/settings_record.h"
 #include "runners/results/results_folder.h"
 
@@ -171,8 +173,9 @@ Text text_of(const fs::path& file, bool with_tracks) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     if (std::count(line.begin(), line.end(), ',') < 6) return Text::kOther;
     const std::size_t first = line.find(',') + 1;
-    const std::size_t begin = line.find_first_not_of(" \t", first);
-    const bool has_no_track = begin != std::string::npos && line.compare(begin, 2, "-1") == 0;
+    const std::string_view second =
+        std::string_view(line).substr(first, line.find(',', first) - first);
+    const bool has_no_track = number_from_text<double>(trimmed(second)) == -1;
     return with_tracks || has_no_track ? Text::kMotOfDetector : Text::kOther;
   }
   return Text::kEmpty;

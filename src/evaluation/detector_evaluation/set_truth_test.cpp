@@ -20,6 +20,7 @@
 #include "sequence/demo/demo.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
+#include "support/temporary_folder.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
@@ -220,6 +221,20 @@ TEST(FirstViolation, IsThatOfTheClosedFormWithinTheFramesAndAfterThem) {
   EXPECT_FALSE(first_violation_s(volume, head_on(0, 5), 1));
   EXPECT_NEAR(*first_violation_s(volume, head_on(30, 31), 180), 30, 1e-12);
   EXPECT_FALSE(first_violation_s(volume, {}, 180));
+}
+
+// A tracker's polygon may begin above the picture.
+TEST(HoldsDetections, WhereTheSecondCellIsTheIdOfNoTrack) {
+  const test_support::TemporaryFolder folder;
+  const auto holds = [&](const char* line) {
+    write_file(folder / "a.txt", line);
+    return holds_detections(folder.path());
+  };
+  EXPECT_TRUE(holds("1,-1,5,5,9,9,0.5,-1,-1,-1\n"));
+  EXPECT_TRUE(holds("1, -1.0 ,5,5,9,9,0.5\n"));
+  EXPECT_FALSE(holds("50,-12.5,60,-12.5,60,4,50,4\n"));
+  EXPECT_FALSE(holds("50,-1.5,60,-1.5,60,4,50,4\n"));
+  EXPECT_FALSE(holds("1,7,5,5,9,9,0.5\n"));
 }
 
 }  // namespace
