@@ -75,6 +75,9 @@ TEST(Protocol, AnswersThatAreNoneSayWhy) {
   EXPECT_THAT(fault_in(R"({"frame":"3","detections":[]})"), HasSubstr("expected"));
   EXPECT_THAT(fault_in(R"({"frame":3,"detections":[{"box":[1,1,1,1],"score":1,"track":-4}]})"),
               HasSubstr("track"));
+  EXPECT_THAT(fault_in(R"({"frame":3,"detections":[{"box":[1,1,1,1],"score":1,"track":4},)"
+                       R"({"box":[9,9,1,1],"score":1,"track":4}]})"),
+              HasSubstr("track 4 twice for frame 3"));
   EXPECT_THAT(fault_in(R"({"frame":3,"detections":[{"box":[1,1,1,1],"score":1,"category":4}]})"),
               HasSubstr("category"));
   EXPECT_THAT(fault_in("{\"frame\":3,\x01\xff"), HasSubstr("no JSON object"));

@@ -2,6 +2,8 @@
 #include "runners/detector/protocol.h"
 
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -127,7 +129,13 @@ std::vector<results::Detection> detections_of(std::string_view line, std::int64_
                      index,
                      kMostInAnAnswer));
   std::vector<results::Detection> detections;
-  for (const Json& one : list) detections.push_back(detection_of(one));
+  std::set<std::int64_t> tracks;
+  for (const Json& one : list) {
+    const std::optional<std::int64_t> track = detections.emplace_back(detection_of(one)).track;
+    if (track && !tracks.insert(*track).second)
+      fail(fmt::format(
+          "answered track {} twice for frame {}; expected each once in a frame", *track, index));
+  }
   return detections;
 }
 
