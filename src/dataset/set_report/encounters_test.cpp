@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/set_report/encounters.h"
 
+#include <numeric>
+
 #include <gtest/gtest.h>
+
+#include "dataset/set_report/totals.h"
 
 namespace airtruth::set_report {
 namespace {
@@ -49,6 +53,24 @@ TEST(Encounters, AfterTheClipItHasNoPlace) {
   EXPECT_TRUE(closest_places(finished.truth.frames, record));
   record.id = "other";
   EXPECT_FALSE(closest_places(finished.truth.frames, record));
+}
+
+// A sequence of 300 frames weighs ten times one of 30.
+TEST(Encounters, HistogramsCountEveryFrame) {
+  replay::Finished finished = passing();
+  for (int k = 30; k < 300; ++k) finished.truth.frames.push_back(finished.truth.frames[0]);
+  for (annotation::Frame& frame : finished.truth.frames) {
+    frame.intruders[0].visible_box_px = PixelBox{10, 10, 8, 4};
+    frame.intruders[0].range_m = 500;
+    frame.intruders[0].azimuth_deg = 5;
+  }
+  Portrait portrait;
+  portrait.centres.resize(Totals::kCells);
+  Totals totals;
+  totals.add(finished, portrait);
+  for (const Histogram* of :
+       {&totals.range_m, &totals.size_px, &totals.azimuth_deg, &totals.to_closest_s})
+    EXPECT_EQ(std::accumulate(of->counts.begin(), of->counts.end(), std::int64_t{0}), 300);
 }
 
 TEST(Encounters, TheCardCountsThem) {

@@ -60,8 +60,4 @@ Portrait portrait_of(const labelled::LabelledSet& set,
   return portrait;
 }
 
-std::set<std::size_t> sampled_frames(const annotation::Truth& truth) {
-  return drawing::spread_over(truth.frames.size(), 120);
-}
-
 }  // namespace airtruth::set_report

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -50,9 +49,5 @@ Portrait portrait_of(const labelled::LabelledSet& set,
                      const replay::Finished& finished,
                      std::size_t stills,
                      const std::stop_token& stop);
-
-// The frames of which the series of the page and the histograms are, by index: at most 120 of a
-// sequence, a display choice.
-std::set<std::size_t> sampled_frames(const annotation::Truth& truth);
 
 }  // namespace airtruth::set_report

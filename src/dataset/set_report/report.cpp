@@ -38,6 +38,12 @@ constexpr std::size_t kMaxStills = 1000;
 constexpr std::size_t kMaxStillsOfOne = 60;
 constexpr std::size_t kMinStillsOfOne = 4;
 
+// The frames of which the series of the page are, by index: at most 120 of a sequence, a display
+// choice.
+std::set<std::size_t> sampled_frames(const annotation::Truth& truth) {
+  return drawing::spread_over(truth.frames.size(), 120);
+}
+
 template <typename Row, typename Value>
 Json column(const std::vector<Row>& rows, const Value& value) {
   Json values = Json::array();

@@ -74,15 +74,15 @@ void Totals::add(const replay::Finished& finished, const Portrait& portrait) {
   negative_sequences += portrait.frames_with_intruder == 0 ? 1 : 0;
   for (const auto& [name, boxes] : portrait.boxes_by_class) boxes_by_class[name] += boxes;
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
-  for (const std::size_t i : sampled_frames(finished.truth))
-    for (const annotation::Intruder& intruder : finished.truth.frames[i].intruders) {
+  for (const annotation::Frame& frame : finished.truth.frames)
+    for (const annotation::Intruder& intruder : frame.intruders) {
       const auto box = annotation::box_to_show(intruder);
       if (!box || !annotation::is_aircraft(intruder.object_class)) continue;
       size_px.add(std::max(box->width, box->height));
       if (intruder.range_m) range_m.add(*intruder.range_m);
       if (intruder.azimuth_deg) azimuth_deg.add(*intruder.azimuth_deg);
       if (const auto closest = closest_s(finished, intruder.id))
-        to_closest_s.add(*closest - finished.truth.frames[i].time_s);
+        to_closest_s.add(*closest - frame.time_s);
     }
   for (const auto& record : portrait.encounters) add_encounter(record, *this);
   for (const double value : portrait.film.contrasts) contrast.add(value);
@@ -100,7 +100,7 @@ std::vector<std::pair<std::string, plot::Plot>> overview_plots(const Totals& tot
       {"range_m", bars("boxes", totals.range_m)},
       {"size_px", bars("boxes", totals.size_px)},
       {"azimuth_deg", bars("boxes", totals.azimuth_deg)},
-      {"contrast", bars("frames", totals.contrast)},
+      {"contrast", bars("frames of the loops", totals.contrast)},
       {"classes", bars("boxes", classes, boxes)},
       {"negatives",
        bars("frames", {"with an intruder", "without"}, {totals.frames_with_intruder, without})},

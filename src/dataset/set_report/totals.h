@@ -23,8 +23,8 @@ struct Histogram {
   void add(double value);
 };
 
-// Counts over a whole data set, made from its portraits and, for histograms, from the frames that
-// their series would show.
+// Counts over a whole data set, made from its portraits and from every frame of its truth. Contrast
+// alone is of the frames of the films' loops, which are decoded.
 struct Totals {
   // Number of cells over the picture.
   static constexpr std::size_t kCells = std::size_t{Portrait::kCellColumns} * Portrait::kCellRows;
