@@ -63,22 +63,19 @@ std::string row(const std::array<std::string, 11>& cells) {
 
 std::string row_of(const scores::DetectorScore& detector) {
   const evaluation::AveragePrecision& ap = detector.average_precision;
-  const bool has_point = detector.point.has_value();
-  const evaluation::FrocPoint point = detector.point.value_or(evaluation::FrocPoint{});
-  const bool has_trials = has_point && point.detection.trials > 0;
+  const evaluation::FrocPoint& point = detector.point;
+  const bool has_trials = point.detection.trials > 0;
   return row({detector.name,
               std::to_string(detector.sequences.size()),
               number(ap.ap_centre, 3),
               interval(ap.ap_centre_interval),
               number(ap.ap_50, 3),
               number(ap.ap, 3),
-              has_point ? fmt::format("{:.4g}", point.score) : "-",
+              fmt::format("{:.4g}", point.score),
               has_trials ? fmt::format("{:.3f}", point.detection.value) : "-",
               has_trials ? between(point.detection.low, point.detection.high) : "-",
-              has_point ? fmt::format("{:.3g}", point.false_alarms_per_image) : "-",
-              has_point && detector.froc.hours > 0
-                  ? fmt::format("{:.0f}", point.false_alarms_per_hour)
-                  : "-"});
+              fmt::format("{:.3g}", point.false_alarms_per_image),
+              detector.froc.hours > 0 ? fmt::format("{:.0f}", point.false_alarms_per_hour) : "-"});
 }
 
 std::string share_of(const statistics::Proportion& share) {

@@ -19,6 +19,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/text.h"
+#include "foundation/json/json_object.h"
 #include "foundation/json/settings_record.h"
 #include "runners/results/results_folder.h"
 
@@ -66,8 +67,19 @@ std::vector<scores::ScoredDetections> results_in(const fs::path& source,
   return results;
 }
 
+// `airtruth detect --associate` records how it made tracks, of which there may be none.
+bool is_associated(const fs::path& source) {
+  const fs::path record = source / "detector.json";
+  return fs::exists(record) && JsonDocument(record).has("association");
+}
+
+struct Results {
+  bool is_associated = false;
+  std::vector<scores::ScoredDetections> sequences;
+};
+
 // By name, each detector's results.
-using AllResults = std::map<std::string, std::vector<scores::ScoredDetections>>;
+using AllResults = std::map<std::string, Results>;
 
 // Videos of sequences without results are not read.
 void add_films(std::vector<scores::TruthSequence>& truths,
@@ -75,7 +87,7 @@ void add_films(std::vector<scores::TruthSequence>& truths,
                const AssessOptions& options) {
   std::set<std::size_t> with_results;
   for (const auto& [name, results] : found)
-    for (const scores::ScoredDetections& one : results) with_results.insert(one.truth);
+    for (const scores::ScoredDetections& one : results.sequences) with_results.insert(one.truth);
   const std::vector<std::size_t> wanted(with_results.begin(), with_results.end());
   in_parallel(wanted.size(), options, [&](std::size_t i) {
     measure_contrast(truths[wanted[i]], options.stop);
@@ -127,23 +139,28 @@ scores::Assessment assess(const fs::path& set,
     if (found.contains(name))
       throw Error("is the second set of results called '" + name + "'", {source.string()});
     check_record(source / "detector.json");
-    found[name] = results_in(source, assessment.truths, options.warn);
-    std::erase_if(found[name], [&](const scores::ScoredDetections& one) {
+    Results& of = found[name];
+    of = {is_associated(source), results_in(source, assessment.truths, options.warn)};
+    std::erase_if(of.sequences, [&](const scores::ScoredDetections& one) {
       return !sequences::hold(options.where, assessment.truths[one.truth].weather);
     });
-    if (found[name].empty())
+    if (of.sequences.empty())
       throw Error("holds no detections of any sequence for which --where holds", {source.string()});
   }
   if (options.with_film) add_films(assessment.truths, found, options);
   std::vector<std::string> names;
-  for (const auto& [name, sequences] : found) names.push_back(name);
+  for (const auto& [name, of] : found) names.push_back(name);
   assessment.detectors.resize(names.size());
   in_parallel(
       names.size(),
       options.jobs,
       [&](std::size_t i) {
-        assessment.detectors[i] = scores::score_detector(
-            names[i], std::move(found.at(names[i])), assessment.truths, assessment.options);
+        Results& of = found.at(names[i]);
+        assessment.detectors[i] = scores::score_detector(names[i],
+                                                         std::move(of.sequences),
+                                                         of.is_associated,
+                                                         assessment.truths,
+                                                         assessment.options);
       },
       {},
       options.stop);

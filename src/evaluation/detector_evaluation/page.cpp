@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -184,10 +183,6 @@ Json detector_json(const scores::Assessment& assessment, std::size_t k) {
   return json;
 }
 
-double point_score(const scores::DetectorScore& detector) {
-  return detector.point ? detector.point->score : -std::numeric_limits<double>::infinity();
-}
-
 // A letter for each frame: f where every aircraft that counts is found at the operating point, p
 // where some are, m where none is, . where there is none.
 std::string found_letters(const scores::TruthSequence& truth,
@@ -295,8 +290,8 @@ Json sequence_json(const scores::Assessment& assessment, const Film& film, std::
       for (const drawing::Still& still : stills)
         drawn.push_back(detections_in(scored, still.index));
       detectors.push_back({{"detector", k},
-                           {"found", found_letters(truth, scored, point_score(detector))},
-                           {"false_alarms", false_alarm_frames(scored, point_score(detector))},
+                           {"found", found_letters(truth, scored, detector.point.score)},
+                           {"false_alarms", false_alarm_frames(scored, detector.point.score)},
                            {"drawn", drawn}});
     }
   }

@@ -158,8 +158,8 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
   const scores::DetectorScore& score = assessment.detectors.at(0);
   EXPECT_NEAR(*score.average_precision.ap, 1, 1e-9);
   EXPECT_NEAR(*score.average_precision.ap_centre, 1, 1e-9);
-  EXPECT_EQ(score.point->detection.value, 1);
-  EXPECT_EQ(score.point->false_alarms_per_image, 0);
+  EXPECT_EQ(score.point.detection.value, 1);
+  EXPECT_EQ(score.point.false_alarms_per_image, 0);
   EXPECT_NEAR(evaluation::Hota::mean(score.tracks->hota.hota), 1, 1e-9);
   EXPECT_EQ(score.tracks->clear.mota(), 1);
   EXPECT_EQ(score.tracks->declarations.declared.value, 1);
@@ -174,7 +174,7 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
   // Both sequences have a weight of 3.
   ASSERT_TRUE(score.weighted_detection);
   EXPECT_EQ(score.weighted_detection->value, 1);
-  EXPECT_EQ(score.weighted_detection->trials, 3 * score.point->detection.trials);
+  EXPECT_EQ(score.weighted_detection->trials, 3 * score.point.detection.trials);
   const nlohmann::ordered_json json = json_of_detector(score, assessment);
   EXPECT_EQ(json["point"]["weighted_detection"]["share"], 1);
   for (const auto& bin : json["by"]["range_m"]) {
@@ -184,6 +184,33 @@ TEST_F(OfRenderedSet, ExactAnswersScoreExactly) {
     EXPECT_NEAR(bin["weighted"]["effective_sequences"].get<double>(), bin["sequences"], 1e-9);
   }
   EXPECT_EQ(json["bearing"]["azimuth_mrad"]["deviation_interval_95"].size(), 2u);
+}
+
+// Whatever a detector that associates finds has tracks, and to find nothing is a result.
+TEST_F(OfRenderedSet, NothingFoundIsMeasured) {
+  const auto score_of = [&](const std::string& record, const auto& change) {
+    const fs::path folder = answered("changed", 0);
+    for (const scores::TruthSequence& one : truth().sequences) {
+      auto detections = results::read_sequence(folder, one.name);
+      for (std::vector<results::Detection>& frame : detections.frames) change(frame);
+      write_sequence(folder, detections);
+    }
+    write_file(folder / "detector.json", record);
+    return assess(root_ / "set", {folder}, {}).detectors.at(0);
+  };
+  const scores::DetectorScore blind = score_of("{}", [](auto& frame) { frame.clear(); });
+  EXPECT_EQ(blind.point.detection.value, 0);
+  EXPECT_GT(blind.point.detection.trials, 0);
+  EXPECT_EQ(blind.point.false_alarms_per_image, 0);
+  EXPECT_EQ(blind.by.at("range_m").at(0).detection.value, 0);
+  ASSERT_TRUE(blind.tracks);
+  EXPECT_EQ(blind.tracks->declarations.declared.value, 0);
+  EXPECT_EQ(blind.tracks->declarations.declared.trials, 2);
+  const auto forget_tracks = [](auto& frame) {
+    for (results::Detection& one : frame) one.track.reset();
+  };
+  EXPECT_FALSE(score_of(R"({"association": null})", forget_tracks).tracks);
+  EXPECT_TRUE(score_of(R"({"association": {"declare": "9/9"}})", forget_tracks).tracks);
 }
 
 // A pixel to the right is 1000 / f mrad near the axis; the focal length of 240 px over 20 degrees

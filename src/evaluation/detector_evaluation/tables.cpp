@@ -300,7 +300,7 @@ Json json_of_detector(const scores::DetectorScore& detector, const scores::Asses
                {"frames_per_second_median", or_null(detector.frames_per_second_median)},
                {"average_precision", json_of(detector.average_precision)},
                {"froc", json_of(detector.froc)},
-               {"point", detector.point ? json_of(*detector.point, has_hours) : Json()},
+               {"point", json_of(detector.point, has_hours)},
                {"by", Json::object()},
                {"false_alarms_by", detector.false_alarms_by},
                {"mistaken_by", Json::object()},
@@ -311,9 +311,8 @@ Json json_of_detector(const scores::DetectorScore& detector, const scores::Asses
                {"tracks", tracks_json_of(detector, assessment)},
                {"strongest_false_alarms", Json::array()},
                {"misses", Json::array()}};
-  if (detector.point)
-    json["point"]["weighted_detection"] =
-        detector.weighted_detection ? json_of(*detector.weighted_detection) : Json();
+  json["point"]["weighted_detection"] =
+      detector.weighted_detection ? json_of(*detector.weighted_detection) : Json();
   for (const auto& [key, bins] : detector.by) {
     json["by"][key] = Json::array();
     for (const scores::DetectionBin& bin : bins) json["by"][key].push_back(json_of(bin));
@@ -370,8 +369,7 @@ std::string sequences_csv(const scores::Assessment& assessment) {
   for (const scores::DetectorScore& detector : assessment.detectors)
     for (const scores::ScoredDetections& scored : detector.sequences) {
       const scores::TruthSequence& truth = assessment.truths[scored.truth];
-      const double score = detector.point ? detector.point->score : 0;
-      const auto of_point = [&](const auto& one) { return one >= score; };
+      const auto of_point = [&](const auto& one) { return one >= detector.point.score; };
       const evaluation::FrocSequence counted = scores::froc_sequence_of(truth, scored);
       rows.push_back(
           {{"detector", detector.name},

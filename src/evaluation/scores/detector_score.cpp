@@ -123,8 +123,11 @@ evaluation::TrackFrames track_frames_of(const TruthSequence& truth,
 // The measures at work, one function for each part of DetectorScore.
 class Scoring {
  public:
-  Scoring(DetectorScore& result, std::span<const TruthSequence> truths, const ScoreOptions& options)
-      : result_(result), truths_(truths), options_(options) {
+  Scoring(DetectorScore& result,
+          bool is_associated,
+          std::span<const TruthSequence> truths,
+          const ScoreOptions& options)
+      : result_(result), truths_(truths), options_(options), has_tracks_(is_associated) {
     for (ScoredDetections& scored : result_.sequences) {
       scored.matches = matches_of(scored.detections, truth(scored), options.centre_px);
       hours_ += truth(scored).duration_s / evaluation::kSecondsPerHour;
@@ -134,6 +137,7 @@ class Scoring {
           has_tracks_ = has_tracks_ || detection.track;
         }
     }
+    has_tracks_ = has_tracks_ || result_.detections == 0;
   }
 
   void score() {
@@ -141,7 +145,7 @@ class Scoring {
     score_froc();
     score_aot();
     if (has_tracks_) score_tracks();
-    if (result_.point) score_at_point(result_.point->score);
+    score_at_point(result_.point.score);
     score_speed();
   }
 
@@ -160,13 +164,13 @@ class Scoring {
     for (const ScoredDetections& scored : result_.sequences)
       sequences.push_back(froc_sequence_of(truth(scored), scored));
     result_.froc = evaluation::froc_of(sequences);
-    if (result_.froc.points.empty()) return;
     // Where the best detection is a false alarm and one is too many, the point is that of its
-    // score.
+    // score. Without a detection all scores are alike.
+    const auto& points = result_.froc.points;
     const double score = options_.score ? *options_.score
                                         : evaluation::score_at_false_alarms(
                                               sequences, options_.false_alarms_per_image)
-                                              .value_or(result_.froc.points.front().score);
+                                              .value_or(points.empty() ? 0 : points.front().score);
     result_.point = evaluation::froc_at(sequences, score);
   }
 
@@ -291,7 +295,7 @@ class Scoring {
   std::span<const TruthSequence> truths_;
   const ScoreOptions& options_;
   double hours_ = 0;
-  bool has_tracks_ = false;
+  bool has_tracks_;
 };
 
 }  // namespace
@@ -313,12 +317,13 @@ evaluation::FrocSequence froc_sequence_of(const TruthSequence& truth,
 
 DetectorScore score_detector(std::string name,
                              std::vector<ScoredDetections> sequences,
+                             bool is_associated,
                              std::span<const TruthSequence> truths,
                              const ScoreOptions& options) {
   DetectorScore result;
   result.name = std::move(name);
   result.sequences = std::move(sequences);
-  Scoring(result, truths, options).score();
+  Scoring(result, is_associated, truths, options).score();
   return result;
 }
 

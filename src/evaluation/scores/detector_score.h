@@ -25,7 +25,8 @@
 // file is needed to make or read it.
 namespace airtruth::scores {
 
-// The measures of whole tracks; only detectors whose results have tracks have them.
+// The measures of whole tracks; detectors whose results have detections without tracks alone, which
+// nothing associated, have none.
 struct TrackScores {
   evaluation::Hota hota;
   evaluation::ClearMot clear;
@@ -50,9 +51,8 @@ struct DetectorScore {
 
   evaluation::AveragePrecision average_precision;
   evaluation::Froc froc;
-  // The threshold of `by`, bearings, false alarms and misses, and what holds there. Empty where
-  // there is no detection.
-  std::optional<evaluation::FrocPoint> point;
+  // The threshold of `by`, bearings, false alarms and misses, and what holds there.
+  evaluation::FrocPoint point;
   // The probability of detection at the point with the set's encounter weights; empty where no
   // sequence has a weight.
   std::optional<statistics::Proportion> weighted_detection;
@@ -108,9 +108,11 @@ evaluation::FrocSequence froc_sequence_of(const TruthSequence& truth,
                                           const ScoredDetections& scored);
 
 // All measures of one detector. `sequences` state their truth and detections; their matches are
-// made here. Each has as many frames as its truth.
+// made here. Each has as many frames as its truth. `is_associated`: tracks were made of the
+// detections, be there any or not.
 DetectorScore score_detector(std::string name,
                              std::vector<ScoredDetections> sequences,
+                             bool is_associated,
                              std::span<const TruthSequence> truths,
                              const ScoreOptions& options);
 

@@ -11,7 +11,7 @@ airtruth.detectionPlayer = (data) => {
   let asked = 0;
 
   const shown = () => sequence.detectors.filter((one) => !hidden.has(one.detector));
-  const isStrong = (detector, score) => detectors[detector].point !== null && score >= detectors[detector].point.score;
+  const isStrong = (detector, score) => score >= detectors[detector].point.score;
 
   const cross = (context, view, [x, y, width, height]) => {
     const [left, top, right, bottom] = [x - view.x, y - view.y, x + width - view.x, y + height - view.y].map((v) => v * view.scale);
