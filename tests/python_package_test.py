@@ -550,8 +550,23 @@ class Detectors(unittest.TestCase):
                 continue
             for name, value in told.items():
                 one = getattr(score, name)
-                wanted = [value["detected"], value["total"], value["rate"] or 0] if isinstance(value, dict) else value
+                wanted = [value["detected"], value["total"], value["rate"]] if isinstance(value, dict) else value
                 self.assertEqual(list(one) if isinstance(one, tuple) else one, wanted, name)
+
+    def test_what_is_not_defined_is_none(self):
+        box = [[0, 0, 9, 9]]
+        aot = evaluate.aot([box], [[1]], [box], [[1]])
+        self.assertEqual((aot.edr, aot.edr_mixed, aot.afdr), ((0, 0, None),) * 3)
+        nothing = evaluate.aot([], [], [], [], rate_hz=10)
+        self.assertEqual((nothing.hfar, nothing.fppi), (None, None))
+        curve = evaluate.froc([[]], [box], [[1]])
+        self.assertEqual((curve.detection, curve.detection_low, curve.detection_high), (None,) * 3)
+        self.assertEqual(curve.false_alarms_per_image.tolist(), [1])
+        for restart in (evaluate.restart_score([], (1, 2)), evaluate.restart_score([(box, None, [])], (1, 2))):
+            self.assertEqual((restart.accuracy, restart.failures, restart.reliability, restart.eao), (None,) * 4)
+        multistart = evaluate.multistart_score([], (1, 2))
+        self.assertEqual((multistart.accuracy, multistart.robustness, multistart.eao), (None,) * 3)
+        self.assertEqual(evaluate.paired([], []).difference, None)
 
     def test_flagged_aircraft_and_what_is_on_them_are_left_out(self):
         counted, flagged, beside = [0, 0, 20, 10], [100, 0, 20, 10], [109, 0, 20, 10]

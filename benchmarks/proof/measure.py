@@ -102,7 +102,8 @@ class Row:
         boxes, scores = ([found[k][j] for k in places] for j in (0, 1))
         ap = airtruth.evaluate.average_precision(truth, boxes, scores, ignored=flags, centre_px=CENTRE_PX).ap_centre
         curve = airtruth.evaluate.froc(truth, boxes, scores, ignored=flags, centre_px=CENTRE_PX)
-        recalls = [float(curve.detection[curve.false_alarms_per_image <= rate].max(initial=0)) for rate in FALSE_ALARMS]
+        recalls = [np.nan if curve.detection is None else float(curve.detection[curve.false_alarms_per_image <= rate].max(initial=0))
+                   for rate in FALSE_ALARMS]
         return np.array([np.nan if ap is None else ap, *recalls])
 
     def drawn(self, dice):

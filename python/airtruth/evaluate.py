@@ -86,9 +86,9 @@ class Froc:
     """The free-response operating characteristic: columns with a row for each of n thresholds, by falling score."""
 
     score: Numbers  # (n,): detections with this score or more
-    detection: Numbers  # (n,): share of aircraft in images that are found
-    detection_low: Numbers  # (n,): its 95 % interval, over sequences
-    detection_high: Numbers
+    detection: Optional[Numbers]  # (n,): share of aircraft in images that are found; None without any
+    detection_low: Optional[Numbers]  # (n,): its 95 % interval, over sequences
+    detection_high: Optional[Numbers]
     false_alarms_per_image: Numbers  # (n,)
     false_alarms_per_hour: Optional[Numbers]  # None without a rate
     false_alarms_per_flight: Numbers  # (n,): a flight is a sequence
@@ -113,12 +113,12 @@ class Hota:
     at_overlaps: Dict[str, Numbers]  # each of them at the overlaps 0.05, 0.10 .. 0.95: (19,)
 
 
-Rate = Tuple[int, int, float]
+Rate = Tuple[int, int, Optional[float]]
 
 
 @dataclass
 class AotScore:
-    """The measures of the Airborne Object Tracking challenge. A rate is (detected, of, share)."""
+    """The measures of the Airborne Object Tracking challenge. A rate is (detected, of, share); of 0 the share is None."""
 
     score: float  # detections with this score or more
     edr: Rate  # encounters that a track detects
@@ -129,14 +129,14 @@ class AotScore:
     afdr: Rate  # objects in range that are detected, frame by frame
     max_range_m: Optional[float]  # up to which they are in range; None without a valid encounter
     hfar: Optional[float]  # false tracks an hour; None without a rate
-    fppi: float  # false detections an image
+    fppi: Optional[float]  # false detections an image; None without one
 
 
 @dataclass
 class Paired:
     """The comparison of two trackers on the same sequences."""
 
-    difference: float  # mean of a - b
+    difference: Optional[float]  # mean of a - b; None without a sequence
     interval: Optional[Interval]  # 95 %
     p_value: float  # two-sided, under random signs
     wins: int  # of a
@@ -146,21 +146,21 @@ class Paired:
 
 @dataclass
 class Restart:
-    """VOT's measures of a tracker that is restarted after each failure."""
+    """VOT's measures of a tracker that is restarted after each failure; without a run they are None."""
 
-    accuracy: float
-    failures: float  # mean number of a run
-    reliability: float  # exp(-30 failures / length)
+    accuracy: Optional[float]
+    failures: Optional[float]  # mean number of a run
+    reliability: Optional[float]  # exp(-30 failures / length)
     eao: Optional[float]
     eao_curve: Numbers
 
 
 @dataclass
 class MultiStart:
-    """VOT's measures of a tracker that starts at many frames."""
+    """VOT's measures of a tracker that starts at many frames; without a run they are None."""
 
-    accuracy: float
-    robustness: float
+    accuracy: Optional[float]
+    robustness: Optional[float]
     eao: Optional[float]
     eao_curve: Numbers
 

@@ -96,10 +96,14 @@ py::dict froc_dict(const py::list& sequences, std::optional<double> rate_hz, dou
   const auto& points = froc.points;
   py::dict dict;
   const IntoDict into{dict};
+  const auto share = [&](double Proportion::*of) -> py::object {
+    if (froc.aircraft == 0) return py::none();
+    return column(points, [&](const auto& p) { return p.detection.*of; });
+  };
   dict["score"] = column(points, [](const auto& p) { return p.score; });
-  dict["detection"] = column(points, [](const auto& p) { return p.detection.value; });
-  dict["detection_low"] = column(points, [](const auto& p) { return p.detection.low; });
-  dict["detection_high"] = column(points, [](const auto& p) { return p.detection.high; });
+  dict["detection"] = share(&Proportion::value);
+  dict["detection_low"] = share(&Proportion::low);
+  dict["detection_high"] = share(&Proportion::high);
   dict["false_alarms_per_image"] =
       column(points, [](const auto& p) { return p.false_alarms_per_image; });
   dict["false_alarms_per_hour"] =
@@ -206,12 +210,13 @@ AotFrame aot_frame_of(const py::handle& item, double centre_px) {
   return frame;
 }
 
-py::dict aot_dict(const AotScore& score, bool has_hours) {
+py::dict aot_dict(const AotScore& score, bool has_images, bool has_rate) {
   py::dict dict;
   const IntoDict into{dict};
   into("score", score.score);
   const auto rate = [&](const char* name, const AotRate& of) {
-    dict[name] = py::make_tuple(of.detected, of.total, of.rate());
+    dict[name] = py::make_tuple(
+        of.detected, of.total, of.total > 0 ? std::optional(of.rate()) : std::nullopt);
   };
   rate("edr", score.edr_all);
   rate("edr_below_horizon", score.edr_below);
@@ -220,8 +225,8 @@ py::dict aot_dict(const AotScore& score, bool has_hours) {
   rate("edr_by_frames", score.edr_frames_all);
   rate("afdr", score.afdr);
   into("max_range_m", score.max_range_m);
-  into("hfar", has_hours ? std::optional(score.hfar) : std::nullopt);
-  into("fppi", score.fppi);
+  into("hfar", has_images && has_rate ? std::optional(score.hfar) : std::nullopt);
+  into("fppi", has_images ? std::optional(score.fppi) : std::nullopt);
   return dict;
 }
 
@@ -252,7 +257,7 @@ py::dict aot(const py::list& sequences,
       left_alone([in = aot_inputs(sequences, rate_hz, centre_px), min_score, min_track_frames] {
         return aot_score(in.flights, {min_score, in.hours, min_track_frames});
       });
-  return aot_dict(score, rate_hz.has_value());
+  return aot_dict(score, !sequences.empty(), rate_hz.has_value());
 }
 
 // (by hfar, by fppi).
@@ -261,7 +266,7 @@ py::tuple ranks(const py::list& sequences, std::optional<double> rate_hz, double
       [in = aot_inputs(sequences, rate_hz, centre_px)] { return aot_ranks(in.flights, in.hours); });
   const auto one = [&](const std::optional<AotScore>& score) -> py::object {
     if (!score) return py::none();
-    return aot_dict(*score, rate_hz.has_value());
+    return aot_dict(*score, !sequences.empty(), rate_hz.has_value());
   };
   return py::make_tuple(rate_hz ? one(found.by_hfar) : py::none(), one(found.by_fppi));
 }

@@ -129,7 +129,7 @@ py::dict paired_dict(const py::object& a, const py::object& b) {
   const Paired result = left_alone([=] { return paired(first, second); });
   py::dict dict;
   const IntoDict into{dict};
-  into("difference", result.difference);
+  into("difference", first.empty() ? std::nullopt : std::optional(result.difference));
   dict["interval"] = interval_tuple(result.interval);
   into("p_value", result.p_value);
   into("wins", result.wins);
@@ -256,27 +256,36 @@ std::pair<int, int> range_of(const TwoWhole& range) {
   return {low, whole_of<int>(range.second, "eao_range[1]", low, kMost)};
 }
 
+// A measure over the runs of all sequences; empty where there is none.
+template <typename Runs>
+std::optional<double> over(const std::vector<Runs>& sequences, double measure) {
+  const bool is_empty =
+      std::ranges::all_of(sequences, [](const Runs& s) { return s.runs.empty(); });
+  return is_empty ? std::nullopt : std::optional(measure);
+}
+
 py::dict restart_dict(const py::iterable& sequences, const TwoWhole& range) {
-  const Restart result = left_alone(
-      [runs = restart_runs(sequences), to = range_of(range)] { return restart_score(runs, to); });
+  const std::vector<RestartRuns> runs = restart_runs(sequences);
+  const Restart result =
+      left_alone([runs, to = range_of(range)] { return restart_score(runs, to); });
   py::dict dict;
   const IntoDict into{dict};
-  into("accuracy", result.accuracy);
-  into("failures", result.failures);
-  into("reliability", result.reliability);
+  into("accuracy", over(runs, result.accuracy));
+  into("failures", over(runs, result.failures));
+  into("reliability", over(runs, result.reliability));
   into("eao", result.eao);
   into("eao_curve", result.eao_curve);
   return dict;
 }
 
 py::dict multistart_dict(const py::iterable& sequences, const TwoWhole& range) {
-  const MultiStart result = left_alone([runs = multistart_runs(sequences), to = range_of(range)] {
-    return multistart_score(runs, to);
-  });
+  const std::vector<MultiStartRuns> runs = multistart_runs(sequences);
+  const MultiStart result =
+      left_alone([runs, to = range_of(range)] { return multistart_score(runs, to); });
   py::dict dict;
   const IntoDict into{dict};
-  into("accuracy", result.accuracy);
-  into("robustness", result.robustness);
+  into("accuracy", over(runs, result.accuracy));
+  into("robustness", over(runs, result.robustness));
   into("eao", result.eao);
   into("eao_curve", result.eao_curve);
   return dict;
