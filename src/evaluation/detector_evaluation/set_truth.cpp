@@ -9,6 +9,7 @@
 
 #include "camera/lens/lens.h"
 #include "dataset/sequences/labels_of_truth.h"
+#include "encounter/passage/passage.h"
 #include "encounter/separation/violation.h"
 #include "evaluation/scores/ignored_regions.h"
 #include "foundation/base/error.h"
@@ -17,9 +18,11 @@
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"
 #include "picture/video/numbered_frames.h"
+#include "picture/video/reader.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
+#include "sequence/setup/from_scene.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
@@ -110,36 +113,6 @@ scores::TruthFrame frame_of(const annotation::Frame& truth, const lens::Facts& l
   return frame;
 }
 
-// Velocity of the own aircraft at each frame, from its positions.
-std::vector<Vector3> own_velocities(const std::vector<annotation::Frame>& frames) {
-  std::vector<Vector3> velocities;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    const annotation::Frame& before = frames[i == 0 ? 0 : i - 1];
-    const annotation::Frame& after = frames[std::min(i + 1, frames.size() - 1)];
-    const double seconds = after.time_s - before.time_s;
-    velocities.push_back(seconds > 0 ? Vector3((vector_of(after.camera_position_ned_m) -
-                                                vector_of(before.camera_position_ned_m)) /
-                                               seconds)
-                                     : Vector3::Zero());
-  }
-  return velocities;
-}
-
-std::vector<PairState> states_of(const std::vector<annotation::Frame>& frames, std::size_t actor) {
-  const std::vector<Vector3> velocities = own_velocities(frames);
-  std::vector<PairState> states;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (actor >= frames[i].intruders.size()) continue;
-    const annotation::Intruder& intruder = frames[i].intruders[actor];
-    if (!intruder.position_ned_m || !intruder.velocity_ned_mps) continue;
-    states.push_back(
-        {frames[i].time_s,
-         {vector_of(frames[i].camera_position_ned_m), velocities[i]},
-         {vector_of(*intruder.position_ned_m), vector_of(*intruder.velocity_ned_mps)}});
-  }
-  return states;
-}
-
 // Whether the scene asked for this volume, so that the record has its violations.
 bool was_asked(const std::vector<annotation::Frame>& frames,
                std::size_t actor,
@@ -152,18 +125,32 @@ bool was_asked(const std::vector<annotation::Frame>& frames,
   return false;
 }
 
-// The violation of a volume that the record does not have.
+trajectory::Path own_path(const scene::Scene& scene) {
+  scene::Camera camera = scene.camera;
+  if (camera.log && !camera.log_offset_s)
+    camera.clip_start_s =
+        video::time_of_first_frame_s(scene.background.video,
+                                     {.first_frame = scene.background.first_frame,
+                                      .picture_rate_hz = scene.background.frame_rate_hz});
+  return setup::camera_path(camera);
+}
+
+// The violation of a volume that the record does not have, of the same paths over the same time.
 void ask_paths(const replay::Finished& finished,
-               std::size_t actor,
                const separation::Volume& volume,
                scores::TruthEncounter& encounter) {
-  const std::vector<annotation::Frame>& frames = finished.truth.frames;
-  const std::vector<PairState> states = states_of(frames, actor);
-  // An aircraft whose path is over before the clip is does not fly on.
-  const bool goes_on = !states.empty() && states.back().time_s == frames.back().time_s;
-  const double lookahead_s = goes_on ? finished.scene->truth.lookahead_s : 0;
-  encounter.has_volume = !states.empty();
-  encounter.violation_s = first_violation_s(volume, states, lookahead_s);
+  const scene::Scene& scene = *finished.scene;
+  const auto intruder = std::ranges::find(scene.intruders, encounter.name, &scene::Intruder::id);
+  if (intruder == scene.intruders.end() || !intruder->seen.empty()) return;
+  const double end_s = finished.truth.frames.back().time_s + scene.truth.lookahead_s;
+  try {
+    const trajectory::Path own = own_path(scene);
+    const auto found = passage::violations(volume, own, setup::path_of(*intruder, own), 0, end_s);
+    encounter.has_volume = true;
+    if (!found.empty()) encounter.violation_s = found.front().begin_s;
+  } catch (const Error&) {
+    // The file of a path is not there any more: whether they violate the volume is unknown.
+  }
 }
 
 scores::TruthEncounter encounter_of(const replay::Finished& finished,
@@ -187,7 +174,7 @@ scores::TruthEncounter encounter_of(const replay::Finished& finished,
       if (one.volume == volume)
         first_s = std::min(first_s.value_or(one.time.begin_s), one.time.begin_s);
   } else if (const auto* named = separation::named_volume(volume)) {
-    ask_paths(finished, actor, named->volume, encounter);
+    ask_paths(finished, named->volume, encounter);
   }
   return encounter;
 }
@@ -364,27 +351,6 @@ void expect_volume(const SetTruth& set, const std::string& volume) {
                           fmt::join(names, ", ")));
 }
 
-constexpr int kHalvings = 40;  // of the time between two frames: to less than a nanosecond
-
-separation::Mover between(const separation::Mover& a, const separation::Mover& b, double share) {
-  return {a.position_ned_m + share * (b.position_ned_m - a.position_ned_m),
-          a.velocity_ned_mps + share * (b.velocity_ned_mps - a.velocity_ned_mps)};
-}
-
-// `before` does not violate the volume and `after` does.
-double entry_s(const separation::Volume& volume, const PairState& before, const PairState& after) {
-  double low = 0;
-  double high = 1;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double share = (low + high) / 2;
-    const bool is_in = is_inside(volume,
-                                 between(before.own, after.own, share),
-                                 between(before.intruder, after.intruder, share));
-    (is_in ? high : low) = share;
-  }
-  return before.time_s + high * (after.time_s - before.time_s);
-}
-
 }  // namespace
 
 SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path ignore) {
@@ -424,18 +390,6 @@ void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop)
     for (scores::TruthObject& object : frame.objects)
       object.contrast_to_noise = image::contrast_to_noise(picture, pixels_of(object.box_px));
   }
-}
-
-std::optional<double> first_violation_s(const separation::Volume& volume,
-                                        std::span<const PairState> states,
-                                        double lookahead_s) {
-  for (std::size_t i = 0; i < states.size(); ++i)
-    if (is_inside(volume, states[i].own, states[i].intruder))
-      return i == 0 ? states[i].time_s : entry_s(volume, states[i - 1], states[i]);
-  if (states.empty()) return std::nullopt;
-  const PairState& last = states.back();
-  const auto later = separation::violation(volume, last.own, last.intruder, lookahead_s);
-  return later ? std::optional(last.time_s + later->begin_s) : std::nullopt;
 }
 
 }  // namespace airtruth::detector_evaluation

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
-#include "encounter/separation/measures.h"
-#include "encounter/separation/violation.h"
 #include "evaluation/scores/truth.h"
 #include "foundation/base/files.h"
 
@@ -33,20 +29,5 @@ SetTruth set_truth(const fs::path& set, const std::string& volume, fs::path igno
 // Measures the contrast to noise of every aircraft in the sequence's video; without a video nothing
 // happens. Throws Error where the video ends before the truth does.
 void measure_contrast(scores::TruthSequence& truth, const std::stop_token& stop);
-
-// The own aircraft and an intruder at one frame.
-struct PairState {
-  double time_s = 0;
-  separation::Mover own;
-  separation::Mover intruder;
-};
-
-// The first time at which the states violate the volume: within the frames, between which positions
-// and velocities are interpolated, or within `lookahead_s` after the last of them, from which on
-// both keep their velocities. Empty where they never do. For volumes that the scene did not ask
-// for; sequence.json states the violations of the others along the whole paths.
-std::optional<double> first_violation_s(const separation::Volume& volume,
-                                        std::span<const PairState> states,
-                                        double lookahead_s);
 
 }  // namespace airtruth::detector_evaluation

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "encounter/separation/violation.h"
 #include "evaluation/detector_evaluation/assess.h"
 #include "evaluation/detector_evaluation/tables.h"
 #include "foundation/base/error.h"
@@ -43,29 +42,33 @@ class OfRenderedSet : public testing::Test {
     demo::VirtualFlightOptions how;
     how.format = video::Format::kMkv;
     demo::write_flight(synthetic::Flight(options), root_ / "flight.mkv", how);
-    render("asked", "[truth]\nvolumes = [\"f3442\"]\n");
-    render("plain", "");
+    for (const char* set : {"set", "short"}) {
+      render(set, "asked", "[truth]\nvolumes = [\"f3442\"]\n");
+      render(set, "plain", "");
+    }
   }
   static void TearDownTestSuite() { fs::remove_all(root_); }
 
-  static void render(const std::string& name, const std::string& tables) {
+  // In the set "short" the path of the intruder ends 1.8 s after the first frame, 955 m away.
+  static void render(const std::string& set, const std::string& name, const std::string& tables) {
+    const std::string path =
+        set == "short" ? "waypoints_ned_m = [[1100, 60, -165], [1000, 60, -165]]\nspeed_mps = 55\n"
+                       : "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
+                         "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n";
     const std::string text = "name = \"" + name + "\"\nweight = 3\n[background]\nvideo = " +
                              "\"flight.mkv\"\n[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 20\n"
                              "[camera]\nposition_ned_m = [0, 0, -150]\n"
                              "velocity_ned_mps = [25, 0, 0]\nattitude_yaw_pitch_roll_deg = [0, 0, "
                              "0]\n[motion]\nmodel = \"none\"\n" +
-                             tables +
-                             "[[intruder]]\nid = \"him\"\naircraft = \"c172/g-boix\"\n"
-                             "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
-                             "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n"
-                             "[output]\nvideo = \"mkv\"\n";
+                             tables + "[[intruder]]\nid = \"him\"\naircraft = \"c172/g-boix\"\n" +
+                             path + "[output]\nvideo = \"mkv\"\n";
     pipeline::Options options;
     options.use_cache = false;
-    pipeline::render(scene::parse_scene(text, root_ / "scene.toml"), root_ / "set", options);
+    pipeline::render(scene::parse_scene(text, root_ / "scene.toml"), root_ / set, options);
   }
 
-  static SetTruth truth(const std::string& volume = "") {
-    return set_truth(root_ / "set", volume, {});
+  static SetTruth truth(const std::string& volume = "", const std::string& set = "set") {
+    return set_truth(root_ / set, volume, {});
   }
 
   // A folder of results that are the truth, shifted to the right, as one track.
@@ -127,13 +130,16 @@ TEST_F(OfRenderedSet, HoldsWhatTruthJsonlStates) {
 
 // By hand: the horizontal distance is 2000 ft where 80 (8 - t) = sqrt(609.6^2 - 60^2); 15 m of
 // height are within 250 ft. One sequence states it in its record, of the other it follows from the
-// positions.
-TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePositions) {
-  const SetTruth set = truth("f3442");
+// paths. A path that is over before has none.
+TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePaths) {
   const double by_hand_s = kApproach_s - std::sqrt(609.6 * 609.6 - 60 * 60) / 80;
-  for (const scores::TruthSequence& one : set.sequences) {
+  for (const scores::TruthSequence& one : truth("f3442").sequences) {
     ASSERT_TRUE(one.encounters.at(0).has_volume) << one.name;
-    EXPECT_NEAR(*one.encounters[0].violation_s, by_hand_s, 0.01) << one.name;
+    EXPECT_NEAR(*one.encounters[0].violation_s, by_hand_s, 1e-6) << one.name;
+  }
+  for (const scores::TruthSequence& one : truth("f3442", "short").sequences) {
+    ASSERT_TRUE(one.encounters.at(0).has_volume) << one.name;
+    EXPECT_FALSE(one.encounters[0].violation_s) << one.name;
   }
 }
 
@@ -224,30 +230,6 @@ TEST_F(OfRenderedSet, AShiftOfAPixelIsItsAngle) {
     return 0.0;
   };
   EXPECT_NEAR(error("shifted") - error("straight"), 1000 / 680.6, 0.02 * 1000 / 680.6);
-}
-
-// A head-on pair in uniform motion, sampled at 10 Hz from `first_s` to `last_s`.
-std::vector<PairState> head_on(double first_s, double last_s) {
-  std::vector<PairState> states;
-  for (int i = 0; first_s + 0.1 * i <= last_s + 1e-9; ++i) {
-    const double t = first_s + 0.1 * i;
-    states.push_back({t,
-                      {Vector3(30 * t, 0, -150), Vector3(30, 0, 0)},
-                      {Vector3(3000 - 60 * t, 100, -170), Vector3(-60, 0, 0)}});
-  }
-  return states;
-}
-
-TEST(FirstViolation, IsThatOfTheClosedFormWithinTheFramesAndAfterThem) {
-  const separation::Volume& volume = separation::named_volume("f3442")->volume;
-  const std::vector<PairState> begin = head_on(0, 0);
-  const double exact_s =
-      separation::violation(volume, begin[0].own, begin[0].intruder, 180)->begin_s;
-  EXPECT_NEAR(*first_violation_s(volume, head_on(0, 40), 180), exact_s, 1e-9);
-  EXPECT_NEAR(*first_violation_s(volume, head_on(0, 5), 180), exact_s, 1e-9);
-  EXPECT_FALSE(first_violation_s(volume, head_on(0, 5), 1));
-  EXPECT_NEAR(*first_violation_s(volume, head_on(30, 31), 180), 30, 1e-12);
-  EXPECT_FALSE(first_violation_s(volume, {}, 180));
 }
 
 // A tracker's polygon may begin above the picture.
