@@ -92,20 +92,26 @@ std::optional<Approach> closest_approach(const trajectory::Path& own,
       best = i;
     }
   }
-  // Around the nearest step the distance falls and then rises.
-  const double before_s = times_s[best > 0 ? best - 1 : 0];
-  const double after_s = times_s[std::min(best + 1, times_s.size() - 1)];
-  const double time_s = turning_point(before_s, after_s, [&](double t) {
+  const auto is_closing = [&](double t, double least_mps) {
     const auto both = both_at(own, intruder, t);
     if (!both) return false;
     const separation::Relative between = both->between();
-    return between.offset_ned_m.dot(between.velocity_ned_mps) < 0;
-  });
+    return between.offset_ned_m.dot(between.velocity_ned_mps) <
+           -least_mps * between.offset_ned_m.norm();
+  };
+  // Around the nearest step the distance falls and then rises.
+  const double before_s = times_s[best > 0 ? best - 1 : 0];
+  const double after_s = times_s[std::min(best + 1, times_s.size() - 1)];
+  const double time_s =
+      turning_point(before_s, after_s, [&](double t) { return is_closing(t, 0); });
   const auto both = both_at(own, intruder, time_s);
   if (!both) return std::nullopt;
   const Vector3 offset = both->between().offset_ned_m;
-  return Approach{
-      time_s, offset.norm(), std::hypot(offset.x(), offset.y()), offset_from(both->own, offset)};
+  return Approach{time_s,
+                  offset.norm(),
+                  std::hypot(offset.x(), offset.y()),
+                  offset_from(both->own, offset),
+                  best + 1 == times_s.size() && is_closing(times_s.back(), separation::kStillMps)};
 }
 
 std::vector<separation::Interval> violations(const separation::Volume& volume,

@@ -33,6 +33,8 @@ struct Approach {
   double distance_m = 0;
   double horizontal_m = 0;
   Offset offset;  // of the intruder from the own aircraft
+  // True where a path, or the time asked for, ends while the two still come nearer.
+  bool is_cut_off = false;
 };
 
 // The least distance in space between begin_s and end_s while both are in the world. Empty where

@@ -59,7 +59,14 @@ TEST(Passage, OnlyWhileBothAreInTheWorld) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->time_s, 4, 1e-6);  // its path ends there, still 100 m ahead
   EXPECT_NEAR(found->distance_m, std::hypot(100, 30), 1e-6);
+  EXPECT_TRUE(found->is_cut_off);
   EXPECT_FALSE(closest_approach(own, late, 0, 1));
+  // One that flies away throughout is nearest where its path begins, which cuts nothing off.
+  const std::vector<Vector3> away = {{300, 30, -100}, {900, 30, -100}};
+  const auto first = closest_approach(own, trajectory::spline_at_speed(away, 60), 0, 60);
+  ASSERT_TRUE(first);
+  EXPECT_NEAR(first->time_s, 0, 1e-6);
+  EXPECT_FALSE(first->is_cut_off);
 }
 
 // Of straight paths, walking finds the interval of the closed form.

@@ -143,6 +143,18 @@ TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePaths) {
   }
 }
 
+TEST_F(OfRenderedSet, OneWhosePathEndsWhileItComesNearerHasNoClosestApproach) {
+  for (const scores::TruthSequence& one : truth("", "short").sequences) {
+    EXPECT_FALSE(one.encounters.at(0).closest_approach_s) << one.name;
+    for (const scores::TruthFrame& frame : one.frames)
+      for (const scores::TruthObject& object : frame.objects)
+        EXPECT_FALSE(object.to_closest_approach_s) << one.name;
+  }
+  // What kind of encounter it is is known from where they are nearest.
+  const replay::Finished finished = replay::open_finished(root_ / "short" / "plain");
+  EXPECT_EQ(finished.encounters.at(0).meeting, passage::Meeting::kHeadOn);
+}
+
 TEST_F(OfRenderedSet, RefusesAnUnknownVolume) {
   try {
     truth("f344");

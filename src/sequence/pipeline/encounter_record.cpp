@@ -40,14 +40,15 @@ EncounterRecord record_of(const setup::World& world,
   EncounterRecord record;
   record.id = actor.id;
   record.first_seen = seen;
-  record.closest = passage::closest_approach(world.camera, actor.path, 0, end_s);
-  if (record.closest) {
-    const auto own = world.camera.at(record.closest->time_s);
-    const auto intruder = actor.path.at(record.closest->time_s);
-    check(own && intruder, "both are in the world at their closest approach");
+  const auto nearest = passage::closest_approach(world.camera, actor.path, 0, end_s);
+  if (nearest) {
+    if (!nearest->is_cut_off) record.closest = nearest;
+    const auto own = world.camera.at(nearest->time_s);
+    const auto intruder = actor.path.at(nearest->time_s);
+    check(own && intruder, "both are in the world where they are nearest");
     record.meeting = passage::meeting_of(passage::mover_of(*own), passage::mover_of(*intruder));
     record.vertical_motion = passage::vertical_motion_of(passage::mover_of(*intruder));
-    if (seen) record.horizon = horizon_at(world, actor, *seen, record.closest->time_s);
+    if (seen) record.horizon = horizon_at(world, actor, *seen, nearest->time_s);
   }
   if (seen) record.horizon_when_first_seen = horizon_at(world, actor, *seen, seen->time_s);
   for (const auto& [name, volume] : world.volumes)

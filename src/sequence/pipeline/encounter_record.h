@@ -34,12 +34,12 @@ struct NamedInterval {
 struct EncounterRecord {
   std::string id;
   // From the first frame to the lookahead after the last one; empty for an intruder that is not in
-  // the world then.
+  // the world then, and for one that still comes nearer when a path, or that time, ends.
   std::optional<passage::Approach> closest;
-  // Of the states at the closest approach.
+  // Of the states where they are nearest in that time.
   std::optional<passage::Meeting> meeting;
   std::optional<passage::VerticalMotion> vertical_motion;
-  // At the closest approach, with the height that it has where it is first seen; empty for one that
+  // Where they are nearest, with the height that it has where it is first seen; empty for one that
   // is never seen.
   std::optional<passage::AgainstHorizon> horizon;
   std::optional<FirstSeen> first_seen;

@@ -23,8 +23,8 @@ airtruth.encounters = (() => {
     sequence.first_seen_s = most(first((seen) => seen.to_closest_approach_s));
   };
 
-  const closestText = (closest, seconds) => {
-    if (!closest) return 'not in the world';
+  const closestText = ({ closest_approach: closest, vertical_motion: flown }, seconds) => {
+    if (!closest) return flown ? 'none before a path ends' : 'not in the world';
     const place = placeOf(closest);
     const when = `at ${number(closest.time_s, 1)} s` + (closest.time_s > seconds ? `, ${number(closest.time_s - seconds, 1)} s after the clip` : '');
     return `${number(closest.distance_m, closest.distance_m < 100 ? 1 : 0)} m ${when}${place ? `: ${place}` : ''}`;
@@ -32,7 +32,7 @@ airtruth.encounters = (() => {
   const firstText = (seen) => {
     if (!seen) return 'never';
     const ahead = seen.to_closest_approach_s;
-    const when = ahead === undefined ? '' : `, ${number(Math.abs(ahead), 1)} s ${ahead < 0 ? 'after' : 'before'} the closest approach`;
+    const when = ahead === null ? '' : `, ${number(Math.abs(ahead), 1)} s ${ahead < 0 ? 'after' : 'before'} the closest approach`;
     return `frame ${seen.frame}: ${number(seen.range_m)} m, ${number(seen.width_px, 1)} × ${number(seen.height_px, 1)} px${when}`;
   };
   const horizonText = (encounter) => {
@@ -53,7 +53,7 @@ airtruth.encounters = (() => {
       const colour = colours[Math.max(0, sequence.ids.indexOf(encounter.id)) % colours.length];
       named(row.insertCell(), { name: encounter.id, style: { colour, dash: [] } });
       for (const text of [
-        encounter.meeting || '–', encounter.vertical_motion || '–', closestText(encounter.closest_approach, sequence.seconds),
+        encounter.meeting || '–', encounter.vertical_motion || '–', closestText(encounter, sequence.seconds),
         firstText(encounter.first_seen), horizonText(encounter), encounter.violations.map(violationText).join(', ') || 'none'])
         row.append(element('td', text));
     }
