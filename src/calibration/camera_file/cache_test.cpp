@@ -91,13 +91,14 @@ TEST_F(CalibrationCache, WhatIsKeptComesBackToTheLastBit) {
 
 TEST_F(CalibrationCache, EverythingThatTheNumbersDependOnIsInTheKey) {
   const CacheKey key{"v", "m", "lens", 150, {}};
-  std::vector<CacheKey> others(6, key);
+  std::vector<CacheKey> others(7, key);
   others[0].video_sha256 = "w";
   others[1].mask_sha256 = "";
   others[2].lens = "other";
   others[3].altitude_m = 151;
   others[4].altitude_m.reset();
   others[5].tone.gamma = 2.2;
+  others[6].picture_rate_hz = 30;
   for (const CacheKey& other : others) EXPECT_NE(other.entry().name(), key.entry().name());
 }
 

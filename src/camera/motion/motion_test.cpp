@@ -330,6 +330,9 @@ TEST(Cache, KnowsTheFramesItHolds) {
   CacheKey other = key;
   other.options.seed = 2;
   EXPECT_FALSE(cached(cache, other));
+  other = key;
+  other.picture_rate_hz = 10;
+  EXPECT_FALSE(cached(cache, other));
   cache.keep(key.entry(), "to the end\nno motion");
   EXPECT_FALSE(cached(cache, key));
 }

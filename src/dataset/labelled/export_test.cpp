@@ -199,6 +199,17 @@ TEST_F(Made, AnExportKilledBeforeItsOptionsAreWrittenIsBegunAnew) {
   EXPECT_FALSE(fs::exists(out / ".export"));
 }
 
+TEST_F(Made, AnExportOfRendersNoticesThatOneHasChanged) {
+  const fs::path renders = fresh(), out = fresh();
+  fs::copy(set() / "sequences", renders, fs::copy_options::recursive);
+  export_set(renders, out, {});
+  EXPECT_TRUE(export_set(renders, out, {}).was_there);
+  const fs::path record = renders / LabelledSet(renders).names()[0] / "sequence.json";
+  write_file(record, read_file(record) + "\n");
+  EXPECT_THAT(test_support::error_of([&] { export_set(renders, out, {}); }),
+              testing::HasSubstr("holds an export of another set"));
+}
+
 TEST_F(Made, AnExportOverSomethingElseIsRefused) {
   const auto error = [](const fs::path& out, const ExportOptions& options) -> std::string {
     return test_support::error_of([&] { export_set(set(), out, options); });

@@ -265,9 +265,9 @@ TEST(RoundTrip, CvatTakesTracksOfAnyNumber) {
     const Folder folder;
     const Part part{"train", {clip}};
     write_clips(Format::kCvat, folder.path() / "cvat", {&part, 1});
+    const std::vector<Clip> read = read_clips(Format::kCvat, folder.path() / "cvat", {}, {});
     std::map<double, std::int64_t> tracks;
-    for (const Label& label :
-         read_clips(Format::kCvat, folder.path() / "cvat", {}, {}).at(0).frames.at(0).labels)
+    for (const Label& label : read.at(0).frames.at(0).labels)
       tracks[label.box_px.x] = label.track;
     return std::pair(tracks[3], tracks[40]);
   };

@@ -2,6 +2,7 @@
 // Compares the truth.jsonl of a rendered sequence with independent computations.
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "labels/annotation/evision.h"
 #include "labels/projection/exact_box.h"
 #include "picture/composite/cover.h"
+#include "picture/video/reader.h"
 #include "picture/video/still.h"
 #include "sequence/demo/demo.h"
 #include "sequence/insertion/masks.h"
@@ -220,6 +222,20 @@ TEST_F(TruthOf, ATruthOfAnotherLengthThanItsVideoIsRefused) {
   finished.truth.frames.push_back(finished.truth.frames.back());
   EXPECT_THAT(test_support::error_of([&] { write_overlay(finished, root_ / "look.mkv", {}); }),
               testing::HasSubstr("holds 8 frames; expected 9, one for each line of truth.jsonl"));
+}
+
+TEST_F(TruthOf, AnOverlayOfPicturesHasTheRateOfTheTruth) {
+  Finished finished = rendered(
+      replayed_intruder("one", "738/738-Ryanair", "[[80, 0, -150], [80, 60, -150]]"), kStill);
+  fs::create_directories(root_ / "pictures");
+  video::Reader frames(finished.video);
+  while (const auto frame = frames.next())
+    video::write_still(root_ / "pictures" / fmt::format("{:04}.png", frame->index), frame->picture);
+  finished.video = root_ / "pictures" / "%04d.png";
+  write_overlay(finished, root_ / "pictures.mkv", {});
+  EXPECT_NEAR(video::Reader(root_ / "pictures.mkv").info().frame_rate.value(),
+              turning_flight().frame_rate_hz,
+              0.1);
 }
 
 TEST_F(TruthOf, AnAircraftThatCoversNoPixelFarEnoughHasNoCoveredBox) {
