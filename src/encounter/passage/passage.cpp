@@ -76,6 +76,16 @@ Offset offset_from(const trajectory::State& own, const Vector3& offset_ned_m) {
           -r.z()};
 }
 
+trajectory::Path beyond_clip(const trajectory::Path& path, double clip_end_s) {
+  const double end_s = path.end_s();
+  if (!std::isfinite(end_s) || end_s < clip_end_s) return path;
+  return {path.start_s(), HUGE_VAL, [path, end_s](double time_s) {
+            trajectory::State state = *path.at(std::min(time_s, end_s));
+            state.position_in_world += std::max(0.0, time_s - end_s) * state.velocity_in_world_mps;
+            return state;
+          }};
+}
+
 std::optional<Approach> closest_approach(const trajectory::Path& own,
                                          const trajectory::Path& intruder,
                                          double begin_s,

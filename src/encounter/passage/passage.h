@@ -37,6 +37,10 @@ struct Approach {
   bool is_cut_off = false;
 };
 
+// The path of a clip's aircraft in the time after the clip: from its own end on, one that lasts
+// until the clip's end goes straight on as it moves there; one that ends within the clip is over.
+trajectory::Path beyond_clip(const trajectory::Path& path, double clip_end_s);
+
 // The least distance in space between begin_s and end_s while both are in the world. Empty where
 // they never are. The time is exact to a microsecond where the paths are smooth over kStep_s.
 std::optional<Approach> closest_approach(const trajectory::Path& own,

@@ -69,6 +69,16 @@ TEST(Passage, OnlyWhileBothAreInTheWorld) {
   EXPECT_FALSE(first->is_cut_off);
 }
 
+TEST(Passage, AfterTheClipAPathGoesStraightOnFromItsEnd) {
+  const std::vector<Vector3> ahead = {{400, 30, -100}, {100, 30, -100}};
+  const auto path = trajectory::spline_at_speed(ahead, 60);  // 5 s
+  const auto on = beyond_clip(path, 4.5);
+  EXPECT_LT((on.at(7)->position_in_world - Vector3(-20, 30, -100)).norm(), 1e-9);
+  EXPECT_LT((on.at(3)->position_in_world - path.at(3)->position_in_world).norm(), 1e-12);
+  EXPECT_FALSE(on.at(-1));
+  EXPECT_FALSE(beyond_clip(path, 5.5).at(5.5));  // it is over within the clip
+}
+
 // Of straight paths, walking finds the interval of the closed form.
 TEST(Passage, ViolationsOfStraightPathsAreTheClosedForm) {
   for (const separation::NamedVolume& named : separation::named_volumes()) {

@@ -142,10 +142,15 @@ void ask_paths(const replay::Finished& finished,
   const scene::Scene& scene = *finished.scene;
   const auto intruder = std::ranges::find(scene.intruders, encounter.name, &scene::Intruder::id);
   if (intruder == scene.intruders.end() || !intruder->seen.empty()) return;
-  const double end_s = finished.truth.frames.back().time_s + scene.truth.lookahead_s;
+  const double last_s = finished.truth.frames.back().time_s;
   try {
     const trajectory::Path own = own_path(scene);
-    const auto found = passage::violations(volume, own, setup::path_of(*intruder, own), 0, end_s);
+    const auto found =
+        passage::violations(volume,
+                            passage::beyond_clip(own, last_s),
+                            passage::beyond_clip(setup::path_of(*intruder, own), last_s),
+                            0,
+                            last_s + scene.truth.lookahead_s);
     encounter.has_volume = true;
     if (!found.empty()) encounter.violation_s = found.front().begin_s;
   } catch (const Error&) {

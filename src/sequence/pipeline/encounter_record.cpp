@@ -20,16 +20,13 @@ double half_height_deg(const setup::World& world, const FirstSeen& seen, double 
   return degrees(std::atan2(0.5 * height_m, range_m));
 }
 
-std::optional<passage::AgainstHorizon> horizon_at(const setup::World& world,
-                                                  const setup::Actor& actor,
-                                                  const FirstSeen& seen,
-                                                  double time_s) {
-  const auto own = world.camera.at(time_s);
-  const auto intruder = actor.path.at(time_s);
-  if (!own || !intruder) return std::nullopt;
-  const double range_m = (intruder->position_in_world - own->position_in_world).norm();
+passage::AgainstHorizon against_horizon(const setup::World& world,
+                                        const FirstSeen& seen,
+                                        const trajectory::State& own,
+                                        const trajectory::State& intruder) {
+  const double range_m = (intruder.position_in_world - own.position_in_world).norm();
   return passage::against_horizon(
-      passage::mover_of(*own), passage::mover_of(*intruder), half_height_deg(world, seen, range_m));
+      passage::mover_of(own), passage::mover_of(intruder), half_height_deg(world, seen, range_m));
 }
 
 EncounterRecord record_of(const setup::World& world,
@@ -37,23 +34,26 @@ EncounterRecord record_of(const setup::World& world,
                           const std::optional<FirstSeen>& seen,
                           double last_s) {
   const double end_s = last_s + world.lookahead_s;
+  const trajectory::Path camera = passage::beyond_clip(world.camera, last_s);
+  const trajectory::Path path = passage::beyond_clip(actor.path, last_s);
   EncounterRecord record;
   record.id = actor.id;
   record.first_seen = seen;
-  const auto nearest = passage::closest_approach(world.camera, actor.path, 0, end_s);
+  const auto nearest = passage::closest_approach(camera, path, 0, end_s);
   if (nearest) {
     if (!nearest->is_cut_off) record.closest = nearest;
-    const auto own = world.camera.at(nearest->time_s);
-    const auto intruder = actor.path.at(nearest->time_s);
+    const auto own = camera.at(nearest->time_s);
+    const auto intruder = path.at(nearest->time_s);
     check(own && intruder, "both are in the world where they are nearest");
     record.meeting = passage::meeting_of(passage::mover_of(*own), passage::mover_of(*intruder));
     record.vertical_motion = passage::vertical_motion_of(passage::mover_of(*intruder));
-    if (seen) record.horizon = horizon_at(world, actor, *seen, nearest->time_s);
+    if (seen) record.horizon = against_horizon(world, *seen, *own, *intruder);
   }
-  if (seen) record.horizon_when_first_seen = horizon_at(world, actor, *seen, seen->time_s);
+  if (seen)
+    record.horizon_when_first_seen =
+        against_horizon(world, *seen, *camera.at(seen->time_s), *path.at(seen->time_s));
   for (const auto& [name, volume] : world.volumes)
-    for (const separation::Interval& time :
-         passage::violations(volume, world.camera, actor.path, 0, end_s))
+    for (const separation::Interval& time : passage::violations(volume, camera, path, 0, end_s))
       record.violations.push_back({name, time});
   return record;
 }
