@@ -267,8 +267,7 @@ TEST(RoundTrip, CvatTakesTracksOfAnyNumber) {
     write_clips(Format::kCvat, folder.path() / "cvat", {&part, 1});
     const std::vector<Clip> read = read_clips(Format::kCvat, folder.path() / "cvat", {}, {});
     std::map<double, std::int64_t> tracks;
-    for (const Label& label : read.at(0).frames.at(0).labels)
-      tracks[label.box_px.x] = label.track;
+    for (const Label& label : read.at(0).frames.at(0).labels) tracks[label.box_px.x] = label.track;
     return std::pair(tracks[3], tracks[40]);
   };
   EXPECT_EQ(tracks_after(7), std::pair(std::int64_t{2}, std::int64_t{7}));
