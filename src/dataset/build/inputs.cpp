@@ -84,8 +84,7 @@ std::optional<scene::Camera> camera_with_log(const catalogue::Background& backgr
                                              const fs::path& video) {
   if (!background.camera.log) return std::nullopt;
   scene::Camera camera = background.camera;
-  camera.clip_start_s = video::time_of_first_frame_s(
-      video, {.first_frame = background.first_frame, .picture_rate_hz = background.frame_rate_hz});
+  setup::state_clip_start(camera, video, background.first_frame, background.frame_rate_hz);
   if (const auto level = setup::level_attitude(camera)) camera.attitude_yaw_pitch_roll_deg = level;
   return camera;
 }

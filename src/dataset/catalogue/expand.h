@@ -98,8 +98,8 @@ std::int64_t clip_frames(const Item& item,
                          const BackgroundFiles& files);
 
 // Gives an item's scene the camera and the pixels' shape of its background, and draws the intruders
-// of a sequence of [[encounter_model]] for the size, rate and number of its
-// background's pictures, which `files` states.
+// of a sequence of [[encounter_model]] for the size, rate and number of the background's pictures,
+// which `files` states.
 Draws draw_in_view(Item& item, const Catalogue& catalogue, const BackgroundFiles& files);
 
 // Gives an item's scene the files of its background, and gives random values their place in time

@@ -150,9 +150,8 @@ class Place {
     const bool begun = fs::exists(begun_file());
     if (begun && parse_json(read_file(begun_file())) != options_)
       throw Error(
-          "holds an unfinished export of another set, or with other options; expected the same, or "
-          "a "
-          "new folder",
+          "holds an unfinished export of another set, or with other options; expected the same, "
+          "or a new folder",
           {root_.string()});
     if (!begun && fs::exists(root_) && !holds_only_own_folder())
       throw Error("exists and is not empty; expected a new folder", {root_.string()});

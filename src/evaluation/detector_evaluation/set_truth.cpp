@@ -18,7 +18,6 @@
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"
 #include "picture/video/numbered_frames.h"
-#include "picture/video/reader.h"
 #include "scene/scene/camera_keys.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
@@ -125,16 +124,6 @@ bool was_asked(const std::vector<annotation::Frame>& frames,
   return false;
 }
 
-trajectory::Path own_path(const scene::Scene& scene) {
-  scene::Camera camera = scene.camera;
-  if (camera.log && !camera.log_offset_s)
-    camera.clip_start_s =
-        video::time_of_first_frame_s(scene.background.video,
-                                     {.first_frame = scene.background.first_frame,
-                                      .picture_rate_hz = scene.background.frame_rate_hz});
-  return setup::camera_path(camera);
-}
-
 // The violation of a volume that the record does not have, of the same paths over the same time.
 void ask_paths(const replay::Finished& finished,
                const separation::Volume& volume,
@@ -144,7 +133,12 @@ void ask_paths(const replay::Finished& finished,
   if (intruder == scene.intruders.end() || !intruder->seen.empty()) return;
   const double last_s = finished.truth.frames.back().time_s;
   try {
-    const trajectory::Path own = own_path(scene);
+    scene::Camera camera = scene.camera;
+    setup::state_clip_start(camera,
+                            scene.background.video,
+                            scene.background.first_frame,
+                            scene.background.frame_rate_hz);
+    const trajectory::Path own = setup::camera_path(camera);
     const auto found =
         passage::violations(volume,
                             passage::beyond_clip(own, last_s),

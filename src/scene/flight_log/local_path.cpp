@@ -111,16 +111,6 @@ void extend(trajectory::Samples& samples) {
   positions.insert(positions.begin(), before);
 }
 
-// The path at the log's attitudes, which are recorded more often than positions are averaged.
-trajectory::Path at_attitudes(const trajectory::Path& path, const FlightLog& log, double offset_s) {
-  const auto attitudes = std::make_shared<const FlightLog>(FlightLog{.attitudes = log.attitudes});
-  return {path.start_s(), path.end_s(), [path, attitudes, offset_s](double time_s) {
-            trajectory::State state = *path.at(time_s);
-            state.world_from_body = world_from_body(*attitude_at(*attitudes, time_s + offset_s));
-            return state;
-          }};
-}
-
 }  // namespace
 
 trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
@@ -135,7 +125,13 @@ trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
   const trajectory::Path flown = trajectory::path_through_samples(samples);
   const trajectory::Path placed =
       trajectory::displaced(flown, placement.first_position_ned_m - flown.at(0)->position_in_world);
-  return log.attitudes.empty() ? placed : at_attitudes(placed, log, placement.offset_s);
+  if (log.attitudes.empty()) return placed;
+  // Attitudes are recorded more often than positions are averaged.
+  const auto attitudes = std::make_shared<const FlightLog>(FlightLog{.attitudes = log.attitudes});
+  return trajectory::at_attitudes(
+      placed, [attitudes, offset_s = placement.offset_s](const trajectory::State&, double time_s) {
+        return world_from_body(*attitude_at(*attitudes, time_s + offset_s));
+      });
 }
 
 std::optional<double> height_at(const FlightLog& log, double time_s) {

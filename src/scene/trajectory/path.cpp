@@ -388,12 +388,18 @@ Path displaced(const Path& path, const Vector3& offset_ned_m) {
   });
 }
 
-Path at_attitude(const Path& path, const YawPitchRoll& attitude) {
-  return Path(path.start_s(), path.end_s(), [path, turn = world_from_body(attitude)](double t) {
+Path at_attitudes(const Path& path,
+                  std::function<Quaternion(const State&, double time_s)> world_from_body) {
+  return Path(path.start_s(), path.end_s(), [path, turn = std::move(world_from_body)](double t) {
     State state = *path.at(t);
-    state.world_from_body = turn;
+    state.world_from_body = turn(state, t);
     return state;
   });
+}
+
+Path at_attitude(const Path& path, const YawPitchRoll& attitude) {
+  return at_attitudes(path,
+                      [turn = world_from_body(attitude)](const State&, double) { return turn; });
 }
 
 Path shifted(const Path& path, double start_s) {

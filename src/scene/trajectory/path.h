@@ -82,6 +82,10 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
 // The same path, delayed by `start_s` seconds.
 Path shifted(const Path& path, double start_s);
 
+// The same path, at the attitudes that a function gives for its state and the time.
+Path at_attitudes(const Path& path,
+                  std::function<Quaternion(const State&, double time_s)> world_from_body);
+
 // The same path, at one attitude throughout.
 Path at_attitude(const Path& path, const YawPitchRoll& attitude);
 

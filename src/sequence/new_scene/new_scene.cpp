@@ -330,15 +330,16 @@ struct CameraWords {
 // A camera with a log takes its heading, and where it has attitudes those, from it; its pitch and
 // roll are else those of the horizon, which every render finds anew.
 CameraWords camera_of_log(const fs::path& log,
-                          double clip_start_s,
-                          const YawPitchRoll& level,
+                          const fs::path& video,
+                          const Part& part,
                           const NewSceneOptions& options) {
   CameraWords words;
   words.table = fmt::format(
       "[camera]\nlog = {}                  # where the aircraft flew: airtruth log show\n",
       as_written(log, options));
   words.camera.log = log;
-  words.camera.clip_start_s = clip_start_s;
+  setup::state_clip_start(words.camera, video, part.first_frame, options.picture_rate_hz);
+  const YawPitchRoll level = part.attitude.value_or(YawPitchRoll{});
   if (const auto heading = setup::level_attitude(words.camera))
     words.camera.attitude_yaw_pitch_roll_deg =
         YawPitchRoll{heading->yaw_deg, level.pitch_deg, level.roll_deg};
@@ -346,14 +347,8 @@ CameraWords camera_of_log(const fs::path& log,
 }
 
 CameraWords camera_for(const fs::path& video, const Part& part, const NewSceneOptions& options) {
+  if (const auto log = log_of(video)) return camera_of_log(*log, video, part, options);
   const YawPitchRoll attitude = part.attitude.value_or(YawPitchRoll{});
-  if (const auto log = log_of(video))
-    return camera_of_log(
-        *log,
-        video::time_of_first_frame_s(
-            video, {.first_frame = part.first_frame, .picture_rate_hz = options.picture_rate_hz}),
-        attitude,
-        options);
   CameraWords words;
   words.camera.position_ned_m = {0, 0, -150};
   words.camera.velocity_ned_mps = {20, 0, 0};

@@ -316,11 +316,10 @@ StatedScene stated(const scene::Scene& scene, const video::StreamInfo& info) {
   expect_standard_range(scene, info);
   setup::take_pixel_shape(result.scene.lens, size_of(info), info.sample_aspect.value());
   take_angle(result.scene, info);
-  if (scene.camera.log)
-    result.scene.camera.clip_start_s =
-        video::time_of_first_frame_s(scene.background.video,
-                                     {.first_frame = scene.background.first_frame,
-                                      .picture_rate_hz = scene.background.frame_rate_hz});
+  setup::state_clip_start(result.scene.camera,
+                          scene.background.video,
+                          scene.background.first_frame,
+                          scene.background.frame_rate_hz);
   scene::CameraFile file;
   if (scene.realism.file) file = file_of(scene, {info.width, info.height});
   fill_from_file(result.scene, file);

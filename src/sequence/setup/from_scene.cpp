@@ -108,11 +108,10 @@ trajectory::Path turning(const trajectory::Path& path,
     return world_from_body({yaw_pitch_roll(state.world_from_body).yaw_deg, 0, 0});
   };
   const Quaternion mount = flown(*path.at(0)).conjugate() * world_from_body(first);
-  return {path.start_s(), path.end_s(), [path, flown, mount](double time_s) {
-            trajectory::State state = *path.at(time_s);
-            state.world_from_body = flown(state) * mount;
-            return state;
-          }};
+  return trajectory::at_attitudes(
+      path, [flown, mount](const trajectory::State& state, double) -> Quaternion {
+        return flown(state) * mount;
+      });
 }
 
 trajectory::Path path_from_file(const scene::Camera& camera) {
@@ -161,6 +160,15 @@ void take_pixel_shape(scene::Lens& lens, lens::ImageSize size, double width_of_h
   const double focal_px = lens_of(lens, size).focal_px();
   lens.focal_px = {focal_px / width_of_height, focal_px};
   lens.vertical_fov_deg.reset();
+}
+
+void state_clip_start(scene::Camera& camera,
+                      const std::filesystem::path& video,
+                      std::int64_t first_frame,
+                      const std::optional<double>& picture_rate_hz) {
+  if (camera.log && !camera.log_offset_s)
+    camera.clip_start_s = video::time_of_first_frame_s(
+        video, {.first_frame = first_frame, .picture_rate_hz = picture_rate_hz});
 }
 
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {

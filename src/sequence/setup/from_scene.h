@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "camera/lens/lens.h"
@@ -28,6 +30,13 @@ lens::Lens lens_of(const scene::Lens& lens, lens::ImageSize size, const Warn& wa
 // Of pixels that are not square the focal lengths in their widths and heights differ: states both
 // in place of a view. `width_of_height` is the pixels' shape; 0: unknown.
 void take_pixel_shape(scene::Lens& lens, lens::ImageSize size, double width_of_height);
+
+// States the time of a clip's first frame on the clock of its video, by which a log of the video
+// counts; of a log with a stated offset, and of a camera without a log, nothing.
+void state_clip_start(scene::Camera& camera,
+                      const std::filesystem::path& video,
+                      std::int64_t first_frame,
+                      const std::optional<double>& picture_rate_hz);
 
 // [camera]: where the own aircraft is at each time of the clip. Errors as of read_path_file().
 //
