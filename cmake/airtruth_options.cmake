@@ -44,7 +44,8 @@ if(AIRTRUTH_SANITIZE)
   target_link_options(airtruth_options INTERFACE -fsanitize=address,undefined -fuse-ld=lld)
 endif()
 if(AIRTRUTH_FUZZERS)
-  # Every branch reports to the fuzzers that it was taken, but for what computes pictures and measures.
-  target_compile_options(airtruth_options INTERFACE -fsanitize=fuzzer-no-link
-    -fsanitize-coverage-ignorelist=${PROJECT_SOURCE_DIR}/cmake/not_fuzzed.txt)
+  # Every branch reports to the fuzzers that it was taken, but for what computes pictures and measures. The path is relative
+  # to the build folder, where compilers run, so that ccache serves every clone; it hashes the file by CCACHE_EXTRAFILES.
+  file(RELATIVE_PATH not_fuzzed ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/cmake/not_fuzzed.txt)
+  target_compile_options(airtruth_options INTERFACE -fsanitize=fuzzer-no-link -fsanitize-coverage-ignorelist=${not_fuzzed})
 endif()
