@@ -34,7 +34,7 @@ class Sequence:
     >>> sequence.name, sequence.video.name, len(sequence)
     ('across', 'across.mkv', 6)
     >>> sequence.truth["range_m"].shape, sequence.truth["covered_box_px"][3]
-    ((6,), array([43., 57., 31., 11.]))
+    ((6,), array([43., 57., 31., 10.]))
     """
 
     def __init__(self, core: _core.Sequence, boxes: str) -> None:
@@ -97,7 +97,7 @@ class Sequence:
 
         >>> frame = airtruth.DataSet("set")["across"].frame(3)
         >>> frame.rgb.shape, frame.intruders[0].covered_box
-        ((120, 160, 3), array([43, 57, 31, 11]))
+        ((120, 160, 3), array([43, 57, 31, 10]))
         """
         try:
             k = range(len(self))[k]

@@ -200,7 +200,7 @@ class Frame:
 
         >>> frame = airtruth.DataSet("set")["across"].frame(3)
         >>> frame.boxes()
-        array([[43., 57., 31., 11.]])
+        array([[43., 57., 31., 10.]])
         """
         if kind not in ("covered", "exact", "visible"):
             raise ValueError(f"kind is {kind!r}; expected 'covered', 'exact' or 'visible'")

@@ -44,7 +44,7 @@ class Clip:
 
     >>> clip = airtruth.DataSet("set")["across"].labels
     >>> clip.name, len(clip.frames), clip.frames[3].labels[0].box_px
-    ('across', 6, array([43., 57., 31., 11.]))
+    ('across', 6, array([43., 57., 31., 10.]))
     """
 
     name: str

@@ -91,7 +91,7 @@ def render(
     >>> for frame in airtruth.render("scene.toml"):
     ...     if frame.index == 3:
     ...         frame.intruders[0].covered_box, round(frame.intruders[0].range_m)
-    (array([43, 57, 31, 11]), 30)
+    (array([43, 57, 31, 10]), 30)
     >>> scene = {"background": {"video": "clip.mkv"}, "lens": {"vertical_fov_deg": 60}, "motion": {"model": "none"},
     ...          "camera": {"position_ned_m": [0, 0, -150]},
     ...          "intruder": [{"aircraft": "c172/news", "waypoints_ned_m": [[60, -8, -150], [60, 8, -150]], "speed_mps": 40}]}

@@ -278,7 +278,9 @@ class Session {
     take_horizons(horizons);
     result_.sky_picture = tinted_sky(lens, sampled_, horizons.found);
     air::AirMeter air(lens, options_.own_aircraft, ground_range(options_), options_.tone);
-    const auto first_from_level = level_attitude(sampled_, horizons.found, options_.heading_deg);
+    // Of the horizon that is seen: the air's measure finds the true one (air/ground_track.h), and
+    // the sun's error is ten times the dip.
+    const auto first_from_level = level_attitude(sampled_, horizons.found, options_.heading_deg, 0);
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
       const auto& [picture, frame, cam_from_first] = sampled_[i];
       // With a known rotation, the attitude of the frame follows from the common one; otherwise the

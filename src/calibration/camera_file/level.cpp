@@ -45,12 +45,14 @@ Horizons accepted_horizons(const horizon::HorizonFinder& finder,
 
 std::optional<Quaternion> level_attitude(const std::vector<SampledFrame>& frames,
                                          const std::vector<FoundHorizon>& horizons,
-                                         double heading_deg) {
+                                         double heading_deg,
+                                         double horizon_dip_rad) {
   // The upward directions in the camera frame of the first frame.
   std::vector<Vector3> ups;
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (horizons[i] && frames[i].cam_from_first)
-      ups.push_back(frames[i].cam_from_first->conjugate() * horizons[i]->up_in_cam);
+      ups.push_back(frames[i].cam_from_first->conjugate() *
+                    horizon::up_from_seen(horizons[i]->up_in_cam, horizon_dip_rad));
   if (ups.empty()) return std::nullopt;
   Vector3 middle;
   for (int axis = 0; axis < 3; ++axis) {

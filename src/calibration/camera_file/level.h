@@ -43,9 +43,11 @@ Horizons accepted_horizons(const horizon::HorizonFinder& finder,
 
 // cam_from_world of the first frame: level by the median over the upward directions of all frames
 // whose rotation is known, and with the given heading. Empty if there is no such frame.
+// `horizon_dip_rad`: by how much the horizon that is seen lies below the horizontal.
 std::optional<Quaternion> level_attitude(const std::vector<SampledFrame>& frames,
                                          const std::vector<FoundHorizon>& horizons,
-                                         double heading_deg);
+                                         double heading_deg,
+                                         double horizon_dip_rad);
 
 // The middle one of the frames with a horizon, with its sky tinted red; empty without a horizon.
 std::optional<image::Rgb8> tinted_sky(const lens::Lens& lens,

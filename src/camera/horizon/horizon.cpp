@@ -24,6 +24,10 @@ constexpr double kMinSeparationSigmas = 2.2;
 // Least number of blocks for a covariance of four features. Chosen by judgement.
 constexpr std::size_t kMinBlocks = 40;
 
+// The least cosine of the pitch of a camera that has a horizon ahead: 0.6 degrees from straight
+// down.
+constexpr double kLeastAhead = 0.01;
+
 using Feature = Eigen::Vector4d;  // luma, Cb, Cr, texture
 
 // The features of the blocks of a picture, with the sums over all of them, which every plane has in
@@ -152,6 +156,26 @@ double area_before(const Pixel& normal, double t) {
 }
 
 }  // namespace
+
+namespace {
+
+// The up direction whose side ahead of the camera is raised by an angle.
+Vector3 raised_ahead(const Vector3& up_in_cam, double angle_rad) {
+  const Vector3 up = up_in_cam.normalized();
+  const Vector3 ahead = Vector3::UnitZ() - up.z() * up;
+  if (ahead.norm() < kLeastAhead) return up;
+  return std::cos(angle_rad) * up - std::sin(angle_rad) * ahead.normalized();
+}
+
+}  // namespace
+
+Vector3 up_from_seen(const Vector3& seen_up_in_cam, double dip_rad) {
+  return raised_ahead(seen_up_in_cam, dip_rad);
+}
+
+Vector3 seen_from_up(const Vector3& up_in_cam, double dip_rad) {
+  return raised_ahead(up_in_cam, -dip_rad);
+}
 
 Quaternion cam_from_level(const Vector3& up_in_cam) {
   const YawPitchRoll attitude = attitude_from_up(up_in_cam);

@@ -58,6 +58,12 @@ float share_below(const lens::Lens& lens,
 
 // The attitude of a camera in which up has this direction. Its yaw is 0.
 YawPitchRoll attitude_from_up(const Vector3& up_in_cam);
+// Up in cam, from the up direction of the plane through the horizon that is seen ahead, which lies
+// below the horizontal by its dip (horizon_dip.h), and the other way round. A camera that looks
+// straight up or down has no horizon ahead: they are equal.
+Vector3 up_from_seen(const Vector3& seen_up_in_cam, double dip_rad);
+Vector3 seen_from_up(const Vector3& up_in_cam, double dip_rad);
+
 // cam_from_level, where level is the north-east-down frame turned to the camera's yaw.
 Quaternion cam_from_level(const Vector3& up_in_cam);
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "foundation/base/seed.h"
+#include "foundation/geometry/horizon_dip.h"
 
 // A horizon is a line that is sharp over the whole width. The tests draw pictures ray by ray from a
 // known attitude, and check that a boundary between two colours without such a line is refused.
@@ -97,6 +98,33 @@ TEST(Horizon, ASharpLineIsFoundWithItsRollAndItsPlace) {
     EXPECT_TRUE(followed.is_sharp());
     EXPECT_LT(degrees(std::acos(std::min(1.0, followed.up_in_cam.dot(found->up_in_cam)))), 0.15);
   }
+}
+
+// From 1000 m the sky ends 1.015 degrees below the horizontal, all around.
+TEST(Horizon, ThatIsSeenLiesBelowTheHorizontalByItsDip) {
+  const double dip_rad = horizon_dip_rad(1000);
+  EXPECT_NEAR(degrees(dip_rad), 1.015, 1e-3);
+  EXPECT_EQ(horizon_dip_rad(-5), 0);
+  for (const auto& [pitch_deg, roll_deg] :
+       {std::pair(5.0, 0.0), std::pair(-6.0, 25.0), std::pair(2.0, -50.0)}) {
+    const image::Picture picture =
+        drawn(pitch_deg, roll_deg, 2, [&](double azimuth_deg, double elevation_deg) {
+          if (elevation_deg > -degrees(dip_rad)) return kSky;
+          Paint paint = kGround;
+          paint.luma += field(azimuth_deg, elevation_deg);
+          return paint;
+        });
+    const auto found = HorizonFinder(the_lens(), nullptr).find(picture);
+    ASSERT_TRUE(found && found->is_sharp()) << roll_deg;
+    const YawPitchRoll attitude = attitude_from_up(up_from_seen(found->up_in_cam, dip_rad));
+    EXPECT_NEAR(attitude.roll_deg, roll_deg, 0.2);
+    EXPECT_NEAR(attitude.pitch_deg, pitch_deg, 0.2);
+    const Vector3 up = up_of(pitch_deg, roll_deg);
+    EXPECT_TRUE(up_from_seen(seen_from_up(up, dip_rad), dip_rad).isApprox(up, 1e-12));
+  }
+  // A camera that looks straight down has no horizon ahead.
+  const Vector3 down(0, 0, -1);
+  EXPECT_EQ(up_from_seen(down, dip_rad), down);
 }
 
 // Red alone steps at the horizon; green has none.

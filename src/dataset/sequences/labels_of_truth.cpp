@@ -6,20 +6,17 @@
 #include <filesystem>
 
 #include "foundation/geometry/box.h"
+#include "foundation/geometry/horizon_dip.h"
 #include "foundation/geometry/transform.h"
 #include "labels/annotation/object_class.h"
 
 namespace airtruth::sequences {
 namespace {
 
-constexpr double kEarthRadiusM = 6'371'000;  // mean radius (IUGG)
-
-// The visible horizon lies below the horizontal by its dip, sqrt(2 h / R), at the height h.
 bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m) {
   const Vector3 way = position_ned_m - camera_ned_m;
   const double elevation = std::atan2(-way.z(), std::hypot(way.x(), way.y()));
-  const double dip = std::sqrt(2 * std::max(0.0, -camera_ned_m.z()) / kEarthRadiusM);
-  return elevation > -dip;
+  return elevation > -horizon_dip_rad(-camera_ned_m.z());
 }
 
 std::optional<Box> box_of(const annotation::Intruder& intruder,

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/geometry/horizon_dip.h"
+
 namespace airtruth::passage {
 namespace {
 
@@ -153,12 +155,6 @@ std::vector<separation::Interval> violations(const separation::Volume& volume,
   return result;
 }
 
-namespace {
-
-constexpr double kEarthRadiusM = 6'371'008.8;  // mean radius R1 of the WGS 84 ellipsoid
-
-}  // namespace
-
 std::optional<Meeting> meeting_of(const separation::Mover& own, const separation::Mover& intruder) {
   const Eigen::Vector2d a = own.velocity_ned_mps.head<2>();
   const Eigen::Vector2d b = intruder.velocity_ned_mps.head<2>();
@@ -178,16 +174,12 @@ VerticalMotion vertical_motion_of(const separation::Mover& intruder) {
   return climb_mps <= -kClimbingMps ? VerticalMotion::kDescending : VerticalMotion::kLevel;
 }
 
-double horizon_dip_deg(double height_m) {
-  return degrees(std::acos(kEarthRadiusM / (kEarthRadiusM + std::max(0.0, height_m))));
-}
-
 AgainstHorizon against_horizon(const separation::Mover& own,
                                const separation::Mover& intruder,
                                double half_height_deg) {
   const Vector3 r = intruder.position_ned_m - own.position_ned_m;
   const double elevation_deg = degrees(std::atan2(-r.z(), std::hypot(r.x(), r.y())));
-  const double above_deg = elevation_deg + horizon_dip_deg(-own.position_ned_m.z());
+  const double above_deg = elevation_deg + degrees(horizon_dip_rad(-own.position_ned_m.z()));
   if (std::abs(above_deg) <= half_height_deg) return AgainstHorizon::kOn;
   return above_deg > 0 ? AgainstHorizon::kAbove : AgainstHorizon::kBelow;
 }

@@ -100,9 +100,6 @@ constexpr auto enum_names(AgainstHorizon) {
                                                   {AgainstHorizon::kOn, "on"},
                                                   {AgainstHorizon::kAbove, "above"}});
 }
-// The angle by which the horizon lies below the level at a height above the ground (0 and below:
-// 0), on a sphere of the Earth's mean radius, without refraction.
-double horizon_dip_deg(double height_m);
 // `half_height_deg`: half of the angle that the intruder takes up vertically. It is on the horizon
 // where the horizon crosses it. The ground is at down = 0.
 AgainstHorizon against_horizon(const separation::Mover& own,

@@ -15,6 +15,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
+#include "foundation/geometry/horizon_dip.h"
 #include "foundation/geometry/units.h"
 #include "scene/scene/limits.h"
 #include "scene/synthetic/ground.h"
@@ -335,7 +336,7 @@ struct Flight::Impl {
                               sky,
                               o.own_aircraft)),
         view(lens, !o.linear_light),
-        panorama(1 / (lens.focal_px() * kPanoramaOversampling)),
+        panorama(1 / (lens.focal_px() * kPanoramaOversampling), horizon_dip_rad(o.altitude_m)),
         sensor(o, stream(o, "sensor")),
         ground(make_world()) {}
 
@@ -362,22 +363,26 @@ struct Flight::Impl {
   Moment moment_of(int index) const {
     const trajectory::State state = path.shaken(index);
     const Vector3 eye = start_in_land_m + state.position_in_world;
-    return {
-        view.directions_in_world(state.world_from_body, 1),
-        {static_cast<float>(eye.x()), static_cast<float>(eye.y()), static_cast<float>(-eye.z())},
-        clutter_at(index / options.frame_rate_hz,
-                   lens.size(),
-                   options.clutter,
-                   stream(options, "clutter"))};
+    return {view.directions_in_world(state.world_from_body, 1),
+            {static_cast<float>(eye.x()),
+             static_cast<float>(eye.y()),
+             static_cast<float>(-eye.z()),
+             static_cast<float>(std::sin(horizon_dip_rad(-eye.z())))},
+            clutter_at(index / options.frame_rate_hz,
+                       lens.size(),
+                       options.clutter,
+                       stream(options, "clutter"))};
   }
 
   // The height above the horizon in pixels, plus one half: from 0 to 1 a pixel sees both sides.
-  float above_horizon(float down) const { return focal_px * -down + 0.5F; }
+  float above_horizon(const Eye& eye, float down) const {
+    return focal_px * (eye.dip - down) + 0.5F;
+  }
 
-  std::vector<Sees> seen_by_pixels(int y, const Row& row) const {
+  std::vector<Sees> seen_by_pixels(int y, const Eye& eye, const Row& row) const {
     std::vector<Sees> sees(static_cast<std::size_t>(own.mask.width));
     for (std::size_t x = 0; x < sees.size(); ++x)
-      sees[x] = above_horizon(row.down[x]) >= 1 ? kSky : kGround;
+      sees[x] = above_horizon(eye, row.down[x]) >= 1 ? kSky : kGround;
     const auto line = static_cast<std::size_t>(y);
     const LinearRgb* layer = own.layer.data() + line * sees.size();
     for (int x = own.first[line]; x < own.last[line]; ++x)
@@ -390,7 +395,7 @@ struct Flight::Impl {
     if (sees == kAircraft) return;
     if (sees == kGround) ground.light(eye, pixels);
     for (int i = 0; i < pixels.count; ++i) {
-      const float sky_share = above_horizon(pixels.down[i]);
+      const float sky_share = above_horizon(eye, pixels.down[i]);
       if (sky_share <= 0) continue;
       const LinearRgb above = panorama.at(pixels.north[i], pixels.east[i], -pixels.down[i]);
       const LinearRgb below = linear_rgb(pixels.red[i], pixels.green[i], pixels.blue[i]);
@@ -415,7 +420,7 @@ struct Flight::Impl {
 
   void paint_row(int y, const Moment& moment, Row& row) const {
     view.fill_in(y, moment.nodes, row);
-    const std::vector<Sees> sees = seen_by_pixels(y, row);
+    const std::vector<Sees> sees = seen_by_pixels(y, moment.eye, row);
     for (std::size_t first = 0; first < sees.size();) {
       std::size_t end = first + 1;
       while (end < sees.size() && end - first < Row::kRun && sees[end] == sees[first]) ++end;

@@ -49,15 +49,21 @@ double luma_at(const image::Picture& picture, const Pixel& p) {
          (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
 }
 
-// The image row of a direction with up = 0 according to K R d, with roll and pitch together.
+// The image row whose ray is tangent to the Earth, with roll and pitch together: the sphere's
+// centre is R + h below the camera, and the ray passes it at the distance R.
 double horizon_row(const Flight& flight, int frame, double column) {
-  const auto& pinhole = std::get<lens::Pinhole>(flight.lens().model());
-  const Quaternion cam_from_world =
-      cam_from_body() * flight.camera(frame).world_from_body.conjugate();
-  const Vector3 down_in_cam = cam_from_world * Vector3(0, 0, 1);
-  const double x = (column - pinhole.principal_point_px.x()) / pinhole.focal_px.x();
-  const double y = -(down_in_cam.x() * x + down_in_cam.z()) / down_in_cam.y();
-  return pinhole.principal_point_px.y() + y * pinhole.focal_px.y();
+  constexpr double kRadiusM = 6'371'009;
+  const trajectory::State camera = flight.camera(frame);
+  const Quaternion world_from_cam = camera.world_from_body * cam_from_body().conjugate();
+  const Vector3 centre(0, 0, kRadiusM - camera.position_in_world.z());
+  double above = 0, below = flight.options().height;
+  while (below - above > 1e-3) {
+    const double row = 0.5 * (above + below);
+    const Vector3 ray = world_from_cam * *flight.lens().ray_from_pixel({column, row});
+    const bool meets = ray.z() > 0 && centre.cross(ray.normalized()).norm() < kRadiusM;
+    (meets ? below : above) = row;
+  }
+  return above;
 }
 
 // The row where the smooth sky ends: the first kink of luma down the column.
@@ -72,6 +78,7 @@ TEST(Flight, HorizonLiesWherePitchAndRollPutIt) {
   FlightOptions options = bare();
   options.roll_deg = 12;
   options.shake_deg = 0.8;
+  options.altitude_m = 900;
   const Flight flight(options);
   for (const int frame : {0, 7, 21, 39}) {
     const image::Picture picture = flight.frame(frame);

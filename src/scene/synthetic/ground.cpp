@@ -26,13 +26,19 @@ constexpr float kNear_m = 600;
 constexpr int kNearBisections = 4;
 constexpr int kFarBisections = 2;
 
-// A ray that points down; a unit vector.
+// A ray that points down: a unit vector, but that `down` is its mean fall towards the level ground,
+// which curves away below it.
 struct Ray {
   float north, east, down;
 };
 
-[[gnu::always_inline]] inline Ray ray_at(const Row::Run& pixels, int i) {
-  return {pixels.north[i], pixels.east[i], std::max(pixels.down[i], 1e-5F)};
+// Rays above the horizon are taken to it. With R the Earth's radius, s the sine of a ray below the
+// horizontal and d that of the dip, d^2 = 2 h / R, the ray falls on the ground from the height h
+// where h - s t + t^2 / 2 R = 0: at t = 2 h / (s + sqrt(s^2 - d^2)).
+[[gnu::always_inline]] inline Ray ray_at(const Eye& eye, const Row::Run& pixels, int i) {
+  const float down = std::max(pixels.down[i], eye.dip);
+  const float fall = 0.5F * (down + std::sqrt(down * down - eye.dip * eye.dip));
+  return {pixels.north[i], pixels.east[i], std::max(fall, 1e-5F)};
 }
 
 // Distance along the ray to the level ground.
@@ -105,7 +111,7 @@ void start(const View& given, const Eye& eye, const Row::Run& run, Search& __res
   const Row::Run pixels = run;
   const int count = search.count;
   for (int i = 0; i < count; ++i) {
-    const Ray ray = ray_at(pixels, search.pixel[i]);
+    const Ray ray = ray_at(eye, pixels, search.pixel[i]);
     const float far_m = level_m(eye, ray);
     const float step_m = search.peak_m[i] / ray.down / kMarch;
     const float finest = std::max(tile.across(eye, ray), fast_log2(step_m * 0.4F * tile.per_texel));
@@ -257,7 +263,7 @@ void Ground::look_up(const Eye& from, const Row::Run& run, Seen& __restrict seen
   const auto sun_north = static_cast<float>(sun_.x());
   const auto sun_east = static_cast<float>(sun_.y());
   for (int i = 0; i < pixels.count; ++i) {
-    const Ray ray = ray_at(pixels, i);
+    const Ray ray = ray_at(eye, pixels, i);
     const float span_m = Tile::kHighest_m / ray.down;
     const float middle_m = level_m(eye, ray) - 0.5F * span_m;
     std::int32_t level = 0;
@@ -285,7 +291,7 @@ void Ground::colour(const Eye& from, const Row::Run& run, Seen& __restrict seen)
   const Row::Run pixels = run;
   const View tile = view_of(tile_, pixel_rad_);
   for (int i = 0; i < pixels.count; ++i) {
-    const Ray ray = ray_at(pixels, i);
+    const Ray ray = ray_at(eye, pixels, i);
     const float along = std::min(-fast_log2(std::max(ray.down, 1e-4F)), 5.0F);
     const float level =
         std::clamp(tile.across(eye, ray) + 0.5F * along - 0.6F, 0.0F, static_cast<float>(tile.top));
@@ -316,7 +322,7 @@ void Ground::shine(const Eye& from, const Row::Run& run, Seen& __restrict seen) 
   const Colour green{haze_[1].data(), sunlight_[1], skylight_[1]};
   const Colour blue{haze_[2].data(), sunlight_[2], skylight_[2]};
   for (int i = 0; i < pixels.count; ++i) {
-    const Ray ray = ray_at(pixels, i);
+    const Ray ray = ray_at(eye, pixels, i);
     const float north_m = eye.north_m + seen.distance_m[i] * ray.north;
     const float east_m = eye.east_m + seen.distance_m[i] * ray.east;
     const float mottle =
@@ -340,7 +346,7 @@ void Ground::light(const Eye& eye, const Row::Run& pixels) const {
   look_up(eye, pixels, seen);
   Search search;
   for (int i = 0; i < pixels.count; ++i) {
-    const float far_m = level_m(eye, ray_at(pixels, i));
+    const float far_m = level_m(eye, ray_at(eye, pixels, i));
     const std::uint8_t peak = tile_.peaks[static_cast<std::size_t>(seen.cell[i])];
     seen.distance_m[i] = std::min(far_m, kFarthest_m);
     seen.shade[i] = 1;

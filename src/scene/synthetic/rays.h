@@ -10,11 +10,12 @@
 
 namespace airtruth::synthetic {
 
-// Place of the camera.
+// Place of the camera, and the sine of the dip of its horizon.
 struct Eye {
   float north_m = 0;
   float east_m = 0;
   float height_m = 0;
+  float dip = 0;
 };
 
 // The rays of a row of pixels and the light that reaches them: unit directions in the world

@@ -323,13 +323,14 @@ namespace {
 
 // Covers the sky with two ranges of hills, whose heights over the horizon depend on the direction.
 void cover(const Vector3& direction,
+           float dip,
            const Panorama::Hills& hills,
            float texel_rad,
            const Sky& sky,
            std::uint32_t seed,
            LinearRgb& colour) {
   const auto highest = static_cast<float>(radians(hills.highest_deg));
-  const float up = static_cast<float>(-direction.z());
+  const float up = static_cast<float>(-direction.z()) + dip;  // over the horizon
   if (highest <= 0 || up > highest * 1.05F) return;
   const float turn =
       static_cast<float>((std::atan2(direction.y(), direction.x()) / (2 * kPi) + 0.5) * 16);
@@ -359,8 +360,17 @@ void cover(const Vector3& direction,
 
 }  // namespace
 
-Panorama::Panorama(double texel_rad) : radius_(static_cast<float>(1 / texel_rad)) {
-  const float edge = radius_ * 1.03F + 4;
+namespace {
+
+// How far the panorama goes below the horizon: 1.1 degrees.
+constexpr float kBelowHorizon = 0.02F;
+
+}  // namespace
+
+Panorama::Panorama(double texel_rad, double dip_rad)
+    : dip_(static_cast<float>(dip_rad)), radius_(static_cast<float>(1 / texel_rad)) {
+  const float lowest = dip_ + kBelowHorizon;
+  const float edge = radius_ * (std::sqrt((1 + lowest) / (1 - lowest)) + 0.01F) + 4;
   blocks_ = static_cast<int>(2 * edge) / kBlock + 1;
   size_ = blocks_ * kBlock;
   centre_ = 0.5F * static_cast<float>(size_);
@@ -369,7 +379,7 @@ Panorama::Panorama(double texel_rad) : radius_(static_cast<float>(1 / texel_rad)
 }
 
 void Panorama::want(float north, float east, float up) {
-  if (up < kLowest) return;
+  if (up < -dip_ - kBelowHorizon) return;
   const float scale = radius_ / (1 + up);
   const int x = static_cast<int>(centre_ + north * scale) / kBlock;
   const int y = static_cast<int>(centre_ + east * scale) / kBlock;
@@ -392,7 +402,7 @@ void Panorama::draw(const Sky& sky, const Clouds& clouds, const Hills& hills, st
         const double up = (1 - square) / (1 + square);
         const Vector3 direction(u * (1 + up), v * (1 + up), -up);
         LinearRgb colour = clouds.seen_through(direction, sky.at(direction));
-        cover(direction, hills, texel_rad, sky, seed, colour);
+        cover(direction, dip_, hills, texel_rad, sky, seed, colour);
         texels_[index_in(size_, x, y)] = colour;
       }
   });

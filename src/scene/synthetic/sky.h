@@ -86,8 +86,8 @@ class Clouds {
 // resolution overhead is at least half of that at the horizon.
 class Panorama {
  public:
-  // `texel_rad`: the angle of a texel at the horizon.
-  explicit Panorama(double texel_rad);
+  // `texel_rad`: the angle of a texel at the horizon, which lies `dip_rad` below the horizontal.
+  Panorama(double texel_rad, double dip_rad);
 
   // Marks a direction that frames will look at. draw() fills only the marked parts.
   void want(float north, float east, float up);
@@ -110,14 +110,13 @@ class Panorama {
     const LinearRgb lower = p[size_] + (p[size_ + 1] - p[size_]) * fx;
     return upper + (lower - upper) * fy;
   }
-  // The component `up` of the lowest direction: a sine, 1.1 degrees below the horizon.
-  static constexpr float kLowest = -0.02F;
 
  private:
   // Side of a part that want() marks, in texels.
   static constexpr int kBlock = 16;
   int size_ = 0;
   int blocks_ = 0;
+  float dip_ = 0;
   float radius_ = 0;
   float centre_ = 0;
   std::vector<LinearRgb> texels_;

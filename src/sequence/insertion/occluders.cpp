@@ -12,6 +12,7 @@
 #include "foundation/base/files.h"
 #include "foundation/base/log.h"
 #include "foundation/geometry/box.h"
+#include "foundation/geometry/horizon_dip.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
 
@@ -117,8 +118,10 @@ struct Horizon {
 // of the picture, else the one that the attitude gives.
 Horizon horizon_in(const horizon::HorizonFinder& finder,
                    const image::Picture& picture,
-                   const projection::Sight& sight) {
-  const Vector3 expected = sight.cam_from_world.rotation * Vector3(0, 0, -1);
+                   const projection::Sight& sight,
+                   double height_m) {
+  const Vector3 expected = horizon::seen_from_up(sight.cam_from_world.rotation * Vector3(0, 0, -1),
+                                                 horizon_dip_rad(height_m));
   if (const auto near = finder.follow(picture, expected); near.is_sharp()) return {near.up_in_cam};
   if (const auto found = finder.find(picture); found && found->is_sharp())
     return {found->up_in_cam};
@@ -177,7 +180,9 @@ Occluders::InFrame Occluders::in_frame(const setup::Moment& moment,
       occluders.push_back({one.range_m, impl_->cover(one, moment.frame)});
       continue;
     }
-    if (!horizon) horizon = horizon_in(*impl_->finder, picture, moment.sight);
+    if (!horizon)
+      horizon =
+          horizon_in(*impl_->finder, picture, moment.sight, -moment.camera.position_in_world.z());
     occluders.push_back({one.range_m, [line = *horizon, lens = *impl_->lens](int x, int y) {
                            return horizon::share_below(
                                lens, line.up_in_cam, line.nominal_from_frame, x, y);

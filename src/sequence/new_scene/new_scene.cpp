@@ -22,6 +22,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
+#include "foundation/geometry/horizon_dip.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_frames.h"
 #include "picture/video/reader.h"
@@ -115,7 +116,8 @@ namespace {
 
 constexpr double kGuessedViewDeg = 60;  // vertical view of a lens that nothing states: chosen
 constexpr std::int64_t kMaxEstimateFrames =
-    900;  // half a minute at 30 frames/s turns enough or never
+    900;                                 // half a minute at 30 frames/s turns enough or never
+constexpr double kGuessedHeightM = 150;  // of a camera without a log: chosen
 constexpr std::int64_t kMaxMotionFrames = 1800;  // a minute at 30 frames/s
 // How long a first encounter lasts.
 constexpr double kEncounterS = 13.2;
@@ -249,11 +251,11 @@ LensWords lens_for(const fs::path& video, lens::ImageSize size, const NewSceneOp
   return estimated_lens(video, options);
 }
 
-// Pitch and roll of the camera in a picture with a horizon.
-std::optional<YawPitchRoll> attitude_in(const image::Picture& picture, const lens::Lens& lens) {
+// The up direction of the horizon that is seen in a picture.
+std::optional<Vector3> seen_up_in(const image::Picture& picture, const lens::Lens& lens) {
   const auto found = horizon::HorizonFinder(lens, nullptr).find(picture);
   if (!found || !found->is_sharp()) return std::nullopt;
-  return horizon::attitude_from_up(found->up_in_cam);
+  return found->up_in_cam;
 }
 
 // The log beside the video or within it; empty where there is none with positions.
@@ -275,7 +277,14 @@ struct Part {
   std::int64_t frames = 0;
   bool is_whole = true;                     // the video's own length
   std::vector<motion::FrameMotion> motion;  // of its frames, against the first of them
-  std::optional<YawPitchRoll> attitude;     // in the first of them
+  std::optional<Vector3> seen_up_in_cam;    // of the horizon in the first of them
+
+  // Pitch and roll of a camera at that height; 0 without a horizon.
+  YawPitchRoll attitude(double height_m) const {
+    if (!seen_up_in_cam) return {};
+    return horizon::attitude_from_up(
+        horizon::up_from_seen(*seen_up_in_cam, horizon_dip_rad(height_m)));
+  }
 };
 
 std::vector<motion::FrameMotion> motion_in(const fs::path& video,
@@ -318,7 +327,7 @@ Part part_of(const fs::path& video,
   video::NumberedFrames frames(video, {});
   const image::Picture* first = frames.at(part.first_frame);
   if (first == nullptr) throw Error("holds no frame", {video.string()});
-  part.attitude = attitude_in(*first, lens);
+  part.seen_up_in_cam = seen_up_in(*first, lens);
   return part;
 }
 
@@ -339,28 +348,31 @@ CameraWords camera_of_log(const fs::path& log,
       as_written(log, options));
   words.camera.log = log;
   setup::state_clip_start(words.camera, video, part.first_frame, options.picture_rate_hz);
-  const YawPitchRoll level = part.attitude.value_or(YawPitchRoll{});
-  if (const auto heading = setup::level_attitude(words.camera))
+  if (const auto heading = setup::level_attitude(words.camera)) {
+    const auto begin = setup::camera_path(words.camera).at(0);
+    const YawPitchRoll level = part.attitude(begin ? -begin->position_in_world.z() : 0);
     words.camera.attitude_yaw_pitch_roll_deg =
         YawPitchRoll{heading->yaw_deg, level.pitch_deg, level.roll_deg};
+  }
   return words;
 }
 
 CameraWords camera_for(const fs::path& video, const Part& part, const NewSceneOptions& options) {
   if (const auto log = log_of(video)) return camera_of_log(*log, video, part, options);
-  const YawPitchRoll attitude = part.attitude.value_or(YawPitchRoll{});
+  const YawPitchRoll attitude = part.attitude(kGuessedHeightM);
   CameraWords words;
-  words.camera.position_ned_m = {0, 0, -150};
+  words.camera.position_ned_m = {0, 0, -kGuessedHeightM};
   words.camera.velocity_ned_mps = {20, 0, 0};
   words.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{0, attitude.pitch_deg, attitude.roll_deg};
-  words.table =
+  words.table = fmt::format(
       "[camera]\n"
-      "position_ned_m = [0, 0, -150]          # north, east, down of the first frame: 150 m high "
+      "position_ned_m = [0, 0, -{0}]          # north, east, down of the first frame: {0} m high "
       "(a guess)\n"
       "velocity_ned_mps = [20, 0, 0]          # the own speed (a guess); a flight log is better: "
-      "log = \"flight.srt\"\n";
+      "log = \"flight.srt\"\n",
+      kGuessedHeightM);
   words.table +=
-      part.attitude
+      part.seen_up_in_cam
           ? fmt::format(
                 "attitude_yaw_pitch_roll_deg = [0, {:.1f}, {:.1f}]   # pitch and roll are those of "
                 "the horizon in the first frame used: leave this line out with another "

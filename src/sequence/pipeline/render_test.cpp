@@ -467,6 +467,7 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
   options.own_aircraft = false;
   options.hills_deg = 0;
   options.roll_deg = 30;
+  options.altitude_m = 900;
   options.seed = 2;
   const synthetic::Flight flight(options);
   demo::VirtualFlightOptions how;
@@ -477,7 +478,7 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
   const std::string text =
       "name = \"banked\"\n[background]\nvideo = \"banked.mkv\"\nframe_count = 3\n[lens]\n"
       "vertical_fov_deg = 75\n[motion]\nmodel = \"none\"\n[output]\nvideo = \"mkv\"\n" +
-      crossing("a", "c172/news", 60);
+      crossing("a", "c172/news", 60) + "[camera]\nposition_ned_m = [0, 0, -900]\n";
   const Summary summary = render(scene::parse_scene(text, out_ / "s.toml"), out_, {});
   EXPECT_THAT(summary.notes,
               testing::ElementsAre(
@@ -485,18 +486,17 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
   const replay::Finished finished = replay::open_finished(summary.folder);
   const auto [yaw_deg, pitch_deg, roll_deg] =
       finished.truth.frames[0].camera_attitude_yaw_pitch_roll_deg;
-  // A pixel is 0.37 degrees, and the visible horizon lies 0.4 degrees below level at 150 m.
-  EXPECT_NEAR(pitch_deg, expected.pitch_deg, 0.75);
-  EXPECT_NEAR(roll_deg, expected.roll_deg, 0.5);
+  // A pixel is 0.37 degrees, and the visible horizon lies 1.0 degree below level at 900 m.
+  EXPECT_NEAR(pitch_deg, expected.pitch_deg, 0.3);
+  EXPECT_NEAR(roll_deg, expected.roll_deg, 0.3);
   EXPECT_NEAR(yaw_deg, 0, 1e-9);
   // What sequence.json holds is stated: the same frames are made from it.
   EXPECT_TRUE(finished.scene->camera.attitude_yaw_pitch_roll_deg.has_value());
   EXPECT_TRUE(replay::recompose(finished, 1, {}).faults.empty());
-  const Summary stated =
-      render(scene::parse_scene(text + "[camera]\nattitude_yaw_pitch_roll_deg = [0, 0, 0]\n",
-                                out_ / "s.toml"),
-             out_,
-             {.overwrite = true});
+  const Summary stated = render(
+      scene::parse_scene(text + "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n", out_ / "s.toml"),
+      out_,
+      {.overwrite = true});
   EXPECT_THAT(stated.notes, testing::IsEmpty());
   EXPECT_EQ(
       replay::open_finished(stated.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg[2],

@@ -11,6 +11,7 @@
 #include "calibration/camera_file/level.h"
 #include "camera/motion/estimator.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/horizon_dip.h"
 #include "sequence/setup/from_scene.h"
 
 namespace airtruth::setup {
@@ -70,7 +71,10 @@ std::string state_attitude(scene::Camera& camera,
   const camera_file::Horizons horizons = camera_file::accepted_horizons(finder, frames, [&] {
     if (stop.stop_requested()) throw Interrupted();
   });
-  const auto cam_from_world = camera_file::level_attitude(frames, horizons.found, attitude.yaw_deg);
+  const auto first = camera_path(camera).at(0);
+  const double height_m = first ? -first->position_in_world.z() : 0;
+  const auto cam_from_world = camera_file::level_attitude(
+      frames, horizons.found, attitude.yaw_deg, horizon_dip_rad(height_m));
   if (!cam_from_world)
     return level_words(horizons.why_none.empty() ? "no motion between its first frames is known"
                                                  : "of its first frames " + horizons.why_none);

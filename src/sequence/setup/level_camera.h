@@ -25,7 +25,8 @@ std::optional<YawPitchRoll> level_attitude(const scene::Camera& camera);
 // States the attitude of a camera for which neither the scene nor its path or log does: pitch and
 // roll of the first frame are the median of the horizons in the first kLevelFrames frames, each
 // carried to the first by the rotation that is measured between them
-// (calibration/camera_file/level.h). Yaw stays. Where these frames show no horizon, or
+// (calibration/camera_file/level.h). The horizon lies below the horizontal by its dip at the height
+// of the path above the ground (down = 0). Yaw stays. Where these frames show no horizon, or
 // one that stands upside down, the camera is level. Returns
 // what was done in words, for the user; "" where the attitude was stated or need not be found.
 //
