@@ -13,7 +13,6 @@
 #include "foundation/image/mats.h"
 #include "sequence/insertion/ambient.h"
 #include "sequence/insertion/paint.h"
-#include "sequence/setup/from_scene.h"
 #include "sequence/setup/moment.h"
 #include "sequence/setup/world.h"
 
@@ -140,7 +139,7 @@ class Lit {
     Agreement agreement;
     for (const View& view : views_) {
       if (stop.stop_requested()) throw Interrupted();
-      insertion::AmbientEstimator light(scene_.light, setup::tone_of(scene_.camera_model), nullptr);
+      insertion::AmbientEstimator light(scene_.light, scene_.camera_model, nullptr);
       image::Picture painted = view.picture->clone();
       insertion::Painter(scene_, world_, insertion::Occluders())
           .paint(painted, view.moment, light.next(painted, view.moment.sight, {}));

@@ -361,10 +361,11 @@ std::array<float, 3> floats(const std::array<double, 3>& v) {
 }  // namespace
 
 AmbientEstimator::AmbientEstimator(const scene::Light& light,
-                                   const image::ToneCurve& tone,
+                                   const scene::CameraModel& camera,
                                    const image::Mask* own_aircraft)
     : light_(light),
-      tone_(tone),
+      tone_(setup::tone_of(camera)),
+      has_measured_haze_(camera.extinction_per_km && !camera.airlight),
       own_aircraft_(own_aircraft),
       skies_(skies(setup::to_sun_in_world(light))) {}
 
@@ -378,7 +379,8 @@ Glance glance_at(const image::Picture& picture, const image::ToneCurve& tone) {
 }
 
 bool AmbientEstimator::reads_pictures() const {
-  return !(light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo));
+  return has_measured_haze_ ||
+         !(light_.exposure && light_.sky_colour && (light_.ground_colour || light_.ground_albedo));
 }
 
 Ambient AmbientEstimator::next(const image::Picture& picture,

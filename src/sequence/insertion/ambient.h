@@ -61,7 +61,7 @@ Glance glance_at(const image::Picture& picture, const image::ToneCurve& tone);
 class AmbientEstimator {
  public:
   AmbientEstimator(const scene::Light& light,
-                   const image::ToneCurve& tone,
+                   const scene::CameraModel& camera,
                    const image::Mask* own_aircraft);
 
   // Takes the frames in order, all of one size and through one lens. `near` is the box of the
@@ -76,7 +76,8 @@ class AmbientEstimator {
                const projection::Sight& sight,
                const std::optional<PixelBox>& near,
                bool begins_shot = false);
-  // False where the scene states all of the light, so that no picture is read.
+  // False where the scene states all of the light, that of haze included, so that no picture is
+  // read.
   bool reads_pictures() const;
 
  private:
@@ -86,6 +87,7 @@ class AmbientEstimator {
 
   scene::Light light_;
   image::ToneCurve tone_;
+  bool has_measured_haze_ = false;  // extinction without a stated airlight
   const image::Mask* own_aircraft_;
   Skies skies_;
   std::optional<Ambient> smooth_;

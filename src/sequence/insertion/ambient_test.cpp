@@ -172,6 +172,21 @@ TEST(Ambient, AStatedSkyIsOvercast) {
   }
 }
 
+// The air between is seen against the picture, whoever states the light on the aircraft.
+TEST(Ambient, HazeFadesToTheBackgroundUnderAStatedLight) {
+  ClearSky clear(35, 180, 40);
+  clear.light.exposure = 1;
+  clear.light.sky_colour = {0.5, 0.6, 0.8};
+  clear.light.ground_albedo = 0.1;
+  scene::CameraModel hazy;
+  hazy.extinction_per_km = {4, 4, 4};
+  const image::Rgb grey = {0.3F, 0.3F, 0.3F};
+  const Ambient light =
+      AmbientEstimator(clear.light, hazy, nullptr).next(sky_of(grey, grey), clear.sight, {});
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(light.airlight[c], grey[c], 0.005F);
+  EXPECT_FLOAT_EQ(light.cloud[2], 0.8F);
+}
+
 // Four times the exposure clips the sky; the ground, whose light grows as it should, shows it. A
 // ground that is darker than its albedo under that sky says nothing against the sky.
 TEST(Ambient, AGroundShowsHowMuchBrighterThanWhiteAClippedSkyIs) {

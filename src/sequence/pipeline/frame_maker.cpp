@@ -9,7 +9,6 @@
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
 #include "sequence/insertion/frame_truth.h"
-#include "sequence/setup/from_scene.h"
 
 namespace airtruth::pipeline {
 
@@ -21,9 +20,7 @@ FrameMaker::FrameMaker(ResolvedScene resolved, const std::stop_token& stop)
                resolved_.occluders,
                std::move(resolved_.backdrop),
                stop),
-      ambient_(resolved_.scene.light,
-               setup::tone_of(resolved_.scene.camera_model),
-               resolved_.mask.get()) {}
+      ambient_(resolved_.scene.light, resolved_.scene.camera_model, resolved_.mask.get()) {}
 
 WorkPtr FrameMaker::decode() {
   if (stop_.stop_requested()) return nullptr;

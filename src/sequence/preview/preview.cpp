@@ -16,7 +16,6 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/preview/rows.h"
 #include "sequence/setup/flyable.h"
-#include "sequence/setup/from_scene.h"
 #include "sequence/setup/shared_inputs.h"
 #include "show/drawing/draw.h"
 #include "show/drawing/flight_views.h"
@@ -137,8 +136,7 @@ class Previewer {
 
   // The light in a frame; each frame is looked at alone.
   insertion::Ambient ambient_in(const image::Picture& picture, const setup::Moment& moment) const {
-    return insertion::AmbientEstimator(
-               scene().light, setup::tone_of(scene().camera_model), opened_.mask.get())
+    return insertion::AmbientEstimator(scene().light, scene().camera_model, opened_.mask.get())
         .next(picture, moment.sight, setup::search_bounds(moment));
   }
 

@@ -197,7 +197,7 @@ std::optional<Stage::Lit> Stage::light(std::int64_t frame,
                                        bool exact,
                                        const std::function<bool()>& leave) {
   const auto begin = [&](std::int64_t first) {
-    estimator_.emplace(scene().light, tone_, maker_->resolved().mask.get());
+    estimator_.emplace(scene().light, scene().camera_model, maker_->resolved().mask.get());
     light_first_ = first;
     light_frame_ = first - 1;
   };
