@@ -14,6 +14,14 @@
 namespace airtruth::insertion {
 namespace {
 
+// True where its reference point is in the picture, whatever the renderer's samples meet: a far
+// silhouette is thinner than they are apart.
+bool is_point_in_view(const setup::Moment& moment, std::size_t i) {
+  const auto pixel =
+      projection::pixel_from_world(moment.sight, moment.states[i]->position_in_world);
+  return moment.search[i] && pixel && moment.sight.lens->size().holds(*pixel);
+}
+
 annotation::State state_of(const setup::Moment& moment,
                            std::size_t i,
                            const Vector3& p_in_cam,
@@ -23,7 +31,7 @@ annotation::State state_of(const setup::Moment& moment,
   if (visible != nullptr && visible->box) return State::kVisible;
   const bool drawn =
       moment.search[i] && i < layer.areas.size() && layer.areas[i].alone_in_frame_px > 0;
-  if (drawn) return State::kHidden;
+  if (drawn || is_point_in_view(moment, i)) return State::kHidden;
   if (!moment.boxes[i].box && p_in_cam.z() <= 0) return State::kBehind;
   return State::kOutside;
 }

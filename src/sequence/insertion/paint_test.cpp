@@ -213,6 +213,20 @@ TEST(Distractors, WhatReachesThroughTheCamerasPlaneOutOfViewHasNoExactBox) {
   }
 }
 
+// Its silhouette, below a hundredth of a pixel, lies between the renderer's samples.
+TEST(Distractors, ABirdTooFarForAnySampleIsHiddenInViewAndOutsideBesideIt) {
+  for (const double right_m : {3.0, 20000.0}) {
+    const Drawn made = drawn(
+        scene_with(fmt::format(
+            "[[distractor]]\nkind = \"bird\"\nposition_ned_m = [20000, {}, -153]\n", right_m)),
+        0);
+    ASSERT_EQ(made.truth.intruders.size(), 1U);
+    EXPECT_EQ(made.truth.intruders[0].state,
+              right_m < 100 ? annotation::State::kHidden : annotation::State::kOutside);
+    EXPECT_TRUE(made.truth.intruders[0].exact_box_px);
+  }
+}
+
 TEST(Distractors, EachRowSeesItsOwnMomentOfTheStroke) {
   const model::Mesh bird = shapes::bird({.span_m = 2, .strokes_per_s = 5, .glide = 0});
   const lens::Lens lens = lens::pinhole_from_vertical_fov(50, kSize);
