@@ -213,6 +213,20 @@ TEST(Distractors, WhatReachesThroughTheCamerasPlaneOutOfViewHasNoExactBox) {
   }
 }
 
+// The fuselage, 4 m high and 12 m aside, goes from 31 m ahead to 9 m behind. Right of the middle it
+// is u / 3 high: from 199 px on, of which 320 px are in the picture and four times its width counts
+// beyond, the picture holds (320^2 - 199^2) / 2880^2 of it, 0.8 %; a wing is in it, too.
+TEST(Truth, TheFrameCutsWhatReachesBehindTheCamera) {
+  const Drawn made =
+      drawn(scene_with("[[intruder]]\naircraft = \"738/738-Ryanair\"\nwaypoints_ned_m = [[11, 12, "
+                       "-152], [-49, 12, -152]]\nspeed_mps = 60\n"),
+            0);
+  ASSERT_EQ(made.truth.intruders.size(), 1U);
+  EXPECT_EQ(made.truth.intruders[0].state, annotation::State::kVisible);
+  EXPECT_GT(made.truth.intruders[0].cut_by_frame, 0.9);
+  EXPECT_LT(made.truth.intruders[0].cut_by_frame, 1);
+}
+
 // Its silhouette, below a hundredth of a pixel, lies between the renderer's samples.
 TEST(Distractors, ABirdTooFarForAnySampleIsHiddenInViewAndOutsideBesideIt) {
   for (const double right_m : {3.0, 20000.0}) {

@@ -39,12 +39,16 @@ Vector3 turning(const trajectory::Path& path, double time_s, const Rotation& rot
 // part, and half a pixel to spare.
 constexpr double kSearchMarginPx = 1.5;
 
-// Returns the whole frame, for an aircraft so near that a part of it has no pixel.
-Box whole(const lens::ImageSize& size) { return {0, 0, double(size.width), double(size.height)}; }
+// For an aircraft so near that a part of it has no pixel: the rest may lie anywhere, also beyond
+// the frame, which cuts it.
+Box everywhere(const lens::ImageSize& size) {
+  constexpr double kFarPx = 1e6;  // pixels_of() goes no farther
+  return wider(Box{0, 0, double(size.width), double(size.height)}, kFarPx);
+}
 
 std::optional<Box> search_box(const projection::ExactBox& exact, const lens::ImageSize& size) {
   if (!exact.box) return std::nullopt;
-  const Box box = exact.partly_unseen ? whole(size) : wider(*exact.box, kSearchMarginPx);
+  const Box box = exact.partly_unseen ? everywhere(size) : wider(*exact.box, kSearchMarginPx);
   if (!meets_frame(box, size)) return std::nullopt;
   return box;
 }
