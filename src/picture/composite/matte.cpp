@@ -144,7 +144,7 @@ class Matte {
 
   std::vector<Visible> visible() const {
     std::vector<Visible> result(layer_.coverage.size());
-    for (std::size_t i = 0; i < result.size(); ++i) add_coverage(i, result[i]);
+    for (std::size_t i = 0; i < result.size(); ++i) add_pixels(i, result[i]);
     return result;
   }
 
@@ -440,15 +440,10 @@ class Matte {
     return options_.coder == nullptr ? reached : in_marked_blocks(box, reached);
   }
 
-  void add_coverage(std::size_t intruder, Visible& visible) const {
+  void add_pixels(std::size_t intruder, Visible& visible) const {
     const image::Coverage& coverage = layer_.coverage[intruder];
     if (coverage.empty()) return;
-    Pixel sum = Pixel::Zero();
-    each_pixel(coverage, [&](int x, int y, double alpha) {
-      if (free_[layer_.index(x, y)] == 0) return;
-      visible.alpha_sum_px += alpha;
-      sum += alpha * Pixel(x + 0.5, y + 0.5);
-    });
+    add_coverage(layer_, intruder, visible);
     const int farthest_px = options_.sensor.reach_px() + (options_.coder ? kCodecBlockPx : 0);
     const PixelBox box = *intersection(wider(coverage.box, farthest_px), layer_.patch);
     const std::vector<std::uint8_t> reached = reached_by(coverage, box);
@@ -456,8 +451,6 @@ class Matte {
     for (int y = box.y; y < box.bottom(); ++y)
       for (int x = box.x; x < box.right(); ++x)
         if (reached[i++] != 0 && changed_[layer_.index(x, y)] != 0) visible.add(x, y);
-    visible.covered = composite::covered(layer_, intruder);
-    if (visible.alpha_sum_px > 0) visible.centroid = sum / visible.alpha_sum_px;
   }
 
   image::Picture& picture_;
@@ -496,6 +489,17 @@ void check_fits(const image::Picture& picture, const image::Layer& layer) {
 }
 
 }  // namespace
+
+void add_coverage(const image::Layer& layer, std::size_t intruder, Visible& visible) {
+  Pixel sum = Pixel::Zero();
+  each_pixel(layer.coverage[intruder], [&](int x, int y, double alpha) {
+    if (!layer.is_open(layer.index(x, y))) return;
+    visible.alpha_sum_px += alpha;
+    sum += alpha * Pixel(x + 0.5, y + 0.5);
+  });
+  visible.covered = covered(layer, intruder);
+  if (visible.alpha_sum_px > 0) visible.centroid = sum / visible.alpha_sum_px;
+}
 
 std::vector<Visible> composite_matte(image::Picture& picture,
                                      const image::Layer& layer,

@@ -47,6 +47,9 @@ struct Visible {
   std::optional<Pixel> centroid;
 };
 
+// Adds what the layer covers: all of `visible` but its changed pixels.
+void add_coverage(const image::Layer& layer, std::size_t intruder, Visible& visible);
+
 // The result of a codec on a part of the frame, `box`: for the picture with the layer, and for the
 // background alone. The difference separates the codec's loss on the intruder from its second loss
 // on the background.

@@ -117,11 +117,7 @@ std::vector<composite::Visible> changed(const image::Picture& before,
     for (int y = searched[i]->y; y < searched[i]->bottom(); ++y)
       for (int x = searched[i]->x; x < searched[i]->right(); ++x)
         if (differs(before, after, x, y) && is_of(i, x, y)) visible[i].add(x, y);
-    if (i >= layer.coverage.size() || layer.coverage[i].empty()) continue;
-    visible[i].covered = composite::covered(layer, i);
-    each_pixel(layer.coverage[i], [&](int x, int y, float share) {
-      if (layer.is_open(layer.index(x, y))) visible[i].alpha_sum_px += share;
-    });
+    if (i < layer.coverage.size()) composite::add_coverage(layer, i, visible[i]);
   }
   return visible;
 }

@@ -139,6 +139,9 @@ TEST(ChromaKey, ARotorIsDrawnWhereItsBoxHasIt) {
     // The kernel spreads an edge, and thin blade tips change nothing.
     EXPECT_LE(helicopter.visible_box_px->width, helicopter.exact_box_px->width + 10) << spin_s;
     EXPECT_GE(helicopter.visible_box_px->width, helicopter.exact_box_px->width - 10) << spin_s;
+    ASSERT_TRUE(helicopter.covered_box_px && helicopter.centroid_px);
+    const auto [x, y] = *helicopter.centroid_px;
+    EXPECT_TRUE(helicopter.covered_box_px->contains(static_cast<int>(x), static_cast<int>(y)));
   }
 }
 
