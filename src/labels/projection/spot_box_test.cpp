@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "labels/projection/spot_box.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace airtruth::projection {
@@ -53,6 +55,23 @@ TEST(SpotBox, TheExposureSweepsItAndTheRowShiftsIt) {
   EXPECT_NEAR(spot_box(spot, rolling, 640, 480).x, 95, 0.1);
   spot.centre = {100, 360};
   EXPECT_NEAR(spot_box(spot, rolling, 640, 480).x, 95 + 1000 * 0.02 / 4, 0.1);
+}
+
+// A circle moves by 3/8 of a row while one row is read. Where it falls, it is 1 / (1 - 3/8) times
+// as high; where it goes across, it is sheared by 3/8.
+TEST(SpotBox, EachRowOfARollingShutterSeesItAtItsOwnTime) {
+  const Shutter rolling{.exposure_s = 0, .readout_s = 0.03};
+  image::Spot spot;
+  spot.centre = {300, 240};
+  spot.radius_px = 40;
+  spot.velocity_px_s = {0, 6000};
+  const Box fallen = spot_box(spot, rolling, 640, 480);
+  EXPECT_NEAR(fallen.height, 80 / (1 - 0.375), 0.7);
+  EXPECT_NEAR(fallen.width, 80, 1e-9);
+  spot.velocity_px_s = {6000, 0};
+  const Box sheared = spot_box(spot, rolling, 640, 480);
+  EXPECT_NEAR(sheared.width, 80 * std::hypot(1, 0.375), 0.5);
+  EXPECT_NEAR(sheared.height, 80, 1e-9);
 }
 
 TEST(SpotBox, LobesMoveTheOutline) {

@@ -84,6 +84,13 @@ std::optional<PixelBox> pixels_in_frame(const image::Spot& spot, const Spots& al
                       {0, 0, all.frame_width, all.frame_height});
 }
 
+// Where a place of the spot at the frame's time is when its own row sees it.
+Pixel seen_at(const image::Spot& spot, const Pixel& place, const Spots& in) {
+  constexpr int kRounds = 6;
+  const auto place_at = [&](double dt_s) -> Pixel { return place + dt_s * spot.velocity_px_s; };
+  return place_at(in.shutter.seen_s(place_at, in.frame_width, in.frame_height, kRounds));
+}
+
 // Areas of the spot's alpha, which nothing hides.
 image::Areas areas_of(const image::Spot& spot, const Spots& in) {
   const Box box = bounds_of(spot, 0);
@@ -94,7 +101,8 @@ image::Areas areas_of(const image::Spot& spot, const Spots& in) {
                      box.y + (j + 0.5) * box.height / kAreaSide);
       const double alpha = spot_alpha(spot, at, 0);
       alone += alpha;
-      if (at.x() >= 0 && at.y() >= 0 && at.x() < in.frame_width && at.y() < in.frame_height)
+      const Pixel seen = seen_at(spot, at, in);
+      if (seen.x() >= 0 && seen.y() >= 0 && seen.x() < in.frame_width && seen.y() < in.frame_height)
         in_frame += alpha;
     }
   const double cell = box.width * box.height / (kAreaSide * kAreaSide);

@@ -61,6 +61,16 @@ TEST(Spots, TheFrameCutsHalfOfASpotOnItsEdge) {
   EXPECT_GE(layer.patch.x, 0);
 }
 
+// The first row is read 10 ms before the frame's time, when the spot was 6 px higher: its centre
+// was on the edge.
+TEST(Spots, TheFrameCutsAFallingSpotWhereARollingShutterSeesIt) {
+  Spots all = in_frame(circle(30, 6, 10));
+  all.spots[0]->velocity_px_s = {0, 600};
+  all.shutter.readout_s = 0.02;
+  const image::Layer layer = over({}, 0, all);
+  EXPECT_NEAR(layer.areas[0].alone_in_frame_px / layer.areas[0].alone_px, 0.5, 0.02);
+}
+
 TEST(Spots, AMovingSpotIsAStreakOfTheSameSum) {
   image::Spot spot = circle(30, 20, 3);
   Spots all = in_frame(spot);
