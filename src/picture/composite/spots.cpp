@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "foundation/base/error.h"
 
@@ -176,6 +177,16 @@ void put_over(image::Layer& layer, const image::Spot& spot, const image::Coverag
   layer.coverage.push_back(cover);
 }
 
+// Takes what later spots hide of a spot from its areas: `left` of what it covers by itself.
+void hide_share(image::Areas& areas, const image::Coverage& alone, const image::Coverage& left) {
+  const auto sum = [](const image::Coverage& of) {
+    return std::accumulate(of.alpha.begin(), of.alpha.end(), 0.0);
+  };
+  if (!(sum(alone) > 0)) return;
+  const double share = sum(left) / sum(alone);
+  for (double* area : {&areas.seen_px, &areas.free_px, &areas.clear_px}) *area *= share;
+}
+
 }  // namespace
 
 double spot_alpha(const image::Spot& spot, const Pixel& at, double dt_s) {
@@ -262,6 +273,8 @@ image::Layer with_spots(image::Layer layer,
     else
       result.coverage.emplace_back();
   }
+  for (std::size_t k = 0; k < all.spots.size(); ++k)
+    hide_share(result.areas[intruders + k], covers[k], result.coverage[intruders + k]);
   return result;
 }
 

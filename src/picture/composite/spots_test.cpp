@@ -120,6 +120,18 @@ TEST(Spots, ASpotHidesItsShareOfAnIntruder) {
   EXPECT_NEAR(both.pixels[both.index(0, 0)].alpha, 0.25, 1e-6);
 }
 
+TEST(Spots, ALaterSpotHidesItsShareOfAnEarlierOne) {
+  Spots all = in_frame(circle(30, 20, 5));
+  image::Spot over_all = circle(30, 20, 200);
+  over_all.opacity = 0.25;
+  all.spots.emplace_back(over_all);
+  const std::vector<image::Areas> areas = over({}, 0, all).areas;
+  ASSERT_EQ(areas.size(), 2U);
+  EXPECT_NEAR(areas[0].seen_px, 0.75 * areas[0].alone_in_frame_px, 1e-3);
+  EXPECT_EQ(areas[0].clear_px, areas[0].seen_px);
+  EXPECT_EQ(areas[1].seen_px, areas[1].alone_in_frame_px);
+}
+
 TEST(Spots, TheOwnAircraftIsBehindTheLensAndBeforeTheIntruder) {
   image::Mask own{64, 48, std::vector<unsigned char>(64 * 48, 255)};
   for (int y = 0; y < 48; ++y)
