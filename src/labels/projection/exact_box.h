@@ -73,8 +73,8 @@ Bearing bearing_of(const Vector3& in_cam);
 // lens alone, of the pixel where the point is drawn. Where motion is a rotation, the bearing
 // includes the measured rotation. Where motion is a homography, which moves the picture, the
 // bearing is the ray of the pixel to which the homography moves the point. With a rolling shutter
-// the time is that of the point's own row. Under a homography the result is empty for a point that
-// no pixel shows (behind the camera, beyond the lens's field).
+// the time is that of the point's own row. Under a homography other than the identity the result is
+// empty for a point that no pixel shows (behind the camera, beyond the lens's field).
 std::optional<Bearing> seen_bearing(const Sight& sight,
                                     const Vector3& p_in_world,
                                     const Vector3& velocity_in_world_mps);
