@@ -19,6 +19,11 @@ namespace {
 // shortens it. Doubled, it would keep a little more and join motions that are half a second apart.
 constexpr int kReach = 8;
 
+// By how much of a step the steps of frames at a constant rate may differ. Stamps of 1 ms
+// (Matroska's) change a step at 240 frames/s by a quarter; a frame that is left out changes it by
+// one.
+constexpr double kMaxJitter = 0.3;
+
 bool is_away(const FrameMotion& motion) { return motion.state == State::kTurnedAway; }
 
 // Whether frame i continues the frame before it. It does not after a cut, nor where a held motion
@@ -27,7 +32,7 @@ bool goes_on(const std::vector<FrameMotion>& motion, std::size_t i) {
   return motion[i].state != State::kCut && is_away(motion[i]) == is_away(motion[i - 1]);
 }
 
-// The number of frames on each side of k that are linked to it at equal intervals; at most kReach.
+// The number of frames on each side of k that are linked to it at a constant rate; at most kReach.
 int linked_reach(const std::vector<FrameMotion>& motion, std::size_t k) {
   int reach = 0;
   const double step_s = k + 1 < motion.size() ? motion[k + 1].time_s - motion[k].time_s : 0;
@@ -37,11 +42,20 @@ int linked_reach(const std::vector<FrameMotion>& motion, std::size_t k) {
     if (!goes_on(motion, k + next) || !goes_on(motion, k - next + 1)) break;
     const double after_s = motion[k + next].time_s - motion[k + next - 1].time_s;
     const double before_s = motion[k - next + 1].time_s - motion[k - next].time_s;
-    if (std::abs(after_s - step_s) > 0.02 * step_s || std::abs(before_s - step_s) > 0.02 * step_s)
-      break;
+    const double change_s = std::max(std::abs(after_s - step_s), std::abs(before_s - step_s));
+    if (change_s > kMaxJitter * step_s) break;
     ++reach;
   }
   return reach;
+}
+
+// The time between frames around frame k. That of the next frame serves where all are equal but for
+// the rounding of seconds; where stamps jitter, the mean over the reach does.
+double step_around(const std::vector<FrameMotion>& motion, std::size_t k, int reach) {
+  const auto n = static_cast<std::size_t>(reach);
+  const double next_s = motion[k + 1].time_s - motion[k].time_s;
+  const double mean_s = (motion[k + n].time_s - motion[k - n].time_s) / (2 * reach);
+  return std::abs(mean_s - next_s) < 1e-9 ? next_s : mean_s;
 }
 
 }  // namespace
@@ -60,7 +74,7 @@ Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k) {
   };
   const int reach = linked_reach(motion, k);
   if (reach > 0) {
-    const double step_s = motion[k + 1].time_s - now.time_s;
+    const double step_s = step_around(motion, k, reach);
     for (int j = 1; j <= reach; ++j) {
       const auto offset = static_cast<std::size_t>(j);
       add(k + offset, differentiator_weight(j, reach) / step_s);
@@ -68,11 +82,14 @@ Shake shake_of(const std::vector<FrameMotion>& motion, std::size_t k) {
     }
     return shake;
   }
-  // At an end of the linked frames only one neighbour remains.
-  if (k + 1 < motion.size() && goes_on(motion, k + 1))
-    add(k + 1, 1 / (motion[k + 1].time_s - now.time_s));
-  else if (k > 0 && goes_on(motion, k))
-    add(k - 1, -1 / (now.time_s - motion[k - 1].time_s));
+  // Beside a frame that is left out both neighbours count by their times; at an end of the linked
+  // frames only one neighbour remains.
+  const bool has_next = k + 1 < motion.size() && goes_on(motion, k + 1);
+  const bool has_last = k > 0 && goes_on(motion, k);
+  const double next_s = has_next ? motion[k + 1].time_s - now.time_s : 0;
+  const double last_s = has_last ? now.time_s - motion[k - 1].time_s : 0;
+  if (has_next) add(k + 1, has_last ? last_s / next_s / (last_s + next_s) : 1 / next_s);
+  if (has_last) add(k - 1, has_next ? -next_s / last_s / (last_s + next_s) : -1 / last_s);
   return shake;
 }
 
