@@ -80,7 +80,8 @@ Offset offset_from(const trajectory::State& own, const Vector3& offset_ned_m) {
 
 trajectory::Path beyond_clip(const trajectory::Path& path, double clip_end_s) {
   const double end_s = path.end_s();
-  if (!std::isfinite(end_s) || end_s < clip_end_s) return path;
+  // The path tells whether its end is that of the clip, whose time is rounded to a stream's clock.
+  if (!std::isfinite(end_s) || !path.at(std::max(clip_end_s, path.start_s()))) return path;
   return {path.start_s(), HUGE_VAL, [path, end_s](double time_s) {
             trajectory::State state = *path.at(std::min(time_s, end_s));
             state.position_in_world += std::max(0.0, time_s - end_s) * state.velocity_in_world_mps;

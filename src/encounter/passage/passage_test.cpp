@@ -77,6 +77,12 @@ TEST(Passage, AfterTheClipAPathGoesStraightOnFromItsEnd) {
   EXPECT_LT((on.at(3)->position_in_world - path.at(3)->position_in_world).norm(), 1e-12);
   EXPECT_FALSE(on.at(-1));
   EXPECT_FALSE(beyond_clip(path, 5.5).at(5.5));  // it is over within the clip
+  // Of a path to 1.4 s and a clip whose last frame is tick 35 x 512 of 1/12800 s, a rounding later.
+  const double last_s = 35 * 512 * (1 / 12800.0);
+  const auto to_the_last = trajectory::spline_at_times(ahead, std::vector{0.0, 1.4});
+  ASSERT_GT(last_s, to_the_last.end_s());
+  EXPECT_TRUE(beyond_clip(to_the_last, last_s).at(9));
+  EXPECT_TRUE(beyond_clip(trajectory::shifted(path, 3), 2).at(9));  // it begins after the clip
 }
 
 // Of straight paths, walking finds the interval of the closed form.
