@@ -38,9 +38,9 @@ class SharedInputs {
                         std::size_t max_kept_bytes = kMaxKeptBytes)
       : occlusion_cache_(std::move(occlusion_cache)), max_kept_bytes_(max_kept_bytes) {}
 
-  // The intruder's aircraft in its configuration at the beginning of its path. Two that come out as
-  // the same mesh, such as one type at two cruising speeds, share it with its BVH. A file that has
-  // changed since is read again. Passes the reader's warnings to `warn` at each call. Throws Error
+  // The intruder's aircraft in its configuration (load_options()). Two that come out as the same
+  // mesh, such as one type at two cruising speeds, share it with its BVH. A file that has changed
+  // since is read again. Passes the reader's warnings to `warn` at each call. Throws Error
   // as load_aircraft does, and Interrupted on stop. Threads may call it at the same time; of those
   // that want one aircraft one loads it, and the others wait.
   std::shared_ptr<const Type> type_of(const scene::Intruder& intruder,

@@ -110,8 +110,8 @@ model::LoadOptions load_options(const scene::Intruder& intruder,
                                 const std::stop_token& stop) {
   model::LoadOptions options;
   options.stop = stop;
-  // A path without a beginning begins with the clip.
-  const double begin_s = std::isfinite(path.start_s()) ? path.start_s() : 0;
+  // A path may begin long before the clip, as those of [[intruder.seen]] do.
+  const double begin_s = std::clamp(0.0, path.start_s(), path.end_s());
   if (const auto state = path.at(begin_s)) {
     options.airspeed_kt =
         nearest_step(state->velocity_in_world_mps.norm() / kMpsOfKnot, kAirspeedStepKt);

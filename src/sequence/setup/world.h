@@ -64,13 +64,13 @@ struct World {
 };
 
 // How an intruder's aircraft is loaded: its own keys, and the airspeed and the height at the
-// beginning of its path, to the nearest 20 kt and 100 ft.
+// beginning of the clip, or of a path that begins later, to the nearest 20 kt and 100 ft.
 model::LoadOptions load_options(const scene::Intruder& intruder,
                                 const trajectory::Path& path,
                                 const std::stop_token& stop = {});
 
-// Returns an intruder's aircraft in its configuration at the beginning of its path: the airspeed
-// and the height there determine gear and flaps.
+// Returns an intruder's aircraft in its configuration at that time: the airspeed and the height
+// there determine gear and flaps.
 fleet::Aircraft aircraft_of(const scene::Intruder& intruder,
                             const trajectory::Path& path,
                             const Warn& warn,

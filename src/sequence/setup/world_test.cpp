@@ -49,5 +49,16 @@ TEST(LoadWorld, GearThatIsDownIsAnotherType) {
   EXPECT_NE(world.actors[0].type->model, world.actors[1].type->model);
 }
 
+// What is seen within the clip flies on a path that climbs from the ground an hour before it.
+TEST(LoadWorld, GearIsThatOfTheClipWhereAPathBeginsBeforeIt) {
+  scene::Intruder climbing = flying("climbing", "738/738-Ryanair", 110);
+  climbing.speed_mps.reset();
+  climbing.waypoints_ned_m = {{-395900, 0, 0}, {100, 0, -1000}, {430, 0, -1000.8}};
+  climbing.times_s = {-3600, 0, 3};
+  const World world =
+      load_world(scene_of({flying("level", "738/738-Ryanair", 110), climbing}), {320, 240}, {});
+  EXPECT_EQ(world.actors[0].type, world.actors[1].type);
+}
+
 }  // namespace
 }  // namespace airtruth::setup
