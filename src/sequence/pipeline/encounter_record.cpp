@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/pipeline/encounter_record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "aircraft/model/mesh.h"
 #include "labels/annotation/object_class.h"
 
 namespace airtruth::pipeline {
@@ -14,19 +16,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Half of the angle over which the aircraft extends vertically, at a range.
-double half_height_deg(const setup::World& world, const FirstSeen& seen, double range_m) {
-  const double height_m = seen.exact_box_px.height / world.lens.focal_px() * seen.range_m;
-  return degrees(std::atan2(0.5 * height_m, range_m));
-}
-
-passage::AgainstHorizon against_horizon(const setup::World& world,
-                                        const FirstSeen& seen,
+// The aircraft as a mover at the middle of its height, and half of that height's angle.
+passage::AgainstHorizon against_horizon(const setup::Actor& actor,
                                         const trajectory::State& own,
-                                        const trajectory::State& intruder) {
-  const double range_m = (intruder.position_in_world - own.position_in_world).norm();
+                                        const trajectory::State& intruder,
+                                        double time_s) {
+  const projection::SilhouettePoints& silhouette = actor.type->silhouette;
+  double highest_m = HUGE_VAL, lowest_m = -HUGE_VAL;  // along down, from the reference point
+  for (std::size_t part = 0; part < silhouette.points.size(); ++part) {
+    const Eigen::Affine3d body_from_part =
+        model::body_from_part(silhouette.mesh->parts[part], actor.turned_s(time_s)).cast<double>();
+    for (const Eigen::Vector3f& point : silhouette.points[part]) {
+      const Vector3 p_in_body = body_from_part * point.cast<double>();
+      const double down_m = (intruder.world_from_body * p_in_body).z();
+      highest_m = std::min(highest_m, down_m);
+      lowest_m = std::max(lowest_m, down_m);
+    }
+  }
+  separation::Mover middle = passage::mover_of(intruder);
+  if (highest_m <= lowest_m) middle.position_ned_m.z() += 0.5 * (highest_m + lowest_m);
+  const double range_m = (middle.position_ned_m - own.position_in_world).norm();
+  const double half_height_m = std::max(0.0, 0.5 * (lowest_m - highest_m));
   return passage::against_horizon(
-      passage::mover_of(own), passage::mover_of(intruder), half_height_deg(world, seen, range_m));
+      passage::mover_of(own), middle, degrees(std::atan2(half_height_m, range_m)));
 }
 
 EncounterRecord record_of(const setup::World& world,
@@ -47,11 +59,11 @@ EncounterRecord record_of(const setup::World& world,
     check(own && intruder, "both are in the world where they are nearest");
     record.meeting = passage::meeting_of(passage::mover_of(*own), passage::mover_of(*intruder));
     record.vertical_motion = passage::vertical_motion_of(passage::mover_of(*intruder));
-    if (seen) record.horizon = against_horizon(world, *seen, *own, *intruder);
+    if (seen) record.horizon = against_horizon(actor, *own, *intruder, nearest->time_s);
   }
   if (seen)
     record.horizon_when_first_seen =
-        against_horizon(world, *seen, *camera.at(seen->time_s), *path.at(seen->time_s));
+        against_horizon(actor, *camera.at(seen->time_s), *path.at(seen->time_s), seen->time_s);
   for (const auto& [name, volume] : world.volumes)
     for (const separation::Interval& time : passage::violations(volume, camera, path, 0, end_s))
       record.violations.push_back({name, time});

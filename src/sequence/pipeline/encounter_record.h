@@ -39,8 +39,7 @@ struct EncounterRecord {
   // Of the states where they are nearest in that time.
   std::optional<passage::Meeting> meeting;
   std::optional<passage::VerticalMotion> vertical_motion;
-  // Where they are nearest, with the height that it has where it is first seen; empty for one that
-  // is never seen.
+  // Where they are nearest; empty for one that is never seen.
   std::optional<passage::AgainstHorizon> horizon;
   std::optional<FirstSeen> first_seen;
   std::optional<passage::AgainstHorizon> horizon_when_first_seen;

@@ -13,9 +13,11 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "sequence/demo/demo.h"
+#include "sequence/pipeline/encounter_record.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/replay/finished.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/world.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::pipeline {
@@ -191,6 +193,28 @@ TEST_F(EncounterTruth, TheRecordSaysWhenItIsFirstSeen) {
   EXPECT_NEAR(first.at("to_closest_approach_s"), 4.25 - seen->time_s, 1e-6);
   // It descends from above: over the horizon at first.
   EXPECT_EQ(first.at("horizon"), "above");
+}
+
+// A 738 at 600 m is 12.5 m high and, banked by 90 degrees, 35 m. The horizon of a camera at 10 m is
+// a metre lower there. The box of the picture, here of a rolled camera, says nothing of that
+// height.
+TEST(Encounters, TheHorizonIsOnAnAircraftByItsHeightInTheWorld) {
+  const auto horizon = [](double up_m, double roll_deg) {
+    scene::Scene scene;
+    scene.lens.vertical_fov_deg = 60;
+    scene.camera.position_ned_m = {0, 0, -10};
+    scene::Intruder& intruder = scene.intruders.emplace_back();
+    intruder.aircraft = "738/738-Ryanair";
+    intruder.waypoints_ned_m = {{600, 0, -up_m}, {800, 0, -up_m}};
+    intruder.speed_mps = 100;
+    intruder.roll_deg = roll_deg;
+    const setup::World world = setup::load_world(scene, {320, 240}, {});
+    const FirstSeen seen{0, 0, 600, {150, 100, 5, 12}};
+    return encounter_records(world, {seen}, 1).at(0).horizon_when_first_seen;
+  };
+  EXPECT_EQ(horizon(24, 0), passage::AgainstHorizon::kAbove);
+  EXPECT_EQ(horizon(24, 90), passage::AgainstHorizon::kOn);
+  EXPECT_EQ(horizon(9, 0), passage::AgainstHorizon::kOn);
 }
 
 TEST_F(EncounterTruth, TheRecordIsReadAsItWasWritten) {
