@@ -28,6 +28,16 @@ YawPitchRoll yaw_pitch_roll(const Quaternion& world_from_body) {
           degrees(std::atan2(r(2, 1), r(2, 2)))};
 }
 
+Vector3 nearest_angles(const Vector3& angles_deg, const Vector3& before_deg) {
+  const auto next_to = [&before_deg](Vector3 angles) {
+    for (int i = 0; i < 3; ++i) angles[i] = nearest_turn(angles[i], before_deg[i]);
+    return angles;
+  };
+  const Vector3 stated = next_to(angles_deg);
+  const Vector3 other = next_to({angles_deg[0] + 180, 180 - angles_deg[1], angles_deg[2] + 180});
+  return (other - before_deg).lpNorm<1>() < (stated - before_deg).lpNorm<1>() ? other : stated;
+}
+
 Quaternion cam_from_body() {
   Matrix3 r;
   r << 0, 1, 0,  //

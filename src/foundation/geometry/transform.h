@@ -81,6 +81,11 @@ Quaternion world_from_body(const YawPitchRoll& attitude);
 // (-180, 180]. At a pitch of +-90 degrees yaw and roll cannot be separated, and roll is 0.
 YawPitchRoll yaw_pitch_roll(const Quaternion& world_from_body);
 
+// Yaw, pitch and roll of the same attitude next to those before it, in degrees: with whole turns
+// added, and beyond the pole as (yaw + 180, 180 - pitch, roll + 180) where that is nearer. What
+// crosses the pole so has angles without a jump, with a pitch beyond 90 degrees.
+Vector3 nearest_angles(const Vector3& angles_deg, const Vector3& before_deg);
+
 // The rotation of a camera that looks along the body's x axis: x_cam = y_body, y_cam = z_body,
 // z_cam = x_body.
 Quaternion cam_from_body();

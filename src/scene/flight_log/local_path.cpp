@@ -146,13 +146,12 @@ std::optional<double> height_at(const FlightLog& log, double time_s) {
 std::optional<YawPitchRoll> attitude_at(const FlightLog& log, double time_s) {
   if (log.attitudes.empty()) return std::nullopt;
   const std::size_t next = after(log.attitudes, time_s);
-  const YawPitchRoll a = log.attitudes[next == 0 ? 0 : next - 1].angles;
+  const Vector3 before = vector_of(numbers_of(log.attitudes[next == 0 ? 0 : next - 1].angles));
   const Vector3 angles = between(log.attitudes, time_s, [&](const Attitude& attitude) {
-    const YawPitchRoll& b = attitude.angles;
-    return Vector3(
-        nearest_turn(b.yaw_deg, a.yaw_deg), b.pitch_deg, nearest_turn(b.roll_deg, a.roll_deg));
+    return nearest_angles(vector_of(numbers_of(attitude.angles)), before);
   });
-  return YawPitchRoll{angles.x(), angles.y(), angles.z()};
+  const YawPitchRoll found{angles.x(), angles.y(), angles.z()};
+  return std::abs(found.pitch_deg) > 90 ? yaw_pitch_roll(world_from_body(found)) : found;
 }
 
 }  // namespace airtruth::flight_log

@@ -77,6 +77,20 @@ TEST(LocalPath, AttitudesAreInterpolatedAcrossNorth) {
   EXPECT_NEAR(height_at(straight(0, 10, 2, 1), 25).value(), 90, 1e-9);
 }
 
+// A gimbal that looks down and crosses the pole back and forth by 0.7 degrees turns no further.
+TEST(LocalPath, AttitudesAreInterpolatedAcrossThePole) {
+  FlightLog log;
+  for (int i = 0; i < 10; ++i)
+    log.attitudes.push_back(
+        {double(i), i % 2 == 0 ? YawPitchRoll{10, -89.65, 0} : YawPitchRoll{-169.9, -89.65, 180}});
+  for (double t = 0; t <= 9; t += 0.125) {
+    const YawPitchRoll turned = attitude_at(log, t).value();
+    EXPECT_GE(turned.pitch_deg, -90) << t;
+    EXPECT_LT(degrees(world_from_body(turned).angularDistance(world_from_body({10, -90, 0}))), 1)
+        << t;
+  }
+}
+
 // Positions are averaged over half seconds, attitudes are not.
 TEST(LocalPath, ARollOfTwoHertzIsFollowed) {
   FlightLog log = straight(30, 0, 0, 5);

@@ -161,13 +161,16 @@ class Curve : public CubicSpline {
   mutable std::vector<double> yaw_deg_;
 };
 
-// The angles of all samples, without turns by 360 degrees from one to the next in yaw and roll.
-std::vector<Vector3> unwrapped_angles(const Samples& samples) {
+// The angles of all samples, without turns by 360 degrees from one to the next in yaw and roll. An
+// attitude whose angles are `all_sampled` goes across the pole.
+std::vector<Vector3> unwrapped_angles(const Samples& samples, bool all_sampled) {
   std::vector<Vector3> angles = samples.angles_deg;
   angles.resize(samples.times_s.size(), Vector3::Zero());
-  for (std::size_t i = 1; i < angles.size(); ++i)
+  for (std::size_t i = 1; i < angles.size(); ++i) {
+    if (all_sampled) angles[i] = nearest_angles(angles[i], angles[i - 1]);
     for (const int axis : {0, 2})
       angles[i][axis] = nearest_turn(angles[i][axis], angles[i - 1][axis]);
+  }
   return angles;
 }
 
@@ -363,11 +366,11 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
 Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude) {
   const auto along =
       std::make_shared<const Curve>(samples.times_s, samples.positions_ned_m, attitude);
-  const auto angles =
-      std::make_shared<const CubicSpline>(samples.times_s, unwrapped_angles(samples));
   const std::array<bool, 3> sampled = {samples.has_angle[0] && !attitude.yaw_deg,
                                        samples.has_angle[1] && !attitude.pitch_deg,
                                        samples.has_angle[2] && !attitude.roll_deg};
+  const auto angles = std::make_shared<const CubicSpline>(
+      samples.times_s, unwrapped_angles(samples, sampled == std::array{true, true, true}));
   return Path(angles->begin(), angles->end(), [along, angles, sampled](double t) {
     State state = along->state_at(t);
     YawPitchRoll turned = yaw_pitch_roll(state.world_from_body);

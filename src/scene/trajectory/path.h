@@ -107,8 +107,9 @@ struct Samples {
 };
 
 // The C2 spline through samples. An angle that the samples state follows a spline through its
-// unwrapped values; any other angle follows from the path as above. `attitude` replaces either.
-// The samples must hold at least two times.
+// unwrapped values, and three together also across the pole (nearest_angles()); any other angle
+// follows from the path as above. `attitude` replaces either. The samples must hold at least two
+// times.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude = {});
 
 // Flight at constant speed, climb and rate of turn: a straight line or a helix. It passes

@@ -222,6 +222,19 @@ TEST(PathFile, ReadsPositionsAndAnglesInAnyOrder) {
   EXPECT_NEAR(yaw_pitch_roll(state->world_from_body).yaw_deg, 0, 1e-9);
 }
 
+// A camera that looks down and crosses the pole back and forth by 0.7 degrees turns no further.
+TEST(PathFile, AnAttitudeGoesAcrossThePole) {
+  std::string text = "time_s,north_m,east_m,down_m,yaw_deg,pitch_deg,roll_deg\n";
+  for (int i = 0; i < 10; ++i)
+    text +=
+        std::to_string(i) + ",0,0,-100," + (i % 2 == 0 ? "10,-89.65,0\n" : "-169.9,-89.65,180\n");
+  const Path path = parse_path_csv(text, "p.csv");
+  for (double t = 0; t <= 9; t += 0.125) {
+    const Quaternion& turned = path.at(t)->world_from_body;
+    EXPECT_LT(degrees(turned.angularDistance(world_from_body({10, -90, 0}))), 1) << t;
+  }
+}
+
 TEST(PathFile, PointsAtTheLineThatIsWrong) {
   const std::string header = "time_s,north_m,east_m,down_m\n";
   EXPECT_EQ(error_of([&] { parse_path_csv("time_s,nort_m,east_m,down_m\n", "a.csv"); }),
