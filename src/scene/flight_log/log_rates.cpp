@@ -16,6 +16,14 @@ constexpr double kMaxSigmaS = 0.1;
 // less than twice that of the best. Chosen by judgement.
 constexpr double kMinUnexplainedRatio = 2;
 
+// How far a clip may reach beyond the rates of its log, s: of a log that begins or ends with it the
+// rates lack half a record and the last interpolated sample (0.06 s at 10 Hz), and a frame is
+// added.
+constexpr double kBeyondS = 0.2;
+// The least correlation there: where the true offset is further off, another peak of the vibration
+// is found, at some 0.5. Chosen by judgement.
+constexpr double kMinBeyondCorrelation = 0.9;
+
 constexpr double kMinRateHz = 100;  // three samples in a frame of 30 a second
 
 std::vector<gyro::GyroSample> stated_or_implied(const FlightLog& log) {
@@ -48,6 +56,32 @@ std::vector<gyro::GyroSample> interpolated(const std::vector<gyro::GyroSample>& 
   return result;
 }
 
+bool is_in_range(const gyro::OffsetRange& range, double offset_s) {
+  return offset_s >= range.from_s && offset_s <= range.to_s;
+}
+
+// The best fit among the offsets for which the log covers the clip, and those a little beyond.
+std::optional<gyro::GyroFit> best_fit(const std::vector<gyro::GyroSample>& rates,
+                                      const std::vector<motion::FrameMotion>& motion,
+                                      const gyro::OffsetRange& of_log) {
+  auto best = gyro::fit_gyro(rates, motion, of_log);
+  for (const gyro::OffsetRange& end : {gyro::OffsetRange{of_log.from_s - kBeyondS, of_log.from_s},
+                                       gyro::OffsetRange{of_log.to_s, of_log.to_s + kBeyondS}}) {
+    const auto fit = gyro::fit_gyro(rates, motion, end);
+    if (fit && (!best || fit->correlation > best->correlation)) best = fit;
+  }
+  return best;
+}
+
+// False for a fit at the very end of the search, which is no peak, and for a poor one for which the
+// clip reaches beyond the log.
+bool is_covered(const gyro::GyroFit& fit, const gyro::OffsetRange& of_log) {
+  constexpr double kPeakS = 0.01;  // the coarse step of gyro::fit_gyro()
+  constexpr double kInsideS = kBeyondS - kPeakS;
+  return is_in_range({of_log.from_s - kInsideS, of_log.to_s + kInsideS}, fit.offset_s) &&
+         (is_in_range(of_log, fit.offset_s) || fit.correlation >= kMinBeyondCorrelation);
+}
+
 }  // namespace
 
 std::vector<gyro::GyroSample> gyro_samples(const FlightLog& log) {
@@ -63,18 +97,26 @@ Alignment aligned(const std::vector<gyro::GyroSample>& rates,
   Alignment result;
   const gyro::OffsetRange range{rates.front().time_s - motion.front().time_s,
                                 rates.back().time_s - motion.back().time_s};
-  if (!(range.to_s > range.from_s)) {
+  if (!(range.to_s - range.from_s > -2 * kBeyondS)) {
     result.why =
         fmt::format("it lasts {:.1f} s and the clip {:.1f} s; expected a log of the whole clip",
                     rates.back().time_s - rates.front().time_s,
                     motion.back().time_s - motion.front().time_s);
     return result;
   }
-  const auto best = gyro::fit_gyro(rates, motion, range);
+  const auto best = best_fit(rates, motion, range);
   if (!best) {
     result.why =
         "its turn rates and the clip's measured rotation agree at no offset; expected a log "
         "of the same flight, and a clip that turns";
+    return result;
+  }
+  if (!is_covered(*best, range)) {
+    result.why = fmt::format(
+        "it fits best at {:.2f} s (correlation {:.2f}), where it does not cover the clip; expected "
+        "a log of the whole clip",
+        best->offset_s,
+        best->correlation);
     return result;
   }
   if (const auto other = gyro::other_fit(rates, motion, range, *best, kApartS)) {

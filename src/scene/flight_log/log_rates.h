@@ -27,9 +27,10 @@ struct Alignment {
   std::string why;
 };
 
-// Looks for the offset over the whole log. There is no fit where the log and the measured rotation
-// do not correlate, where another offset fits nearly as well, or where the clip turns so little
-// that the offset is uncertain by more than 0.1 s.
+// Looks for the offset over the whole log, which may begin or end with the clip. There is no fit
+// where the log does not cover the clip, where the log and the measured rotation do not correlate,
+// where another offset fits nearly as well, or where the clip turns so little that the offset is
+// uncertain by more than 0.1 s.
 Alignment aligned(const std::vector<gyro::GyroSample>& rates,
                   const std::vector<motion::FrameMotion>& motion);
 

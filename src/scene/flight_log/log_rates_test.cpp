@@ -57,6 +57,18 @@ TEST(LogRates, TheOffsetOfAKnownFlightIsFound) {
   }
 }
 
+// The rates of such a log end half a record before its attitudes.
+TEST(LogRates, TheOffsetOfALogThatEndsWithTheClipIsFound) {
+  const double clip_s = measured().back().time_s;
+  for (const double hz : {30.0, 10.0}) {
+    const Alignment found = aligned(gyro_samples(flown(hz, kOffsetS + clip_s)), measured());
+    ASSERT_TRUE(found.fit) << found.why;
+    EXPECT_NEAR(found.fit->offset_s, kOffsetS, 0.005) << hz;
+  }
+  EXPECT_THAT(aligned(gyro_samples(flown(50, kOffsetS + clip_s - 0.5)), measured()).why,
+              testing::HasSubstr("where it does not cover the clip"));
+}
+
 TEST(LogRates, RatesAreThoseOfTheAttitudes) {
   FlightLog log;
   for (int i = 0; i < 400; ++i) log.attitudes.push_back({i / 200.0, {30 * i / 200.0, 0, 0}});
