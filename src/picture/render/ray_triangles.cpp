@@ -71,6 +71,30 @@ struct Projection {
 
 using Corners = std::array<Vector3, 3>;
 
+// An angle from the lens's axis within which the rays of a patch lie at all times of the span.
+double angle_of_rays(const View& view, const PixelBox& patch, const Span& span) {
+  // The border is looked at from point to point; what lies between them is within the margin.
+  constexpr int kPoints = 16;
+  constexpr double kMarginRad = 0.02;
+  double least = 1;  // cosine
+  for (int k = 0; k < 3; ++k) {
+    const View then = view.at(span.at(k));
+    for (int i = 0; i <= kPoints; ++i) {
+      const double x = patch.x + double(patch.width) * i / kPoints;
+      const double y = patch.y + double(patch.height) * i / kPoints;
+      for (const Pixel& pixel : {Pixel(x, patch.y),
+                                 Pixel(x, patch.bottom()),
+                                 Pixel(patch.x, y),
+                                 Pixel(patch.right(), y)}) {
+        const Vector3 ray = ray_in_cam(then, pixel);
+        if (!ray.allFinite()) return view.lens->max_angle_rad() + kMarginRad;
+        least = std::min(least, ray.z());
+      }
+    }
+  }
+  return std::acos(least) + kMarginRad;
+}
+
 // Of the part of a triangle in front of a pinhole's plane; everywhere where a point of it has no
 // pixel.
 ScreenBounds bounds_before_plane(const Corners& corners, const Projection& projection) {
@@ -240,6 +264,26 @@ class RayTriangles::Projected {
     return shade::is_hidden(outer, std::span(front_to_eye).first(moments()), scale);
   }
 
+  // True where no ray within an angle from the axis meets the triangle: a plane that touches this
+  // cone has all corners on its other side.
+  bool is_beyond(std::size_t triangle, double angle_rad) const {
+    if (!(angle_rad < kPi / 2)) return false;
+    const Corners middle = corners(triangle, moments() / 2);
+    const Pixel aside = (middle[0] + middle[1] + middle[2]).head<2>();
+    const Pixel side = aside.isZero(0) ? Pixel(1, 0) : Pixel(aside.normalized());
+    const Vector3 outwards(
+        std::cos(angle_rad) * side.x(), std::cos(angle_rad) * side.y(), -std::sin(angle_rad));
+    const auto is_outside = [&](const Vector3& point) { return outwards.dot(point) > 0; };
+    for (std::size_t k = 0; k < moments(); ++k)
+      if (!std::ranges::all_of(corners(triangle, k), is_outside)) return false;
+    if (moments() == 1) return true;
+    // A corner's parabola lies in the triangle of its ends and this point.
+    const Corners first = corners(triangle, 0), last = corners(triangle, 2);
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!is_outside(2 * middle[i] - 0.5 * (first[i] + last[i]))) return false;
+    return true;
+  }
+
   // Sets the bounds and their margin.
   void find_bounds(std::size_t triangle, RayTriangle& result) const {
     // Covers the rounding of the rays.
@@ -325,7 +369,7 @@ RayTriangles::RayTriangles(const View& view,
                            const PixelBox& patch,
                            const Span& span,
                            std::vector<PlacedInstance>& instances)
-    : patch_(patch) {
+    : patch_(patch), angle_of_rays_rad_(angle_of_rays(view, patch, span)) {
   std::size_t most = 0;
   for (const PlacedInstance& instance : instances)
     if (instance.pixels) most += instance.placed.model->mesh.triangle_count();
@@ -372,6 +416,7 @@ void RayTriangles::add_part(const View& view,
 }
 
 void RayTriangles::add(const Projected& projected, std::size_t t, RayTriangle result) {
+  if (projected.is_beyond(t, angle_of_rays_rad_)) return;
   Thrice<Moment> of_moment;
   const auto moments = std::span(of_moment).first(projected.moments());
   for (std::size_t k = 0; k < moments.size(); ++k) moments[k] = projected.moment(t, k);

@@ -114,6 +114,8 @@ class RayTriangles {
   void sort_into_rows();
 
   PixelBox patch_;
+  // From the lens's axis; triangles that lie beyond are left out.
+  double angle_of_rays_rad_;
   std::vector<RayTriangle> all_;
   std::vector<Span> spans_;
   // The index in rows_ of each row's first triangle, and the end of the last.

@@ -6,6 +6,7 @@
 
 #include "aircraft/fleet/fleet.h"
 #include "labels/projection/exact_box.h"
+#include "picture/render/ray_triangles.h"
 #include "picture/render/renderer.h"
 
 namespace airtruth::render {
@@ -87,6 +88,29 @@ TEST(Render, APlateCoversWhatProjectionSays) {
   EXPECT_EQ(other.pixels[other.index(68, 100)].alpha, 0);
   EXPECT_EQ(other.pixels[other.index(100, 100)].alpha, 1);
   EXPECT_NEAR(other.depth_m[other.index(100, 100)], 100, 0.1);
+}
+
+// A plate of two triangles, turned about the eye. Each pixel would look at one without bounds:
+// behind the camera, and beside it where it reaches through the camera's plane.
+TEST(RayTriangles, WhatNoRayOfThePatchMeetsIsLeftOut) {
+  const lens::Lens lens(lens::BrownConrady{{100, 100}, {100, 100}, {-0.1, 0.01, 0.001, 0.001}},
+                        {kSide, kSide});
+  const shade::Model model(plate(1, 18));
+  View view = view_through(lens);
+  const auto count_at = [&](double yaw_deg) {
+    const PixelBox patch{0, 0, kSide, kSide};
+    const Span span = span_of(view, patch);
+    const Instance turned{&model, {world_from_body({yaw_deg, 0, 0}), Vector3::Zero()}};
+    std::vector<PlacedInstance> placed = {place(turned, view, white(), kAll, span)};
+    return RayTriangles(view, patch, span, placed).all().size();
+  };
+  for (const double exposure_s : {0.0, 0.02}) {
+    view.shutter.exposure_s = exposure_s;
+    view.camera.velocity_mps = {20, 0, 0};
+    EXPECT_EQ(count_at(0), 2u);
+    EXPECT_EQ(count_at(90), 0u);
+    EXPECT_EQ(count_at(180), 0u);
+  }
 }
 
 // A regular polygon of n corners on a circle of radius r, across the line of sight.
@@ -276,7 +300,9 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
 // The aircraft passes through the eye: parts lie in front of and behind the plane of the lens.
 TEST(Quality3, HoldsAlphaWhereTheAircraftReachesBehindTheEye) {
   const Stand stand("733/733-AirBaltic");
+  const lens::BrownConrady distorted{{20, 20}, {20, 20}, {-0.1, 0.01, 0.001, 0.001}};
   for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(90, {40, 40}),
+                                 lens::Lens(distorted, {40, 40}),
                                  lens::fisheye_from_vertical_fov(170, {40, 40})}) {
     const View view = view_through(lens);
     const Box whole{0, 0, 40, 40};
