@@ -56,6 +56,14 @@ TEST(LocalPath, MetresFollowFromTheEllipsoidsRadii) {
   }
 }
 
+// At ten positions a second the mean of the first half second is 0.2 s after the first one.
+TEST(LocalPath, APathGoesOnForOneAndAHalfSecondsFromTheFirstAndTheLastPosition) {
+  const auto path = local_path(straight(30, -20, 2, 10), {-1.5, {0, 0, 0}});
+  ASSERT_TRUE(path.at(0));
+  EXPECT_NEAR((path.at(5)->position_in_world - Vector3(150, -100, -10)).norm(), 0, 0.02);
+  EXPECT_NEAR(path.end_s(), 63, 1e-9);
+}
+
 TEST(LocalPath, APositionOfOneMicrodegreeDoesNotShake) {
   const auto path = local_path(straight(12, 9, 0, 30, 1e-6), {20, {0, 0, 0}});
   for (double t = 0.5; t <= 9.5; t += 0.1) {
