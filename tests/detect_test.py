@@ -198,13 +198,29 @@ class OverAVideo(Case):
         write("origin/frame-difference/img.json", json.dumps(facts))
         self.assertIn("1 were there", detect("otb/one/img", "--frame-rate", "100").stdout)
 
+    def test_results_of_other_content_at_the_same_path_are_not_kept(self):
+        synth = lambda frames: made("synth", "-o", "anew.mkv", "--frames", frames, "--width", "64", "--height", "64", "--overwrite")
+        synth("2")
+        video = lambda: run("detect", "anew.mkv", "-d", "frame-difference", "-o", "anew")
+        self.assertEqual(video().returncode, 0)
+        self.assertIn("1 were there", video().stdout)
+        synth("3")
+        self.assert_refused(video(), "anew.json", "holds results with source_sha256", "give another --out")
+        rate = lambda hz: made("dataset", "import", "otb", "-f", "otb", "--frame-rate", hz, "-o", "again")
+        rate("25")
+        detect = lambda: run("detect", "again", "--only", "one", "-d", "frame-difference", "-o", "of-again")
+        self.assertEqual(detect().returncode, 0)
+        shutil.rmtree(path("again"))
+        rate("50")
+        self.assert_refused(detect(), "one.json", "holds results with source_sha256")
+
     def test_the_rate_that_is_stated_for_a_set_without_one_is_of_its_results(self):
         made("dataset", "import", "otb", "-f", "otb", "-o", "rateless")
         detect = lambda *more: run("detect", "rateless", "--only", "one", "-d", "frame-difference", "-o", "rates", *more)
         self.assertEqual(detect("--frame-rate", "10").returncode, 0)
         self.assert_refused(detect("--frame-rate", "100"), "frame_rate_hz 10.0; this run has 100.0")
         made("detect", "set", "--only", "one", "-d", "frame-difference", "-o", "own-rate")
-        self.assertEqual(set(json.loads(read("own-rate", "frame-difference", "one.json"))), {"format", "sequence", "width", "height", "frames", "seconds"})
+        self.assertEqual(set(json.loads(read("own-rate", "frame-difference", "one.json"))), {"format", "sequence", "width", "height", "frames", "source_sha256", "seconds"})
 
     def test_its_name_is_that_of_its_file(self):
         made("detect", "otb/one/img", "-d", "cmo", "--frame-rate", "25", "-o", "video")

@@ -321,6 +321,11 @@ class Track(Case):
             self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
             self.assertIn(word, refused.stderr)
         self.assertIn("1 were there", self.track(*box, source=path("flight.mkv")).stdout)
+        shutil.copy(path("flight.mp4"), path("elsewhere", "flight.mkv"))
+        anew = lambda: run("track", "elsewhere/flight.mkv", "-t", "am3", "--out", path(self.out, "anew"), *box)
+        self.assertEqual(anew().returncode, 0)
+        shutil.copy(path("flight.mkv"), path("elsewhere"))
+        self.assert_refused(anew(), "source_sha256")
         os.remove(path(self.out, "results", "am3", "flight.run.json"))  # as an older airtruth left it
         self.assertIn("1 were there", self.track(*box, source="elsewhere/flight.mkv").stdout)
 

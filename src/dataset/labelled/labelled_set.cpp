@@ -73,6 +73,10 @@ bool LabelledSet::is_imported(const std::string& name) const {
   return fs::exists(folder(name) / sequences::kLabels);
 }
 
+std::string LabelledSet::sha256_of(const std::string& name) const {
+  return sha256_of_file(folder(name) / (is_imported(name) ? sequences::kLabels : "sequence.json"));
+}
+
 exchange::Clip LabelledSet::clip(const std::string& name,
                                  dataset::Boxes boxes,
                                  bool with_masks) const {

@@ -55,6 +55,9 @@ class LabelledSet {
   fs::path folder(const std::string& name) const;
   // True where the clip was labelled elsewhere; nothing is known about its camera.
   bool is_imported(const std::string& name) const;
+  // SHA-256 of the file that names a sequence's content: its labels where it was labelled
+  // elsewhere, else its record, which holds the checksums of its files.
+  std::string sha256_of(const std::string& name) const;
   // The number of sequences of the catalogue that the folder does not hold.
   std::int64_t missing() const { return missing_; }
 

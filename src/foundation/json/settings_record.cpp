@@ -23,7 +23,7 @@ nlohmann::ordered_json record_in(const std::filesystem::path& file) {
   return record;
 }
 
-void expect_same(const std::filesystem::path& file,
+void expect_same(const std::filesystem::path& place,
                  const std::string& key,
                  const nlohmann::ordered_json& there,
                  const nlohmann::ordered_json& mine) {
@@ -33,7 +33,7 @@ void expect_same(const std::filesystem::path& file,
                             key,
                             there.dump(),
                             mine.dump()),
-                {file.parent_path().string()});
+                {place.string()});
 }
 
 }  // namespace
@@ -49,7 +49,8 @@ bool is_record_of(const std::filesystem::path& file, const nlohmann::ordered_jso
   }
   try {
     const auto there = record_in(file);
-    for (const auto& [key, value] : settings.items()) expect_same(file, key, there.at(key), value);
+    for (const auto& [key, value] : settings.items())
+      expect_same(file.parent_path(), key, there.at(key), value);
   } catch (const nlohmann::ordered_json::exception&) {  // a key is missing
     fail_no_record(file);
   }

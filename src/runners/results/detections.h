@@ -45,6 +45,8 @@ struct SequenceDetections {
   std::string source = {};
   // The rate of pictures, frames a second, where the call that made these stated one.
   std::optional<double> stated_rate_hz = {};
+  // SHA-256 that names the content of the sequence or of the video; "": unknown.
+  std::string source_sha256 = {};
 };
 
 // True for a box of finite numbers that has an area.

@@ -80,6 +80,7 @@ fs::path facts_file(const fs::path& folder, const std::string& name) {
 Json origin_of(const SequenceDetections& detections) {
   Json origin = Json::object();
   if (!detections.source.empty()) origin["source"] = detections.source;
+  if (!detections.source_sha256.empty()) origin["source_sha256"] = detections.source_sha256;
   if (detections.stated_rate_hz) origin["frame_rate_hz"] = *detections.stated_rate_hz;
   return origin;
 }

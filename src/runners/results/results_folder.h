@@ -18,8 +18,8 @@
 //                     frame,id,left,top,width,height,score,-1,-1,-1
 //                     frames count from 1, the first pixel is at 1, the id of no track is -1
 //   SEQUENCE.json     size and number of frames, categories, seconds of each frame; a video's path
-//                     and the pictures' rate, where they were stated; it is written after the text,
-//                     so a sequence that has it is whole
+//                     and the pictures' rate, where they were stated; the SHA-256 of what it was
+//                     made of; it is written after the text, so a sequence that has it is whole
 //   detections.json   COCO results of all sequences
 //   backgrounds/      .txt and .json of the videos that the set was made over, where that is asked
 // Coordinates are written to 1/1000 px (as_written()) and scores with 9 digits.
@@ -58,8 +58,8 @@ void write_log(const fs::path& folder, const std::string& run, const std::string
 void write_sequence(const fs::path& folder, const SequenceDetections& detections);
 // True where both files of a sequence are there.
 bool has_sequence(const fs::path& folder, const std::string& name);
-// Throws Error where the sequence of that name in the folder has another source or stated rate.
-// What only one of the two states does not matter.
+// Throws Error where the sequence of that name in the folder has another source, content or
+// stated rate. What only one of the two states does not matter.
 void expect_made_of(const fs::path& folder, const SequenceDetections& detections);
 // Reads both files. Throws Error as read_detections does.
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name);

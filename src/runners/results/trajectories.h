@@ -22,6 +22,7 @@
 //                                             begun, 2 where it failed, 0 for frames passed over
 //   multistart/SEQUENCE/SEQUENCE_00000050.txt VOT's runs from an anchor
 //   .../SEQUENCE_001_time.value               their seconds
+//   .../RUN.run.json                          beside each run, what it was made of
 // What others write is read as well: VOT's folder "baseline" in place of the last two, its binary
 // runs (SEQUENCE_001.bin, vot_regions.h) and times with blank lines, GOT-10k's
 // SEQUENCE/SEQUENCE_001.txt, and MOTChallenge's SEQUENCE.txt.

@@ -32,6 +32,8 @@
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 #include "runners/runs/clips.h"
+#include "sequence/setup/motion_source.h"
+#include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::runs {
 namespace {
@@ -366,9 +368,10 @@ class DetectorRun {
     std::vector<DetectionClip> backgrounds;
     if (options_.backgrounds) backgrounds = backgrounds_of(set, names, options_.warn);
     in_parallel(names.size() + backgrounds.size(), options_, [&](std::size_t i) {
-      if (i < names.size()) return over("", names[i], [&] { return clip_of(set, names[i]); });
+      if (i < names.size())
+        return over("", names[i], set.sha256_of(names[i]), [&] { return clip_of(set, names[i]); });
       const DetectionClip& background = backgrounds[i - names.size()];
-      over(kBackgrounds, background.name, [&] { return background; });
+      over(kBackgrounds, background.name, sha256_of(background), [&] { return background; });
     });
     return summaries(sequences_of(set));
   }
@@ -382,7 +385,7 @@ class DetectorRun {
         video, ClipFrames(with_facts(clip), false, options_.warn).info(), options_.frame_rate_hz);
     open(clip.name + ".detections.json");
     over(
-        "", clip.name, [&] { return clip; }, options_.progress);
+        "", clip.name, sha256_of(clip), [&] { return clip; }, options_.progress);
     return summaries(std::vector<results::ExpectedSequence>{{clip.name, 0, 0, 0}});
   }
 
@@ -410,15 +413,21 @@ class DetectorRun {
     return clip;
   }
 
+  std::string sha256_of(const DetectionClip& clip) {
+    return setup::sha256_of_video(clip.media, inputs_);
+  }
+
   // All detectors that have not done so yet, over one clip.
   void over(const std::string& part,
             const std::string& name,
+            const std::string& sha256,
             const auto& make_clip,
             const Progress& progress = {}) {
     results::SequenceDetections begun;
     begun.name = name;
     begun.source = source_;
     begun.stated_rate_hz = options_.frame_rate_hz;
+    begun.source_sha256 = sha256;
     std::vector<Following> detectors;
     for (const auto& results : results_)
       if (!results->keeps(part, begun))
@@ -449,6 +458,7 @@ class DetectorRun {
   const DetectOptions& options_;
   int threads_;         // of a network
   std::string source_;  // of a video; "" for a set
+  setup::SharedInputs inputs_;
   std::vector<std::unique_ptr<DetectorResults>> results_;
 };
 

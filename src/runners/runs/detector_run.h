@@ -84,7 +84,8 @@ bool is_set(const fs::path& source);
 // kept; detections.json is written once all sequences of the set are there. A detector that fails
 // within a sequence leaves it without results, and goes on with the next. The results do not depend
 // on `jobs`, but for the seconds. Throws Error where there is nothing to run over, where a detector
-// is unknown or cannot be made, and where `out` holds results of other settings.
+// is unknown or cannot be made, and where `out` holds results of other settings
+// or of other content under a sequence's name.
 std::vector<DetectSummary> detect(const fs::path& source,
                                   const fs::path& out,
                                   const DetectOptions& options);

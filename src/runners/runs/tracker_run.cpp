@@ -29,6 +29,8 @@
 #include "picture/video/numbered_images.h"
 #include "runners/results/results_folder.h"
 #include "runners/tracking/tracker.h"
+#include "sequence/setup/motion_source.h"
+#include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::runs {
 namespace {
@@ -39,6 +41,8 @@ using evaluation::Trajectory;
 
 // Number of frames from a failure to the next start (VOT2013).
 constexpr std::int64_t kSkip = 5;
+// The key of a run's record for what names the content of its sequence or its video.
+constexpr const char* kSha256 = "source_sha256";
 
 // One run of a tracker, with its answers and its times. A tracker that fails breaks the run off.
 class Follower {
@@ -144,9 +148,10 @@ class TrackerRun {
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
     open_folder();
     in_parallel(names.size(), options_, [&](std::size_t i) {
+      const Json origin = {{kSha256, set.sha256_of(names[i])}};
       for (const exchange::Clip& clip :
            exchange::arranged(exchange::Format::kOtb, set.clip(names[i])))
-        follow(clip);
+        follow(clip, origin);
     });
     return summary_;
   }
@@ -155,8 +160,6 @@ class TrackerRun {
     const std::string name = video::clip_name(video);
     const fs::path source = video::whole_path(video);
     require_utf8(source);
-    const Json origin = {{"source", source.string()}, {"first_frame", first_frame}};
-    const fs::path record = summary_.folder / (name + ".run.json");
     const fs::path file =
         results::trajectory_file(summary_.folder, results::Protocol::kOnePass, name, 0);
     video::NumberedFrames frames(video, options_.warn);
@@ -165,10 +168,13 @@ class TrackerRun {
     check(picture != nullptr, "the reader refuses a first frame past the end");
     const std::int64_t total = frames.count_estimate();
     expect_inside(init, *picture);
+    setup::SharedInputs inputs;
+    const Json origin = {{"source", source.string()},
+                         {kSha256, setup::sha256_of_video(video, inputs)},
+                         {"first_frame", first_frame}};
     open_folder();
-    if (is_there(file)) {
+    if (is_there(file, origin)) {
       expect_begun_at(init, file);
-      refuse_other(record, origin);
       return summary_;
     }
     follower.begin(*picture, init);
@@ -181,7 +187,7 @@ class TrackerRun {
       follower.add(Mark::kAnswer, box);
       if (options_.progress) options_.progress(i - first_frame, std::max(i, total) - first_frame);
     }
-    write(file, results::Protocol::kOnePass, name, follower, record, origin);
+    write(file, results::Protocol::kOnePass, name, follower, origin);
     return summary_;
   }
 
@@ -221,20 +227,23 @@ class TrackerRun {
     write_file(file, record.dump(1) + "\n");
   }
 
-  bool is_there(const fs::path& file) {
+  // The record of a run's origin, beside its results.
+  static fs::path record_of(fs::path file) { return file.replace_extension(".run.json"); }
+
+  // Counts a run that is there. Throws Error where it is of another origin.
+  bool is_there(const fs::path& file, const Json& origin) {
     if (!fs::exists(file)) return false;
+    refuse_other(record_of(file), origin);
     const std::lock_guard lock(mutex_);
     ++summary_.kept;
     return true;
   }
 
-  // `record` states the origin of a video's results; those of a set have none.
   void write(const fs::path& file,
              results::Protocol protocol,
              const std::string& name,
              const Follower& follower,
-             const fs::path& record = {},
-             const Json& origin = {}) {
+             const Json& origin) {
     results::write_log(summary_.folder, file.stem().string(), follower.log());
     if (follower.is_broken()) {
       const std::lock_guard lock(mutex_);
@@ -245,6 +254,7 @@ class TrackerRun {
     }
     fs::create_directories(file.parent_path());
     const fs::path times = results::times_file(file, protocol);
+    const fs::path record = record_of(file);
     RunFiles files;
     files.writes(record, true).writes(times, true).writes(file, true);
     files.begin();
@@ -267,19 +277,20 @@ class TrackerRun {
                                  follower.negative_boxes()));
   }
 
-  void follow(const exchange::Clip& clip) {
+  void follow(const exchange::Clip& clip, const Json& origin) {
     if (clip.media.empty()) throw Error(clip.name + " has no video");
     video::NumberedFrames frames(clip.media, options_.warn);
     switch (options_.protocol) {
       case results::Protocol::kOnePass:
-        return follow_from(clip, frames, {0, false}, results::Protocol::kOnePass);
+        return follow_from(clip, frames, {0, false}, results::Protocol::kOnePass, origin);
       case results::Protocol::kRestart:
-        for (int r = 1; r <= options_.repetitions; ++r) follow_with_restarts(clip, frames, r);
+        for (int r = 1; r <= options_.repetitions; ++r)
+          follow_with_restarts(clip, frames, r, origin);
         return;
       case results::Protocol::kMultiStart:
         for (const evaluation::Anchor& anchor :
              evaluation::anchors_of(results::vot_truth(clip), options_.anchor_step))
-          follow_from(clip, frames, anchor, results::Protocol::kMultiStart);
+          follow_from(clip, frames, anchor, results::Protocol::kMultiStart, origin);
         return;
     }
   }
@@ -294,10 +305,11 @@ class TrackerRun {
   void follow_from(const exchange::Clip& clip,
                    video::NumberedFrames& frames,
                    const evaluation::Anchor& anchor,
-                   results::Protocol protocol) {
+                   results::Protocol protocol,
+                   const Json& origin) {
     const fs::path file =
         results::trajectory_file(summary_.folder, protocol, clip.name, anchor.frame);
-    if (is_there(file)) return;
+    if (is_there(file, origin)) return;
     Follower follower(command_, options_, options_.seed);
     const std::int64_t way = anchor.is_backward ? -1 : 1;
     for (std::int64_t i = anchor.frame;
@@ -314,15 +326,16 @@ class TrackerRun {
         follower.add(Mark::kAnswer, box);
       }
     }
-    write(file, protocol, clip.name, follower);
+    write(file, protocol, clip.name, follower, origin);
   }
 
   void follow_with_restarts(const exchange::Clip& clip,
                             video::NumberedFrames& frames,
-                            int repetition) {
+                            int repetition,
+                            const Json& origin) {
     const fs::path file = results::trajectory_file(
         summary_.folder, results::Protocol::kRestart, clip.name, repetition);
-    if (is_there(file)) return;
+    if (is_there(file, origin)) return;
     Follower follower(
         command_, options_, options_.seed + static_cast<std::uint64_t>(repetition) - 1);
     bool is_begun = false;
@@ -348,7 +361,7 @@ class TrackerRun {
       is_begun = !failed;
       if (failed) skip = kSkip - 1;
     }
-    write(file, results::Protocol::kRestart, clip.name, follower);
+    write(file, results::Protocol::kRestart, clip.name, follower, origin);
   }
 
   const TrackOptions& options_;
