@@ -40,5 +40,40 @@ class Kept(program.Case):
         self.assertIn("2 were there", track().stdout)
 
 
+BOX = "{},10,20,30,20\n"
+FRAMES_OF_ONE = "frame,x,y,w,h\n" + "".join(map(BOX.format, range(FRAMES)))
+FRAMES_OF_TWO = FRAMES_OF_ONE + "".join(f"{k},90,60,20,20\n" for k in range(FRAMES))
+
+
+class Names(program.Case):
+    def test_an_object_and_a_sequence_of_one_name_are_refused(self):
+        write("alike/a.csv", FRAMES_OF_TWO)
+        write("alike/a-2.csv", FRAMES_OF_ONE)
+        made("dataset", "import", "alike", "-f", "csv", "--size", "320x240", "-o", "alike-set")
+        write("of-alike/a-2.txt", "10,20,30,20\n" * FRAMES)
+        for command in (["track", "alike-set", "-t", "opencv-kcf", "-o", "never"], ["evaluate", "alike-set", "of-alike", "-o", "never"],
+                        *(["dataset", "export", "alike-set", "-f", kind, "--images", "none", "--split", "none", "-o", "never"]
+                          for kind in ("otb", "got10k", "vot"))):
+            with self.subTest(command):
+                self.assert_refused(run(*command), "both 'a' and 'a-2' hold what is named 'a-2'")
+                self.assertFalse(os.path.exists(path("never")))
+        made("dataset", "export", "alike-set", "-f", "mot", "--images", "none", "--split", "none", "-o", "tracks")
+
+    def test_a_sequence_with_the_name_of_anothers_seconds_is_refused(self):
+        for name in ("foo", "foo_time"):
+            write(f"times/{name}.csv", FRAMES_OF_ONE)
+        made("dataset", "import", "times", "-f", "csv", "--size", "320x240", "-o", "times-set")
+        write("of-times/foo.txt", "10,20,30,20\n" * FRAMES)
+        for command in (["track", "times-set", "-t", "opencv-kcf", "-o", "never"], ["evaluate", "times-set", "of-times", "-o", "never"]):
+            self.assert_refused(run(*command), "the seconds of 'foo' and the results of 'foo_time' have one file, foo_time.txt")
+
+    def test_objects_and_sequences_of_other_names_are_not(self):
+        write("apart/a.csv", FRAMES_OF_TWO)
+        write("apart/a-3.csv", FRAMES_OF_ONE)
+        made("dataset", "import", "apart", "-f", "csv", "--size", "320x240", "-o", "apart-set")
+        made("dataset", "export", "apart-set", "-f", "otb", "--images", "none", "--split", "none", "-o", "objects")
+        self.assertEqual(sorted(read("objects", "all", "list.txt").split()), ["a-1", "a-2", "a-3"])
+
+
 if __name__ == "__main__":
     program.main(make_inputs)

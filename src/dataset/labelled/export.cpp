@@ -183,6 +183,7 @@ class Export {
   ExportSummary run() {
     survey();
     expect_held();
+    if (exchange::is_single_object(options_.format)) expect_distinct();
     place_.begin(options_.warn);
     writer_ = exchange::make_writer(options_.format, place_.root(), write_);
     if (*options_.images != Images::kNone) write_images();
@@ -240,6 +241,15 @@ class Export {
       exchange::expect_held(options_.format, clip);
       if (*options_.images != Images::kNone && !place_.has_images_of(name))
         check_has_video(name, clip);
+    }
+  }
+
+  void expect_distinct() const {
+    std::map<std::string, exchange::ArrangedNames> names_of_part;
+    for (const std::string& name : set_.names()) {
+      exchange::Clip clip = clip_of(name);
+      sift(clip);
+      exchange::add_names(names_of_part[parts_.at(name)], name, arranged(clip));
     }
   }
 

@@ -8,6 +8,7 @@
 #include "foundation/image/contrast_to_noise.h"
 #include "labels/exchange/exchange.h"
 #include "picture/video/numbered_frames.h"
+#include "runners/results/trajectories.h"
 #include "sequence/replay/finished.h"
 
 namespace airtruth::tracker_evaluation {
@@ -27,10 +28,13 @@ PixelBox covered(const Box& box) {
 
 std::vector<TruthClip> truths_of(const labelled::LabelledSet& set) {
   std::vector<TruthClip> truths;
+  exchange::ArrangedNames names;
   for (const std::string& name : set.names()) {
     const auto lens = lens_of(set, name);
     const labelled::ClipFacts facts = set.facts(name);
-    for (exchange::Clip& clip : exchange::arranged(exchange::Format::kOtb, set.clip(name))) {
+    std::vector<exchange::Clip> clips = exchange::arranged(exchange::Format::kOtb, set.clip(name));
+    exchange::add_names(names, name, clips);
+    for (exchange::Clip& clip : clips) {
       TruthClip& truth = truths.emplace_back();
       truth.contrast.resize(clip.frames.size());
       truth.clip = std::move(clip);
@@ -39,6 +43,7 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set) {
       truth.weather = facts.weather;
     }
   }
+  results::expect_own_files(names);
   std::ranges::sort(
       truths, {}, [](const TruthClip& one) -> auto& { return one.clip.name; });
   return truths;

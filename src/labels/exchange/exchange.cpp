@@ -271,6 +271,17 @@ std::vector<Clip> arranged(Format format, const Clip& clip) {
   return clips;
 }
 
+void add_names(ArrangedNames& names, const std::string& clip, const std::vector<Clip>& arranged) {
+  for (const Clip& one : arranged)
+    if (const auto [other, is_new] = names.emplace(one.name, clip); !is_new)
+      throw Error(
+          fmt::format("both '{}' and '{}' hold what is named '{}', where the objects of a "
+                      "sequence are named NAME-TRACK; expected another name of one of them",
+                      other->second,
+                      clip,
+                      one.name));
+}
+
 void expect_written(Format format) {
   if (can_write(format)) return;
   std::vector<std::string> names;
@@ -339,12 +350,17 @@ void write_clips(Format format, const fs::path& folder, std::span<const Part> pa
     throw Error("exists and is not empty; expected a new folder", {folder.string()});
   make_folders(folder);
   const auto writer = make_writer(format, folder, options_of(parts));
-  for (const Part& part : parts)
-    for (const Clip& clip : part.clips)
-      for (const Clip& one : arranged(format, clip))
+  for (const Part& part : parts) {
+    ArrangedNames names;
+    for (const Clip& clip : part.clips) {
+      const std::vector<Clip> clips = arranged(format, clip);
+      if (is_single_object(format)) add_names(names, clip.name, clips);
+      for (const Clip& one : clips)
         // Single-object toolkits refuse a sequence of one frame: they read its truth as four
         // numbers and not as a table.
         if (!is_single_object(format) || one.frames.size() > 1) writer->add(one, part.name);
+    }
+  }
   writer->finish();
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,6 +64,12 @@ bool has_ignore_mark(Format format);
 
 // The clip without its distractors.
 Clip aircraft_alone(Clip clip);
+
+// By the name of each clip that arranged() makes, the clip of which it is made.
+using ArrangedNames = std::map<std::string, std::string>;
+// Adds what is made of `clip`. Throws Error where a name is there: the object of track 2 in a clip
+// "a" of several, and the only one of a clip "a-2".
+void add_names(ArrangedNames& names, const std::string& clip, const std::vector<Clip>& arranged);
 
 // What the format's own reader requires of pictures: AOT's opens PNG only, those of OTB and GOT-10k
 // look for *.jpg; a table holds none.

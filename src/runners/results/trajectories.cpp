@@ -291,6 +291,17 @@ fs::path times_file(const fs::path& trajectory, Protocol protocol) {
           (protocol == Protocol::kOnePass ? "_time.txt" : "_time.value"));
 }
 
+void expect_own_files(const exchange::ArrangedNames& sequences) {
+  for (const auto& [name, clip] : sequences)
+    if (const auto other = sequences.find(name + "_time"); other != sequences.end())
+      throw Error(
+          fmt::format("the seconds of '{}' and the results of '{}' have one file, {}.txt; "
+                      "expected another name of one of them",
+                      clip,
+                      other->second,
+                      other->first));
+}
+
 std::string text_of(const Trajectory& trajectory) {
   std::string text;
   for (const VotFrame& frame : trajectory) {

@@ -14,6 +14,7 @@
 
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
+#include "labels/exchange/exchange.h"
 
 // Trackers' results as files (docs/evaluation.md). A folder holds one tracker's:
 //   SEQUENCE.txt                              one pass, a line "x,y,w,h" a frame
@@ -44,6 +45,8 @@ fs::path trajectory_file(const fs::path& folder,
                          const std::string& sequence,
                          std::int64_t number);
 fs::path times_file(const fs::path& trajectory, Protocol protocol);
+// Throws Error where the file of one's seconds is that of another's results: a and a_time.
+void expect_own_files(const exchange::ArrangedNames& sequences);
 
 // An answer without a box is "nan,nan,nan,nan".
 std::string text_of(const evaluation::Trajectory& trajectory);

@@ -146,6 +146,7 @@ class TrackerRun {
     for (const std::string& name : set.names())
       if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
+    expect_distinct(set, names);
     open_folder();
     in_parallel(names.size(), options_, [&](std::size_t i) {
       const Json origin = {{kSha256, set.sha256_of(names[i])}};
@@ -192,6 +193,16 @@ class TrackerRun {
   }
 
  private:
+  void expect_distinct(const labelled::LabelledSet& set,
+                       const std::vector<std::string>& names) const {
+    exchange::ArrangedNames runs;
+    for (const std::string& name : names) {
+      if (options_.stop.stop_requested()) throw Interrupted();
+      exchange::add_names(runs, name, exchange::arranged(exchange::Format::kOtb, set.clip(name)));
+    }
+    results::expect_own_files(runs);
+  }
+
   static void expect_inside(const Box& box, const image::Picture& picture) {
     if (!intersection(pixels_of(box), {0, 0, picture.width, picture.height}))
       throw Error(fmt::format("--init {},{},{},{} lies outside the picture of {}x{}",
