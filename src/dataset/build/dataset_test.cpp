@@ -298,6 +298,15 @@ TEST_F(Build, WhatIsNotAtHandIsSaidBeforeAnythingIsMade) {
   EXPECT_THAT(error(text + "[[random]]\naircraft = [\"738/*\"]\n[[random]]\naircraft = "
                            "[\"c172/*\"]\n"),
               testing::MatchesRegex("c.toml:29:.*two sequences are named 'r000000'.*"));
+  // Of one product: sky with over-across, sky-over with across.
+  const std::string over =
+      "[[background]]\nname = \"sky-over\"\nflight = { seed = 5, frame_count = "
+      "8, width = 160, height = 120 }\nlens = { vertical_fov_deg = 75 }\n"
+      "camera = { position_ned_m = [0, 0, -150] }\n[[trajectory]]\nname = "
+      "\"over-across\"\nwaypoints_ned_m = [[150, -20, -160], [150, 60, "
+      "-160]]\nspeed_mps = 60\n";
+  EXPECT_THAT(error(text + over),
+              testing::MatchesRegex("c.toml:23:.*two sequences are named 'sky-over-across-.*"));
   EXPECT_FALSE(fs::exists(root_ / "never"));
 }
 

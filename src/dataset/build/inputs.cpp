@@ -127,10 +127,12 @@ void check_background(const catalogue::Catalogue& catalogue, std::size_t place) 
   pipeline::check_scene(scene, info);
 }
 
-// The names of one rule differ by construction, but names of two rules may coincide. Hashes are
-// compared because a million names must cost no more than eight bytes each.
+// The names of one rule that draws differ by their numbers; those of a product (sky-2 with x, sky
+// with 2-x) and of two rules may coincide. Hashes are compared because a million names must cost no
+// more than eight bytes each.
 void check_names(const catalogue::Catalogue& catalogue) {
-  if (catalogue.rules.size() < 2) return;
+  const auto& rules = catalogue.rules;
+  if (rules.size() == 1 && !std::holds_alternative<catalogue::Product>(rules[0])) return;
   const catalogue::Expansion expansion(catalogue);
   std::vector<std::size_t> hashes;
   hashes.reserve(static_cast<std::size_t>(expansion.size()));
