@@ -39,6 +39,21 @@ class Kept(program.Case):
         os.remove(path("of-anew", "opencv-kcf", "one.run.json"))  # as an older airtruth left it
         self.assertIn("2 were there", track().stdout)
 
+    def test_runs_of_another_step_or_of_more_repetitions_are_not(self):
+        imported("otb", "otb", "set")
+        track = lambda *more: run("track", "set", "--only", "one", "-t", "opencv-kcf", "-o", "kept", *more)
+        multistart = lambda step: track("--protocol", "multistart", "--anchor-step", step)
+        runs = lambda kind: [name for name in sorted(os.listdir(path("kept", "opencv-kcf", kind, "one"))) if name.endswith(".txt")]
+        self.assertEqual(multistart("12").returncode, 0)
+        self.assertEqual(runs("multistart"), ["one_00000000.txt", "one_00000023.txt"])
+        self.assertIn("2 were there", multistart("6").stdout)  # begins at these as well
+        self.assertEqual(runs("multistart"), [f"one_{frame:08}.txt" for frame in (0, 6, 12, 23)])
+        self.assert_refused(multistart("12"), "one_00000006.txt", "--anchor-step", "give another --out")
+        repeated = lambda count: track("--protocol", "restart", "--repetitions", count)
+        self.assertEqual(repeated("1").returncode, 0)
+        self.assertIn("1 were there", repeated("2").stdout)
+        self.assert_refused(repeated("1"), "one_002.txt", "--repetitions", "give another --out")
+
 
 BOX = "{},10,20,30,20\n"
 FRAMES_OF_ONE = "frame,x,y,w,h\n" + "".join(map(BOX.format, range(FRAMES)))

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -146,7 +147,7 @@ class TrackerRun {
     for (const std::string& name : set.names())
       if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
-    expect_distinct(set, names);
+    expect_clear(set, names);
     open_folder();
     in_parallel(names.size(), options_, [&](std::size_t i) {
       const Json origin = {{kSha256, set.sha256_of(names[i])}};
@@ -193,14 +194,40 @@ class TrackerRun {
   }
 
  private:
-  void expect_distinct(const labelled::LabelledSet& set,
-                       const std::vector<std::string>& names) const {
+  // Throws Error where two runs would have one name, and where the folder holds others' runs.
+  void expect_clear(const labelled::LabelledSet& set, const std::vector<std::string>& names) const {
     exchange::ArrangedNames runs;
     for (const std::string& name : names) {
       if (options_.stop.stop_requested()) throw Interrupted();
-      exchange::add_names(runs, name, exchange::arranged(exchange::Format::kOtb, set.clip(name)));
+      const auto clips = exchange::arranged(exchange::Format::kOtb, set.clip(name));
+      exchange::add_names(runs, name, clips);
+      for (const exchange::Clip& clip : clips) expect_no_others(clip);
     }
     results::expect_own_files(runs);
+  }
+
+  // Evaluation takes every run of a protocol: those of another step, too.
+  void expect_no_others(const exchange::Clip& clip) const {
+    if (options_.protocol == results::Protocol::kOnePass) return;
+    std::set<fs::path> mine;
+    const auto add = [&](std::int64_t number) {
+      mine.insert(results::trajectory_file(summary_.folder, options_.protocol, clip.name, number));
+    };
+    if (options_.protocol == results::Protocol::kRestart)
+      for (int r = 1; r <= options_.repetitions; ++r) add(r);
+    else
+      for (const auto& anchor : anchors_in(clip)) add(anchor.frame);
+    const fs::path folder = summary_.folder / enum_name(options_.protocol) / clip.name;
+    for (const fs::path& file : files_with(folder, ".txt"))
+      if (!mine.contains(file))
+        throw Error(
+            "is a run that this call does not make (another --anchor-step, more --repetitions or "
+            "another truth), and evaluation takes it; give another --out or remove the folder",
+            {file.string()});
+  }
+
+  std::vector<evaluation::Anchor> anchors_in(const exchange::Clip& clip) const {
+    return evaluation::anchors_of(results::vot_truth(clip), options_.anchor_step);
   }
 
   static void expect_inside(const Box& box, const image::Picture& picture) {
@@ -299,8 +326,7 @@ class TrackerRun {
           follow_with_restarts(clip, frames, r, origin);
         return;
       case results::Protocol::kMultiStart:
-        for (const evaluation::Anchor& anchor :
-             evaluation::anchors_of(results::vot_truth(clip), options_.anchor_step))
+        for (const evaluation::Anchor& anchor : anchors_in(clip))
           follow_from(clip, frames, anchor, results::Protocol::kMultiStart, origin);
         return;
     }

@@ -50,7 +50,8 @@ struct TrackSummary {
 // decoding, conversion and, for TraX, writing the picture, but include reading it. The results of a
 // run appear whole or not at all, and existing results are kept. A run in which the tracker fails
 // has none, and the next call tries it again. Throws Error where the tracker cannot be started at
-// all, or where `out` holds results of other settings or of other content under a sequence's name.
+// all, or where `out` holds results of other settings or of other content under a sequence's name, or
+// runs of a sequence that these options do not make, which evaluation would take.
 TrackSummary track(const fs::path& set, const fs::path& out, const TrackOptions& options);
 
 // Throws Error in the cases in which track() fails before the first frame: no such tracker, or
