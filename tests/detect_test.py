@@ -302,6 +302,19 @@ class ShippedNetwork(Case):
         made("detect", "one", "-d", "frame-difference", "-o", "below", "--backgrounds")
         self.assertEqual(sorted(os.listdir(path("below", "frame-difference", "backgrounds"))), ["clip.json", "clip.txt"])
 
+    def test_a_part_of_a_video_below_a_set_is_named_by_its_frames(self):
+        for name, first in (("a", 2), ("b", 5)):
+            text = SCENE.replace('"one"', f'"{name}"').replace('"clip.mkv"', f'"clip.mkv"\nfirst_frame = {first}\nframe_count = 4')
+            write(name + ".toml", text)
+            made("render", name + ".toml", "--out", "parts", "--no-cache")
+        detect = lambda out, *more: made("detect", "parts", "-d", "frame-difference", "-o", out, "--backgrounds", *more)
+        detect("whole")
+        detect("stepwise", "--only", "b")
+        self.assertIn("2 were there", detect("stepwise").stdout)  # b, and what it stands on
+        self.assertEqual(sorted(os.listdir(path("whole", "frame-difference", "backgrounds"))),
+                         ["clip.2-4.json", "clip.2-4.txt", "clip.5-4.json", "clip.5-4.txt"])
+        self.assertEqual(files_of("stepwise"), files_of("whole"))
+
     def test_it_is_found_in_the_layout_of_an_installation(self):
         children = [name for name in os.listdir(program.built()) if name.startswith("airtruth-")]
         for name, place in (("airtruth", "bin"), *((name, "libexec/airtruth") for name in children)):

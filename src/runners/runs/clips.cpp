@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -59,7 +58,7 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
                                           const Warn& warn) {
   using Part = std::tuple<fs::path, std::int64_t, std::int64_t>;
   std::set<Part> seen;
-  std::map<std::string, int> count_of_name;
+  std::set<std::string> taken;
   std::vector<DetectionClip> clips;
   for (const std::string& name : names) {
     if (set.is_imported(name)) continue;
@@ -75,8 +74,12 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
       continue;
     }
     DetectionClip clip = clip_of(background.video);
-    if (const int count = ++count_of_name[clip.name]; count > 1)
-      clip.name += fmt::format("-{}", count);
+    if (background.first_frame > 0 || background.frame_count)
+      clip.name += fmt::format(".{}", background.first_frame);
+    if (background.frame_count) clip.name += fmt::format("-{}", *background.frame_count);
+    const std::string part_name = clip.name;
+    for (int k = 2; !taken.insert(clip.name).second; ++k)
+      clip.name = fmt::format("{}-{}", part_name, k);
     clip.own_aircraft = background.mask;
     clip.reading.first_frame = background.first_frame;
     clip.reading.picture_rate_hz = background.frame_rate_hz;

@@ -78,14 +78,14 @@ bool is_set(const fs::path& source);
 
 // Runs detectors over every frame of every sequence of a set, or of one video, and writes
 // out/DETECTOR/ (results_folder.h) and logs/SEQUENCE.log with what a program printed. The results
-// of backgrounds lie in a folder of their own, out/DETECTOR/backgrounds/VIDEO.txt and .json, since
+// of backgrounds lie in a folder of their own, out/DETECTOR/backgrounds/PART.txt and .json, since
 // the set has no sequence of that name. A frame is decoded, and the camera's motion measured, once
 // for all detectors. The results of a sequence appear whole or not at all, and existing ones are
 // kept; detections.json is written once all sequences of the set are there. A detector that fails
 // within a sequence leaves it without results, and goes on with the next. The results do not depend
 // on `jobs`, but for the seconds. Throws Error where there is nothing to run over, where a detector
-// is unknown or cannot be made, and where `out` holds results of other settings
-// or of other content under a sequence's name.
+// is unknown or cannot be made, and where `out` holds results of other settings or
+// of other content under a sequence's name.
 std::vector<DetectSummary> detect(const fs::path& source,
                                   const fs::path& out,
                                   const DetectOptions& options);
