@@ -101,7 +101,8 @@ AIRTRUTH_API MultiStart multistart_score(std::span<const MultiStartRuns> sequenc
 
 // The starting frames of a tracker: one every `step` frames, the first half forward, the second
 // half backward (the last frame replaces the next step). Each moves to the next frame with the
-// target, towards the middle. Step > 0.
+// target, towards the middle. Where two meet in one frame, of which the toolkit's files hold one
+// start, the first stays. Step > 0.
 struct Anchor {
   std::int64_t frame = 0;
   bool is_backward = false;

@@ -304,9 +304,8 @@ std::vector<Anchor> anchors_of(const VotTruth& truth, int step) {
     const std::int64_t way = is_backward ? -1 : 1;
     while (frame >= 0 && frame < length && !shown(frame)) frame += way;
     if (frame < 0 || frame >= length) return;
-    const Anchor anchor{frame, is_backward};
-    if (std::find(anchors.begin(), anchors.end(), anchor) == anchors.end())
-      anchors.push_back(anchor);
+    if (std::ranges::find(anchors, frame, &Anchor::frame) == anchors.end())
+      anchors.push_back({frame, is_backward});
   };
   for (std::int64_t frame = 0; frame < length; frame += step) {
     const bool is_last = frame + step >= length && frame >= (length + 1) / 2;

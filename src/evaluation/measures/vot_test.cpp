@@ -144,6 +144,10 @@ TEST(Anchors, GoForwardInTheFirstHalfAndBackwardInTheSecond) {
   for (std::size_t i = 190; i < 201; ++i) truth.boxes[i].reset();
   EXPECT_EQ(anchors_of(truth, 50),
             (std::vector<Anchor>{{0, false}, {60, false}, {100, false}, {150, true}, {189, true}}));
+  // 50 and 100 move forward to 150, where 150 would go backward.
+  VotTruth hidden = still(240);
+  for (std::size_t i = 40; i < 150; ++i) hidden.boxes[i].reset();
+  EXPECT_EQ(anchors_of(hidden, 50), (std::vector<Anchor>{{0, false}, {150, false}, {239, true}}));
   EXPECT_EQ(anchors_of(still(1), 50), (std::vector<Anchor>{{0, false}}));
   EXPECT_TRUE(anchors_of({{std::nullopt, std::nullopt}, 0, 0}, 1).empty());
 }
