@@ -217,7 +217,8 @@ class OverAVideo(Case):
     def test_the_rate_that_is_stated_for_a_set_without_one_is_of_its_results(self):
         made("dataset", "import", "otb", "-f", "otb", "-o", "rateless")
         detect = lambda *more: run("detect", "rateless", "--only", "one", "-d", "frame-difference", "-o", "rates", *more)
-        self.assertEqual(detect("--frame-rate", "10").returncode, 0)
+        self.assert_refused(detect("--min-score", "9"), "expected --frame-rate")
+        self.assertEqual(detect("--frame-rate", "10").returncode, 0)  # what was refused leaves no settings to be of
         self.assert_refused(detect("--frame-rate", "100"), "frame_rate_hz 10.0; this run has 100.0")
         made("detect", "set", "--only", "one", "-d", "frame-difference", "-o", "own-rate")
         self.assertEqual(set(json.loads(read("own-rate", "frame-difference", "one.json"))), {"format", "sequence", "width", "height", "frames", "source_sha256", "seconds"})

@@ -39,6 +39,15 @@ class Kept(program.Case):
         os.remove(path("of-anew", "opencv-kcf", "one.run.json"))  # as an older airtruth left it
         self.assertIn("2 were there", track().stdout)
 
+    def test_settings_of_a_call_without_results_are_not(self):
+        write("blind/a.csv", "frame,x,y,w,h\n0,10,20,30,20\n1,10,20,30,20\n")
+        made("dataset", "import", "blind", "-f", "csv", "--size", "320x240", "-o", "blind-set")
+        imported("otb", "otb", "set")
+        track = lambda source, seed: run("track", source, "--seed", seed, "-t", "opencv-kcf", "-o", "of-blind")
+        self.assert_refused(track("blind-set", "1"), "a has no video")
+        self.assertIn("2 runs tracked", track("set", "2").stdout)
+        self.assert_refused(track("set", "1"), "seed")
+
     def test_runs_of_another_step_or_of_more_repetitions_are_not(self):
         imported("otb", "otb", "set")
         track = lambda *more: run("track", "set", "--only", "one", "-t", "opencv-kcf", "-o", "kept", *more)

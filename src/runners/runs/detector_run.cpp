@@ -169,17 +169,12 @@ class DetectorResults {
     is_open();
   }
 
-  // Creates the folder and its record. `coco_name` is the file of the COCO results.
+  // Creates the folder. `coco_name` is the file of the COCO results.
   void open(const std::string& coco_name) {
     coco_file_ = summary_.folder / coco_name;
     make_folders(summary_.folder);
     lock_.emplace(summary_.folder, summary_.folder, options_.warn);
-    if (is_open()) return;
-    Json record = settings_;
-    record["name"] = detector_.name;
-    record["format"] = "airtruth detections 1";
-    record["version"] = kVersion;
-    write_file(summary_.folder / kRecord, record.dump(1) + "\n");
+    is_open();
   }
 
   // Counts a sequence that is there. Throws Error where it was made of something else.
@@ -196,6 +191,7 @@ class DetectorResults {
            const results::SequenceDetections& detections,
            const std::string& log) {
     const fs::path folder = summary_.folder / part;
+    write_record();
     fs::create_directories(folder);
     results::write_log(summary_.folder, detections.name, log);
     // COCO results that are there are of fewer sequences.
@@ -209,6 +205,7 @@ class DetectorResults {
   }
 
   void add_broken(const std::string& sequence, const std::string& fault, const std::string& log) {
+    write_record();
     results::write_log(summary_.folder, sequence, log + "airtruth: the detector " + fault + "\n");
     const std::lock_guard lock(mutex_);
     ++summary_.broken;
@@ -230,6 +227,17 @@ class DetectorResults {
 
  private:
   bool is_open() const { return is_record_of(summary_.folder / kRecord, settings_); }
+
+  // Before the first result: a run that makes none must not refuse the next for its settings.
+  void write_record() {
+    const std::lock_guard lock(mutex_);
+    if (is_open()) return;
+    Json record = settings_;
+    record["name"] = detector_.name;
+    record["format"] = "airtruth detections 1";
+    record["version"] = kVersion;
+    write_file(summary_.folder / kRecord, record.dump(1) + "\n");
+  }
 
   DetectorName detector_;
   const DetectOptions& options_;

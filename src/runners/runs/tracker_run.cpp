@@ -251,18 +251,22 @@ class TrackerRun {
 
   void open_folder() {
     check_folder();
-    const Json mine = own_record();
-    const fs::path file = summary_.folder / "tracker.json";
     make_folders(summary_.folder);
     lock_.emplace(summary_.folder, summary_.folder, options_.warn);
+    check_folder();
+  }
+
+  // Before the first result: a call that makes none must not refuse the next for its settings.
+  void write_record() {
+    const std::lock_guard lock(mutex_);
     if (check_folder()) return;
-    Json record = mine;
+    Json record = own_record();
     record["format"] = "airtruth results 1";
     record["version"] = kVersion;
     record["seconds"] =
         "of each answer: the tracker's own work, from the picture in the form that it takes; for "
         "TraX from the request's last byte to the answer, with its reading of the picture";
-    write_file(file, record.dump(1) + "\n");
+    write_file(summary_.folder / "tracker.json", record.dump(1) + "\n");
   }
 
   // The record of a run's origin, beside its results.
@@ -282,6 +286,7 @@ class TrackerRun {
              const std::string& name,
              const Follower& follower,
              const Json& origin) {
+    write_record();
     results::write_log(summary_.folder, file.stem().string(), follower.log());
     if (follower.is_broken()) {
       const std::lock_guard lock(mutex_);
