@@ -45,13 +45,14 @@ struct TrackSummary {
 //   restart:    restarts 5 frames after an answer that does not touch the truth (VOT2013)
 //   multistart: starts at every anchor and runs to the end, or backward to the beginning (VOT2020)
 // Writes results into out/TRACKER (trajectories.h), tracker.json with the settings of the run,
-// beside each run's results RUN.run.json with what names the content of its sequence, and logs/SEQUENCE.log with a TraX tracker's output beside its answers. The seconds are the tracker's
+// beside each run's results RUN.run.json with what names the content of its sequence, and
+// logs/SEQUENCE.log with a TraX tracker's output beside its answers. The seconds are the tracker's
 // own: they begin with the picture in the tracker's own form and end with the answer. They exclude
 // decoding, conversion and, for TraX, writing the picture, but include reading it. The results of a
 // run appear whole or not at all, and existing results are kept. A run in which the tracker fails
 // has none, and the next call tries it again. Throws Error where the tracker cannot be started at
-// all, or where `out` holds results of other settings or of other content under a sequence's name, or
-// runs of a sequence that these options do not make, which evaluation would take.
+// all, or where `out` holds results of other settings or of other content under a sequence's name,
+// or runs of a sequence that these options do not make, which evaluation would take.
 TrackSummary track(const fs::path& set, const fs::path& out, const TrackOptions& options);
 
 // Throws Error in the cases in which track() fails before the first frame: no such tracker, or
