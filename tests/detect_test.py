@@ -198,6 +198,14 @@ class OverAVideo(Case):
         write("origin/frame-difference/img.json", json.dumps(facts))
         self.assertIn("1 were there", detect("otb/one/img", "--frame-rate", "100").stdout)
 
+    def test_a_name_of_the_runs_own_files_is_refused(self):
+        made("synth", "-o", "detector.mkv", "--frames", "2", "--width", "64", "--height", "64")
+        self.assert_refused(run("detect", "detector.mkv", "-d", "frame-difference", "-o", "own-name"), "'detector'", "one file, detector.json")
+        shutil.copytree(path("otb", "one"), path("otb-own", "detections"))
+        made("dataset", "import", "otb-own", "-f", "otb", "--frame-rate", "25", "-o", "own-set")
+        self.assert_refused(run("detect", "own-set", "-d", "frame-difference", "-o", "own-name"), "'detections'", "one file, detections.json")
+        self.assertFalse(os.path.exists(path("own-name")))
+
     def test_results_of_other_content_at_the_same_path_are_not_kept(self):
         synth = lambda frames: made("synth", "-o", "anew.mkv", "--frames", frames, "--width", "64", "--height", "64", "--overwrite")
         synth("2")

@@ -372,7 +372,7 @@ class DetectorRun {
     for (const std::string& name : set.names())
       if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
-    open("detections.json");
+    open("detections.json", names);
     std::vector<DetectionClip> backgrounds;
     if (options_.backgrounds) backgrounds = backgrounds_of(set, names, options_.warn);
     in_parallel(names.size() + backgrounds.size(), options_, [&](std::size_t i) {
@@ -391,7 +391,7 @@ class DetectorRun {
     // Errors come before anything is made.
     video::expect_rate(
         video, ClipFrames(with_facts(clip), false, options_.warn).info(), options_.frame_rate_hz);
-    open(clip.name + ".detections.json");
+    open(clip.name + ".detections.json", {clip.name});
     over(
         "", clip.name, sha256_of(clip), [&] { return clip; }, options_.progress);
     return summaries(std::vector<results::ExpectedSequence>{{clip.name, 0, 0, 0}});
@@ -400,7 +400,14 @@ class DetectorRun {
  private:
   using Progress = std::function<void(std::int64_t, std::int64_t)>;
 
-  void open(const std::string& coco_name) const {
+  void open(const std::string& coco_name, const std::vector<std::string>& names) const {
+    for (const std::string& name : names)
+      if (const std::string file = name + ".json"; file == kRecord || file == coco_name)
+        throw Error(
+            fmt::format("the results of '{}' and of all sequences have one file, {}; "
+                        "expected another name of the sequence or the video",
+                        name,
+                        file));
     for (const auto& results : results_) results->open(coco_name);
   }
 
