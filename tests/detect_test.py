@@ -387,6 +387,15 @@ class Programs(Case):
         self.assertIn("ended with status 4; its last words: not this one", done.stderr)
         self.assertEqual(sorted(os.listdir(path("picky", "picky"))), ["detector.json", "logs", "three.json", "three.txt", "two.json", "two.txt"])
 
+    def test_it_is_told_the_rate_of_pictures_that_were_rendered(self):
+        made("synth", "-o", "flight.mkv", "--frames", "3", "--rate", "20", "--width", "320", "--height", "240")
+        write("pictures.toml", 'name = "pictures"\n[background]\nvideo = "flight.mkv"\n[lens]\nvertical_fov_deg = 40\n[motion]\nmodel = "none"\n'
+              + '[output]\nvideo = "png"\n')
+        made("render", "pictures.toml", "--out", ".", "--no-cache")
+        write("told.sh", HELLO + 'read -r line; echo "$line" >&2; ' + LOOP[len(HELLO):])
+        made("detect", "pictures", "-d", f"told=exec:sh {path('told.sh')}", "-o", "told", "--frame-rate", "7")
+        self.assertAlmostEqual(json.loads(read("told", "told", "logs", "pictures.log"))["begin"]["frame_rate_hz"], 20, places=6)
+
 
 if __name__ == "__main__":
     EXAMPLE = os.path.abspath(sys.argv.pop())

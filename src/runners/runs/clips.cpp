@@ -41,6 +41,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
   }
   const replay::Finished finished = replay::open_finished(set.folder(name));
   clip.media = finished.video;
+  clip.reading.picture_rate_hz = finished.picture_rate_hz;
   clip.lens = lens::lens_of(finished.truth.lens);
   if (finished.scene) clip.own_aircraft = finished.scene->background.mask;
   return clip;
