@@ -328,8 +328,11 @@ class Classes(program.Case):
         frames = [[label(1, HERE)]] * 20
         write_sequence("bare", "pass", frames, rate=None)
         results = write_results("bare.json", [[[(None, HERE, 0.9)]] * 20])
+        followed = evaluated("bare", [write_results("followed.json", [[[(1, HERE, 0.9)]] * 20])])["detectors"][0]["tracks"]
+        self.assertEqual((followed["declarations"]["declared"], followed["encounters"]), (None, []))
         done = made("evaluate", "bare", results, "-o", "bare-out", "--no-page")
-        for words in ("range is unknown", "lens is unknown", "closest approach is unknown", "frame rate is unknown", "reports no tracks"):
+        for words in ("range is unknown", "lens is unknown", "closest approach is unknown", "frame rate is unknown for 1 of 1 sequences;",
+                      "; declarations leave them out", "reports no tracks"):
             self.assertIn(words, done.stderr)
         with open(path("bare-out", "detection.json"), encoding="utf-8") as file:
             got = json.load(file)
@@ -338,7 +341,7 @@ class Classes(program.Case):
         self.assertIsNone(detector["tracks"])
         self.assertIsNone(detector["bearing"])
         self.assertNotIn("range_m", detector["by"])
-        self.assertEqual(len(got["left_out"]), 5)
+        self.assertEqual(len(got["left_out"]), 6)
 
     def test_wrong_results_are_one_line(self):
         results = self.set_up("wrong", None)

@@ -257,7 +257,7 @@ Json stills_json(const scores::TruthSequence& truth, const std::vector<drawing::
     const scores::TruthFrame& frame = truth.frames[still.index];
     stills.push_back({{"index", still.index},
                       {"frame", frame.frame},
-                      {"time_s", rounded(frame.time_s, 0.001)},
+                      {"time_s", truth.has_times ? Json(rounded(frame.time_s, 0.001)) : Json()},
                       {"close", cutout_json(still.close)},
                       {"objects", objects_in(frame)},
                       {"ignored", ignored_in(frame)}});

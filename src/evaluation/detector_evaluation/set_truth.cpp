@@ -61,6 +61,9 @@ scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std
   truth.width = clip.width;
   truth.height = clip.height;
   truth.frame_rate_hz = clip.frame_rate_hz.value_or(0);
+  truth.has_times = clip.frame_rate_hz || std::ranges::all_of(clip.frames, [](const auto& frame) {
+                      return frame.time_s.has_value();
+                    });
   for (const exchange::LabelledFrame& labelled : clip.frames) {
     scores::TruthFrame& frame = truth.frames.emplace_back();
     frame.frame = labelled.frame;
@@ -308,6 +311,11 @@ void say_what_is_missing(SetTruth& set, const std::string& volume) {
             has_range,
             "the range is",
             "detection by range, declaration ranges and AOT's measures leave them out");
+  leave_out(
+      set,
+      [](const scores::TruthSequence& truth) { return truth.has_times; },
+      "the frame rate is",
+      "declarations leave them out");
   leave_out(
       set,
       [](const scores::TruthSequence& truth) { return truth.lens.has_value(); },

@@ -122,6 +122,7 @@ std::vector<EncounterScore> encounters_of(std::size_t sequence,
                                           std::optional<double> score,
                                           std::optional<double> manoeuvre_s) {
   std::vector<EncounterScore> scores;
+  if (!truth.has_times) return scores;
   for (const auto& [object, shown] : appearances_of(truth, scored, score)) {
     EncounterScore one = score_of(truth, shown);
     if (one.frames_seen == 0) continue;

@@ -70,7 +70,8 @@ struct EncounterScore {
   InTime in_time = InTime::kUnknown;
 };
 
-// Detections below `score` do not count; empty: all do.
+// Detections below `score` do not count; empty: all do. Nothing where the times of the frames are
+// unknown: no track is known to be kept for kKeep_s.
 std::vector<EncounterScore> encounters_of(std::size_t sequence,
                                           const TruthSequence& truth,
                                           const ScoredDetections& scored,

@@ -96,6 +96,15 @@ TEST(Declaration, TheEndOfTheSequenceShortensTheWindow) {
   EXPECT_EQ(scored(detections).declaration->frame, kFrames - 3u);
 }
 
+TEST(Declaration, WithoutTimesNothingIsKnownOfIt) {
+  TruthSequence truth = encounter();
+  truth.has_times = false;
+  results::SequenceDetections detections = nothing();
+  add(detections, 0, kFrames, 1);
+  const ScoredDetections all{0, detections, matches_of(detections, truth, 10)};
+  EXPECT_TRUE(encounters_of(0, truth, all, {}, {}).empty());
+}
+
 TEST(Declaration, ScoresBelowTheThresholdDoNotCount) {
   results::SequenceDetections detections = nothing();
   add(detections, 10, 100, 1, 0.5);

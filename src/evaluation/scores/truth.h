@@ -91,6 +91,8 @@ struct TruthSequence {
   int width = 0;  // px; 0: unknown
   int height = 0;
   double frame_rate_hz = 0;
+  // False for an imported clip that states neither its rate nor the times of all its frames.
+  bool has_times = true;
   // Number of frames over the frame rate, or the span of the time stamps with one frame more.
   double duration_s = 0;
   std::optional<lens::Lens> lens;
