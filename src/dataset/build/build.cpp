@@ -105,7 +105,11 @@ class Work {
   void prepare_backgrounds() {
     files_.resize(catalogue_.backgrounds.size());
     for (std::size_t i = 0; i < files_.size(); ++i) {
-      if (!is_used_[i]) continue;
+      if (!is_used_[i]) {
+        const auto* video = std::get_if<fs::path>(&catalogue_.backgrounds[i].source);
+        if (!kept_[i].empty()) check_inputs(kept_[i], video != nullptr ? *video : fs::path());
+        continue;
+      }
       if (options_.stop.stop_requested()) throw Interrupted();
       const WaitingLock lock(
           folder_.backgrounds() / ("." + catalogue_.backgrounds[i].name + ".lock"), options_.stop);
@@ -116,12 +120,13 @@ class Work {
   }
 
   // A sequence that was made of other files than are there now and those that follow would be a
-  // mixed set. Of a record, the first input is its background, which may have another name by now.
+  // mixed set. Of a record, the first input is its background, which may have another name by now;
+  // `video` is empty where it is a flight that nothing is left to be made over.
   void check_inputs(const fs::path& kept, const fs::path& video) const {
     const JsonDocument record(kept / "sequence.json");
     bool is_background = true;
     for (const JsonObject& input : record.objects("inputs")) {
-      const fs::path file = is_background ? video : fs::path(input.text("name"));
+      const fs::path file = is_background && !video.empty() ? video : fs::path(input.text("name"));
       is_background = false;
       if (is_another(file, input.text("sha256"), *shared_))
         throw Error(fmt::format("is another file than the one that '{}', which is kept, was made "
