@@ -191,7 +191,10 @@ void add_times_to_approach(scores::TruthSequence& truth) {
 }
 
 // Without its duration.
-scores::TruthSequence rendered_truth(const fs::path& folder, const std::string& volume) {
+scores::TruthSequence rendered_truth(const labelled::LabelledSet& set,
+                                     const std::string& name,
+                                     const std::string& volume) {
+  const fs::path folder = set.folder(name);
   const replay::Finished finished = replay::open_finished(folder);
   const JsonDocument record(folder / "sequence.json");
   scores::TruthSequence truth;
@@ -213,6 +216,8 @@ scores::TruthSequence rendered_truth(const fs::path& folder, const std::string& 
     truth.frames.push_back(frame_of(frame, finished.truth.lens));
   if (truth.frames.size() > 1 && truth.frames.back().time_s > 0)
     truth.frame_rate_hz = static_cast<double>(truth.frames.size() - 1) / truth.frames.back().time_s;
+  else
+    truth.frame_rate_hz = set.clip(name).frame_rate_hz.value_or(0);
   for (const auto& [id, category] : aircraft_in(truth))
     truth.encounters.push_back(encounter_of(finished, id, volume));
   if (!truth.frames.empty())
@@ -366,8 +371,7 @@ SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path i
   std::size_t weighted = 0;
   for (const std::string& name : set.names()) {
     scores::TruthSequence& truth = result.sequences.emplace_back(
-        set.is_imported(name) ? imported_truth(set, name)
-                              : rendered_truth(set.folder(name), volume));
+        set.is_imported(name) ? imported_truth(set, name) : rendered_truth(set, name, volume));
     weighted += truth.weight ? 1 : 0;
     truth.name = name;
     start_at_0(truth);

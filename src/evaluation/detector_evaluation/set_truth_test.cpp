@@ -57,8 +57,10 @@ class OfRenderedSet : public testing::Test {
         set == "short" ? "waypoints_ned_m = [[1100, 60, -165], [1000, 60, -165]]\nspeed_mps = 55\n"
                        : "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
                          "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n";
-    const std::string text = "name = \"" + name + "\"\nweight = 3\n[background]\nvideo = " +
-                             "\"flight.mkv\"\n[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 20\n"
+    const std::string text = "name = \"" + name +
+                             "\"\nweight = 3\n[background]\nvideo = \"flight.mkv\"\n" +
+                             (set == "single" ? "frame_count = 1\n" : "") +
+                             "[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = 20\n"
                              "[camera]\nposition_ned_m = [0, 0, -150]\n"
                              "velocity_ned_mps = [25, 0, 0]\nattitude_yaw_pitch_roll_deg = [0, 0, "
                              "0]\n[motion]\nmodel = \"none\"\n" +
@@ -148,6 +150,12 @@ TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePaths) {
 TEST_F(OfRenderedSet, OneWhosePathEndsAfterTheClipFliesStraightOn) {
   for (const scores::TruthSequence& one : truth("", "short").sequences)
     EXPECT_NEAR(*one.encounters.at(0).closest_approach_s, kShortApproach_s, 1e-6) << one.name;
+}
+
+// The time of one frame tells no rate, and its video states 30 frames/s.
+TEST_F(OfRenderedSet, OneFrameLastsAsLongAsItsVideoSays) {
+  render("single", "frame", "");
+  EXPECT_NEAR(truth("", "single").sequences.at(0).duration_s, 1 / 30.0, 1e-6);
 }
 
 TEST_F(OfRenderedSet, RefusesAnUnknownVolume) {
