@@ -109,6 +109,7 @@ TEST_F(Made, EveryFormatComesBackWithTheBoxesOfTheTruthAndPicturesOfTheVideo) {
     for (const std::string& name : made.names()) {
       const auto expected = exchange::arranged(format, made.clip(name)).at(0);
       const exchange::Clip clip = read.clip(name);
+      EXPECT_EQ(read.facts(name).background_name, name);  // its pictures are no other clip's
       ASSERT_EQ(clip.frames.size(), expected.frames.size());
       EXPECT_EQ(clip.width, 160);
       for (std::size_t i = 0; i < clip.frames.size(); ++i) {

@@ -28,9 +28,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The list of a clip's pictures, beside its labels.
-constexpr const char* kPictureList = "pictures.txt";
-
 // Whether the frames of a clip are pictures, and their folder is its media.
 bool has_pictures(const exchange::Clip& clip) { return fs::is_directory(clip.media); }
 
@@ -227,8 +224,8 @@ Json write_clip(exchange::Clip clip, const ImportOptions& options, const fs::pat
   make_folders(folder);
   Json record = record_of(clip, options);
   if (has_pictures(clip)) {
-    write_file(folder / kPictureList, list_of_pictures(clip), Flush::kLater);
-    clip.media = kPictureList;
+    write_file(folder / sequences::kPictureList, list_of_pictures(clip), Flush::kLater);
+    clip.media = sequences::kPictureList;
   }
   write_file(folder / sequences::kLabels, exchange::labels_jsonl(clip), Flush::kLater);
   // Categories come unchanged from the labels and may be invalid UTF-8.

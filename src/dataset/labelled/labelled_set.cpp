@@ -106,6 +106,7 @@ ClipFacts LabelledSet::facts(const std::string& name) const {
     facts.categories.insert(facts.distractors.begin(), facts.distractors.end());
   } else {
     facts.background = record.maybe_text("media").value_or(name);
+    if (fs::exists(folder(name) / sequences::kPictureList)) facts.background_name = name;
     facts.frames = record.count("frames");
     for (const std::string& category : record.texts("categories"))
       facts.categories.insert(category);

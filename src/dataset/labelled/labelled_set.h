@@ -19,7 +19,8 @@ struct ClipFacts {
   std::string name;
   // The background video; for an imported clip, its own video.
   std::string background;
-  // What the scene or catalogue calls it, or the name of its file.
+  // What the scene or catalogue calls it, or the name of its file; for an imported clip of
+  // pictures, the clip's own name.
   std::string background_name;
   // The categories of the objects that may appear in the sequence.
   std::set<std::string> categories;

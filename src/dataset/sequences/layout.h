@@ -44,6 +44,8 @@ void write_layout(const fs::path& sequences, const Layout& layout);
 
 // The labels of an imported clip, in its folder; a rendered sequence has none.
 inline constexpr const char* kLabels = "labels.jsonl";
+// The list of an imported clip's pictures, beside its labels; one of a video has none.
+inline constexpr const char* kPictureList = "pictures.txt";
 
 // The finished sequences of a folder: a data set that `dataset build` made, complete or not; the
 // output of `dataset import`; or one or more sequences that `render` made.

@@ -77,8 +77,7 @@ struct TruthEncounter {
 
 struct TruthSequence {
   std::string name;
-  // What the scene calls its background, or the name of its file; for an imported clip, of its own
-  // video.
+  // labelled::ClipFacts::background_name.
   std::string background;
   // The name of the background's file, by which ignored regions may name it.
   std::string background_file;

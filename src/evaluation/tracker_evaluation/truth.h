@@ -21,7 +21,7 @@ namespace airtruth::tracker_evaluation {
 // frame that shows it, with further facts about those frames.
 struct TruthClip {
   exchange::Clip clip;
-  // File name of the background video; for an imported clip, of its own video.
+  // labelled::ClipFacts::background_name.
   std::string background;
   // What is known of the weather of what was inserted (scene::weather_facts()).
   std::map<std::string, double> weather;
