@@ -31,9 +31,9 @@ void count(const replay::Finished& finished, Portrait& portrait) {
       if (is_aircraft) ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
       portrait.covered_boxes += is_aircraft && intruder.covered_box_px ? 1 : 0;
       portrait.without_box += lens && annotation::lacks_box(frame, intruder, *lens) ? 1 : 0;
-      const auto box = annotation::box_to_show(intruder);
+      is_seen = is_seen || (is_aircraft && annotation::box_to_show(intruder));
+      const auto box = labelled_box(finished, intruder);
       if (!box) continue;
-      is_seen = is_seen || is_aircraft;
       ++portrait.boxes_by_class[sequences::category_of(intruder)];
       ++portrait.centres[cell_of(*box, portrait.info.width, portrait.info.height)];
     }

@@ -34,13 +34,20 @@ struct Portrait {
   std::int64_t covered_boxes = 0;
   // Number of states that are in view by geometry and have no box (labels/annotation/truth.h).
   std::int64_t without_box = 0;
-  // Frames for which a label describes an aircraft.
+  // Frames that show an aircraft, with a label or without.
   std::int64_t frames_with_intruder = 0;
   std::map<std::string, std::int64_t> boxes_by_class;
-  // Number of box centres in each cell, row by row from the top.
+  // Number of centres of these boxes in each cell, row by row from the top.
   std::vector<std::int64_t> centres;
   Film film;
 };
+
+// The box of the intruder's label: its covered box, of an imported clip its own. Empty where it has
+// no label, as what is visible without covering a pixel.
+inline std::optional<PixelBox> labelled_box(const replay::Finished& finished,
+                                            const annotation::Intruder& intruder) {
+  return finished.scene ? intruder.covered_box_px : intruder.visible_box_px;
+}
 
 // `finished`: the sequence of that name. `stills` is the highest number of pictures in its film; 0:
 // no film, and no frame is decoded.

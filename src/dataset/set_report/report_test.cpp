@@ -53,5 +53,27 @@ TEST_F(Report, OfALargeSetShowsSomeSequencesAndCountsAll) {
     EXPECT_EQ(part.at("plots").at(plot), whole.at("plots").at(plot)) << plot;
 }
 
+// An aircraft that is seen without covering a pixel has no label, and is no box of the counts.
+TEST_F(Report, WhatHasNoLabelIsNoBox) {
+  const nlohmann::json before = data_of_page(1);
+  const fs::path truth = root_ / "set" / "sequences" / "sky-across-c172" / "truth.jsonl";
+  std::string text = read_file(truth);
+  const std::string key = "\"covered_box_px\":[";
+  const std::size_t box = text.find(key);
+  ASSERT_NE(box, std::string::npos);
+  text.replace(box, text.find(']', box) + 1 - box, "\"covered_box_px\":null");
+  write_file(truth, text);
+  const nlohmann::json after = data_of_page(1);
+  const auto boxes = [](const nlohmann::json& data, const char* plot) {
+    double sum = 0;
+    for (const nlohmann::json& y : data.at("plots").at(plot).at("series").at(0).at("y"))
+      sum += y.get<double>();
+    return sum;
+  };
+  for (const char* plot : {"classes", "range_m", "size_px", "azimuth_deg"})
+    EXPECT_EQ(boxes(after, plot), boxes(before, plot) - 1) << plot;
+  EXPECT_EQ(after.at("frames_with_intruder"), before.at("frames_with_intruder"));
+}
+
 }  // namespace
 }  // namespace airtruth::set_report

@@ -76,7 +76,7 @@ void Totals::add(const replay::Finished& finished, const Portrait& portrait) {
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] += portrait.centres[i];
   for (const annotation::Frame& frame : finished.truth.frames)
     for (const annotation::Intruder& intruder : frame.intruders) {
-      const auto box = annotation::box_to_show(intruder);
+      const auto box = labelled_box(finished, intruder);
       if (!box || !annotation::is_aircraft(intruder.object_class)) continue;
       size_px.add(std::max(box->width, box->height));
       if (intruder.range_m) range_m.add(*intruder.range_m);

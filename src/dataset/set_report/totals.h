@@ -53,7 +53,7 @@ struct Totals {
       {0, 50, 100, 150, 200, 300, 400, 600, 800, 1000, 1500, 2000, 3000, 5000, 10000}};
   // From the first frame that shows an intruder to its closest approach.
   Histogram first_seen_s{{-10, 0, 1, 2, 3, 4, 6, 8, 10, 15, 20, 30, 60, 120}};
-  // Of what is seen, beside range_m.
+  // Of the boxes that range_m counts.
   Histogram to_closest_s{{-20, -10, -5, -2, 0, 2, 4, 6, 8, 10, 15, 20, 30, 60, 120}};
   Histogram contrast{{0, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 256}};
 
