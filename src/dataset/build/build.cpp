@@ -2,10 +2,12 @@
 #include "dataset/build/build.h"
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -237,8 +239,24 @@ class Work {
   BuildSummary summary_;
 };
 
+// The failures that a file lists of sequences that a build of those that fit `only` does not look
+// at.
+std::vector<Failure> others_of(const fs::path& file, const std::string& only) {
+  std::vector<Failure> others;
+  std::error_code ignored;
+  std::istringstream lines(fs::exists(file, ignored) ? read_file(file) : "");
+  for (std::string line; std::getline(lines, line);) {
+    const Json failure = Json::parse(line, nullptr, false);
+    if (failure.is_object() && !matches(only, failure.value("name", "")))
+      others.push_back({failure.value("name", ""), failure.value("reason", "")});
+  }
+  return others;
+}
+
 // Writes one line per failure. The file is removed where nothing failed.
-void write_failures(const fs::path& file, const std::vector<Failure>& failures) {
+void write_failures(const fs::path& file, const std::string& only, std::vector<Failure> failures) {
+  std::ranges::move(others_of(file, only), std::back_inserter(failures));
+  std::ranges::sort(failures, {}, &Failure::name);
   std::error_code ignored;
   if (failures.empty()) {
     fs::remove(file, ignored);
@@ -300,6 +318,9 @@ bool write_manifest(const catalogue::Catalogue& catalogue, const catalogue::Fold
                        {"frames", frames},
                        {"manifest", files}};
   write_file(folder.record(), record.dump(2) + "\n");
+  // What workers and earlier builds could not make is there by now.
+  for (const fs::path& file : entries(folder.root))
+    if (matches("failed*.jsonl", file.filename().string())) fs::remove(file);
   return true;
 }
 
@@ -319,7 +340,7 @@ BuildSummary build_set(const catalogue::Catalogue& given,
   const RunLock lock = catalogue::lock_of(
       folder, options.shares > 1 ? Sharing::kShared : Sharing::kAlone, options.warn);
   BuildSummary summary = Work(catalogue, folder, options).run();
-  write_failures(folder.failed(options.share, options.shares), summary.failures);
+  write_failures(folder.failed(options.share, options.shares), options.only, summary.failures);
   // With several workers none can know that it is the last, so `finish` writes their manifest.
   if (options.shares == 1) summary.complete = write_manifest(catalogue, folder);
   summary.seconds = watch.seconds();

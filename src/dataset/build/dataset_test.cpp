@@ -229,10 +229,12 @@ TEST_F(Build, GoesOnWhereItWasAndGivesTheSameBytesForAnyNumberOfJobs) {
   EXPECT_FALSE(part.complete);
   EXPECT_EQ(build::status(root_ / "two").missing.size(), 2u);
   options.only = "*";
+  write_file(root_ / "two" / "failed-0.jsonl", "{\"name\":\"more-across-c172\"}\n");
   const BuildSummary rest = build_set(catalogue, root_ / "two", options);
   EXPECT_EQ(rest.made, 2);
   EXPECT_EQ(rest.kept, 2);
   EXPECT_TRUE(rest.complete);
+  EXPECT_FALSE(fs::exists(root_ / "two" / "failed-0.jsonl"));
   EXPECT_EQ(bytes_of(root_ / "one").size(), 4u * 4u + 1u);
   const auto one = bytes_of(root_ / "one");
   for (const auto& [name, hash] : bytes_of(root_ / "two"))
@@ -320,7 +322,11 @@ TEST_F(Build, OneBadSequenceDoesNotStopTheOthers) {
   ASSERT_EQ(summary.failures.size(), 2u);
   EXPECT_THAT(summary.failures[0].reason, HasSubstr("broken.ac"));
   EXPECT_FALSE(summary.complete);
-  EXPECT_TRUE(fs::exists(root_ / "bad" / "failed.jsonl"));
+  // Also after a build that looks at none of them.
+  const std::string failed = read_file(root_ / "bad" / "failed.jsonl");
+  EXPECT_EQ(std::ranges::count(failed, '\n'), 2);
+  build_set(catalogue::parse_catalogue(text, "c.toml"), root_ / "bad", one_alone());
+  EXPECT_EQ(read_file(root_ / "bad" / "failed.jsonl"), failed);
 }
 
 TEST_F(Build, VerifyFindsWhatWasChanged) {
