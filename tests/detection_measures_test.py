@@ -314,6 +314,12 @@ class Classes(program.Case):
         write("mine.csv", "x,y\n")
         self.assert_refused(run("evaluate", "regions", results, "-o", "no", "--ignore", path("mine.csv")), "heading", "mine.csv:1")
 
+    def test_a_page_that_an_earlier_evaluation_left_is_named(self):
+        results = self.set_up("paged", None)
+        evaluate = lambda *more: made("evaluate", "paged", results, "-o", "paged-out", *more).stderr
+        self.assertNotIn("earlier evaluation", evaluate() + evaluate())
+        self.assertIn(os.path.join("paged-out", "detection.html") + ": is of an earlier evaluation", evaluate("--no-page"))
+
     def test_an_import_states_the_class(self):
         write("csv/V_BIRD_1.csv", "frame,x,y,w,h\n0,1,2,3,4\n")
         write("csv/plane.csv", "frame,x,y,w,h\n0,1,2,3,4\n")

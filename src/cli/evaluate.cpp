@@ -351,6 +351,21 @@ void evaluate_detectors(const Evaluate& arguments,
   print_detections(assessment, console);
 }
 
+// Pages and figures beside the tables that show other numbers than these.
+void say_what_is_older(const Evaluate& arguments,
+                       bool has_trackers,
+                       bool has_detectors,
+                       Console& console) {
+  const auto say = [&](const char* name, bool is_older) {
+    const fs::path shown = fs::path(arguments.out) / name;
+    if (is_older && fs::exists(shown))
+      console.warning(shown.string() + ": is of an earlier evaluation; this one makes none");
+  };
+  say("report.html", arguments.no_page && has_trackers);
+  say("detection.html", arguments.no_page && has_detectors);
+  say("figures", arguments.figures.empty());
+}
+
 void run_evaluate(Evaluate arguments, Context& context) {
   if (!arguments.figures.empty()) report::check_figures(arguments.figures);
   if (!arguments.against.empty()) tracker_evaluation::check_evaluation(arguments.against);
@@ -374,6 +389,7 @@ void run_evaluate(Evaluate arguments, Context& context) {
   if (!of_detectors.empty()) evaluate_detectors(arguments, of_detectors, files, context.console());
   if (!of_trackers.empty()) evaluate_trackers(arguments, of_trackers, files, context.console());
   files.commit();
+  say_what_is_older(arguments, !of_trackers.empty(), !of_detectors.empty(), context.console());
 }
 
 // The options that change what is measured.
