@@ -108,23 +108,27 @@ class Work {
     files_.resize(catalogue_.backgrounds.size());
     for (std::size_t i = 0; i < files_.size(); ++i) {
       if (!is_used_[i]) {
-        const auto* video = std::get_if<fs::path>(&catalogue_.backgrounds[i].source);
-        if (!kept_[i].empty()) check_inputs(kept_[i], video != nullptr ? *video : fs::path());
+        check_inputs(i);
         continue;
       }
       if (options_.stop.stop_requested()) throw Interrupted();
       const WaitingLock lock(
           folder_.backgrounds() / ("." + catalogue_.backgrounds[i].name + ".lock"), options_.stop);
       files_[i] = prepare(catalogue_.backgrounds[i], folder_, options_);
-      if (!kept_[i].empty()) check_inputs(kept_[i], files_[i].video);
+      check_inputs(i);
       measure(i);
     }
   }
 
   // A sequence that was made of other files than are there now and those that follow would be a
-  // mixed set. Of a record, the first input is its background, which may have another name by now;
-  // `video` is empty where it is a flight that nothing is left to be made over.
-  void check_inputs(const fs::path& kept, const fs::path& video) const {
+  // mixed set. Of a record, the first input is its background, which may have another name by now.
+  void check_inputs(std::size_t i) const {
+    const fs::path& kept = kept_[i];
+    if (kept.empty()) return;
+    const catalogue::Background& background = catalogue_.backgrounds[i];
+    const auto* given = std::get_if<fs::path>(&background.source);
+    // Empty for a flight that nothing is left to be made over.
+    const fs::path& video = given != nullptr ? *given : files_[i].video;
     const JsonDocument record(kept / "sequence.json");
     bool is_background = true;
     for (const JsonObject& input : record.objects("inputs")) {
@@ -137,6 +141,17 @@ class Work {
                                 kept.filename().string()),
                     {file.string()});
     }
+    // --background leaves masks out. A flight brings its own.
+    const auto made = scene::parse_scene(record.text("scene_toml"), kept / "sequence.json");
+    const bool has_mask = given == nullptr || background.mask;
+    if (made.background.mask.has_value() != has_mask ||
+        made.occluders.size() != background.occluders.size())
+      throw Error(
+          fmt::format("has not the masks with which '{}', which is kept, was made; expected "
+                      "--background for all sequences of the set or for none, or another "
+                      "folder for it",
+                      kept.filename().string()),
+          {video.string()});
   }
 
   pipeline::Options run_options() const {

@@ -376,6 +376,17 @@ TEST_F(Build, ABackgroundThatChangedUnderABuildIsRefusedByName) {
   EXPECT_FALSE(build::status(root_ / "set").complete);
 }
 
+// The same video, which leaves the flight's mask out.
+TEST_F(Build, ABackgroundThatLosesItsMaskUnderABuildIsRefused) {
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
+  build_set(catalogue, root_ / "set", one_alone());
+  BuildOptions options;
+  options.videos["sky"] = root_ / "set" / "backgrounds" / "sky.mp4";
+  EXPECT_THAT(test_support::error_of([&] { build_set(catalogue, root_ / "set", options); }),
+              HasSubstr("sky.mp4: has not the masks with which 'sky-across-c172'"));
+}
+
 TEST_F(Build, AnInputIsAnotherOneByItsBytesAndNotByItsEnding) {
   setup::SharedInputs inputs;
   const fs::path log = root_ / "log.txt";  // a list of pictures has the same ending
