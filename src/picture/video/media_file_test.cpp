@@ -59,6 +59,16 @@ TEST_F(Video, AListOfOtherFilesIsNoVideo) {
   }
 }
 
+TEST_F(Video, PicturesHoldNothingBesidesInWhateverFormTheyAreStated) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.08 a%d.png");
+  write_file(folder_ / "list.txt", "a1.png\na2.png\n");
+  for (const char* name : {"", "a%d.png", "list.txt"}) {
+    EXPECT_TRUE(read_tags(folder_ / name).empty()) << name;
+    EXPECT_TRUE(read_telemetry(folder_ / name).empty()) << name;
+    EXPECT_TRUE(read_subtitles(folder_ / name).empty()) << name;
+  }
+}
+
 TEST_F(Video, APathIsNoAddress) {
   ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -c:v libx264 plain.mp4");
   Reader plain(folder_ / "plain.mp4");

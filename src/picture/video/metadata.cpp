@@ -5,6 +5,7 @@
 
 #include "picture/video/libav.h"
 #include "picture/video/media_file.h"
+#include "picture/video/numbered_images.h"
 
 extern "C" {
 #include <libavutil/dict.h>
@@ -13,9 +14,9 @@ extern "C" {
 namespace airtruth::video {
 namespace {
 
-// Empty where the path is no regular file.
+// Empty where the path is no video file.
 InputPtr opened_file(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) return nullptr;
+  if (!std::filesystem::is_regular_file(path) || numbered_images(path)) return nullptr;
   return open_media(path, Media::kAny);
 }
 

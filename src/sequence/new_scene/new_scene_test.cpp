@@ -169,6 +169,8 @@ TEST(NewScene, PicturesAskForTheirRate) {
   // The camera hardly turns in four frames: the lens is a guess, and the reason is there.
   EXPECT_THAT(text, testing::HasSubstr("A GUESS: no file states the lens, and the camera turns"));
   EXPECT_EQ(scene::parse_scene(text, folder / "s.toml").background.frame_rate_hz, 12.5);
+  write_file(folder / "list.txt", "frames/0000.png\nframes/0001.png\n");
+  EXPECT_THAT(scene_text(folder / "list.txt", stated), testing::HasSubstr("list.txt\"\n"));
   demo::write_flight(flight, folder / "flight.mp4", {});
   EXPECT_THAT(fault_of(folder / "flight.mp4", stated), testing::HasSubstr("states its own rate"));
 }
