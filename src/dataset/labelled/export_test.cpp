@@ -449,6 +449,25 @@ TEST_F(Made, WhatIsImportedCanBeLookedAt) {
   EXPECT_THROW(import_set(csv, out, options), Error);
 }
 
+TEST_F(Made, AVideoThatIsGivenBelongsToAClip) {
+  ImportOptions options;
+  options.format = exchange::Format::kCsv;
+  fs::create_directories(root_ / "csv");
+  write_file(root_ / "csv/A.csv", "frame,x,y,w,h\n0,10,20,30,40\n");
+  const fs::path video = LabelledSet(set()).clip("sky-across-b737").media;
+  const auto fault_of = [&](const std::map<std::string, fs::path>& videos) {
+    options.videos = videos;
+    return test_support::error_of([&] { import_set(root_ / "csv", fresh(), options); });
+  };
+  EXPECT_THAT(fault_of({{"C", video}}),
+              HasSubstr("fits no clip; expected CLIP=VIDEO (one is 'A')"));
+  EXPECT_THAT(fault_of({{"", video}, {"A", video}}), HasSubstr("fits no clip"));
+  EXPECT_EQ(fault_of({{"", video}}), "no error");
+  write_file(root_ / "csv/B.csv", "frame,x,y,w,h\n0,10,20,30,40\n");
+  EXPECT_THAT(fault_of({{"", video}}), HasSubstr("fits no clip"));
+  EXPECT_EQ(fault_of({{"B", video}}), "no error");
+}
+
 // A folder whose name begins with a dot is none of the set's sequences.
 TEST_F(Made, ANameThatBeginsWithADotIsImportedInSight) {
   const fs::path out = fresh();

@@ -156,6 +156,27 @@ std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   return unique;
 }
 
+// For a message about an option that fits none: " (one is 'a')".
+std::string words_of_one(const std::vector<exchange::Clip>& clips) {
+  return clips.empty() ? "" : " (one is '" + clips.front().name + "')";
+}
+
+// The path of a video alone is for the only clip.
+void expect_clips_of_videos(const std::vector<exchange::Clip>& clips,
+                            const std::map<std::string, fs::path>& videos) {
+  for (const auto& [name, video] : videos) {
+    const bool fits_any =
+        name.empty() ? clips.size() == 1 && videos.size() == 1
+                     : std::ranges::find(clips, name, &exchange::Clip::name) != clips.end();
+    if (!fits_any)
+      throw Error(fmt::format("--video '{}{}{}' fits no clip; expected CLIP=VIDEO{}",
+                              name,
+                              name.empty() ? "" : "=",
+                              video.string(),
+                              words_of_one(clips)));
+  }
+}
+
 // Gives the objects of each clip their class.
 void classify(std::vector<exchange::Clip>& clips, const ImportOptions& options) {
   for (const ImportOptions::ObjectClass& given : options.classes) {
@@ -173,7 +194,7 @@ void classify(std::vector<exchange::Clip>& clips, const ImportOptions& options) 
     }
     if (!fits_any)
       throw Error("--class '" + given.pattern + "=" + given.name + "' fits no clip" +
-                  (clips.empty() ? "" : " (one is '" + clips.front().name + "')"));
+                  words_of_one(clips));
   }
 }
 
@@ -190,6 +211,7 @@ void expect_one_line(const exchange::Clip& clip) {
 void complete(std::vector<exchange::Clip>& clips,
               const fs::path& source,
               const ImportOptions& options) {
+  expect_clips_of_videos(clips, options.videos);
   exchange::LeftOut left_out(options.warn);
   std::set<std::string> taken;
   for (exchange::Clip& clip : clips) {

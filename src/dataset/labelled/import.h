@@ -50,7 +50,7 @@ std::pair<std::string, std::string> class_of_category_from(const std::string& te
 // sequence.json and, of pictures, pictures.txt (docs/formats/labels.md). `overlay`, `dataset
 // export` and the evaluation read these like rendered sequences. The videos stay where they are.
 // Throws Error where `out` exists and is not empty, for a class that is none, and for a pattern
-// that fits no clip.
+// or a video that fits no clip.
 ImportSummary import_set(const fs::path& source, const fs::path& out, const ImportOptions& options);
 
 }  // namespace airtruth::labelled
