@@ -60,6 +60,14 @@ class Refusals(unittest.TestCase):
         for word in words:
             self.assertIn(word, done.stderr)
 
+    def test_a_first_frame_past_the_end(self):
+        self.assertEqual(run("synth", "-o", "short.mkv", "--frames", "8", "--width", "160", "--height", "120").returncode, 0)
+        flight = re.search("flight = .*", SKY).group()
+        for source in (flight, 'video = "short.mkv"'):
+            begins = lambda frame: SKY.replace(flight, f"{source}\nfirst_frame = {frame}") + RANDOM
+            self.assertEqual(run("dataset", "plan", write("last.toml", begins(7))).returncode, 0)
+            self.refused(begins(8), "refused.toml:1:1:", "holds 8 frames; first_frame = 8 is past its end")
+
     def test_every_empty_list_is_one_line(self):
         random = lambda line: SKY + re.sub(rf"(?m)^{line.split()[0]} = .*\n", "", RANDOM) + line + "\n"
         for key in ("aircraft", "backgrounds"):

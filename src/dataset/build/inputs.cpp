@@ -6,6 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "aircraft/fleet/fleet.h"
 #include "dataset/catalogue/expand.h"
 #include "foundation/base/error.h"
@@ -93,8 +95,16 @@ video::StreamInfo stream_of(const catalogue::Background& background) {
   const auto* flight = std::get_if<synthetic::FlightOptions>(&background.source);
   if (flight == nullptr)
     return video::Reader(std::get<fs::path>(background.source),
-                         {.picture_rate_hz = background.frame_rate_hz, .threads = 1})
+                         {.first_frame = background.first_frame,
+                          .picture_rate_hz = background.frame_rate_hz,
+                          .threads = 1,
+                          .where = background.where})
         .info();
+  if (background.first_frame >= flight->frame_count)
+    throw Error(fmt::format("the flight holds {} frames; first_frame = {} is past its end",
+                            flight->frame_count,
+                            background.first_frame),
+                background.where);
   video::StreamInfo info;
   info.width = flight->width;
   info.height = flight->height;

@@ -28,7 +28,7 @@ std::optional<scene::Camera> camera_with_log(const catalogue::Background& backgr
                                              const fs::path& video);
 
 // The size, rate and number of frames of a background: as its virtual flight states them, or as its
-// video does. Throws Error where the video cannot be read.
+// video does. Throws Error where the video cannot be read, and where first_frame is past the end.
 video::StreamInfo stream_of(const catalogue::Background& background);
 
 // Checks the inputs of a catalogue on this machine before any work begins. Aircraft must be known

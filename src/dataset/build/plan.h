@@ -12,7 +12,8 @@
 
 namespace airtruth::build {
 
-// Summary of what a catalogue would make. Nothing is rendered; only the headers of videos are read.
+// Summary of what a catalogue would make. Nothing is rendered, and no more of a video is
+// decoded than its first frame in use.
 struct Plan {
   std::int64_t sequences = 0;
   std::int64_t negatives = 0;  // sequences without an aircraft
