@@ -318,26 +318,25 @@ Passage from_geometry(const EncounterRule& rule,
                       const AircraftType& wanted,
                       std::uint64_t index,
                       std::uint64_t intruder) {
-  const std::uint64_t seed = Seed(rule.seed).stream("geometry of intruder", intruder)();
   pairing::GeometricOptions options = rule.geometry;
   const auto* limits = fleet::flight_limits(wanted.name);
   if (!rule.states_speed && limits != nullptr)
     options.speed_mps = pairing::Distribution({limits->usual_low_mps, limits->usual_high_mps});
-  const pairing::GeometricSampler sampler(options, seed, static_cast<std::uint64_t>(rule.count));
-  pairing::GeometricPassage drawn = setup::at_place(rule.where, [&] {
-    return pairing::geometric_passage(sampler, index, own, -kMargin_s, rule.length_s + kMargin_s);
-  });
-  const pairing::Geometry& geometry = drawn.geometry;
-  if (is_high_enough(drawn.track, own, geometry.approach.time_s))
-    return {std::move(drawn.track), 1};
-  throw Error(
-      fmt::format("an intruder {:.0f} m above the own aircraft that climbs at {:.1f} m/s "
-                  "would be less than {:.0f} m above the ground; expected a higher vmd_m or "
-                  "climb_mps",
-                  geometry.approach.vmd_m,
-                  geometry.climb_mps,
-                  kLowestFlightM),
-      rule.where);
+  for (std::uint64_t attempt = 0; attempt < kMaxTracks; ++attempt) {
+    const std::uint64_t seed =
+        Seed(rule.seed).stream("geometry of intruder", intruder + attempt * kNextAttempt)();
+    const pairing::GeometricSampler sampler(options, seed, static_cast<std::uint64_t>(rule.count));
+    pairing::GeometricPassage drawn = setup::at_place(rule.where, [&] {
+      return pairing::geometric_passage(sampler, index, own, -kMargin_s, rule.length_s + kMargin_s);
+    });
+    if (is_high_enough(drawn.track, own, drawn.geometry.approach.time_s))
+      return {std::move(drawn.track), 1};
+  }
+  throw Error(fmt::format("none of {} intruders that were drawn stays {:.0f} m above the ground or "
+                          "more; expected a higher vmd_m, or a climb_mps nearer to 0",
+                          kMaxTracks,
+                          kLowestFlightM),
+              rule.where);
 }
 
 // True for the share of the sequences that have two intruders. A rotation by the golden ratio

@@ -93,10 +93,9 @@ std::vector<EncounterRule> encounter_rules(const scene::TableReader& root,
 // again where the camera does not see it, at most kMostDraws times. Where the own aircraft is
 // higher than kLowestFlightM, so is every intruder.
 //
-// A track of a model that is too low, or that no aircraft of the rule flies, is drawn again; its
-// closest approach falls on a whole second. Throws Error at the rule where no draw of many is
-// possible, where a stated geometry goes too low, or where the camera's path ends before the
-// closest approach.
+// A track that is too low, or of a model one that no aircraft of the rule flies, is drawn again; a
+// model's closest approach falls on a whole second. Throws Error at the rule where no draw of many
+// is possible, or where the camera's path ends before the closest approach.
 Draws add_encounter(scene::Scene& scene,
                     const EncounterRule& rule,
                     std::int64_t index,

@@ -254,11 +254,13 @@ TEST_F(EncounterModel, ATrackBelowTheGroundIsRefusedOrDrawnAgain) {
   EXPECT_THROW(Expansion(stated).at(0), Error);
   const Catalogue drawn = with(std::string(kBayes) + low);
   EXPECT_THROW(Expansion(drawn).at(0), Error);
-  const Catalogue some = with(std::string(kBayes) + "count = 10\nvmd_m = [-1800, 0]\n");
-  for (std::int64_t i = 0; i < 10; ++i) {
-    const Item item = Expansion(some).at(i);
-    for (const Vector3& position : item.scene.intruders.at(0).waypoints_ned_m)
-      EXPECT_LE(position.z(), -30);
+  for (const std::string& kind : {std::string(kBayes), std::string("kind = \"geometric\"\n")}) {
+    const Catalogue some = with(kind + "count = 10\nvmd_m = [-1800, 0]\n");
+    for (std::int64_t i = 0; i < 10; ++i) {
+      const Item item = Expansion(some).at(i);
+      for (const Vector3& position : item.scene.intruders.at(0).waypoints_ned_m)
+        EXPECT_LE(position.z(), -30) << kind;
+    }
   }
 }
 
