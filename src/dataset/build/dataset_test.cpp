@@ -108,6 +108,14 @@ TEST(Catalogue, ARateOfAVideoIsRefusedAtItsBackground) {
                      HasSubstr("frame_rate_hz is 60, and the background is a video")));
 }
 
+TEST(Catalogue, AMaskOfAFlightIsRefusedAtItsBackground) {
+  std::string text = test_support::kCatalogue;
+  text.replace(text.find("[[aircraft]]"), 0, "mask = \"own.png\"\n");
+  EXPECT_EQ(
+      test_support::error_of([&] { check_sources(catalogue::parse_catalogue(text, "c.toml")); }),
+      "c.toml:8:1: mask has no effect with flight, which has a mask of its own");
+}
+
 TEST(Catalogue, AMillionSequencesCostNoMoreThanOne) {
   const catalogue::Catalogue catalogue = catalogue::parse_catalogue(
       std::string(test_support::kCatalogue) +

@@ -129,8 +129,10 @@ void check_video(const catalogue::Background& background) {
 void check_background(const catalogue::Catalogue& catalogue, std::size_t place) {
   const catalogue::Background& background = catalogue.backgrounds[place];
   check_video(background);
+  if (std::holds_alternative<synthetic::FlightOptions>(background.source) && background.mask)
+    throw Error("mask has no effect with flight, which has a mask of its own", background.where);
   scene::Scene scene = catalogue::scene_over(catalogue, place);
-  if (std::holds_alternative<fs::path>(background.source)) scene.background.mask = background.mask;
+  scene.background.mask = background.mask;
   video::StreamInfo info = stream_of(background);
   video::check_output(info, scene.output.video, background.where);
   info.frame_count_estimate = 0;  // unknown

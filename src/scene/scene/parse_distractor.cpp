@@ -107,6 +107,8 @@ std::vector<Intruder> flock_in(const TableReader& table,
                fmt::format("count is {} without spread_m; expected the flock's radius in "
                            "metres with it",
                            count));
+  if (count == 1 && spread_m)
+    table.fail("spread_m", "spread_m has no effect without a count above 1");
   return flock_of(leader, count, spread_m.value_or(0), seed);
 }
 
@@ -130,7 +132,7 @@ void read_place(const TableReader& table, LensMark& mark) {
 LensMark mark_from(const TableReader& table, DistractorKind kind) {
   table.refuse(kAirKeys, enum_name(kind));
   table.refuse(kBirdKeys, enum_name(kind));
-  table.refuse({"rotors"}, enum_name(kind));
+  table.refuse({"rotors", "arm_colour"}, enum_name(kind));
   LensMark mark = usual_mark(kind);
   mark.where = table.where();
   read_place(table, mark);
