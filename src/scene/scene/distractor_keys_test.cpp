@@ -140,7 +140,10 @@ TEST(DistractorKeys, WrongKeysAreNamedAtTheirLine) {
             "/data/s.toml:7:14: arm_colour has no effect with kind = \"balloon\"");
   EXPECT_EQ(message_with_keys("kind = \"bird\"\n"),
             "/data/s.toml:5:1: [[distractor]] has no path; expected waypoints_ned_m with speed_mps "
-            "or times_s, path_file, [intruder.encounter] or [[intruder.seen]]");
+            "or times_s, path_file, encounter or seen");
+  EXPECT_EQ(message_with_keys("kind = \"bird\"\n[distractor.encounter]\ncpa_time_s = 4\n"),
+            "/data/s.toml:7:1: [encounter] has no course_deg; expected the course from the own "
+            "course: 180 head-on, 90 from the left");
   EXPECT_EQ(message_with_keys("kind = \"dirt\"\n"),
             "/data/s.toml:5:1: [[distractor]] of kind \"dirt\" has no pixel; expected the place of "
             "its middle in the picture");

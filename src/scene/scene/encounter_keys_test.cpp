@@ -82,15 +82,15 @@ TEST(EncounterKeys, APathIsGivenOnce) {
 
 TEST(EncounterKeys, WhatIsMissingIsNamed) {
   EXPECT_EQ(encounter_message_of("[intruder.encounter]\ncourse_deg = 180\nspeed_mps = 62\n"),
-            "s.toml:7:1: [intruder.encounter] has no cpa_time_s; expected the time of the closest "
+            "s.toml:7:1: [encounter] has no cpa_time_s; expected the time of the closest "
             "approach, in seconds");
   EXPECT_EQ(encounter_message_of("[[intruder.seen]]\ntime_s = 1\nrange_m = 9\n"),
-            "s.toml:7:1: [[intruder.seen]] has no pixel; expected time_s, pixel = [x, y], and "
+            "s.toml:7:1: [[seen]] has no pixel; expected time_s, pixel = [x, y], and "
             "range_m or width_px");
   EXPECT_EQ(encounter_message_of("[[intruder.seen]]\ntime_s = 1\npixel = [1, 2]\n"),
-            "s.toml:7:1: [[intruder.seen]] has no range_m and no width_px; expected one of them");
+            "s.toml:7:1: [[seen]] has no range_m and no width_px; expected one of them");
   EXPECT_EQ(encounter_message_of("[[intruder.seen]]\ntime_s = 1\npixel = [1, 2]\nrange_m = 9\n"),
-            "s.toml:7:1: [[intruder.seen]] is alone; expected at least two of them");
+            "s.toml:7:1: [[seen]] is alone; expected at least two of them");
 }
 
 TEST(EncounterKeys, WhatCannotBeIsAnError) {
@@ -99,7 +99,7 @@ TEST(EncounterKeys, WhatCannotBeIsAnError) {
   std::string twice = kSeen;
   twice.replace(twice.find("time_s = 6"), 10, "time_s = 0");
   EXPECT_EQ(encounter_message_of(twice),
-            "s.toml:12:10: time_s is 0, not after the 0 of the [[intruder.seen]] before; expected "
+            "s.toml:12:10: time_s is 0, not after the 0 of the [[seen]] before; expected "
             "increasing times");
   EXPECT_NE(encounter_message_of(kSeen + "range_m = 3\n").find("exclude each other"),
             std::string::npos);

@@ -14,7 +14,7 @@ namespace {
 
 double required(const TableReader& table, const char* key, const Limits& limits, const char* what) {
   if (const auto value = table.number(key, limits)) return *value;
-  throw Error(fmt::format("[intruder.encounter] has no {}; expected {}", key, what), table.where());
+  throw Error(fmt::format("[encounter] has no {}; expected {}", key, what), table.where());
 }
 
 Seen seen_from(const TableReader& table) {
@@ -23,7 +23,7 @@ Seen seen_from(const TableReader& table) {
   const auto time_s = table.number("time_s", kTime);
   const auto pixel = table.tuple<Pixel>("pixel", kPixel);
   if (!time_s || !pixel)
-    throw Error(fmt::format("[[intruder.seen]] has no {}; expected time_s, pixel = [x, y], and "
+    throw Error(fmt::format("[[seen]] has no {}; expected time_s, pixel = [x, y], and "
                             "range_m or width_px",
                             time_s ? "pixel" : "time_s"),
                 table.where());
@@ -33,8 +33,7 @@ Seen seen_from(const TableReader& table) {
   seen.range_m = table.number("range_m", kRangeToAircraft);
   seen.width_px = table.number("width_px", kApparentSize);
   if (!seen.range_m && !seen.width_px)
-    throw Error("[[intruder.seen]] has no range_m and no width_px; expected one of them",
-                table.where());
+    throw Error("[[seen]] has no range_m and no width_px; expected one of them", table.where());
   return seen;
 }
 
@@ -72,13 +71,13 @@ std::vector<Seen> seen_in(const TableReader& parent) {
     const Seen& before = result[result.size() - 2];
     if (!(result.back().time_s > before.time_s))
       table.fail("time_s",
-                 fmt::format("time_s is {}, not after the {} of the [[intruder.seen]] before; "
+                 fmt::format("time_s is {}, not after the {} of the [[seen]] before; "
                              "expected increasing times",
                              result.back().time_s,
                              before.time_s));
   }
   if (result.size() == 1)
-    throw Error("[[intruder.seen]] is alone; expected at least two of them", result[0].where);
+    throw Error("[[seen]] is alone; expected at least two of them", result[0].where);
   return result;
 }
 
@@ -159,7 +158,7 @@ void read_path(const TableReader& table, const char* title, Intruder& intruder) 
   if (!points)
     throw Error(std::string(title) +
                     " has no path; expected waypoints_ned_m with speed_mps or times_s, path_file, "
-                    "[intruder.encounter] or [[intruder.seen]]",
+                    "encounter or seen",
                 table.where());
   check_waypoints(table, *points);
   intruder.waypoints_ned_m = *points;

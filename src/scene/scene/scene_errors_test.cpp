@@ -203,7 +203,7 @@ TEST(SceneErrors, PathsAndTimes) {
             "with them");
   EXPECT_EQ(with_intruder(""),
             "s.toml:6:1: [[intruder]] has no path; expected waypoints_ned_m with speed_mps or "
-            "times_s, path_file, [intruder.encounter] or [[intruder.seen]]");
+            "times_s, path_file, encounter or seen");
   EXPECT_EQ(with_intruder(kPath + "times_s = [0]"),
             "s.toml:9:11: times_s has 1 numbers; expected one for each of the 2 waypoints");
   EXPECT_EQ(with_intruder(kPath + "times_s = [2, 1.5]"),
