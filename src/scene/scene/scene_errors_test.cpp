@@ -6,6 +6,7 @@
 #include "foundation/base/files.h"
 #include "scene/scene/scene.h"
 #include "support/error_of.h"
+#include "support/source_folder.h"
 
 namespace airtruth::scene {
 namespace {
@@ -98,8 +99,13 @@ TEST(SceneErrors, TheFirstOfSeveralUnknownKeysIsNamed) {
 }
 
 TEST(SceneErrors, WrongTypes) {
-  EXPECT_EQ(with_intruder(kPath + "speed_mps = 'fast'"),
-            "s.toml:9:13: speed_mps is a string; expected metres a second from 0.001 to 1e4");
+  const std::string string_for_number =
+      "s.toml:9:13: speed_mps is a string; expected metres a second from 0.001 to 1e4";
+  EXPECT_EQ(with_intruder(kPath + "speed_mps = 'fast'"), string_for_number);
+  // The page's example.
+  EXPECT_NE(read_file(test_support::source_folder() / "docs/formats/scene.md")
+                .find(string_for_number.substr(string_for_number.find(':'))),
+            std::string::npos);
   EXPECT_EQ(with_background("video = 3"), "s.toml:3:9: video is an integer; expected a string");
   EXPECT_EQ(with_top("seed = 1.5\n"),
             "s.toml:1:8: seed is 1.5; expected a whole number not below 0");
