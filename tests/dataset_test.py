@@ -282,7 +282,7 @@ time_of_day_h = [9, 15]
         for method in ("matte", "chroma-key"):
             scene = write(f"{method}.toml", f'[background]\nvideo = "bare.mkv"\n[lens]\nvertical_fov_deg = 75\n[output]\nvideo = "mkv"\n'
                           f'[composite]\nmethod = "{method}"\n')
-            done = run("render", scene, "--out", path("bare"), "--gpu", "none")
+            done = run("render", scene, "--out", path("bare"), *(("--gpu", "none") if method == "chroma-key" else ()))
             if method == "chroma-key" and "EGL" in done.stderr:
                 continue
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -162,7 +162,7 @@ class OwnAircraft(Case):
         mask = mask_over(0, 60, WIDTH, 130)
         middle = lambda number: (target(number)[0] + 7, target(number)[1] + 3)
         made("detect", "set", "--only", "one", "-d", "cmo", "-o", "masked", "--mask", mask)
-        made("detect", "set", "--only", "one", "-d", "cmo", "-o", "unmasked", "--mask", mask, "--no-masks")
+        made("detect", "set", "--only", "one", "-d", "cmo", "-o", "unmasked", "--no-masks")
         self.assertEqual(self.near(("masked", "cmo", "one.txt"), middle, 10), set())
         self.assertEqual(len(self.near(("unmasked", "cmo", "one.txt"), middle, 10)), COUNT)
         self.assertGreater(len(self.near(("masked", "cmo", "one.txt"), brightest, 4)), COUNT // 2)

@@ -158,7 +158,15 @@ class EarlyErrors(unittest.TestCase):
             self.assertEqual(file.read(), "mine")
 
     def test_options_without_an_effect(self):
+        write("scene.toml", scene())
+        export = ("dataset", "export", "made/clip", "-f", "coco", "-o", "e")
         faults = [
+            (("render", "scene.toml", "--gpu", "0"), '--gpu has no effect without method = "chroma-key"'),
+            ((*export, "--drop-faint"), "--drop-faint has no effect without --min-contrast or --min-size"),
+            ((*export, "--split", "none", "--shares", "5", "3", "2"), "--shares has no effect with --split none"),
+            ((*export, "--split", "none", "--seed", "2"), "--seed has no effect with --split none"),
+            (("detect", "short.mkv", "-d", "cmo", "-o", "r", "--no-masks", "--mask", "small.pgm"), "--mask has no effect with --no-masks"),
+            (("detect", "short.mkv", "-d", "cmo", "-o", "r", "--no-masks", "--mask-results"), "--mask-results has no effect with --no-masks"),
             (("motion", "short.mkv", "-o", "m.csv", "--smoothing", "2"), "--smoothing has no effect without --reference smoothed"),
             (("synth", "-o", "new.mkv", "--fov", "60", "--lens", "bad.yml"), "--fov has no effect with --lens"),
             (("synth", "-o", "new.mkv", "--frames", "9", "--duration", "1"), "--frames has no effect with --duration"),

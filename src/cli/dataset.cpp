@@ -139,6 +139,25 @@ void run_report(Report arguments, Context& context) {
 
 constexpr const char* kBothWays = "coco, yolo, mot, voc, cvat, aot, otb, got10k, vot";
 
+void add_faintness(CLI::App& command, labelled::ExportOptions& options, Context& context) {
+  command.add_option("--min-contrast", options.min_contrast)
+      ->description(
+          "Boxes with a lower contrast to noise count neither way: COCO's iscrowd, VOC's "
+          "difficult and MOT's seventh column say so; others leave them out (default: 0)")
+      ->check(CLI::Range(0.0, 1e6));
+  command.add_option("--min-size", options.min_size_px)
+      ->description("The same for boxes whose longer side has fewer pixels (default: 0)")
+      ->check(CLI::Range(0.0, 1e6));
+  const CLI::Option* drop_faint =
+      command.add_flag("--drop-faint", options.drop_faint)
+          ->description("Leave out what --min-contrast and --min-size refuse, in every format");
+  expect_effect(
+      context,
+      drop_faint,
+      [&options] { return options.min_contrast > 0 || options.min_size_px > 0; },
+      "without --min-contrast or --min-size");
+}
+
 void add_export(CLI::App& group, Context& context) {
   auto [command, out] = add_command(group, context, "export", run_export);
   command->description("Write a data set in a format of others");
@@ -164,26 +183,25 @@ void add_export(CLI::App& group, Context& context) {
                       out->split,
                       "by-background (default): a video is in one part alone; by-sequence; "
                       "none");
-  command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
-      ->expected(3)
-      ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
+  const CLI::Option* shares =
+      command->add_option("--shares", out->shares, "Of train, val and test (default: 0.8 0.1 0.1)")
+          ->expected(3)
+          ->check(CLI::Range(0.0, 1e6));
+  const CLI::Option* seed =
+      command->add_option("--seed", out->options.seed, "Of the split (default: 1)");
+  for (const CLI::Option* option : {shares, seed})
+    expect_effect(
+        context,
+        option,
+        [arguments = out] { return arguments->split != "none"; },
+        "with --split none");
   command->add_flag(
       "--one-class", out->options.one_class, "One class, `aircraft`, in place of the types");
   command->add_flag("--mot-classes",
                     out->options.mot_classes,
                     "Of mot: number the classes from 1 (default: 1 for every aircraft, the "
                     "one class that MOT17's evaluation counts)");
-  command->add_option("--min-contrast", out->options.min_contrast)
-      ->description(
-          "Boxes with a lower contrast to noise count neither way: COCO's iscrowd, VOC's "
-          "difficult and MOT's seventh column say so; others leave them out (default: 0)")
-      ->check(CLI::Range(0.0, 1e6));
-  command->add_option("--min-size", out->options.min_size_px)
-      ->description("The same for boxes whose longer side has fewer pixels (default: 0)")
-      ->check(CLI::Range(0.0, 1e6));
-  command->add_flag("--drop-faint", out->options.drop_faint)
-      ->description("Leave out what --min-contrast and --min-size refuse, in every format");
+  add_faintness(*command, out->options, context);
   command->add_option("--shard-mb", out->options.shard_mb)
       ->description(
           "Of webdataset: a shard ends with the sample that makes it this large, in 10^6 "

@@ -70,6 +70,21 @@ void run_detect(Detect arguments, Context& context) {
     tell(summary, context);
 }
 
+void add_masks(CLI::App& command, Detect& arguments, Context& context) {
+  runs::DetectOptions& options = arguments.options;
+  const CLI::Option* mask = command.add_option(
+      "--mask", arguments.mask, "Own-aircraft mask for what states none: black = own aircraft");
+  command.add_flag("--use-masks,!--no-masks", options.masks)
+      ->description("Nothing is detected, and no motion measured, on the own aircraft (default)");
+  const CLI::Option* mask_results =
+      command.add_flag("--mask-results", options.mask_results)
+          ->description(
+              "Leave out what networks and programs detect by more than half on the own aircraft");
+  for (const CLI::Option* option : {mask, mask_results})
+    expect_effect(
+        context, option, [&options] { return options.masks; }, "with --no-masks");
+}
+
 void add_options(CLI::App& command, Detect& arguments, Context& context) {
   runs::DetectOptions& options = arguments.options;
   command.add_option("DIR|VIDEO", arguments.source)
@@ -106,13 +121,7 @@ void add_options(CLI::App& command, Detect& arguments, Context& context) {
   add_frame_rate(command, options.frame_rate_hz);
   command.add_option("--lens", arguments.lens)
       ->description("Calibration file for what states no lens (default: a guess of 60 degrees)");
-  command.add_option(
-      "--mask", arguments.mask, "Own-aircraft mask for what states none: black = own aircraft");
-  command.add_flag("--use-masks,!--no-masks", options.masks)
-      ->description("Nothing is detected, and no motion measured, on the own aircraft (default)");
-  command.add_flag("--mask-results", options.mask_results)
-      ->description(
-          "Leave out what networks and programs detect by more than half on the own aircraft");
+  add_masks(command, arguments, context);
   command.add_flag(
       "--associate", arguments.associate, "Make tracks of the detections, by bearing and size");
   const CLI::Option* declare =

@@ -72,6 +72,8 @@ std::string timings(const pipeline::Summary& summary) {
 
 void render(const RenderArguments& arguments, Context& context) {
   const scene::Scene scene = scene::read_scene(arguments.scene);
+  if (!arguments.device.empty() && scene.composite.method != scene::CompositeMethod::kChromaKey)
+    throw Error("--gpu has no effect without method = \"chroma-key\"; leave it out");
   RunFiles()
       .reads(arguments.scene)
       .replaces(std::filesystem::path(arguments.out) / scene.name)
