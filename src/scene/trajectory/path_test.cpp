@@ -230,7 +230,7 @@ TEST(PathFile, AnAttitudeGoesAcrossThePole) {
         std::to_string(i) + ",0,0,-100," + (i % 2 == 0 ? "10,-89.65,0\n" : "-169.9,-89.65,180\n");
   const Path path = parse_path_csv(text, "p.csv");
   for (double t = 0; t <= 9; t += 0.125) {
-    const Quaternion& turned = path.at(t)->world_from_body;
+    const Quaternion turned = path.at(t)->world_from_body;
     EXPECT_LT(degrees(turned.angularDistance(world_from_body({10, -90, 0}))), 1) << t;
   }
 }
