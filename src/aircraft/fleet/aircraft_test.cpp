@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -96,6 +97,24 @@ TEST_F(Models, APropellersDiscIsFaintAndDark) {
   for (const char* other :
        {"body", "right_fan_disk", "no2engdisks", "Propeller", "ArCanopy-doublure"})
     EXPECT_EQ(named(other).opacity, 1) << other;
+}
+
+// Of a disc's two sides that a modeller's file has 0.04 mm apart one is drawn; what is a millimetre
+// before another surface stays.
+TEST_F(Models, TheTwoSidesOfASheetAreOneSurface) {
+  const auto triangles_apart = [&](double distance_m) {
+    write_file(folder_ / "a.ac",
+               fmt::format("AC3Db\nMATERIAL \"m\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 "
+                           "trans 0\nOBJECT world\nkids 1\nOBJECT poly\nname \"disc\"\n"
+                           "numvert 6\n0.39 0 0\n0.39 1 0\n0.39 0 1\n{0} 0 0\n{0} 1 0\n{0} 0 1\n"
+                           "numsurf 2\nSURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\n"
+                           "SURF 0x20\nmat 0\nrefs 3\n5 0 0\n4 0 0\n3 0 0\nkids 0\n",
+                           0.39 + distance_m));
+    return load_aircraft((folder_ / "a.ac").string()).mesh.parts.at(0).triangles.size();
+  };
+  for (const double distance_m : {0.0, 1e-6, -4e-5, 4e-5})
+    EXPECT_EQ(triangles_apart(distance_m), 1);
+  EXPECT_EQ(triangles_apart(1e-3), 2);
 }
 
 // A disc's part of the picture counts, not the airframe's: 51 of 255 in its right half.

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <set>
+#include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,15 +22,45 @@
 namespace airtruth::wrapper {
 namespace {
 
+// Vertices within this distance are in the same place: the two sides of the catalogue's propeller
+// discs are up to 0.04 mm apart, and a decal is farther from what it is on.
+constexpr float kSamePlaceM = 1e-4f;
+
+// For each vertex the first one in the same place.
+std::vector<std::uint32_t> places_of(const std::vector<Eigen::Vector3f>& positions) {
+  constexpr float kCellM = 1e-3f;
+  const auto cell_of = [](const Eigen::Vector3f& p) {
+    std::size_t hash = 0;
+    for (const float x : p)
+      hash = hash * 1'000'003 + std::hash<float>()(std::floor(x / kCellM) + 0.0f);
+    return hash;
+  };
+  std::unordered_multimap<std::size_t, std::uint32_t> firsts;
+  const auto place_of = [&](std::uint32_t vertex) {
+    const Eigen::Vector3f& p = positions[vertex];
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3f side((corner & 1U) != 0 ? kSamePlaceM : -kSamePlaceM,
+                                 (corner & 2U) != 0 ? kSamePlaceM : -kSamePlaceM,
+                                 (corner & 4U) != 0 ? kSamePlaceM : -kSamePlaceM);
+      const auto [begin, end] = firsts.equal_range(cell_of(p + side));
+      for (auto it = begin; it != end; ++it)
+        if ((positions[it->second] - p).norm() <= kSamePlaceM) return it->second;
+    }
+    firsts.emplace(cell_of(p), vertex);
+    return vertex;
+  };
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t i = 0; i < positions.size(); ++i) places.push_back(place_of(i));
+  return places;
+}
+
 void drop_doubles(model::Mesh& mesh) {
+  const std::vector<std::uint32_t> places = places_of(mesh.positions);
   for (model::Part& part : mesh.parts) {
-    std::set<std::array<std::array<float, 3>, 3>> seen;
+    std::set<std::array<std::uint32_t, 3>> seen;
     std::erase_if(part.triangles, [&](const model::Triangle& triangle) {
-      std::array<std::array<float, 3>, 3> key;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Eigen::Vector3f& p = mesh.positions[triangle.vertex[i]];
-        key[i] = {p.x(), p.y(), p.z()};
-      }
+      std::array<std::uint32_t, 3> key;
+      for (std::size_t i = 0; i < 3; ++i) key[i] = places[triangle.vertex[i]];
       const Eigen::Vector3f a =
           mesh.positions[triangle.vertex[1]] - mesh.positions[triangle.vertex[0]];
       const Eigen::Vector3f b =
