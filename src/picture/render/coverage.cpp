@@ -178,6 +178,19 @@ PixelFunctions functions_over(const RayTriangle& triangle,
   return f;
 }
 
+PixelFunctions functions_about(
+    const RayTriangle& triangle, const PixelRay& ray, float u, float half_u, float part_t) {
+  PixelRay then = ray;
+  then.middle += part_t * (ray.per_t + part_t * ray.per_tt);
+  then.per_t += (2 * part_t) * ray.per_tt;
+  PixelFunctions f = functions_over(triangle, then, u + part_t * half_u, half_u);
+  f.at -= part_t * (f.per_t - part_t * f.per_tt);
+  f.per_t -= (2 * part_t) * f.per_tt;
+  f.per_x -= part_t * f.per_xt;
+  f.per_y -= part_t * f.per_yt;
+  return f;
+}
+
 bool PixelFunctions::is_uniform() const {
   // Largest shift of an edge by the terms of rotation and acceleration that are left out.
   constexpr float kLeftOutPx = 0.02f;

@@ -50,6 +50,10 @@ PixelFunctions functions_over(const RayTriangle& triangle,
                               const PixelRay& ray,
                               float u,
                               float half_u);
+// The same for a part of the exposure whose middle is `part_t`, -1 to 1 from the exposure's
+// beginning to its end: the slopes, which are linear in time, hold there.
+PixelFunctions functions_about(
+    const RayTriangle& triangle, const PixelRay& ray, float u, float half_u, float part_t);
 
 // The lines of a pixel, the same for all pixels. `key` divides them evenly and in order: at an
 // instant by the place across, with an exposure by the time.

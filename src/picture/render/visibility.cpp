@@ -196,8 +196,8 @@ void Visibility::find_spans(int x) {
     PixelSpan& over = spans_[i] = {};
     if (span.is_instant()) continue;
     over.u = static_cast<float>(span.u(middle_s));
-    over.from_u = static_cast<float>(span.u(begin_s));
-    over.to_u = static_cast<float>(span.u(begin_s + exposure_s));
+    over.from_u = static_cast<float>(std::clamp(span.u(begin_s), -1.0, 1.0));
+    over.to_u = static_cast<float>(std::clamp(span.u(begin_s + exposure_s), -1.0, 1.0));
     if (!by_time_) {
       // A moment belongs to one of the spans.
       const bool is_last = i + 1 == spans_.size() || triangles_.spans()[i + 1].begin_s < span.end_s;
@@ -235,7 +235,8 @@ void Visibility::add_candidate(std::uint32_t triangle) {
   Candidate& candidate = candidates_.emplace_back();
   candidate.triangle = triangle;
   candidate.of = &of;
-  candidate.functions = functions_over(of, ray_, span.u, span.half_u);
+  const float part_t = span.from > 0 || span.to < 1 ? span.from + span.to - 1 : 0;
+  candidate.functions = functions_about(of, ray_, span.u, span.half_u, part_t);
   if (span.from > 0) candidate.functions.begin_t = 2 * span.from - 1;
   if (span.to < 1) candidate.functions.end_t = 2 * span.to - 1;
   const Eigen::Array4f half_range = candidate.functions.half_range();
@@ -270,7 +271,8 @@ bool Visibility::clip_time(const RayTriangle& triangle,
                            Candidate& candidate) {
   const ScreenBounds first = bounds_between(triangle, span.from_u, span.from_u);
   const ScreenBounds last = bounds_between(triangle, span.to_u, span.to_u);
-  // Where the exposure has parts of both chords, how far the bounds bend between its ends.
+  // Where the span's part of the exposure has parts of both chords, how far the bounds bend between
+  // its ends.
   float bend = 0;
   if (span.from_u < 0 && span.to_u > 0) {
     const ScreenBounds middle = bounds_between(triangle, 0, 0);
@@ -286,11 +288,14 @@ bool Visibility::clip_time(const RayTriangle& triangle,
   Range range{span.from, span.to};
   // Bounds without a limit have no bend.
   if (std::isfinite(bend)) {
-    // `a` and `b`: what a bound is at the ends; it must be above `limit`.
+    // `a` and `b`: what a bound is at the ends of that part; it must be above `limit`.
     const auto clip = [&](float a, float b, float limit) {
+      const auto crossing = [&] {
+        return span.from + (limit - a) / (b - a) * (span.to - span.from);
+      };
       if (a < limit && b < limit) range.to = -1;
-      if (a < limit && b >= limit) range.from = std::max(range.from, (limit - a) / (b - a));
-      if (a >= limit && b < limit) range.to = std::min(range.to, (limit - a) / (b - a));
+      if (a < limit && b >= limit) range.from = std::max(range.from, crossing());
+      if (a >= limit && b < limit) range.to = std::min(range.to, crossing());
     };
     const auto x = static_cast<float>(x_);
     const auto y = static_cast<float>(y_);

@@ -73,9 +73,10 @@ class Visibility {
   static constexpr std::uint32_t kAll = 0xffffffff;
   // A span of RayTriangles over a pixel's exposure.
   struct PixelSpan {
-    // The middle, half and ends of the exposure, in u.
-    float u = 0, half_u = 0, from_u = 0, to_u = 0;
-    // The part of the exposure that belongs to the span, as shares.
+    // The middle and half of the exposure, in u.
+    float u = 0, half_u = 0;
+    // The part of the exposure that belongs to the span: its ends in u, and as shares.
+    float from_u = 0, to_u = 0;
     float from = 0, to = 1;
   };
   // Shares of an axis.
