@@ -468,6 +468,29 @@ TEST_F(Made, AVideoThatIsGivenBelongsToAClip) {
   EXPECT_EQ(fault_of({{"B", video}}), "no error");
 }
 
+// ffmpeg numbers the pictures of a video from 1.
+TEST_F(Made, ThePictureNumberedOneIsTheFirstFrameOfTheVideoThatIsGiven) {
+  const fs::path out = fresh();
+  const fs::path voc = fresh();
+  fs::create_directories(voc / "Annotations");
+  for (const char* name : {"a_000001.xml", "a_000002.xml"})
+    write_file(voc / "Annotations" / name,
+               "<annotation><object><name>plane</name><bndbox><xmin>1</xmin><ymin>1</ymin>"
+               "<xmax>9</xmax><ymax>9</ymax></bndbox></object></annotation>");
+  std::string warnings;
+  ImportOptions options;
+  options.format = exchange::Format::kVoc;
+  options.videos[""] = LabelledSet(set()).clip("sky-across-b737").media;
+  options.warn = [&](const std::string& warning) { warnings += warning + "\n"; };
+  import_set(voc, out, options);
+  const exchange::Clip clip = exchange::read_labels(out / "sequences" / "a" / "labels.jsonl");
+  ASSERT_EQ(clip.frames.size(), 2u);
+  EXPECT_EQ(clip.frames[0].frame, 0);
+  EXPECT_EQ(clip.frames[1].frame, 1);
+  EXPECT_THAT(warnings,
+              HasSubstr("its frame 0, counted from 0, is taken for the picture a_000001 of a"));
+}
+
 // A folder whose name begins with a dot is none of the set's sequences.
 TEST_F(Made, ANameThatBeginsWithADotIsImportedInSight) {
   const fs::path out = fresh();

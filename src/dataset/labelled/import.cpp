@@ -57,6 +57,21 @@ void join_given_pictures(exchange::Clip& clip, const Warn& warn) {
     clip.frames[i].picture = images->files[i].lexically_relative(clip.media).string();
 }
 
+// Numbers in pictures' names do not state whether they count from the video's first frame, but for
+// a 0: what they are taken for is said.
+void say_first_frame(const exchange::Clip& clip, const Warn& warn) {
+  if (clip.media.empty() || clip.frames.empty()) return;
+  const exchange::LabelledFrame& first = clip.frames.front();
+  const auto number = exchange::name_and_number(fs::path(first.picture).stem().string()).second;
+  if (first.picture.empty() || (first.frame == 0 && number == 0)) return;
+  airtruth::warn(warn,
+                 fmt::format("{}: its frame {}, counted from 0, is taken for the picture {} of {}",
+                             clip.media.string(),
+                             first.frame,
+                             first.picture,
+                             clip.name));
+}
+
 void expect_size(exchange::Clip& clip, int width, int height, const fs::path& file) {
   if (clip.width == 0) {
     clip.width = width;
@@ -225,6 +240,8 @@ void complete(std::vector<exchange::Clip>& clips,
       // The frames of pictures are numbered by their places.
       for (std::int64_t i = 0; exchange::LabelledFrame & frame : clip.frames) frame.frame = i++;
       expect_one_line(clip);
+    } else if (video != options.videos.end()) {
+      say_first_frame(clip, options.warn);
     }
     ask_video(clip, options.warn);
     leave_out_outside(clip, left_out);

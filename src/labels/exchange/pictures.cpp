@@ -2,6 +2,7 @@
 #include "labels/exchange/pictures.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -35,7 +36,8 @@ void expect_distinct(std::span<const LabelledPicture> pictures, const fs::path& 
       throw Error("names the picture '" + picture.name + "' twice", {source.string()});
 }
 
-// The numbers of ordered pictures as frames: stated, in the names, or their places.
+// The numbers of ordered pictures as frames: stated, in the names, or their places. Those that
+// begin with 1, as ffmpeg and MOTChallenge number, count from it.
 std::vector<std::int64_t> frame_numbers(std::span<const LabelledPicture> pictures) {
   const auto ascend = [](const std::vector<std::int64_t>& numbers) {
     return std::ranges::adjacent_find(numbers, std::greater_equal<>()) == numbers.end();
@@ -47,8 +49,12 @@ std::vector<std::int64_t> frame_numbers(std::span<const LabelledPicture> picture
     if (const auto number = name_and_number(fs::path(picture.name).stem().string()).second)
       named.push_back(*number);
   }
-  for (const std::vector<std::int64_t>& numbers : {stated, named})
-    if (numbers.size() == pictures.size() && ascend(numbers)) return numbers;
+  for (std::vector<std::int64_t>& numbers : {std::ref(stated), std::ref(named)}) {
+    if (numbers.size() != pictures.size() || !ascend(numbers)) continue;
+    if (numbers.front() == 1)
+      for (std::int64_t& number : numbers) --number;
+    return numbers;
+  }
   return places;
 }
 

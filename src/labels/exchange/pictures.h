@@ -47,8 +47,9 @@ fs::path folder_of_picture(std::span<const fs::path> folders,
 
 // The clip of pictures that are one video by the set's own word. They are ordered by their stated
 // numbers where all have one, else by name. A frame has its stated number, or else the last number
-// of its name where these ascend, or its place. Throws Error for a name that is there twice. Warns
-// where pictures are missing or differ in size: the clip is then without media.
+// of its name where these ascend, or its place; numbers that begin with 1 are one more than the
+// frame. Throws Error for a name that is there twice. Warns where pictures are missing or differ in
+// size: the clip is then without media.
 Clip clip_of_pictures(const std::string& name,
                       std::vector<LabelledPicture> pictures,
                       const fs::path& source,

@@ -97,6 +97,28 @@ TEST(Coco, OfOthersMayHaveGapsPolygonsAndBoxesOutside) {
   EXPECT_NE(all.find("1 annotations with neither bbox nor polygons"), std::string::npos) << all;
 }
 
+// ffmpeg, MOTChallenge and the converters of trackers begin with 1; frames begin with 0.
+TEST(Coco, NumbersThatBeginWithOneCountFromIt) {
+  const Folder folder;
+  const auto frames_of = [&](const std::string& first, const std::string& second) {
+    const fs::path file =
+        folder.file("a.json",
+                    R"({"categories": [], "annotations": [], "images": [
+      {"id": 1, "width": 64, "height": 48, )" +
+                        first + R"(}, {"id": 2, "width": 64, "height": 48, )" + second + "}]}");
+    const auto clips = read_clips(Format::kCoco, file, {}, {});
+    return std::pair(clips.at(0).frames.at(0).frame, clips[0].frames.at(1).frame);
+  };
+  using Pair = std::pair<std::int64_t, std::int64_t>;
+  const std::string seventh = R"("file_name": "a_000007.jpg")";
+  EXPECT_EQ(frames_of(R"("file_name": "a_000001.jpg")", seventh), Pair(0, 6));
+  EXPECT_EQ(frames_of(R"("file_name": "a_000000.jpg")", seventh), Pair(0, 7));
+  EXPECT_EQ(frames_of(R"("file_name": "a_000003.jpg")", seventh), Pair(3, 7));
+  EXPECT_EQ(
+      frames_of(R"("file_name": "a_000003.jpg", "frame_id": 1)", seventh + R"(, "frame_id": 5)"),
+      Pair(0, 4));
+}
+
 TEST(Coco, CrowdsCountNeitherWayAndPicturesOfSeveralSizesAreNoVideo) {
   const Folder folder;
   const fs::path file = folder.file("instances_val2017.json", R"({
