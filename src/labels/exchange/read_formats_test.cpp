@@ -456,6 +456,8 @@ TEST(Errors, NameTheFileAndThePlace) {
   // A cell that is empty would move those behind it.
   ends(error_of(Format::kCsv, folder.file("e.csv", "frame,score,x,y,w,h\n0,,1,2,3,4\n")),
        "e.csv:2: has 5 columns; expected frame,score,x,y,w,h");
+  ends(error_of(Format::kCsv, folder.file("d.csv", "frame,id,x,y,w,h\n0,7,1,2,3,4\n0,7,5,6,7,8\n")),
+       "d.csv:3: has the track 7 a second time in frame 0");
   ends(error_of(Format::kYolo, folder.path() / "nowhere"), "nowhere: does not exist");
 }
 
@@ -473,6 +475,40 @@ TEST(ReadFormats, ACsvSaysWhatItLeavesOut) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].substr(0, 20), "left out: 1 boxes th");
   EXPECT_TRUE(warnings[0].ends_with("t.csv:4)")) << warnings[0];
+}
+
+// The lines of a frame stand in any order; x is ten times the track.
+TEST(ReadFormats, ACsvStatesItsTracksOrTheyAreCounted) {
+  const Folder folder;
+  std::string warnings;
+  const auto tracks_of_file = [&](const std::string& text) {
+    warnings.clear();
+    const auto clips =
+        read_clips(Format::kCsv, folder.file("t.csv", text), {}, [&](const std::string& warning) {
+          warnings += warning + "\n";
+        });
+    std::vector<std::int64_t> tracks;
+    for (const LabelledFrame& frame : clips.at(0).frames)
+      for (const Label& label : frame.labels) tracks.push_back(label.track);
+    return tracks;
+  };
+  using Tracks = std::vector<std::int64_t>;
+  for (const char* column : {"id", "Track", "track_id", "object_id"}) {
+    EXPECT_EQ(tracks_of_file(fmt::format("frame,{},x,y,w,h\n0,7,70,1,5,5\n0,3,30,1,5,5\n"
+                                         "1,3,30,1,5,5\n1,7,70,1,5,5\n",
+                                         column)),
+              (Tracks{7, 3, 3, 7}));
+    EXPECT_EQ(warnings, "");
+  }
+  EXPECT_EQ(tracks_of_file("0,70,1,5,5\n0,30,1,5,5\n1,30,1,5,5\n"), (Tracks{1, 2, 1}));
+  EXPECT_NE(warnings.find("t.csv: holds boxes without a track"), std::string::npos) << warnings;
+  EXPECT_EQ(tracks_of_file("0,70,1,5,5\n1,70,1,5,5\n"), (Tracks{1, 1}));
+  EXPECT_EQ(warnings, "");
+  // Such a number is that of the line.
+  EXPECT_EQ(tracks_of_file("id,frame,x,y,w,h\n0,0,70,1,5,5\n1,1,70,1,5,5\n"), (Tracks{1, 1}));
+  EXPECT_NE(warnings.find("t.csv: the column id numbers the boxes and no tracks"),
+            std::string::npos)
+      << warnings;
 }
 
 // A sequence of OTB with as many boxes as stated, box k at x = k, and pictures numbered from 1 (or

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <fstream>
 #include <memory>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -75,6 +77,9 @@ struct Columns {
   bool are_corners = false;
   std::string text = "frame,x,y,w,h";
   std::size_t count = 5;
+  std::optional<std::size_t> track = std::nullopt;
+  // True: the column of the tracks is called `id`, and may number the lines.
+  bool is_track_id = false;
 };
 
 Columns columns_of(const Line& header, const fs::path& file) {
@@ -92,6 +97,8 @@ Columns columns_of(const Line& header, const fs::path& file) {
   const auto height = find({"h", "height", "bb_height"});
   const auto right = find({"right", "xmax", "x_max", "x2", "xbr"});
   const auto bottom = find({"bottom", "ymax", "y_max", "y2", "ybr"});
+  const auto track = find({"track", "track_id", "object_id"});
+  const auto id = find({"id"});
   const bool has_size = width && height;
   if (!frame || !x || !y || (!has_size && !(right && bottom)))
     throw Error(
@@ -105,7 +112,52 @@ Columns columns_of(const Line& header, const fs::path& file) {
           has_size ? *height : *bottom,
           !has_size,
           header.text,
-          cells.size()};
+          cells.size(),
+          track ? track : id,
+          !track && id};
+}
+
+// The track that a line states; kNoTrack where it states none.
+std::int64_t track_in(const std::vector<double>& n,
+                      const Columns& columns,
+                      const LabelledFrame& frame,
+                      const Where& where) {
+  if (!columns.track) return kNoTrack;
+  const auto track = whole_in(n[*columns.track], kNoTrack, kMaxTracks);
+  if (!track) throw Error("the track is no whole number from 0 on", where);
+  const bool is_there =
+      std::ranges::find(frame.labels, *track, &Label::track) != frame.labels.end();
+  if (*track != kNoTrack && is_there)
+    throw Error(fmt::format("has the track {} a second time in frame {}", *track, frame.frame),
+                where);
+  return *track;
+}
+
+// True where several frames have boxes, and no two boxes have one track.
+bool is_each_track_new(const Clip& clip) {
+  std::set<std::int64_t> seen;
+  std::size_t boxes = 0, frames = 0;
+  for (const LabelledFrame& frame : clip.frames) {
+    boxes += frame.labels.size();
+    if (!frame.labels.empty()) ++frames;
+    for (const Label& label : frame.labels) seen.insert(label.track);
+  }
+  return frames > 1 && seen.size() == boxes;
+}
+
+// Numbers the boxes of which the table states no track.
+void count_tracks(Clip& clip, const Columns& columns, const fs::path& file, const Warn& warn) {
+  if (columns.is_track_id && is_each_track_new(clip)) {
+    airtruth::warn(warn, file.string() + ": the column id numbers the boxes and no tracks");
+    for (LabelledFrame& frame : clip.frames)
+      for (Label& label : frame.labels) label.track = kNoTrack;
+  }
+  bool are_counted = false;
+  for (LabelledFrame& frame : clip.frames) {
+    const bool is_one_of_several = columns.track || frame.labels.size() > 1;
+    if (number_tracks(frame.labels) && is_one_of_several) are_counted = true;
+  }
+  if (are_counted) airtruth::warn(warn, file.string() + kTracksCounted);
 }
 
 Clips read_csv(const Reading& in) {
@@ -148,12 +200,13 @@ Clips read_csv(const Reading& in) {
                              (box.width != 0 || box.height != 0);
       if (!is_stated) continue;
       Label label;
-      label.track = std::ssize(frame.labels) + 1;
+      label.track = track_in(n, columns, frame, where);
       label.category = in.options.category;
       label.box_px = box;
       add_label(frame.labels, label, clip, in.left_out, to_string(where));
     }
     if (clip.frames.empty()) throw Error("holds no line of frame,x,y,w,h", {file.string()});
+    count_tracks(clip, columns, file, in.warn);
     clips.push_back(std::move(clip));
   }
   return clips;
