@@ -320,6 +320,19 @@ TEST(Vot, MasksPolygonsAndSpecialRegions) {
   EXPECT_EQ(frames[6].labels.at(0).box_px, (Box{1.5, 2, 3, 4}));
 }
 
+// LabelImg (libs/yolo_io.py) writes the names of the classes into the labels' folder.
+TEST(Yolo, TheNamesOfTheClassesMayLieAmongTheLabels) {
+  for (const char* place : {"labels/classes.txt", "labels/train/classes.txt"}) {
+    const Folder folder;
+    folder.file(place, "bird\nairplane\n");
+    folder.file("labels/train/s_000000.txt", "1 0.5 0.5 0.2 0.4\n");
+    const auto clips = read_clips(Format::kYolo, folder.path(), {{{100, 50}}, "aircraft"}, {});
+    ASSERT_EQ(clips.size(), 1u) << place;
+    ASSERT_EQ(clips[0].frames.size(), 1u) << place;
+    EXPECT_EQ(clips[0].frames[0].labels.at(0).category, "airplane") << place;
+  }
+}
+
 TEST(Yolo, PolygonsCountByTheirBounds) {
   const Folder folder;
   folder.file("labels/train/s_000000.txt", "0 0.1 0.2 0.3 0.2 0.3 0.6\n1 0.5 0.5 0.2 0.4 0.9\n");

@@ -84,11 +84,13 @@ class YoloWriter : public FolderWriter {
 // it.
 constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
 
+constexpr const char* kClassList = "classes.txt";
+
 // The names of the classes: in data.yaml a list, or a map from the number to the name; in
-// darknet's obj.names or classes.txt one on each line.
+// darknet's obj.names or LabelImg's classes.txt one on each line.
 std::map<std::size_t, std::string> names_of(const fs::path& root) {
   std::map<std::size_t, std::string> names;
-  for (const char* list : {"obj.names", "classes.txt"})
+  for (const char* list : {"obj.names", kClassList})
     if (fs::exists(root / list) && names.empty())
       for (const Line& line : lines_of(root / list)) names[names.size()] = line.text;
   const fs::path file = root / "data.yaml";
@@ -135,15 +137,19 @@ std::vector<Folders> folders_of(const fs::path& root) {
 
 class YoloReader {
  public:
-  explicit YoloReader(const Reading& in) : in_(in), root_(in.source), names_(names_of(root_)) {}
+  explicit YoloReader(const Reading& in) : in_(in), root_(in.source) {}
 
   Clips read() {
     const std::vector<Folders> folders = folders_of(root_);
     if (folders.empty())
       throw Error("holds no labels/, no PART/labels/ and no obj_train_data/", {root_.string()});
     Clips clips;
-    for (const Folders& one : folders)
+    for (const Folders& one : folders) {
+      // LabelImg writes the names beside the labels.
+      for (const fs::path& folder : {root_, one.labels, one.labels.parent_path()})
+        if (names_ = names_of(folder); !names_.empty()) break;
       append(clips, clips_of_pictures(pictures(one), "", one.labels, in_.warn));
+    }
     if (clips.empty()) throw Error("holds no labels", {folders.front().labels.string()});
     return clips;
   }
@@ -162,6 +168,7 @@ class YoloReader {
       picture.folder = folders.pictures;
     }
     for (const fs::path& file : files_with(folders.labels, ".txt")) {
+      if (file.filename() == kClassList && !by_stem.contains(file.stem().string())) continue;
       LabelledPicture& picture = by_stem[file.stem().string()];
       // The name of a picture that is not there has no ending.
       if (picture.name.empty()) picture.name = file.stem().string();
@@ -223,7 +230,7 @@ class YoloReader {
 
   const Reading& in_;
   fs::path root_;
-  std::map<std::size_t, std::string> names_;
+  std::map<std::size_t, std::string> names_;  // of the folder that is read
 };
 
 }  // namespace
