@@ -333,6 +333,24 @@ TEST(Yolo, TheNamesOfTheClassesMayLieAmongTheLabels) {
   }
 }
 
+// Without kpt_shape the first line is a polygon over the whole of its points.
+TEST(Yolo, KeyPointsStandBehindTheBox) {
+  const Folder folder;
+  folder.file("data.yaml", "kpt_shape: [2, 2]\nnames: [airplane]\n");
+  folder.file("labels/s_000000.txt",
+              "0 0.5 0.5 0.25 0.5 0.45 0.5 0.55 0.5\n0 0.5 0.5 0.25 0.5 0 0 0 0 0.9\n"
+              "0 0.5 0.5 0.25 0.5\n");
+  const ReadOptions options{{{64, 48}}, "aircraft"};
+  const auto clips = read_clips(Format::kYolo, folder.path(), options, {});
+  ASSERT_EQ(clips.at(0).frames.at(0).labels.size(), 3u);
+  for (const Label& label : clips[0].frames[0].labels)
+    EXPECT_EQ(label.box_px, (Box{24, 12, 16, 24}));
+  folder.file("labels/s_000000.txt", "0 0.5 0.5 0.25 0.5 0.45 0.5\n");
+  const std::string error =
+      test_support::error_of([&] { read_clips(Format::kYolo, folder.path(), options, {}); });
+  EXPECT_TRUE(error.find("s_000000.txt:1: has 7 numbers; expected") != std::string::npos) << error;
+}
+
 TEST(Yolo, PolygonsCountByTheirBounds) {
   const Folder folder;
   folder.file("labels/train/s_000000.txt", "0 0.1 0.2 0.3 0.2 0.3 0.6\n1 0.5 0.5 0.2 0.4 0.9\n");

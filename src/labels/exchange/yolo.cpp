@@ -86,27 +86,39 @@ constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20;
 
 constexpr const char* kClassList = "classes.txt";
 
-// The names of the classes: in data.yaml a list, or a map from the number to the name; in
-// darknet's obj.names or LabelImg's classes.txt one on each line.
-std::map<std::size_t, std::string> names_of(const fs::path& root) {
+// What a folder states of its labels.
+struct Stated {
   std::map<std::size_t, std::string> names;
+  // Of the key points behind a box; 0: there are none.
+  std::size_t numbers_of_points = 0;
+};
+
+// The names of the classes: in data.yaml a list, or a map from the number to the name; in
+// darknet's obj.names or LabelImg's classes.txt one on each line. kpt_shape in data.yaml is the
+// number of key points and that of the numbers of each.
+Stated stated_in(const fs::path& root) {
+  Stated stated;
+  auto& names = stated.names;
   for (const char* list : {"obj.names", kClassList})
     if (fs::exists(root / list) && names.empty())
       for (const Line& line : lines_of(root / list)) names[names.size()] = line.text;
   const fs::path file = root / "data.yaml";
-  if (!fs::exists(file)) return names;
+  if (!fs::exists(file)) return stated;
   names.clear();
   try {
-    const YAML::Node listed = YAML::Load(read_file(file, kMaxYamlBytes))["names"];
+    YAML::Node top = YAML::Load(read_file(file, kMaxYamlBytes));
+    const YAML::Node listed = top["names"];
     if (listed.IsSequence())
       for (const auto& name : listed) names[names.size()] = name.as<std::string>();
     else if (listed.IsMap())
       for (const auto& entry : listed)
         names[entry.first.as<std::size_t>()] = entry.second.as<std::string>();
+    if (const YAML::Node shape = top["kpt_shape"]; shape.IsSequence() && shape.size() == 2)
+      stated.numbers_of_points = shape[0].as<std::size_t>() * shape[1].as<std::size_t>();
   } catch (const YAML::Exception& error) {
     throw Error("cannot be read as YAML: " + error.msg, {file.string(), error.mark.line + 1});
   }
-  return names;
+  return stated;
 }
 
 // A folder of label files and the folder of their pictures.
@@ -144,10 +156,12 @@ class YoloReader {
     if (folders.empty())
       throw Error("holds no labels/, no PART/labels/ and no obj_train_data/", {root_.string()});
     Clips clips;
+    const Stated of_root = stated_in(root_);
     for (const Folders& one : folders) {
+      stated_ = of_root;
       // LabelImg writes the names beside the labels.
-      for (const fs::path& folder : {root_, one.labels, one.labels.parent_path()})
-        if (names_ = names_of(folder); !names_.empty()) break;
+      for (const fs::path& folder : {one.labels, one.labels.parent_path()})
+        if (stated_.names.empty()) stated_.names = stated_in(folder).names;
       append(clips, clips_of_pictures(pictures(one), "", one.labels, in_.warn));
     }
     if (clips.empty()) throw Error("holds no labels", {folders.front().labels.string()});
@@ -199,17 +213,25 @@ class YoloReader {
   void add(const Line& line, const fs::path& file, LabelledPicture& picture) {
     const std::vector<double> n = numbers_of(line, file);
     const auto whole = n.size() < 5 ? std::nullopt : whole_in(n[0], 0, 1'000'000);
-    // With more numbers after the box the line is a polygon, as in segmentation: "class x y x y x
-    // y".
-    const bool is_polygon = n.size() > 6;
+    // Key points stand behind the box. With more numbers after it the line is a polygon, as in
+    // segmentation: "class x y x y x y".
+    const std::size_t points = stated_.numbers_of_points;
+    const bool is_polygon = (n.size() < 5 + points ? n.size() : n.size() - points) > 6;
+    if (is_polygon && points > 0)
+      throw Error(
+          fmt::format("has {} numbers; expected 'class x y width height' and the {} numbers "
+                      "of the key points, by kpt_shape in data.yaml",
+                      n.size(),
+                      points),
+          {file.string(), line.number});
     if (!whole || (is_polygon && n.size() % 2 == 0))
       throw Error("is no 'class x y width height' and no 'class' with a polygon",
                   {file.string(), line.number});
     const auto category = static_cast<std::size_t>(*whole);
     Label label;
     label.track = std::ssize(picture.labels) + 1;
-    const auto named = names_.find(category);
-    label.category = named != names_.end() ? named->second : std::to_string(category);
+    const auto named = stated_.names.find(category);
+    label.category = named != stated_.names.end() ? named->second : std::to_string(category);
     if (is_polygon) {
       BoxBounds bounds;
       for (std::size_t i = 1; i < n.size(); i += 2)
@@ -230,7 +252,7 @@ class YoloReader {
 
   const Reading& in_;
   fs::path root_;
-  std::map<std::size_t, std::string> names_;  // of the folder that is read
+  Stated stated_;  // of the folder that is read
 };
 
 }  // namespace
