@@ -386,6 +386,16 @@ class Sets(unittest.TestCase):
         self.assertEqual(sequence.frame(0).gray.shape, (120, 160))
         self.assertIn("exact_box_px_x", data.table())
 
+    def test_an_imported_clip_has_the_times_of_its_video(self):
+        pathlib.Path("boxes.csv").write_text("frame,x,y,w,h\n0,10,20,30,40\n5,11,20,30,40\n")
+        output("dataset", "import", "boxes.csv", "-f", "csv", "--video", "clip.mkv", "-o", "timed")
+        sequence = airtruth.DataSet("timed")["boxes"]
+        times = [frame.time_s for frame in airtruth.VideoReader("clip.mkv")]
+        self.assertEqual(len(times), 6)
+        self.assertTrue(np.allclose(sequence.frames["time_s"], times, atol=1e-3))
+        self.assertTrue(np.allclose([frame.time_s for frame in sequence], times, atol=1e-3))
+        self.assertTrue(np.allclose(sequence.truth["time_s"], [times[0], times[5]], atol=1e-3))
+
     def test_labels_survive_a_conversion(self):
         before = airtruth.read_labels("coco", "coco")[0]
         for format in ("yolo", "mot", "voc", "got10k"):

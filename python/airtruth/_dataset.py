@@ -61,7 +61,8 @@ class Sequence:
     @property
     def is_imported(self) -> bool:
         """Whether the clip was labelled elsewhere and imported: its labels are all that is known, and its truth is made of them,
-        with the labels' boxes as exact boxes."""
+        with the labels' boxes as exact boxes. A frame to which they give no time has that of its number at their frame rate; NaN
+        where they state none."""
         return self._core.is_imported
 
     @property
