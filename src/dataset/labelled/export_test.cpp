@@ -444,6 +444,7 @@ TEST_F(Made, WhatIsImportedCanBeLookedAt) {
   const auto finished = replay::open_finished(out / "sequences" / "boxes");
   ASSERT_EQ(finished.truth.frames.size(), 6u);
   EXPECT_EQ(*finished.truth.frames[5].intruders[0].visible_box_px, (PixelBox{11, 20, 31, 40}));
+  EXPECT_DOUBLE_EQ(finished.truth.frames[5].time_s, 5 / finished.picture_rate_hz.value());
   replay::write_overlay(finished, root_ / "look.mp4", {});
   EXPECT_TRUE(fs::exists(root_ / "look.mp4"));
   EXPECT_THROW(import_set(csv, out, options), Error);
