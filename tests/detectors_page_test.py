@@ -47,6 +47,7 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   out.rows = [...page.querySelectorAll('#ranking tbody tr')].map((row) => [...row.cells].map((c) => c.textContent));
   out.tracks = texts('#tracks tbody td:first-child');
   out.undrawn = [...page.querySelectorAll('canvas')].filter((c) => !drawn(c)).map((c) => c.id || c.dataset.plot);
+  out.facts = id('facts').textContent;
   out.plots = [...page.querySelectorAll('canvas[data-plot]')].map((c) => c.dataset.plot);
   out.elements = page.querySelectorAll('h1 *, option *, figcaption img, td > :not(.dot), #shown label > :not(input):not(.dot)').length;
   out.pairs = [pair()];
@@ -99,6 +100,20 @@ def write_results(folder, lines):
         file.writelines(lines)
 
 
+DATA = r'(?s)(?<=<script type="application/json" id="data">).*?(?=</script>)'
+
+
+def declare_late(file_name):
+    """Has the page say that the finder declares the aircraft 3 s after the closest approach, of which the clip states nothing."""
+    with open(file_name, encoding="utf-8") as file:
+        text = file.read()
+    data = json.loads(re.search(DATA, text).group())
+    finder = next(one for one in data["detectors"] if one["name"] == "finder")
+    finder["tracks"]["encounters"][0]["declaration"]["to_closest_approach_s"] = -3
+    with open(file_name, "w", encoding="utf-8") as file:
+        file.write(re.sub(DATA, lambda _: json.dumps(data).replace("<", "\\u003c"), text))
+
+
 def main():
     airtruth = os.path.abspath(sys.argv[1])
     browser = browser_or_skip("detectors_page_test")
@@ -111,6 +126,7 @@ def main():
         write_results(root + "/results/finder", finder)
         write_results(root + "/results/" + BLIND, [mot_line(k, -1, (10, 200, 12, 12), 1) for k in range(FRAMES)])
         run("evaluate", "clips", "results/finder", "results/" + BLIND, "--detections", "--score", "1", "-o", "evaluation", "--figures", "svg")
+        declare_late(root + "/evaluation/detection.html")
         faults = []
         for size in ((1400, 5000), (400, 12000)):
             out = looked_at(browser, root, size, LOOK)
@@ -129,6 +145,7 @@ def main():
             expect("false alarms an image", row["false alarms an image"], "0.05")
             expect("detectors with tracks", out["tracks"], ["finder"])
             expect("not drawn", out["undrawn"], [])
+            expect("declared after the closest approach", ", 3 s after the closest approach" in out["facts"], True)
             expect("plots by range, which nothing is known of", [p for p in out["plots"] if "range" in p or "closest" in p], [])
             expect("plots", {"precision", "froc", "by_size_px", "by_contrast_to_noise", "false_alarms"} - set(out["plots"]), set())
             expect("says that ranges are unknown", any("range" in text for text in out["left_out"]), True)
@@ -153,7 +170,7 @@ def main():
             text = file.read()
         if re.findall(r'(?:src|href)\s*=\s*["\']?(https?:[^"\' >]+)', text):
             faults.append("the page asks for something outside")
-        data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S).group(1))
+        data = json.loads(re.search(DATA, text).group())
         found = {data["detectors"][one["detector"]]["name"]: one["found"] for one in data["sequences"][0]["detectors"]}
         if found != {"finder": "m" * FIRST_FOUND + "f" * (FRAMES - FIRST_FOUND), BLIND: "m" * FRAMES}:
             faults.append(f"frames found: {found}")

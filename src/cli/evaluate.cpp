@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -92,8 +93,9 @@ void print_declarations(const char* kind,
       fmt::format("{}: {} {} of its encounters", name, kind, share_of(summary.declared));
   if (summary.range_m) line += fmt::format(", at {:.0f} m in the mean", summary.range_m->mean);
   if (summary.to_closest_approach_s)
-    line += fmt::format(", {:.1f} s before the closest approach in the mean",
-                        summary.to_closest_approach_s->mean);
+    line += fmt::format(", {:.1f} s {} the closest approach in the mean",
+                        std::abs(summary.to_closest_approach_s->mean),
+                        summary.to_closest_approach_s->mean < 0 ? "after" : "before");
   if (summary.in_time)
     line += fmt::format("; {:g} s before {}: {} of those in {} sequences",
                         assessment.options.manoeuvre_s.value_or(0),

@@ -17,6 +17,8 @@ const airtruth = (() => {
   const byId = (id) => document.getElementById(id);
   const number = (value, digits = 0) =>
     (value === null || value === undefined ? '–' : value.toLocaleString('en', { maximumFractionDigits: digits }));
+  // Of a time to the closest approach, which is negative after it.
+  const aroundClosest = (ahead_s) => `${number(Math.abs(ahead_s), 1)} s ${ahead_s < 0 ? 'after' : 'before'} the closest approach`;
   const button = (text, act) => {
     const made = element('button', text);
     made.type = 'button';
@@ -317,6 +319,7 @@ const airtruth = (() => {
 
   return {
     addChoice,
+    aroundClosest,
     beginPlayer,
     button,
     byId,

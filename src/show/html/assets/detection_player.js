@@ -3,7 +3,7 @@
 // Plays the sequences of an evaluation of detectors: pictures that the page holds, with truth, detections and
 // tracks, and a strip over all frames.
 airtruth.detectionPlayer = (data) => {
-  const { byId, counted, element, headed, ink, loaded, named, number, outline } = airtruth;
+  const { aroundClosest, byId, counted, element, headed, ink, loaded, named, number, outline } = airtruth;
   const { detectors } = data;
   const hidden = new Set();
   let sequence = null;
@@ -183,7 +183,7 @@ airtruth.detectionPlayer = (data) => {
         if (one.sequence !== sequence.name) continue;
         const { declaration } = one;
         const range = declaration && declaration.range_m !== null ? ` at ${number(declaration.range_m)} m` : '';
-        const time = declaration && declaration.to_closest_approach_s !== null ? `, ${number(declaration.to_closest_approach_s, 1)} s before the closest approach` : '';
+        const time = declaration && declaration.to_closest_approach_s !== null ? `, ${aroundClosest(declaration.to_closest_approach_s)}` : '';
         parts.push(`${detector.name} ${declaration ? `declares ${one.name || one.object}${range}${time}` : `never declares ${one.name || one.object}`}`);
       }
     });

@@ -2,7 +2,7 @@
 'use strict';
 // What a data set's page shows and filters by of encounters (docs/formats/output.md).
 airtruth.encounters = (() => {
-  const { byId, choices, counted, element, headed, least, most, named, number, line, ink } = airtruth;
+  const { aroundClosest, byId, choices, counted, element, headed, least, most, named, number, line, ink } = airtruth;
 
   const sides = [['ahead_m', 'ahead', 'behind'], ['right_m', 'right', 'left'], ['above_m', 'above', 'below']];
   // "60 m right, 15 m above"
@@ -32,7 +32,7 @@ airtruth.encounters = (() => {
   const firstText = (seen) => {
     if (!seen) return 'never';
     const ahead = seen.to_closest_approach_s;
-    const when = ahead === null ? '' : `, ${number(Math.abs(ahead), 1)} s ${ahead < 0 ? 'after' : 'before'} the closest approach`;
+    const when = ahead === null ? '' : `, ${aroundClosest(ahead)}`;
     return `frame ${seen.frame}: ${number(seen.range_m)} m, ${number(seen.width_px, 1)} × ${number(seen.height_px, 1)} px${when}`;
   };
   const horizonText = (encounter) => {
