@@ -214,11 +214,9 @@ struct Reader::State {
     if (!pictures.empty()) info.frame_count_estimate = std::ssize(pictures);
     pts_step = std::max<std::int64_t>(
         1, std::llround(1.0 / (info.frame_rate.value() * info.time_base.value())));
-    if (stream.sample_aspect_ratio.num > 0)
-      info.sample_aspect = rational(stream.sample_aspect_ratio);
   }
 
-  void describe(const AVFrame& first) {
+  void describe(AVFrame& first) {
     check_picture_size(first.width, first.height, path);
     const auto format = static_cast<AVPixelFormat>(first.format);
     const char* name = av_get_pix_fmt_name(format);
@@ -245,6 +243,10 @@ struct Reader::State {
     info.transfer_tag = first.color_trc;
     info.width = first.width;
     info.height = first.height;
+    // Where the container states no shape of the pixels, as MPEG's streams, the codec's counts.
+    const AVRational aspect =
+        av_guess_sample_aspect_ratio(input.get(), input->streams[stream_index], &first);
+    if (aspect.num > 0) info.sample_aspect = rational(aspect);
     info.colour = coded_colour;
     if (info.rotation_deg == 90 || info.rotation_deg == 270) {
       std::swap(info.width, info.height);

@@ -102,8 +102,8 @@ struct ReaderOptions {
   // True: the reader fills Frame::begins_shot. The decision needs the following frames, so the
   // reader holds two decoded frames back.
   bool with_cuts = false;
-  // False: one picture is wanted, and no duration, rate or shape of its pixels. A picture file is
-  // then decoded once and not twice.
+  // False: one picture is wanted, and no duration or rate. A picture file is then decoded once and
+  // not twice.
   bool with_timing = true;
   // What states first_frame, for the message about one past the end.
   Where where = {};

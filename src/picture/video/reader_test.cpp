@@ -198,6 +198,21 @@ TEST_F(Video, RotationIsAppliedWithEverySampleKept) {
   }
 }
 
+// mp4 and Matroska state the shape of pixels themselves; of the other files only the codec does.
+TEST_F(Video, PixelsThatAreNotSquareAreSoInEveryContainer) {
+  const std::string source = "-f lavfi -i testsrc2=s=64x48:r=25:d=0.2 -vf setsar=4/3 ";
+  for (const char* output : {"-c:v libx264 a.mp4",
+                             "-c:v libx264 a.mkv",
+                             "-c:v libx264 a.ts",
+                             "-c:v libx264 a.h264",
+                             "-c:v mpeg2video -aspect 16:9 a.mpg",
+                             "-c:v mpeg2video -aspect 16:9 b.ts"}) {
+    ffmpeg(source + output);
+    const fs::path file = folder_ / std::string(output).substr(std::string(output).rfind(' ') + 1);
+    EXPECT_NEAR(Reader(file).info().sample_aspect.value(), 4.0 / 3, 1e-9) << output;
+  }
+}
+
 TEST_F(Video, VariableFrameRateKeepsItsTimes) {
   ffmpeg(
       "-f lavfi -i testsrc2=s=64x48:r=25:d=0.6 -vf \"select='not(eq(n,3)+eq(n,4)+eq(n,9))'\" "
