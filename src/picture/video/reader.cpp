@@ -236,7 +236,11 @@ struct Reader::State {
         layout.rgb ? image::Matrix::kRgb : matrix_of(first.colorspace, first.height);
     if (!layout.rgb && coded_colour.matrix == image::Matrix::kRgb)
       coded_colour.matrix = image::Matrix::kBt601;
-    const bool full = layout.full_range || first.color_range == AVCOL_RANGE_JPEG;
+    // libav's readers of PGM and TIFF state no range; grey of a still is of the full one.
+    const bool is_grey_still = layout.chroma == image::Chroma::kNone &&
+                               (info.is_of_pictures || is_picture_file(*input)) &&
+                               first.color_range == AVCOL_RANGE_UNSPECIFIED;
+    const bool full = layout.full_range || is_grey_still || first.color_range == AVCOL_RANGE_JPEG;
     coded_colour.range = full ? image::Range::kFull : image::Range::kLimited;
     coded_colour.siting = siting_of(first.chroma_location);
     info.primaries_tag = first.color_primaries;

@@ -51,8 +51,8 @@ struct StreamInfo {
   int width = 0;
   int height = 0;
   // Where the matrix is untagged, BT.601 is assumed below 720 lines, else BT.709 (the common rule
-  // of players). Where the range is untagged, limited is assumed, or full for JPEG kinds (yuvj*)
-  // and RGB.
+  // of players). Where the range is untagged, limited is assumed, or full for JPEG kinds (yuvj*),
+  // RGB and grey stills.
   image::Colour colour;
   // AVColorPrimaries and AVColorTransferCharacteristic as tagged; 2: unspecified.
   int primaries_tag = 2;

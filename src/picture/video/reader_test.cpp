@@ -170,6 +170,26 @@ TEST_F(Video, TiffPicturesWithTagsThatLibavDoesNotKnowAreRead) {
   EXPECT_EQ(frames, 5);
 }
 
+// A grey sample of a still is a code value of full range, whatever the file's format.
+TEST_F(Video, GreyPicturesAreOfFullRange) {
+  const std::string ramp("\x00\x08\x20\x80\xf0\xff", 6);
+  fs::create_directories(folder_ / "pgm");
+  write_file(folder_ / "pgm/1.pgm", "P5\n6 1\n255\n" + ramp);
+  for (const std::string kind : {"tif", "png", "bmp"}) {
+    fs::create_directories(folder_ / kind);
+    ffmpeg("-i pgm/1.pgm -update 1 " + kind + "/1." + kind);
+  }
+  std::string expected;
+  for (const char sample : ramp) expected += std::string(3, sample);
+  for (const std::string kind : {"pgm", "tif", "png", "bmp"}) {
+    Reader series(folder_ / kind);
+    EXPECT_EQ(series.info().colour.range, image::Range::kFull) << kind;
+    for (const image::Rgb8& rgb : {image::rgb8_from_picture(series.next()->picture),
+                                   read_still(folder_ / kind / ("1." + kind))})
+      EXPECT_EQ(rgb.bytes(), expected) << kind;
+  }
+}
+
 // The bytes of an mp4 with one track, which is shown turned clockwise: the track header's matrix
 // (ISO/IEC 14496-12, 8.3.2) has 16.16 fixed point numbers, highest byte first.
 std::string turned_clockwise(std::string mp4, int rotation_deg) {
