@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct Batch {
   int picture = -1;  // index into RawModel::pictures, in place of `texture`: inside the file
   bool repeat_u = true;
   bool repeat_v = true;
+  // A texel of at least this alpha is opaque and any other is absent; 0: all are opaque. Empty:
+  // alpha is opacity.
+  std::optional<float> alpha_cutoff;
 };
 
 // The triangles of one object, one batch per material in the order of the materials. Polygons

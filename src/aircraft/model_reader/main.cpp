@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include <assimp/BaseImporter.h>
+#include <assimp/GltfMaterial.h>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/MemoryIOWrapper.h>
@@ -36,7 +38,8 @@ namespace airtruth::model_reader {
 namespace {
 
 constexpr float kSmoothBelowDeg = 60;  // the crease angle where a file states no normals; chosen
-constexpr int kMaxNodeDepth = 256;     // bounds the recursion over a hostile file
+constexpr float kDefaultAlphaCutoff = 0.5f;  // of glTF 2.0, section 5.19 (alphaCutoff)
+constexpr int kMaxNodeDepth = 256;           // bounds the recursion over a hostile file
 constexpr std::array<float, 3> kBlack = {0, 0, 0};
 constexpr std::size_t kNamedFiles = 5;  // missing files that a message names
 
@@ -203,7 +206,23 @@ class SceneReader {
     if (material.Get(AI_MATKEY_SHININESS, value) == aiReturn_SUCCESS && value >= 0)
       batch.srgb.shininess =
           std::min(ending_ == ".obj" ? value / 4 : value, 128.0f);  // it takes 4 Ns
+    read_alpha_mode(material, batch);
     read_texture(material, batch, uv_channel);
+  }
+
+  // Opaque materials of glTF have no alpha, and of masks a place is there or not (glTF 2.0, section
+  // 3.9.4): the alpha of the texture times that of the material decides.
+  static void read_alpha_mode(const aiMaterial& material, ac3d::Batch& batch) {
+    aiString mode;
+    if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS) return;
+    const bool is_mask = mode == aiString("MASK");
+    if (!is_mask && mode != aiString("OPAQUE")) return;
+    float cutoff = 0;
+    if (is_mask && material.Get(AI_MATKEY_GLTF_ALPHACUTOFF, cutoff) != aiReturn_SUCCESS)
+      cutoff = kDefaultAlphaCutoff;
+    const float alpha = batch.srgb.opacity;
+    batch.srgb.opacity = alpha >= cutoff ? 1.0f : 0.0f;
+    batch.alpha_cutoff = alpha > 0 ? cutoff / alpha : 0;
   }
 
   void read_texture(const aiMaterial& material, ac3d::Batch& batch, unsigned& uv_channel) {
@@ -217,7 +236,7 @@ class SceneReader {
       batch.repeat_u = modes[0] == aiTextureMapMode_Wrap || modes[0] == aiTextureMapMode_Mirror;
       batch.repeat_v = modes[1] == aiTextureMapMode_Wrap || modes[1] == aiTextureMapMode_Mirror;
       if (const aiTexture* inside = scene_.GetEmbeddedTexture(path.C_Str())) {
-        batch.picture = picture_of(*inside, batch.repeat_u, batch.repeat_v);
+        batch.picture = picture_of(*inside, batch);
       } else {
         batch.texture = path.C_Str();
       }
@@ -225,15 +244,18 @@ class SceneReader {
     }
   }
 
-  int picture_of(const aiTexture& texture, bool repeat_u, bool repeat_v) {
-    const auto key = std::make_tuple(&texture, repeat_u, repeat_v);
+  int picture_of(const aiTexture& texture, const ac3d::Batch& batch) {
+    const auto key = std::make_tuple(&texture, batch.repeat_u, batch.repeat_v, batch.alpha_cutoff);
     const auto known = picture_of_texture_.find(key);
     if (known != picture_of_texture_.end()) return known->second;
     const std::string_view bytes(reinterpret_cast<const char*>(texture.pcData), texture.mWidth);
     if (texture.mHeight != 0)
       throw Error("has a texture inside that is no file; expected PNG, JPEG, WebP or BMP");
-    const int index = assembly_.add_picture(
-        texture_file::read_picture(bytes, assembly_.picture_limits()), repeat_u, repeat_v);
+    const int index =
+        assembly_.add_picture(texture_file::read_picture(bytes, assembly_.picture_limits()),
+                              batch.repeat_u,
+                              batch.repeat_v,
+                              batch.alpha_cutoff);
     picture_of_texture_[key] = index;
     return index;
   }
@@ -243,7 +265,7 @@ class SceneReader {
   const wrapper::ModelFile& file_;
   std::string ending_;
   std::vector<std::string> names_;
-  std::map<std::tuple<const aiTexture*, bool, bool>, int> picture_of_texture_;
+  std::map<std::tuple<const aiTexture*, bool, bool, std::optional<float>>, int> picture_of_texture_;
   bool has_vertex_colours_ = false;
   bool is_inverted_ = false;
 };

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -73,25 +74,36 @@ TEST_F(Formats, StlAndPlyAreRead) {
                    "end_header\n0 0 0\n3 0 0\n0 2 0\n0 0 1\n3 0 1 2\n3 0 2 3\n"));
 }
 
-// Two triangles share the edge from the origin along x, and their planes differ by 27 degrees. The
-// specification asks for flat normals (glTF 2.0, section 3.7.2.1): those of the planes, which no
-// vertex mixes.
-TEST_F(Formats, AGltfWithoutNormalsIsFlat) {
+// Two triangles that share the edge from the origin along x, and whose planes differ by 27 degrees.
+std::string gltf_of(const std::string& material) {
   // The positions (0, 0, 0), (3, 0, 0), (0, 2, 0), (0, 0, 1), then the indices 0 1 2, 0 1 3,
   // base64.
   const std::string data =
       "AAAAAAAAAAAAAAAAAABAQAAAAAAAAAAAAAAAAAAAAEAAAAAAAAAAAAAAAMAAAIA/AAABAAIAAAADAAEA";
-  const fleet::Aircraft loaded = load("a.gltf",
-                                      R"({"asset": {"version": "2.0"}, "scene": 0,
+  // Two grey texels with the alphas 64 and 200.
+  const std::string png =
+      "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAQAAABeK7cBAAAADUlEQVR4nGM44XDiBAAGPQKZRUmNFgAAAABJRU5ErkJg"
+      "gg==";
+  return R"({"asset": {"version": "2.0"}, "scene": 0,
     "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+    "materials": [{)" +
+         material + R"(}], "textures": [{"source": 0}],
+    "images": [{"uri": "data:image/png;base64,)" +
+         png + R"("}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
                    "min": [0, -2, 0], "max": [3, 2, 1]},
                   {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
     "bufferViews": [{"buffer": 0, "byteLength": 48},
                     {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
     "buffers": [{"byteLength": 60, "uri": "data:application/octet-stream;base64,)" +
-                                          data + "\"}]}");
+         data + "\"}]}";
+}
+
+// The specification asks for flat normals (glTF 2.0, section 3.7.2.1): those of the planes, which
+// no vertex mixes.
+TEST_F(Formats, AGltfWithoutNormalsIsFlat) {
+  const fleet::Aircraft loaded = load("a.gltf", gltf_of(""));
   const model::Mesh& mesh = loaded.mesh;
   ASSERT_EQ(mesh.triangle_count(), 2u);
   // In body axes z is down and y right.
@@ -100,6 +112,34 @@ TEST_F(Formats, AGltfWithoutNormalsIsFlat) {
     for (const std::uint32_t vertex : mesh.parts.at(0).triangles.at(i).vertex)
       EXPECT_TRUE(mesh.normals.at(vertex).isApprox(expected[i]))
           << mesh.normals[vertex].transpose();
+}
+
+// glTF 2.0, section 3.9.4: alpha is opacity in the mode BLEND alone.
+TEST_F(Formats, TheAlphaModeOfAGltfSaysWhatAlphaIs) {
+  struct Case {
+    const char* mode;
+    const char* factor;
+    float opacity;
+    std::array<int, 2> alphas;
+  };
+  for (const Case& c :
+       {Case{"", "0.25", 1.0f, {255, 255}},
+        Case{R"("alphaMode": "OPAQUE",)", "1", 1.0f, {255, 255}},
+        Case{R"("alphaMode": "BLEND",)", "0.25", 0.25f, {64, 200}},
+        Case{R"("alphaMode": "MASK",)", "1", 1.0f, {0, 255}},
+        Case{R"("alphaMode": "MASK", "alphaCutoff": 0.2,)", "1", 1.0f, {255, 255}},
+        Case{R"("alphaMode": "MASK", "alphaCutoff": 0.2,)", "0.6", 1.0f, {0, 255}}}) {
+    const fleet::Aircraft loaded = load(
+        "a.gltf",
+        gltf_of(std::string(c.mode) + R"("pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, )" +
+                c.factor + R"(], "baseColorTexture": {"index": 0}})"));
+    const model::Material& material = loaded.mesh.materials.at(0);
+    EXPECT_FLOAT_EQ(material.opacity, c.opacity) << c.mode;
+    const model::Texture* texture = loaded.mesh.texture_of(material);
+    ASSERT_NE(texture, nullptr) << c.mode;
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_EQ(texture->finest.rgba.at(4 * i + 3), c.alphas[i]) << c.mode << c.factor;
+  }
 }
 
 TEST_F(Formats, WhatIsWhollyTransparentIsRefused) {

@@ -81,7 +81,12 @@ texture_file::PictureLimits Assembly::picture_limits() const {
   return limits;
 }
 
-int Assembly::add_picture(texture_file::Picture picture, bool repeat_u, bool repeat_v) {
+int Assembly::add_picture(texture_file::Picture picture,
+                          bool repeat_u,
+                          bool repeat_v,
+                          std::optional<float> alpha_cutoff) {
+  for (std::size_t i = 3; alpha_cutoff && i < picture.rgba.size(); i += 4)
+    picture.rgba[i] = static_cast<float>(picture.rgba[i]) >= 255 * *alpha_cutoff ? 255 : 0;
   pixels_ += picture.rgba.size() / 4;
   if (model_.pictures.size() >= model::kMaxPictures)
     throw Error("has more than " + std::to_string(model::kMaxPictures) + " textures");
@@ -89,14 +94,19 @@ int Assembly::add_picture(texture_file::Picture picture, bool repeat_u, bool rep
   return static_cast<int>(model_.pictures.size()) - 1;
 }
 
-int Assembly::read_texture(const fs::path& path, bool repeat_u, bool repeat_v) {
-  const std::string key = path.string() + (repeat_u ? "|u" : "|") + (repeat_v ? "v" : "");
+int Assembly::read_texture(const fs::path& path,
+                           bool repeat_u,
+                           bool repeat_v,
+                           std::optional<float> alpha_cutoff) {
+  const std::string key = path.string() + (repeat_u ? "|u" : "|") + (repeat_v ? "v" : "") +
+                          (alpha_cutoff ? fmt::format("|{}", *alpha_cutoff) : "");
   const auto known = picture_of_file_.find(key);
   if (known != picture_of_file_.end()) return known->second;
   const int index =
       add_picture(texture_file::read_picture(files_.read(path, kMaxPictureBytes), picture_limits()),
                   repeat_u,
-                  repeat_v);
+                  repeat_v,
+                  alpha_cutoff);
   picture_of_file_[key] = index;
   return index;
 }
@@ -137,7 +147,8 @@ int Assembly::texture_of(const ac3d::Batch& batch,
                 where);
   }
   try {
-    return read_texture(path, replaced || batch.repeat_u, replaced || batch.repeat_v);
+    return read_texture(
+        path, replaced || batch.repeat_u, replaced || batch.repeat_v, batch.alpha_cutoff);
   } catch (const Error& error) {
     throw Error("wants the texture " + files_.shown(path).string() + ", which " + error.message(),
                 where);

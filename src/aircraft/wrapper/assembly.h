@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,21 +45,28 @@ class Assembly {
   // triangles, vertices or pixels exceed a limit.
   void add(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
 
-  // Adds a picture from inside a model file and returns its index for Batch::picture.
-  int add_picture(texture_file::Picture picture, bool repeat_u, bool repeat_v);
+  // Adds a picture from inside a model file and returns its index for Batch::picture. The last
+  // argument is that of the batch.
+  int add_picture(texture_file::Picture picture,
+                  bool repeat_u,
+                  bool repeat_v,
+                  std::optional<float> alpha_cutoff);
   // The number of pixels that the limit still allows.
   texture_file::PictureLimits picture_limits() const;
 
  private:
   void warn_of_texture(const std::string& name);
   int texture_of(const ac3d::Batch& batch, const PartChoice& choice, const ModelFile& file);
-  int read_texture(const fs::path& path, bool repeat_u, bool repeat_v);
+  int read_texture(const fs::path& path,
+                   bool repeat_u,
+                   bool repeat_v,
+                   std::optional<float> alpha_cutoff);
   std::uint32_t material_of(const ac3d::Batch& batch, const PartChoice& choice, int texture);
   void add_vertices(const ac3d::Batch& batch, const Eigen::Affine3d& body_from_file);
 
   ModelFiles& files_;
   model::RawModel model_;
-  std::map<std::string, int> picture_of_file_;  // with its way of repeating
+  std::map<std::string, int> picture_of_file_;  // with its way of repeating and its cutoff
   std::size_t pixels_ = 0;
   std::size_t triangles_ = 0;
 };
