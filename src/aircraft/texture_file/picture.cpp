@@ -30,6 +30,7 @@ Picture read_png(std::string_view bytes, const PictureLimits& limits) {
   expect_png(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), image);
   Picture picture = blank_picture(image.width, image.height, limits);
   image.format = PNG_FORMAT_RGBA;
+  image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // where no gamma is stated; libpng's own is linear
   // A negative stride: the last row of the file comes first.
   const auto stride = -static_cast<png_int_32>(4 * picture.width);
   expect_png(png_image_finish_read(&image, nullptr, picture.rgba.data(), stride, nullptr), image);

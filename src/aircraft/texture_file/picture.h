@@ -24,11 +24,11 @@ struct PictureLimits {
   std::size_t pixels = std::size_t{64} << 20;  // 256 MiB decoded
 };
 
-// Reads PNG (ISO/IEC 15948; gray, palette and 16 bits become 8-bit RGBA), JPEG (ITU-T T.81; gray
-// and YCbCr), WebP (RFC 9649, one picture), BMP (8, 24 and 32 bits without compression), SGI
-// (Haeberli's image file format 0.97; verbatim and run-length, 8 and 16 bits) and Truevision
-// TGA 2.0 (types 1, 2, 3, 9, 10, 11). Throws Error, without a place, where the bytes have another
-// format, are faulty or end early, or where the picture exceeds the limits.
+// Reads PNG (ISO/IEC 15948; gray, palette and 16 bits become 8-bit RGBA, sRGB where the file states
+// no gamma), JPEG (ITU-T T.81; gray and YCbCr), WebP (RFC 9649, one picture), BMP (8, 24 and 32
+// bits without compression), SGI (Haeberli's image file format 0.97; verbatim and run-length, 8 and
+// 16 bits) and Truevision TGA 2.0 (types 1, 2, 3, 9, 10, 11). Throws Error, without a place, where
+// the bytes have another format, are faulty or end early, or where the picture exceeds the limits.
 Picture read_picture(std::string_view bytes, const PictureLimits& limits = {});
 
 // A black picture of that size. Throws Error, which names the exceeded limit, for a larger one.

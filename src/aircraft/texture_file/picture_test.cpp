@@ -69,6 +69,11 @@ TEST(Pictures, PngOfEveryKindIsRgbaFromTheBottom) {
   const std::uint16_t deep[] = {65535, 0, 65535};
   EXPECT_EQ(at(read_picture(png(1, 1, PNG_FORMAT_LINEAR_RGB, deep)), 0, 0),
             (Pixel{255, 0, 255, 255}));
+  // Without its chunk gAMA the file is sRGB, as one of 8 bits.
+  const std::uint16_t hundred[] = {100 * 257, 100 * 257, 100 * 257};
+  std::string bytes = png(1, 1, PNG_FORMAT_LINEAR_RGB, hundred);
+  bytes.erase(bytes.find("gAMA") - 4, 16);  // length, name, four bytes, sum
+  EXPECT_EQ(at(read_picture(bytes), 0, 0), (Pixel{100, 100, 100, 255}));
 }
 
 TEST(Pictures, JpegIsReadWhateverItIsCalled) {
