@@ -116,10 +116,10 @@ AVPixelFormat pixel_format(const Colour& colour, Format format) {
 // Copies the picture, converted to the colour `stored`, to the buffers of a frame.
 void fill_frame_as(AVFrame& frame, const Picture& picture, const Colour& stored, Format format) {
   const Colour& colour = picture.colour;
-  const bool is_rgb = colour.matrix == Matrix::kRgb;
-  if (colour != stored && !is_rgb && format == Format::kAvi && colour.range == Range::kLimited)
+  const bool keeps_matrix = colour.chroma == Chroma::kNone || colour.matrix == stored.matrix;
+  if (keeps_matrix && format == Format::kAvi && colour.range == Range::kLimited)
     fill_frame(frame, with_full_range(picture, stored));
-  else if (colour == stored || (!is_rgb && stored.chroma == colour.chroma))
+  else if (keeps_matrix && stored.chroma == colour.chroma)
     fill_frame(frame, picture);
   else  // through packed sRGB, as the format cannot store the picture's own colour
     fill_frame(frame, image::picture_from_rgb8(image::rgb8_from_picture(picture), stored));
@@ -298,7 +298,8 @@ Colour stored_colour(const StreamInfo& info, Format format, const Where& where) 
   if (stored.matrix == Matrix::kRgb)
     stored = {Chroma::k444, Matrix::kBt709, Range::kFull, image::Siting::kCenter};
   if (format == Format::kAvi) {
-    // JPEG supports no other range.
+    // JPEG supports no other matrix and range, and AVI states none.
+    stored.matrix = Matrix::kBt601;
     stored.range = Range::kFull;
     if (stored.chroma == Chroma::kNone) stored.chroma = Chroma::k420;
   }

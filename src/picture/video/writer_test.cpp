@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture/video/writer.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -99,6 +102,30 @@ TEST_F(Video, LosslessOutputGivesEverySampleBack) {
     EXPECT_EQ(a.info().colour.range, b.info().colour.range) << format;
     EXPECT_EQ(a.info().colour.chroma, b.info().colour.chroma) << format;
   }
+}
+
+// JPEG is of BT.601 and full range (ITU-T T.871), and AVI states no other; ffmpeg reads it so.
+TEST_F(Video, AviKeepsTheColoursOfEveryMatrixAndRange) {
+  constexpr std::array<std::uint8_t, 3> kRed = {189, 32, 29};
+  image::Rgb8 red = image::make_rgb8(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) std::copy(kRed.begin(), kRed.end(), red.at(x, y));
+  for (const image::Matrix matrix :
+       {image::Matrix::kBt601, image::Matrix::kBt709, image::Matrix::kBt2020, image::Matrix::kRgb})
+    for (const image::Range range : {image::Range::kLimited, image::Range::kFull}) {
+      const bool is_rgb = matrix == image::Matrix::kRgb;
+      const image::Colour colour{is_rgb ? image::Chroma::k444 : image::Chroma::k420, matrix, range};
+      Frame frame;
+      frame.picture = image::picture_from_rgb8(red, colour);
+      Writer writer(folder_ / "red.avi", stream_of(colour), {.format = Format::kAvi});
+      writer.write(frame);
+      writer.finish();
+      const std::string shown = raw("red.avi", "rgb24");
+      ASSERT_EQ(shown.size(), red.bytes().size());
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(static_cast<unsigned char>(shown[c]), kRed[c], 4)
+            << static_cast<int>(matrix) << static_cast<int>(range);
+    }
 }
 
 TEST_F(Video, AviRefusesAVariableFrameRate) {
