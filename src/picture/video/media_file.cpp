@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -61,10 +62,6 @@ void add_tags(const AVDictionary* tags, std::map<std::string, std::string>& resu
     result[lower_case(entry->key)] = entry->value;
   }
 }
-
-// Packets whose pictures are shown later than those of packets after them are at most this many
-// apart: 16 reference pictures of H.264 and HEVC.
-constexpr std::int64_t kMaxReordered = 16;
 
 }  // namespace
 
@@ -182,7 +179,11 @@ std::optional<FrameIndex> index_frames(const std::filesystem::path& path,
   }
   std::sort(index.pts.begin(), index.pts.end());
   const bool is_strict = std::adjacent_find(index.pts.begin(), index.pts.end()) == index.pts.end();
-  if (!is_strict || index.pts.empty() || index.pts.front() != first_pts) return std::nullopt;
+  const bool begins_anew =
+      std::ranges::adjacent_find(index.keys, std::ranges::greater_equal{}, &KeyPacket::pts) !=
+      index.keys.end();
+  if (!is_strict || begins_anew || index.pts.empty() || index.pts.front() != first_pts)
+    return std::nullopt;
   return index;
 }
 

@@ -55,6 +55,10 @@ CodecPtr decoder_of(const AVStream& stream, const std::filesystem::path& path);
 // Throws Error at `path` where a picture of that size is larger than the limits.
 void check_picture_size(int width, int height, const std::filesystem::path& path);
 
+// Packets whose pictures are shown later than those of packets after them are at most this many
+// apart: 16 reference pictures of H.264 and HEVC.
+constexpr std::int64_t kMaxReordered = 16;
+
 // Where the decoding of a frame can begin, found without decoding: from the packets of a file.
 
 // A packet from which a decoder can begin. Times are in units of the stream's clock.
@@ -83,7 +87,7 @@ struct FrameIndex {
 
 // The index of a video's first packets, up to the one after which frame `last` of those shown from
 // `first_pts` on is known; frame 0 is the one shown at `first_pts`. Empty where packets hold no
-// time stamps, two of them hold the same, or one is damaged.
+// time stamps, two of them hold the same, the stamps begin anew, or a packet is damaged.
 std::optional<FrameIndex> index_frames(const std::filesystem::path& path,
                                        int stream_index,
                                        std::int64_t first_pts,

@@ -100,6 +100,8 @@ struct Reader::State {
   bool is_packet_held = false;
   std::int64_t last_pts = AV_NOPTS_VALUE;
   std::int64_t pts_step = 1;
+  // What is added to the time stamps after they began anew.
+  std::int64_t pts_shift = 0;
   std::optional<std::int64_t> first_pts;
   // Decoded frames that are not yet handed out: the constructor decodes the first one, and with
   // cuts the queue also holds the frames after the next.
@@ -316,6 +318,7 @@ struct Reader::State {
     finished = draining = broken = false;
     avcodec_flush_buffers(codec.get());
     last_pts = AV_NOPTS_VALUE;
+    pts_shift = 0;
     if (!pictures.empty()) {
       next_picture =
           std::min(pictures.size() - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, pts)));
@@ -465,6 +468,20 @@ struct Reader::State {
     return image::is_cut(around, static_cast<std::size_t>(index - first_difference));
   }
 
+  // The parts of a recording, put together, may each begin their time stamps anew.
+  std::int64_t after_reset(std::int64_t pts) {
+    if (pts_shift == 0)
+      airtruth::warn(
+          warn,
+          fmt::format("{}: its time stamps go back by {:.2f} s at frame {}; the frames from there "
+                      "on follow those before them",
+                      path.string(),
+                      static_cast<double>(last_pts - pts) * info.time_base.value(),
+                      decoded));
+    pts_shift += last_pts + pts_step - pts;
+    return last_pts + pts_step;
+  }
+
   Frame to_frame() {
     Frame result;
     const bool bad = frame->decode_error_flags != 0 || (frame->flags & AV_FRAME_FLAG_CORRUPT) != 0;
@@ -476,7 +493,12 @@ struct Reader::State {
     // Frames that depend on a damaged frame are damaged as well, up to the next key frame.
     result.damaged = broken;
     std::int64_t pts = frame->best_effort_timestamp;
-    if (pts == AV_NOPTS_VALUE) pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
+    if (pts == AV_NOPTS_VALUE)
+      pts = last_pts == AV_NOPTS_VALUE ? 0 : last_pts + pts_step;
+    else
+      pts += pts_shift;
+    if (last_pts != AV_NOPTS_VALUE && pts < last_pts && (last_pts - pts) / pts_step > kMaxReordered)
+      pts = after_reset(pts);
     if (last_pts != AV_NOPTS_VALUE && pts <= last_pts) pts = last_pts + 1;
     last_pts = pts;
     result.pts = pts;
@@ -505,9 +527,11 @@ Reader::Reader(const std::filesystem::path& path, const ReaderOptions& options, 
                                  "first_frame are decoded",
                                  path.string(),
                                  options.first_frame));
-    state_ = State::opened(path, options, {});
+    state_ = State::opened(path, options, {});  // what it says was said
   }
-  if (state_->look_ahead()) return;
+  const bool holds_frame = state_->look_ahead();
+  state_->warn = std::move(warn);
+  if (holds_frame) return;
   if (state_->decoded == 0)
     state_->fail(
         fmt::format("holds no frame of at most {} million px that can be decoded; expected a video",

@@ -253,6 +253,22 @@ TEST_F(Video, VariableFrameRateKeepsItsTimes) {
   for (double time : times) EXPECT_NEAR(copy.next()->time_s, time, 1e-6);
 }
 
+// Segments of a recorder, each with time stamps from the same number on, in one file: 50 frames of
+// 25 a second.
+TEST_F(Video, FramesAfterAResetOfTheTimeStampsFollowThoseBefore) {
+  ffmpeg(
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=2 -c:v libx264 -g 25 -f segment -segment_time 1 "
+      "-reset_timestamps 1 part%d.ts");
+  write_file(folder_ / "all.ts", read_file(folder_ / "part0.ts") + read_file(folder_ / "part1.ts"));
+  std::string warning;
+  Reader reader(folder_ / "all.ts", {}, [&](const std::string& text) { warning += text; });
+  int frames = 0;
+  while (const auto frame = reader.next()) EXPECT_NEAR(frame->time_s, frames++ / 25.0, 1e-4);
+  EXPECT_EQ(frames, 50);
+  EXPECT_THAT(warning, testing::HasSubstr("its time stamps go back by 0.96 s at frame 25;"));
+  EXPECT_NEAR(time_of_first_frame_s(folder_ / "all.ts", {.first_frame = 30}), 1.2, 1e-4);
+}
+
 // A clip of two shots and a slow change. Only the frame that begins the second shot is marked, and
 // every frame equals the one that a reader without cuts returns.
 TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
