@@ -180,6 +180,7 @@ PixelFunctions functions_over(const RayTriangle& triangle,
 
 PixelFunctions functions_about(
     const RayTriangle& triangle, const PixelRay& ray, float u, float half_u, float part_t) {
+  if (part_t == 0) return functions_over(triangle, ray, u, half_u);
   PixelRay then = ray;
   then.middle += part_t * (ray.per_t + part_t * ray.per_tt);
   then.per_t += (2 * part_t) * ray.per_tt;
