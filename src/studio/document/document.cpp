@@ -71,6 +71,7 @@ void Document::recover() {
 // Reads the present text.
 void Document::take() {
   ++revision_;
+  sha256_ = sha256_of(text());
   try {
     Tree tree = tree_of(text(), file_.string());
     tables_ = tables_in(tree.root, text());
@@ -109,12 +110,19 @@ void Document::add(Edit edit) {
   take();
 }
 
-void Document::edit(const std::vector<Change>& changes, const std::string& merge) {
-  std::string next = text();
+bool Document::edit(const std::vector<Change>& changes,
+                    const std::string& merge,
+                    const std::string& upon) {
+  const bool is_upon_present = upon.empty() || upon == sha256_;
+  if (!is_upon_present && upon != sha256_of(edited_)) return false;
+  std::string next = is_upon_present ? text() : edited_;
   for (const Change& change : changes) next = changed(next, change, file_.string());
+  if (!is_upon_present) return next == text();
   if (next.size() > scene::kLargestToml)
     throw Error("would be larger than 16 MiB", {file_.string()});
+  edited_ = text();
   add(edit_between(text(), next, merge));
+  return true;
 }
 
 void Document::undo() {
@@ -188,6 +196,7 @@ nlohmann::ordered_json Document::state() const {
   return {
       {"revision", revision_},
       {"text", text()},
+      {"sha256", sha256_},
       {"scene", values_},
       {"notes", notes_},
       {"problem", problem_.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(problem_)},

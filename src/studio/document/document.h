@@ -40,9 +40,13 @@ class Document {
   // The tables of [[intruder]] and [[distractor]].
   const Tables& tables() const { return tables_; }
 
-  // All changes or none. With the `merge` of the edit before, both are one step of undo. Throws
-  // Error where a change cannot be made.
-  void edit(const std::vector<Change>& changes, const std::string& merge);
+  // All changes or none. With the `merge` of the edit before, both are one step of undo. `upon`:
+  // the SHA-256 of the text that they are made upon, since they name tables by their places; "":
+  // any. False, and nothing is done, where the text is another one, unless these changes gave it:
+  // an edit whose answer was lost can be sent again. Throws Error where a change cannot be made.
+  bool edit(const std::vector<Change>& changes,
+            const std::string& merge,
+            const std::string& upon = "");
   // Throw Error where there is nothing to take back or to repeat.
   void undo();
   void redo();
@@ -58,7 +62,8 @@ class Document {
   // Waits until the journal is on the disk.
   void flush() { journal_.flush(); }
 
-  // {"revision", "text", "scene", "notes", "problem", "saved", "undo", "redo", "changed_on_disk"}
+  // {"revision", "text", "sha256", "scene", "notes", "problem", "saved", "undo", "redo",
+  // "changed_on_disk"}
   nlohmann::ordered_json state() const;
 
  private:
@@ -76,6 +81,8 @@ class Document {
   Journal journal_;
   bool journal_fails_ = false;
   History history_;
+  std::string sha256_;  // of the text
+  std::string edited_;  // the text that the last edit was made upon
   std::int64_t revision_ = 0;
   bool saved_ = true;
   bool changed_on_disk_ = false;

@@ -74,6 +74,23 @@ TEST_F(OfAFile, AllChangesOfAnEditAreMadeOrNone) {
   EXPECT_EQ(document.state()["undo"], 0);
 }
 
+TEST_F(OfAFile, ChangesAreMadeUponTheirTextOrNotAtAll) {
+  Document document = open();
+  const std::string before = sha256_of(kText);
+  EXPECT_EQ(document.state()["sha256"], before);
+  EXPECT_TRUE(document.edit(fov(61), "", before));
+  EXPECT_TRUE(document.edit(fov(61), "", before)) << "sent again, since its answer was lost";
+  EXPECT_EQ(document.state()["undo"], 1);
+  EXPECT_FALSE(document.edit(fov(62), "", before));
+  EXPECT_EQ(document.text(), with_fov("61"));
+  document.undo();
+  EXPECT_TRUE(document.edit(fov(61), "", before));
+  EXPECT_EQ(document.text(), with_fov("61"));
+  EXPECT_TRUE(document.edit(fov(62), "", sha256_of(with_fov("61"))));
+  EXPECT_FALSE(document.edit(fov(61), "", before));
+  EXPECT_EQ(document.text(), with_fov("62"));
+}
+
 TEST_F(OfAFile, ATextThatIsNoSceneIsKeptWithItsProblem) {
   Document document = open();
   document.edit({{Change::Kind::kSet, {"lens", "vertical_fov"}, {}, 60}}, "");

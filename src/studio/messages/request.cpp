@@ -80,7 +80,7 @@ NearMiss near_miss_in(const JsonObject& message) {
 std::vector<std::string> keys_of(Act act) {
   switch (act) {
     case Act::kEdit:
-      return {"id", "do", "changes", "merge"};
+      return {"id", "do", "changes", "merge", "upon"};
     case Act::kFrame:
       return {"id", "do", "frame", "aircraft", "crop", "scale"};
     case Act::kNearMiss:
@@ -115,6 +115,7 @@ Request request_from(std::string_view text) {
   if (*act == Act::kEdit) {
     request.changes = changes_in(json);
     request.merge = word(message, "merge");
+    request.upon = word(message, "upon");
   }
   if (*act == Act::kFrame) take_frame(request, message);
   if (*act == Act::kNearMiss) request.near_miss = near_miss_in(message);

@@ -64,6 +64,7 @@ struct Request {
   // edit
   std::vector<document::Change> changes;
   std::string merge;
+  std::string upon;  // the SHA-256 of the text that it is made upon; "": any
   // frame
   std::int64_t frame = 0;
   bool aircraft = true;

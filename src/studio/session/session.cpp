@@ -190,17 +190,19 @@ class Session::Impl {
       case Act::kOpen:
         return open(client, request.id);
       case Act::kEdit:
-        return change(client, request.id, [&] { document_->edit(request.changes, request.merge); });
+        return change(client, request.id, [&] {
+          return document_->edit(request.changes, request.merge, request.upon);
+        });
       case Act::kUndo:
-        return change(client, request.id, [&] { document_->undo(); });
+        return change(client, request.id, &document::Document::undo);
       case Act::kRedo:
-        return change(client, request.id, [&] { document_->redo(); });
+        return change(client, request.id, &document::Document::redo);
       case Act::kSave:
-        return change(client, request.id, [&] { document_->save(); });
+        return change(client, request.id, &document::Document::save);
       case Act::kReload:
-        return change(client, request.id, [&] { document_->reload(); });
+        return change(client, request.id, &document::Document::reload);
       case Act::kKeep:
-        return change(client, request.id, [&] { document_->keep(); });
+        return change(client, request.id, &document::Document::keep);
       case Act::kFrame:
         return show(client, std::move(request));
       case Act::kPlan:
@@ -239,10 +241,16 @@ class Session::Impl {
   template <typename Do>
   void change(Client client, std::int64_t id, const Do& act) {
     const std::int64_t before = document_->revision();
-    act();
+    const bool is_done = act();
     if (document_->revision() != before) publish();
-    ways_.send(client, ok(id, {{"state", document_->state()}}));
+    ways_.send(client, ok(id, {{"state", document_->state()}, {"done", is_done}}));
     tell_state();
+  }
+  void change(Client client, std::int64_t id, void (document::Document::*act)()) {
+    change(client, id, [this, act] {
+      (*document_.*act)();
+      return true;
+    });
   }
 
   // Answers with what `act` gives on the worker's thread.

@@ -165,6 +165,14 @@ TEST_F(OfASession, AnEditMovesTheAircraftInThePicture) {
   EXPECT_NE(before.jpeg, after.jpeg);
 }
 
+TEST_F(OfASession, AnEditOfAnotherTextIsNotDoneAndHasThePresentOne) {
+  const Json text = ask("open")["ok"]["state"]["sha256"];
+  EXPECT_TRUE(ask("edit", {{"changes", pixel(120, 90)}, {"upon", text}})["ok"]["done"].get<bool>());
+  const Json answer = ask("edit", {{"changes", pixel(90, 90)}, {"upon", text}})["ok"];
+  EXPECT_FALSE(answer["done"].get<bool>());
+  EXPECT_THAT(answer["state"]["text"].get<std::string>(), HasSubstr("pixel = [120, 90]\n"));
+}
+
 TEST_F(OfASession, OfAChangeThePartThatChangedIsSent) {
   EXPECT_EQ(frame({{"frame", 3}, {"crop", "change"}}).header["crop"], Json({0, 0, 320, 240}));
   ask("edit", {{"changes", pixel(120, 90)}});

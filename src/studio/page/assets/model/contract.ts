@@ -28,6 +28,7 @@ export interface Clip {
 export interface State {
   revision: number;
   text: string;
+  sha256: string;  // of the text
   scene: Table;
   notes: {[key: string]: string};  // the comments of the file on its tables and keys, by their dotted names
   problem: string|null;

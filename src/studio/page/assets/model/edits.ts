@@ -7,17 +7,20 @@ export interface Edit {
   merge: string|null;
 }
 
+// The first of them was made upon a text, each other one upon the text that the one before it gives.
 export interface Unsent {
-  edit: Edit;
-  before: string;  // the text that it was made upon
+  upon: string;  // its SHA-256
+  edits: Edit[];
 }
 
 // What an Edits needs of its surroundings.
 export interface EditsHost {
-  // Sends one edit and does what must be done before the next is sent, such as showing its picture.
-  send(edit: Edit): Promise<State>;
-  text(): string;
+  // Sends one edit and does what must be done before the next is sent, such as showing its picture. Null: the text is
+  // another one by now, and nothing was done.
+  send(edit: Edit, upon: string): Promise<State|null>;
+  upon(): string;  // the SHA-256 of the text on the page
   done(state: State): void;
+  dropped(count: number): void;
   refused(line: string): void;
   pending(count: number): void;
 }
@@ -27,16 +30,18 @@ const sameTarget = (a: Change, b: Change) =>
 const isRepeatable = (edit: Edit) => edit.changes.every((change) => 'set' in change);
 
 // Edits on their way to the server: one at a time, in order, none lost. Of those of one drag that wait only the last is
-// kept.
+// kept. They name tables by their places, so each is done upon the text that it was made upon, or not at all.
 export class Edits {
   private waiting: Edit[] = [];
-  private sent: Unsent|null = null;
+  private sent: Edit|null = null;
+  private upon = '';  // that of the first of them
   private isStopped = true;
   private idleListeners: (() => void)[] = [];
 
   constructor(private host: EditsHost) {}
 
   add(edit: Edit): void {
+    if (this.isIdle) this.upon = this.host.upon();
     const last = this.waiting[this.waiting.length - 1];
     const isOfSameDrag =
         last && edit.merge !== null && last.merge === edit.merge && isRepeatable(last) && isRepeatable(edit);
@@ -61,7 +66,7 @@ export class Edits {
   }
 
   // Waits, as when the connection is lost, and goes on. What was sent without an answer may have been done: it is sent
-  // again if the text is still the one before it, or if doing it twice is doing it once.
+  // again, and the server does not do it twice.
   stop(): void {
     this.isStopped = true;
   }
@@ -70,21 +75,19 @@ export class Edits {
     this.isStopped = false;
     const {sent} = this;
     this.sent = null;
-    if (sent && (sent.before === this.host.text() || isRepeatable(sent.edit))) this.waiting.unshift(sent.edit);
+    if (sent) this.waiting.unshift(sent);
     this.count();
     this.next();
   }
 
   // For a page that ends, and for the one that follows it.
-  unsent(): Unsent[] {
-    const before = this.host.text();
-    return [...(this.sent ? [this.sent] : []), ...this.waiting.map((edit) => ({edit, before}))];
+  unsent(): Unsent {
+    return {upon: this.upon, edits: [...(this.sent ? [this.sent] : []), ...this.waiting]};
   }
 
-  restore(all: Unsent[]): void {
-    const text = this.host.text();
-    for (const [k, one] of all.entries())
-      if (k > 0 || one.before === text || isRepeatable(one.edit)) this.waiting.push(one.edit);
+  restore({upon, edits}: Unsent): void {
+    if (this.isIdle) this.upon = upon;
+    this.waiting.push(...edits);
     this.count();
     this.next();
   }
@@ -98,15 +101,19 @@ export class Edits {
   private async next(): Promise<void> {
     if (this.isStopped || this.sent || !this.waiting.length) return;
     const edit = this.waiting.shift()!;
-    const sent = {edit, before: this.host.text()};
-    this.sent = sent;
+    this.sent = edit;
     try {
-      const state = await this.host.send(edit);
-      if (this.sent === sent) this.sent = null;
-      this.host.done(state);
+      const state = await this.host.send(edit, this.upon);
+      if (this.sent === edit) this.sent = null;
+      if (state) {
+        this.upon = state.sha256;
+        this.host.done(state);
+      } else {
+        this.host.dropped(1 + this.waiting.splice(0).length);
+      }
     } catch (error) {
       if (error instanceof Lost) return;  // resume() goes on with it
-      if (this.sent === sent) this.sent = null;
+      if (this.sent === edit) this.sent = null;
       if (!(error instanceof Refused)) throw error;
       this.host.refused(error.message);
     }

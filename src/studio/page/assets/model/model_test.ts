@@ -41,22 +41,29 @@ const track = (pixel: (frame: number) => [number, number], frames = 150): Track 
 
 // A server that answers when it is told to.
 class Server {
-  text = 'text 0';
+  sha256 = 'text 0';
   sent: Edit[] = [];
+  upon: string[] = [];  // of those that were sent
+  dropped = 0;
   states: number[] = [];
   refusals: string[] = [];
   pending = 0;
-  private answers: {resolve: (state: State) => void; reject: (error: Error) => void}[] = [];
+  private answers: {resolve: (state: State|null) => void; reject: (error: Error) => void}[] = [];
   edits = new Edits({
-    send: (edit) => {
+    send: (edit, upon) => {
       this.sent.push(edit);
+      this.upon.push(upon);
       return new Promise((resolve, reject) => this.answers.push({resolve, reject}));
     },
-    text: () => this.text,
+    upon: () => this.sha256,
     done:
         (state) => {
-          this.text = state.text;
+          this.sha256 = state.sha256;
           this.states.push(state.revision);
+        },
+    dropped:
+        (count) => {
+          this.dropped += count;
         },
     refused: (line) => this.refusals.push(line),
     pending:
@@ -67,7 +74,11 @@ class Server {
 
   async answer(): Promise<void> {
     const revision = this.states.length + 1;
-    this.answers.shift()!.resolve({revision, text: `text ${revision}`} as State);
+    this.answers.shift()!.resolve({revision, sha256: `text ${revision}`} as State);
+    await turn();
+  }
+  async drop(): Promise<void> {
+    this.answers.shift()!.resolve(null);
     await turn();
   }
   async fail(error: Error): Promise<void> {
@@ -127,17 +138,29 @@ tests['After a lost connection what was not answered is sent again'] = async () 
   await server.answer();
   same(server.values(), [1, 1, 2]);
 };
-tests['A table that was inserted before the connection was lost is not inserted twice'] = async () => {
-  for (const isDone of [false, true]) {
-    const server = new Server();
-    server.edits.resume();
-    server.insert();
-    server.edits.stop();
-    await server.fail(new Lost('gone'));
-    if (isDone) server.text = 'text with it';
-    server.edits.resume();
-    same(server.sent.length, isDone ? 1 : 2);
-  }
+tests['Each edit is sent with the text that it was made upon, also after a lost connection'] = async () => {
+  const server = new Server();
+  server.edits.resume();
+  server.insert();
+  server.set(1);
+  server.edits.stop();
+  await server.fail(new Lost('gone'));
+  server.sha256 = 'text of another program';
+  server.edits.resume();
+  await server.answer();
+  await server.answer();
+  same(server.upon, ['text 0', 'text 0', 'text 1']);
+};
+tests['Edits of a text that is another one by now are dropped, and counted'] = async () => {
+  const server = new Server();
+  server.edits.resume();
+  for (let k = 1; k <= 3; ++k) server.set(k);
+  await server.answer();
+  server.sha256 = 'text of another program';
+  await server.drop();
+  same([server.values(), server.dropped, server.edits.isIdle, server.pending], [[1, 2], 2, true, 0]);
+  server.set(4);
+  same(server.upon, ['text 0', 'text 1', 'text of another program']);
 };
 tests['What a page left behind is taken up by the next'] = async () => {
   const first = new Server();
@@ -147,10 +170,11 @@ tests['What a page left behind is taken up by the next'] = async () => {
   first.set(2);
   const left = JSON.parse(JSON.stringify(first.edits.unsent()));
   const next = new Server();
+  next.sha256 = 'text of another program';
   next.edits.resume();
   next.edits.restore(left);
   for (let k = 0; k < 3; ++k) await next.answer();
-  same(next.values(), [1, 'insert', 2]);
+  same([next.values(), next.upon[0]], [[1, 'insert', 2], 'text 0']);
 };
 tests['Listeners are told once of all that changed'] = async () => {
   const store = new Store();

@@ -10,7 +10,7 @@ import type {MadeNearMiss, Store} from './store';
 const KEPT_LATENCIES = 500;
 const KEPT_NEAR_MISSES = 100;
 const REST_MS = 100;
-const UNSENT_KEY = 'airtruth-studio-unsent';
+const UNSENT_KEY = 'airtruth-studio-edits';
 
 // An edit that is drawn before the next one is sent, and when the hand moved.
 interface ShownEdit extends Edit {
@@ -36,9 +36,15 @@ export class Studio {
   constructor(readonly store: Store, readonly connection: Connection, private kept: Storage) {
     this.pictures = new Pictures(connection);
     this.edits = new Edits({
-      send: (edit) => this.send(edit),
-      text: () => store.now.state?.text ?? '',
+      send: (edit, upon) => this.send(edit, upon),
+      upon: () => store.now.state?.sha256 ?? '',
       done: (state) => this.took(state),
+      dropped: (count) => {
+        store.say(
+            'warning', `Not done, since the text of the scene is another one by now: ${count} ${
+                           count === 1 ? 'change' : 'changes'} made upon the text before.`);
+        this.settle();
+      },
       refused: (line) => {
         store.say('error', line);
         this.settle();
@@ -61,7 +67,7 @@ export class Studio {
   // For a page that ends: what the server has not answered is kept for the next one.
   end(): void {
     const unsent = this.edits.unsent();
-    if (unsent.length)
+    if (unsent.edits.length)
       this.kept.setItem(UNSENT_KEY, JSON.stringify({file: this.store.now.file, unsent}));
     else
       this.kept.removeItem(UNSENT_KEY);
@@ -269,13 +275,19 @@ export class Studio {
     this.pictures.want({frame, revision: state.revision, aircraft: showsAircraft && !state.problem, scale});
   }
 
-  private async send(edit: ShownEdit): Promise<State> {
-    const answer = this.connection.request<{state: Told}>('edit', {changes: edit.changes, merge: edit.merge});
+  private async send(edit: ShownEdit, upon: string): Promise<State|null> {
+    const answer =
+        this.connection.request<{state: Told; done: boolean}>('edit', {changes: edit.changes, merge: edit.merge, upon});
     const {moved_ms} = edit;
     const {frame, showsAircraft} = this.store.now;
     const isShown = moved_ms !== undefined && showsAircraft;
     const change = isShown ? this.pictures.change(frame).catch(() => null) : null;
-    const state = this.known((await answer).state);
+    const {done, ...answered} = await answer;
+    const state = this.known(answered.state);
+    if (!done) {
+      this.took(state);
+      return null;
+    }
     if (change && state.revision > (this.store.now.state?.revision ?? -1)) this.store.put({state});
     const drawn = await change;
     if (isShown && typeof drawn === 'number' && drawn >= state.revision) this.measured(performance.now() - moved_ms);
@@ -293,8 +305,10 @@ export class Studio {
     if (this.latencies_ms.length > KEPT_LATENCIES) this.latencies_ms.shift();
   }
 
-  private took(state: State): void {
-    const {selected, notices} = this.store.now;
+  private took(answered: State): void {
+    const {selected, notices, state: known} = this.store.now;
+    // Another page's edit may have been heard of in the meantime.
+    const state = known && known.revision > answered.revision ? known : answered;
     // What was refused before is past.
     const rest = notices.filter((notice) => notice.kind !== 'error');
     if (rest.length < notices.length) this.store.put({notices: rest});
@@ -419,7 +433,7 @@ export class Studio {
   private takeUnsent(file: string): void {
     const kept = JSON.parse(this.kept.getItem(UNSENT_KEY) ?? 'null') as {
       file: string;
-      unsent: Unsent[]
+      unsent: Unsent
     }
     |null;
     this.kept.removeItem(UNSENT_KEY);
