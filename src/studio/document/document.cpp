@@ -46,7 +46,7 @@ Tables tables_in(const Node& root, const std::string& text) {
 Document::Document(fs::path file, std::optional<std::string> begun, Warn warn)
     : file_(fs::is_symlink(file) ? fs::canonical(file) : std::move(file)),
       warn_(std::move(warn)),
-      journal_(file_),
+      journal_(file_, warn_),
       history_(history_of(file_, std::move(begun))),
       saved_(!history_.file_sha256.empty()),
       looked_at_(time_of(file_)) {

@@ -26,7 +26,8 @@ class Document {
  public:
   // Reads the file and takes up what an earlier process left in the journal, with a word to `warn`.
   // `begun` is the text where there is no file yet; it is written at the first save. Throws Error
-  // where the file is larger than 16 MiB, is not UTF-8, or there is neither.
+  // where the file is larger than 16 MiB, is not UTF-8, is open in another studio, or there is
+  // neither.
   Document(std::filesystem::path file, std::optional<std::string> begun, Warn warn);
 
   const std::filesystem::path& file() const { return file_; }

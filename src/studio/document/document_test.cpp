@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <iterator>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "studio/document/tree.h"
+#include "support/error_of.h"
 #include "support/temporary_folder.h"
 
 namespace airtruth::document {
@@ -124,16 +126,34 @@ TEST_F(OfAFile, ACrashLosesNothing) {
   EXPECT_EQ(document.text(), kText);
 }
 
+TEST_F(OfAFile, OneStudioAtATimeHasAFile) {
+  {
+    Document document = open();
+    document.edit(fov(61), "");
+    fs::create_symlink(file(), folder_.path() / "link.toml");
+    for (const fs::path& name : {file(), folder_.path() / "link.toml"})
+      EXPECT_THAT(test_support::error_of([&] { Document(name, std::nullopt, {}); }),
+                  HasSubstr("scene.toml: is open in another studio"));
+    Document(folder_.path() / "other.toml", kText, {});
+    document.edit(fov(62), "");
+  }
+  EXPECT_EQ(open().text(), with_fov("62"));
+  const auto files = fs::directory_iterator(folder_.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 3) << "the scene, its journal and the link";
+}
+
 TEST_F(OfAFile, SavedTextNeedsNoJournal) {
-  Document document = open();
-  document.edit(fov(61), "");
-  EXPECT_TRUE(fs::exists(journal()));
-  document.save();
-  EXPECT_FALSE(fs::exists(journal()));
-  EXPECT_EQ(read_file(file()), with_fov("61"));
-  document.undo();
-  EXPECT_FALSE(document.state()["saved"]);
-  EXPECT_TRUE(fs::exists(journal()));
+  {
+    Document document = open();
+    document.edit(fov(61), "");
+    EXPECT_TRUE(fs::exists(journal()));
+    document.save();
+    EXPECT_FALSE(fs::exists(journal()));
+    EXPECT_EQ(read_file(file()), with_fov("61"));
+    document.undo();
+    EXPECT_FALSE(document.state()["saved"]);
+    EXPECT_TRUE(fs::exists(journal()));
+  }
   Document later = open();
   EXPECT_EQ(later.text(), kText);
   EXPECT_FALSE(later.state()["changed_on_disk"]);
@@ -163,12 +183,14 @@ TEST_F(OfAFile, AnotherEditorsChangeIsTakenWhereAllIsSavedElseSaid) {
 TEST_F(OfAFile, AJournalOutlivesAChangeOfTheFile) {
   open().edit(fov(61), "");
   write(with_fov("30"));
-  Document document = open();
-  EXPECT_EQ(document.text(), with_fov("61"));
-  EXPECT_TRUE(document.state()["changed_on_disk"]);
-  EXPECT_THROW(document.save(), Error);
-  document.keep();
-  EXPECT_FALSE(document.state()["changed_on_disk"]);
+  {
+    Document document = open();
+    EXPECT_EQ(document.text(), with_fov("61"));
+    EXPECT_TRUE(document.state()["changed_on_disk"]);
+    EXPECT_THROW(document.save(), Error);
+    document.keep();
+    EXPECT_FALSE(document.state()["changed_on_disk"]);
+  }
   // The answer holds for a later process, and so do the steps.
   Document later = open();
   EXPECT_FALSE(later.state()["changed_on_disk"]);

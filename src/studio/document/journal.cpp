@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 
 namespace airtruth::document {
@@ -36,6 +37,26 @@ void take_line(History& history, const Json& line) {
                line.at("removed").get<std::string>(),
                line.at("put").get<std::string>(),
                line.at("merge").get<std::string>()});
+}
+
+std::filesystem::path beside(const std::filesystem::path& file, const char* ending) {
+  return std::filesystem::absolute(file).parent_path() / ("." + file.filename().string() + ending);
+}
+
+// Not open where the folder cannot be written: then nor can the journal, which is said.
+Descriptor lock_on(const std::filesystem::path& path,
+                   const std::filesystem::path& file,
+                   const Warn& warn) {
+  for (;;) {
+    Descriptor lock(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644));
+    if (!lock.is_open()) return lock;
+    const Lock state = try_lock(lock.get(), path);
+    if (state == Lock::kBusy)
+      throw Error("is open in another studio; expected to end that one first", {file.string()});
+    if (state == Lock::kUnsupported) warn_of_no_locks(file, warn);
+    // One that ends may have removed the file before it was locked.
+    if (is_open_as(lock.get(), path)) return lock;
+  }
 }
 
 }  // namespace
@@ -93,9 +114,15 @@ void History::redo() {
   ++in_force_;
 }
 
-Journal::Journal(const std::filesystem::path& file)
-    : path_(std::filesystem::absolute(file).parent_path() /
-            ("." + file.filename().string() + ".studio-journal")) {}
+Journal::Journal(const std::filesystem::path& file, const Warn& warn)
+    : path_(beside(file, ".studio-journal")),
+      lock_path_(beside(file, ".studio-lock")),
+      lock_(lock_on(lock_path_, file, warn)) {}
+
+Journal::~Journal() {
+  std::error_code ignored;
+  if (lock_.is_open()) std::filesystem::remove(lock_path_, ignored);
+}
 
 std::optional<History> Journal::read() const {
   if (!std::filesystem::exists(path_)) return std::nullopt;

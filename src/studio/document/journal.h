@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "foundation/base/descriptor.h"
+#include "foundation/base/log.h"
 
 // What was done to a scene since it was saved, on the disk: a crash loses nothing.
 namespace airtruth::document {
@@ -55,12 +56,18 @@ class History {
 
 // A file of JSON lines: the first text, then a line for each step. It is there from the first
 // change on. When it is larger than kMostBytes it begins anew with the text of that moment.
+// One process at a time has the journal of a file: the lock is on ".NAME.studio-lock" beside it,
+// which is removed at the end.
 class Journal {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
-  // ".NAME.studio-journal" beside the file.
-  explicit Journal(const std::filesystem::path& file);
+  // ".NAME.studio-journal" beside the file. Throws Error where another studio has the file open.
+  // Where the folder takes no lock the studio goes on without one, with a word to `warn`.
+  Journal(const std::filesystem::path& file, const Warn& warn);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
 
   // What an earlier process left; a last line that it had not finished is left out. Empty where
   // there is none. Throws Error where the file is no journal.
@@ -83,6 +90,8 @@ class Journal {
   void write(const std::string& line);
 
   std::filesystem::path path_;
+  std::filesystem::path lock_path_;
+  Descriptor lock_;
   Descriptor file_;
   std::size_t bytes_ = 0;
   bool is_flushed_ = true;
