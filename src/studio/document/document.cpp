@@ -163,7 +163,9 @@ void Document::reload() {
 }
 
 void Document::keep() {
-  if (const std::optional<std::string> there = on_disk()) history_.file_sha256 = sha256_of(*there);
+  looked_at_ = time_of(file_);
+  if (const std::string there = sha256_on_disk(); !there.empty()) history_.file_sha256 = there;
+  saved_ = sha256_ == history_.file_sha256;
   changed_on_disk_ = false;
   record([&] { journal_.begin(history_); });
 }
@@ -171,15 +173,21 @@ void Document::keep() {
 bool Document::look_at_disk() {
   const fs::file_time_type time = time_of(file_);
   if (time == looked_at_) return false;
-  looked_at_ = time;
-  const std::optional<std::string> there = on_disk();
-  if (!there || sha256_of(*there) == history_.file_sha256) return false;
-  if (saved_) {
-    reload();
-  } else {
-    changed_on_disk_ = true;
-  }
+  const std::string there = sha256_on_disk();
+  if (there.empty() && !fs::exists(file_)) return false;  // an editor is replacing it
+  if (!there.empty()) looked_at_ = time;
+  if (there == history_.file_sha256) return false;
+  if (!saved_ || !on_disk()) return !std::exchange(changed_on_disk_, true);
+  reload();
   return true;
+}
+
+std::string Document::sha256_on_disk() const {
+  try {
+    return sha256_of_file(file_);
+  } catch (const Error&) {
+    return "";
+  }
 }
 
 std::optional<std::string> Document::on_disk() const {
@@ -188,7 +196,7 @@ std::optional<std::string> Document::on_disk() const {
     if (utf8_fault(text) != std::string::npos) return std::nullopt;
     return text;
   } catch (const Error&) {
-    return std::nullopt;  // an editor is replacing it
+    return std::nullopt;
   }
 }
 

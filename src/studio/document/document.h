@@ -58,7 +58,7 @@ class Document {
   // Leaves what others made of the file aside: the next save replaces it.
   void keep();
   // Looks at the file; true where the state is another than before: others changed the file, which
-  // is taken where all was saved.
+  // is taken where all was saved and it is a text.
   bool look_at_disk();
   // Waits until the journal is on the disk.
   void flush() { journal_.flush(); }
@@ -74,7 +74,9 @@ class Document {
   // Writes a step to the journal; where that fails it says so once.
   template <typename Write>
   void record(const Write& write);
-  // The file's text; empty where it cannot be read.
+  // Of the file's bytes, whatever they are; "" where they cannot be read.
+  std::string sha256_on_disk() const;
+  // The file's text; empty where it cannot be read or is none.
   std::optional<std::string> on_disk() const;
 
   std::filesystem::path file_;

@@ -180,6 +180,26 @@ TEST_F(OfAFile, AnotherEditorsChangeIsTakenWhereAllIsSavedElseSaid) {
   EXPECT_TRUE(document.state()["saved"]);
 }
 
+TEST_F(OfAFile, AChangeToWhatIsNoTextIsSaidAndNotOverwritten) {
+  const std::string latin = kText + "# \xfc\n";
+  for (const bool has_steps : {false, true}) {
+    write(kText);
+    Document document = open();
+    if (has_steps) document.edit(fov(61), "");
+    write(latin);
+    EXPECT_TRUE(document.look_at_disk());
+    EXPECT_FALSE(document.look_at_disk());
+    EXPECT_TRUE(document.state()["changed_on_disk"]);
+    EXPECT_THROW(document.save(), Error);
+    EXPECT_THROW(document.reload(), Error);
+    EXPECT_EQ(read_file(file()), latin);
+    document.keep();
+    EXPECT_FALSE(document.state()["saved"]);
+    document.save();
+    EXPECT_EQ(read_file(file()), document.text());
+  }
+}
+
 TEST_F(OfAFile, AJournalOutlivesAChangeOfTheFile) {
   open().edit(fov(61), "");
   write(with_fov("30"));
