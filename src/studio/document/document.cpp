@@ -208,7 +208,7 @@ nlohmann::ordered_json Document::state() const {
       {"scene", values_},
       {"notes", notes_},
       {"problem", problem_.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(problem_)},
-      {"saved", saved_},
+      {"saved", saved_ && !changed_on_disk_},
       {"undo", history_.undo_count()},
       {"redo", history_.redo_count()},
       {"changed_on_disk", changed_on_disk_}};

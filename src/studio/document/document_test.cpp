@@ -180,6 +180,16 @@ TEST_F(OfAFile, AnotherEditorsChangeIsTakenWhereAllIsSavedElseSaid) {
   EXPECT_TRUE(document.state()["saved"]);
 }
 
+TEST_F(OfAFile, WhatAnotherProgramChangedIsNotSavedAfterAnUndo) {
+  Document document = open();
+  document.edit(fov(61), "");
+  write(with_fov("30"));
+  EXPECT_TRUE(document.look_at_disk());
+  document.undo();
+  EXPECT_EQ(document.text(), kText);
+  EXPECT_FALSE(document.state()["saved"]);
+}
+
 TEST_F(OfAFile, AChangeToWhatIsNoTextIsSaidAndNotOverwritten) {
   const std::string latin = kText + "# \xfc\n";
   for (const bool has_steps : {false, true}) {
