@@ -30,12 +30,12 @@ fs::file_time_type time_of(const fs::path& file) {
   return error ? fs::file_time_type{} : time;
 }
 
-Tables tables_in(const Node& root, const std::string& text) {
+Tables tables_in(const Node& root) {
   Tables tables;
   for (const char* array : {"intruder", "distractor"}) {
     const Node* node = root.member(array);
     for (std::size_t i = 0; node != nullptr && i < node->elements.size(); ++i)
-      tables.emplace(line_of(text, static_cast<std::ptrdiff_t>(node->elements[i].begin)),
+      tables.emplace(Begin{node->elements[i].line, node->elements[i].column},
                      nlohmann::ordered_json{array, i});
   }
   return tables;
@@ -74,7 +74,7 @@ void Document::take() {
   sha256_ = sha256_of(text());
   try {
     Tree tree = tree_of(text(), file_.string());
-    tables_ = tables_in(tree.root, text());
+    tables_ = tables_in(tree.root);
     notes_ = notes_of(tree.root, text());
     values_ = std::move(tree.values);
   } catch (const Error&) {

@@ -6,10 +6,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "foundation/base/error.h"
 #include "foundation/base/log.h"
 #include "scene/scene/scene.h"
 #include "studio/document/change.h"
@@ -18,9 +20,12 @@
 // A scene file that is being edited: its text, the steps back to its beginning, and the file.
 namespace airtruth::document {
 
-// The tables of arrays, ["intruder", 0] and so on, by the line where each begins, by which all that
-// reads the scene names it.
-using Tables = std::map<int, nlohmann::ordered_json>;
+// Line and column where a table begins, by which all that reads the scene names it: several inline
+// tables can be on one line.
+using Begin = std::pair<int, int>;
+inline Begin begin_of(const Where& where) { return {where.line, where.column}; }
+// The tables of arrays, ["intruder", 0] and so on.
+using Tables = std::map<Begin, nlohmann::ordered_json>;
 
 class Document {
  public:

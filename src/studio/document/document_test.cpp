@@ -93,6 +93,22 @@ TEST_F(OfAFile, ChangesAreMadeUponTheirTextOrNotAtAll) {
   EXPECT_EQ(document.text(), with_fov("62"));
 }
 
+TEST_F(OfAFile, TablesAreFoundWhereTheSceneHasThem) {
+  write(
+      "intruder = [{ aircraft = \"a\", path_file = \"p\" }, { id = \"ä\", aircraft = "
+      "\"b\", path_file = \"p\" }, { aircraft = \"c\", path_file = \"p\" }]\n" +
+      kText + "[[distractor]]\nkind = \"bird\"\nposition_ned_m = [9, 0, 0]\n");
+  Document document = open();
+  ASSERT_TRUE(document.scene()) << document.problem();
+  const auto& all = document.scene()->intruders;
+  ASSERT_EQ(all.size(), 4u);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(document.tables().at(begin_of(all[i].where)),
+              (nlohmann::ordered_json{"intruder", i}));
+  EXPECT_EQ(document.tables().at(begin_of(all[3].where)),
+            (nlohmann::ordered_json{"distractor", 0}));
+}
+
 TEST_F(OfAFile, ATextThatIsNoSceneIsKeptWithItsProblem) {
   Document document = open();
   document.edit({{Change::Kind::kSet, {"lens", "vertical_fov"}, {}, 60}}, "");

@@ -60,6 +60,8 @@ class Reader {
     node.kind = kind;
     node.begin = lines_.offset(value.source().begin);
     node.end = lines_.offset(value.source().end);
+    node.line = static_cast<int>(value.source().begin.line);
+    node.column = static_cast<int>(value.source().begin.column);
     return node;
   }
 

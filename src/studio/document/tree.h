@@ -25,6 +25,9 @@ struct Node {
   // Of the value, or of the header with its brackets.
   std::size_t begin = 0;
   std::size_t end = 0;
+  // Of its beginning, as messages name it.
+  int line = 0;
+  int column = 0;
   // Of a member of a table: the last name of its key, and where that begins: in `a.b = 1` the `b`.
   std::string key;
   std::size_t key_begin = 0;

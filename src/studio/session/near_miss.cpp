@@ -26,7 +26,7 @@ std::size_t actor_of(const Stage& stage, const document::Tables& tables, std::si
   const nlohmann::ordered_json wanted = {"intruder", intruder};
   const auto& all = stage.scene().intruders;
   const auto found = std::ranges::find_if(
-      all, [&](const scene::Intruder& one) { return table_at(tables, one.where.line) == wanted; });
+      all, [&](const scene::Intruder& one) { return table_at(tables, one.where) == wanted; });
   if (found == all.end()) throw Error(fmt::format("there is no intruder {}", intruder));
   return static_cast<std::size_t>(found - all.begin());
 }

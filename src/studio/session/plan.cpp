@@ -106,15 +106,17 @@ std::optional<std::array<double, 4>> horizon_in(const setup::Moment& moment) {
                     hundredths(right->second.y())};
 }
 
-// The sentences of the command line that are about each table, by the table's line.
-std::map<int, std::vector<std::string>> checks_of(const Stage& stage) {
-  std::map<int, std::vector<std::string>> checks;
-  std::map<std::string, int> line_of_place;
+using Checks = std::map<document::Begin, std::vector<std::string>>;
+
+// The sentences of the command line that are about each table, by where the table begins.
+Checks checks_of(const Stage& stage) {
+  Checks checks;
+  std::map<std::string, document::Begin> begin_of_place;
   const scene::Scene& scene = stage.scene();
   for (std::size_t i = 0; i < scene.intruders.size(); ++i) {
     const Where& where = scene.intruders[i].where;
-    line_of_place[to_string(where) + ": "] = where.line;
-    std::vector<std::string>& lines = checks[where.line];
+    begin_of_place[to_string(where) + ": "] = document::begin_of(where);
+    std::vector<std::string>& lines = checks[document::begin_of(where)];
     if (!lines.empty()) continue;  // of another bird of the flock
     const std::string words = setup::words_beyond_limits(
         scene.intruders[i].aircraft, stage.world().actors[i].path, 0, stage.duration_s());
@@ -122,8 +124,8 @@ std::map<int, std::vector<std::string>> checks_of(const Stage& stage) {
   }
   setup::warn_below_ground(scene, stage.world(), stage.duration_s(), [&](const std::string& said) {
     // "scene.toml:12:1: intruder 'a' is ..."
-    for (const auto& [place, line] : line_of_place)
-      if (said.starts_with(place)) checks[line].push_back(said.substr(place.size()));
+    for (const auto& [place, begin] : begin_of_place)
+      if (said.starts_with(place)) checks[begin].push_back(said.substr(place.size()));
   });
   return checks;
 }
@@ -240,7 +242,7 @@ class Planner {
     const preview::Party& party = parties_[place];
     const setup::Actor& actor = middles_.actors[place];
     const scene::Intruder& stated = stage_.scene().intruders[party.middle];
-    const Json table = table_at(tables_, stated.where.line);
+    const Json table = table_at(tables_, stated.where);
     Json points = Json::array();
     Json positions = Json::array();
     for (const setup::Moment& moment : moments_) {
@@ -250,7 +252,7 @@ class Planner {
     }
     const auto closest = closest_approach(stated, actor);
     Json checks = Json::array();
-    if (const auto found = checks_.find(stated.where.line); found != checks_.end())
+    if (const auto found = checks_.find(document::begin_of(stated.where)); found != checks_.end())
       for (const std::string& line : found->second) checks.push_back(line);
     const std::size_t never = approach.find("never in view");
     if (never != std::string::npos || approach.find("not in the world") != std::string::npos)
@@ -336,13 +338,13 @@ class Planner {
   setup::World still_;
   // Of the frames at which paths have their points.
   std::vector<setup::Moment> moments_;
-  std::map<int, std::vector<std::string>> checks_;
+  Checks checks_;
 };
 
 }  // namespace
 
-Json table_at(const document::Tables& tables, int line) {
-  const auto found = tables.find(line);
+Json table_at(const document::Tables& tables, const Where& where) {
+  const auto found = tables.find(document::begin_of(where));
   return found == tables.end() ? Json() : found->second;
 }
 
@@ -354,7 +356,7 @@ Json boxes_of(const Stage& stage, const setup::Moment& moment, const document::T
     const auto box = moment.boxes[i].whole();
     if (!box || !shows(moment, i)) continue;
     result.push_back(
-        {{"table", table_at(tables, stage.scene().intruders[i].where.line)},
+        {{"table", table_at(tables, stage.scene().intruders[i].where)},
          {"id", stage.world().actors[i].id},
          {"box", box_json(*box)},
          {"range_m",
@@ -388,7 +390,7 @@ Json lines_over(const Stage& stage, std::int64_t frame, const document::Tables& 
                           pixel ? Json(rounded(pixel->y(), 0.1)) : Json()});
       }
     }
-    lines.push_back({{"table", table_at(tables, stage.scene().intruders[party.middle].where.line)},
+    lines.push_back({{"table", table_at(tables, stage.scene().intruders[party.middle].where)},
                      {"points", points}});
   }
   return lines;

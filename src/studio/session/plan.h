@@ -8,8 +8,8 @@
 
 namespace airtruth::session {
 
-// ["intruder", 0] of what stands at that line; null where no table begins there.
-nlohmann::ordered_json table_at(const document::Tables& tables, int line);
+// ["intruder", 0] of what begins there; null where no table begins there.
+nlohmann::ordered_json table_at(const document::Tables& tables, const Where& where);
 
 // The paths of all that flies, as the page draws them: docs/how-to/studio.md has the members. Of a
 // flock the path of its middle stands for all, and the closest approach is that of its middle.

@@ -59,7 +59,7 @@ class OverAFlight : public testing::Test {
   static document::Tables tables_of(const scene::Scene& scene) {
     document::Tables tables;
     for (std::size_t i = 0; i < scene.intruders.size(); ++i)
-      tables[scene.intruders[i].where.line] = {"intruder", i};
+      tables[document::begin_of(scene.intruders[i].where)] = {"intruder", i};
     return tables;
   }
 
@@ -270,6 +270,24 @@ TEST_F(OverAFlight, ThePlanSaysWhatTheCommandLineSays) {
   EXPECT_NE(second.find("never in view"), std::string::npos) << second;
 }
 
+TEST_F(OverAFlight, TheChecksOfOneTableAreNotThoseOfAnotherOnItsLine) {
+  const scene::Scene scene = scene::parse_scene(
+      "intruder = [{ aircraft = \"c172/news\", waypoints_ned_m = [[100, 0, -300], [400, 0, "
+      "-300]], speed_mps = 50 }, { aircraft = \"c172/news\", waypoints_ned_m = [[100, 0, -300], "
+      "[400, 0, 200]], speed_mps = 500 }]\n[background]\nvideo = \"flight.mp4\"\n[lens]\n"
+      "vertical_fov_deg = 60\n[camera]\nposition_ned_m = [0, 0, -300]\n",
+      *folder_ / "scene.toml");
+  Stage stage(options());
+  stage.set(1, scene, {});
+  const auto tracks = plan_of(stage, tables_of(scene))["tracks"];
+  const auto is_said = [&](int track) {
+    return tracks[track]["checks"].dump().find("cannot fly its path") != std::string::npos;
+  };
+  EXPECT_FALSE(is_said(0)) << tracks[0]["checks"];
+  EXPECT_TRUE(is_said(1)) << tracks[1]["checks"];
+  EXPECT_EQ(tracks[1]["table"], (nlohmann::ordered_json{"intruder", 1}));
+}
+
 TEST_F(OverAFlight, TheClosestApproachOfAFlockSaysWhoseItIs) {
   const scene::Scene scene = scene_of(
       "[[distractor]]\nkind = \"bird\"\ncount = 5\nspread_m = 4\nposition_ned_m = [40, 0, "
@@ -320,7 +338,7 @@ TEST_F(OverAFlight, ANearMissGoesThroughTheMoment) {
   Stage unmeasured(options());
   unmeasured.set(1, scene_of(kSeen), {});
   EXPECT_THROW(encounter_through(unmeasured,
-                                 Tables{{10, nlohmann::ordered_json{"intruder", 0}}},
+                                 Tables{{{10, 1}, nlohmann::ordered_json{"intruder", 0}}},
                                  {0, 36, 25, true, 40, {}}),
                Error);
   const auto planned = [](const std::string& text, auto&& use) {
