@@ -607,6 +607,16 @@ double time_of_first_frame_s(const std::filesystem::path& path, const ReaderOpti
          begin.info().time_base.value();
 }
 
+std::vector<double> Reader::times_s(std::int64_t most) const {
+  if (!state_->pictures.empty() || !state_->first_pts) return {};
+  const auto index = index_frames(state_->path, state_->stream_index, *state_->first_pts, most);
+  std::vector<double> times;
+  for (std::size_t k = 0; index && k < index->pts.size() && std::ssize(times) < most; ++k)
+    times.push_back(static_cast<double>(index->pts[k] - *state_->first_pts) *
+                    state_->info.time_base.value());
+  return times;
+}
+
 std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }
 
 bool Reader::ends_early() const {

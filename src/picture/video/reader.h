@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "foundation/base/error.h"
 #include "foundation/base/log.h"
@@ -137,6 +138,9 @@ class Reader {
   // that of a clip of constant rate. at() may be called for any times in any order, and next() no
   // more after it. Empty where the file cannot be read there.
   std::optional<Frame> at(double time_s);
+  // After the first next(): when each of at most `most` frames from that one on is shown, in
+  // seconds from it. They are found without decoding; empty where the file does not say.
+  std::vector<double> times_s(std::int64_t most) const;
   // After the end: the number of packets that could not be decoded, and whether the file ends early
   // (truncated).
   std::int64_t corrupt_packets() const;

@@ -241,6 +241,8 @@ TEST_F(Video, VariableFrameRateKeepsItsTimes) {
   std::vector<double> times;
   while (const auto frame = reader.next()) times.push_back(frame->time_s);
   ASSERT_EQ(times.size(), 12u);
+  EXPECT_EQ(reader.times_s(100), times);
+  EXPECT_EQ(reader.times_s(5), std::vector(times.begin(), times.begin() + 5));
   EXPECT_NEAR(times[2], 0.08, 1e-9);
   EXPECT_NEAR(times[3], 0.20, 1e-9);
   EXPECT_NEAR(time_of_first_frame_s(folder_ / "vfr.mp4", {.first_frame = 3}), 0.20, 1e-9);

@@ -26,6 +26,11 @@ constexpr std::int64_t kReadBefore = 60;
 // Glances, each of some 20 kB, and thumbnails that are kept.
 constexpr std::size_t kMostGlances = 4000;
 constexpr std::size_t kMostThumbnails = 1000;
+// Bytes of a video whose frames' times are read although its rate is said to be constant: a disk
+// gives them in some seconds. Dropped frames of a larger one are not seen.
+constexpr std::uintmax_t kMostIndexed = std::uintmax_t{1} << 30;
+// Of a frame's interval: rounded time stamps are no other rate.
+constexpr double kMostOff = 0.25;
 
 }  // namespace
 
@@ -40,6 +45,27 @@ Clip::Clip(const scene::Background& background, pipeline::Options options)
   scene_.background = background;
   reader_.emplace(open(0));
   info_ = reader_->info();
+  const std::int64_t first = background.first_frame;
+  begin_s_ = static_cast<double>(first) / rate_hz();
+  std::error_code none;
+  if (!info_.variable_frame_rate && fs::file_size(background.video, none) > kMostIndexed) return;
+  read_on();
+  std::vector<double> times_s = reader_->times_s(frame_count());
+  bool is_even = true;
+  for (std::size_t k = 0; k < times_s.size(); ++k)
+    is_even = is_even && std::abs(times_s[k] * rate_hz() - static_cast<double>(k)) <= kMostOff;
+  if (is_even) return;
+  times_s_ = std::move(times_s);
+  if (first > 0) begin_s_ = video::time_of_first_frame_s(background.video, {.first_frame = first});
+}
+
+std::int64_t Clip::frame_near(double time_s) const {
+  if (times_s_.empty() || time_s <= 0) return std::llround(time_s * rate_hz());
+  if (time_s >= times_s_.back())
+    return std::ssize(times_s_) - 1 + std::llround((time_s - times_s_.back()) * rate_hz());
+  const auto after = std::ranges::upper_bound(times_s_, time_s);
+  const bool is_nearer = *after - time_s <= time_s - *(after - 1);
+  return after - times_s_.begin() - (is_nearer ? 0 : 1);
 }
 
 std::int64_t Clip::frame_count() const {

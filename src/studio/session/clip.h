@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "foundation/image/tone_curve.h"
 #include "picture/video/reader.h"
@@ -32,6 +33,12 @@ class Clip {
   // Frames of the clip, as the container states it; at least 1.
   std::int64_t frame_count() const;
   double rate_hz() const { return info_.frame_rate.value(); }
+  // When the video shows its first frame, in seconds from the video's beginning.
+  double begin_s() const { return begin_s_; }
+  // Of a variable frame rate when each frame is shown, in seconds from the first; else empty.
+  const std::vector<double>& times_s() const { return times_s_; }
+  // The frame that is shown nearest to a time; beyond the clip by the rate.
+  std::int64_t frame_near(double time_s) const;
 
   // Throws Error where the clip has no such frame.
   std::shared_ptr<const video::Frame> frame(std::int64_t k);
@@ -59,6 +66,8 @@ class Clip {
   pipeline::Options options_;
   std::optional<video::Reader> reader_;
   video::StreamInfo info_;
+  double begin_s_ = 0;
+  std::vector<double> times_s_;
   std::int64_t next_ = 0;        // that the reader gives
   std::int64_t first_sure_ = 0;  // from which on this reader knows the cuts
   std::optional<std::int64_t> first_pts_;

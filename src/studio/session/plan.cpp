@@ -301,8 +301,7 @@ class Planner {
     setup::World alone = still_;
     alone.actors = {still_.actors[actor]};
     for (const scene::Seen& seen : stage_.stated_seen(parties_[actor].middle)) {
-      const auto frame =
-          static_cast<std::int64_t>(std::llround(seen.time_s * stage_.clip_rate_hz()));
+      const std::int64_t frame = stage_.frame_near(seen.time_s);
       const setup::Moment moment =
           setup::moment_at(alone, frame, stage_.time_s(frame), stage_.shake_at(frame));
       const auto& state = moment.states.front();

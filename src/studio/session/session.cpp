@@ -294,6 +294,8 @@ class Session::Impl {
               {"height", info.height},
               {"frames", clip.frame_count()},
               {"rate_hz", clip.rate_hz()},
+              {"begin_s", clip.begin_s()},
+              {"times_s", clip.times_s()},
               {"first_frame", shot->background.first_frame}}}};
   }
 

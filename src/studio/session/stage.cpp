@@ -173,10 +173,13 @@ Shake Stage::shake_at(std::int64_t frame) const {
 double Stage::time_s(std::int64_t frame) const {
   if (motion_ && frame >= 0 && frame < std::ssize(motion_->all()))
     return motion_->all()[static_cast<std::size_t>(frame)].time_s;
+  const std::vector<double>& times_s = clip_->times_s();
+  if (frame >= 0 && frame < std::ssize(times_s)) return times_s[static_cast<std::size_t>(frame)];
   return static_cast<double>(frame) / clip_->rate_hz();
 }
 
 double Stage::duration_s() const {
+  if (!clip_->times_s().empty()) return clip_->times_s().back();
   return static_cast<double>(clip_->frame_count() - 1) / clip_->rate_hz();
 }
 

@@ -55,10 +55,10 @@ class Stage {
   Shake shake_at(std::int64_t frame) const;
   // How the camera sees in frame k; empty where its path does not reach that time.
   std::optional<projection::Sight> sight_at(std::int64_t frame) const;
-  // The time of frame k: its own where it was read, else by the rate.
+  // The time of frame k: its own where that is known, else by the rate.
   double time_s(std::int64_t frame) const;
   double duration_s() const;
-  double clip_rate_hz() const { return clip_->rate_hz(); }
+  std::int64_t frame_near(double time_s) const { return clip_->frame_near(time_s); }
   std::int64_t frame_count() const { return clip_->frame_count(); }
   // The moments of [[intruder.seen]] as the scene states them, before they are placed.
   const std::vector<scene::Seen>& stated_seen(std::size_t actor) const { return seen_.at(actor); }

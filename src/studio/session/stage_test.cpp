@@ -2,6 +2,7 @@
 #include "studio/session/stage.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -240,6 +241,31 @@ TEST_F(OverAFlight, ThePlanPassesTheHandles) {
   EXPECT_NEAR(track["handles"][0]["range_m"].get<double>(), 150, 0.1);
   EXPECT_NEAR(track["points"][36][4].get<double>(), 30, 0.5);
   EXPECT_FALSE(plan["horizon"].empty());
+}
+
+// 20 frames at 30 Hz, then 10 at 15 Hz: frame 28 is shown at (20 + 2 * 8) / 30 s.
+TEST_F(OverAFlight, FramesOfAVariableRateHaveTheirTimes) {
+  const std::string command =
+      "cd '" + folder_->path().string() +
+      "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf \"select='lt(n,20)+not(mod(n,2))'\" "
+      "-fps_mode vfr -c:v libx264 vfr.mp4";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  scene::Scene scene = scene_of(kSeen);
+  scene.background.video = *folder_ / "vfr.mp4";
+  Stage stage(options());
+  stage.set(1, scene, {});
+  EXPECT_EQ(stage.frame_count(), 30);
+  EXPECT_NEAR(stage.time_s(28), 1.2, 1e-6);
+  EXPECT_NEAR(stage.duration_s(), 38 / 30.0, 1e-6);
+  EXPECT_EQ(stage.frame_near(1.01), 25);
+  EXPECT_EQ(stage.frame_near(-0.1), std::llround(-0.1 * stage.clip(scene.background).rate_hz()));
+  const auto handles = plan_of(stage, tables_of(scene))["tracks"][0]["handles"];
+  EXPECT_EQ(handles[0]["frame"], 3);
+  EXPECT_EQ(handles[1]["frame"], 28);
+  scene.background.first_frame = 25;
+  EXPECT_NEAR(stage.clip(scene.background).begin_s(), 1, 1e-6);
+  // A constant rate has no times of its own.
+  EXPECT_TRUE(stage.clip(scene_of(kSeen).background).times_s().empty());
 }
 
 TEST_F(OverAFlight, HandlesHaveTheRangeOfTheirOwnAircraft) {

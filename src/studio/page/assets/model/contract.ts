@@ -22,6 +22,8 @@ export interface Clip {
   height: number;
   frames: number;
   rate_hz: number;
+  begin_s: number;    // of the video, when it shows the first frame
+  times_s: number[];  // of the frames, where the rate is not constant; else empty
   first_frame: number;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Approach, Change, Clip, Json, Path, Plan, State, Table, Track} from './contract';
-import {type Point, clamp, courseOf, isPlaced, mix, nedAt, radians, relativeOf, round, speedOf, turned, velocityAt} from './geometry';
+import {type Point, clamp, courseOf, frameAt, isPlaced, mix, nedAt, radians, relativeOf, round, speedOf, timeAt, turned, velocityAt} from './geometry';
 
 // Of a scene's numbers (src/scene/scene/limits.h).
 export const MOST_MISS_M = 1e5;
@@ -88,8 +88,8 @@ export function trackOf(plan: Plan|null, path: Path|null): Track|null {
   return plan?.tracks.find((one) => isSame(one.table, path)) ?? null;
 }
 
-export const frameOf = (time_s: number, clip: Clip) => Math.round(time_s * clip.rate_hz);
-export const timeOf = (frame: number, clip: Clip) => round(frame / clip.rate_hz, 3);
+export const frameOf = (time_s: number, clip: Clip) => Math.round(frameAt(time_s, clip));
+export const timeOf = (frame: number, clip: Clip) => round(timeAt(frame, clip), 3);
 
 export function momentsOf(flyer: Flyer, clip: Clip): Moment[] {
   return tables(flyer.table.seen).map((seen, k) => {
@@ -169,9 +169,8 @@ export function toMoments(flyer: Flyer, track: Track, clip: Clip): Change[]|null
 export function toApproach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): Change[]|null {
   const cpa = track.cpa;
   if (!cpa) return null;
-  const frame = clamp(cpa.time_s * clip.rate_hz, plan.frames[0], plan.frames[plan.frames.length - 1]);
-  const [own, other] =
-      [velocityAt(plan, plan.own.ned, frame, clip.rate_hz), velocityAt(plan, track.ned, frame, clip.rate_hz)];
+  const frame = clamp(frameAt(cpa.time_s, clip), plan.frames[0], plan.frames[plan.frames.length - 1]);
+  const [own, other] = [velocityAt(plan, plan.own.ned, frame, clip), velocityAt(plan, track.ned, frame, clip)];
   if (!own || !other) return null;
   const course = round(turned(courseOf(other) - courseOf(own)), 1);
   const climb = round(-other[2], 1);
@@ -250,8 +249,9 @@ export function newFlyer(choice: Choice, scene: Table, clip: Clip, frame: number
   const isEarly = span - frame >= Math.min(way, clip.rate_hz, frame);
   const [first, last] = isEarly ? [frame, Math.min(frame + way, span)] : [Math.max(0, frame - way), frame];
   const direction = at[0] < clip.width / 2 ? 1 : -1;
-  const rangeAt = (k: number) => Math.max(range_m * NEAREST_SHARE, range_m - (own_mps * (k - first)) / clip.rate_hz);
-  const xAt = (k: number) => at[0] + (direction * rate_px_s * (k - frame)) / clip.rate_hz;
+  const rangeAt = (k: number) =>
+      Math.max(range_m * NEAREST_SHARE, range_m - own_mps * (timeAt(k, clip) - timeAt(first, clip)));
+  const xAt = (k: number) => at[0] + direction * rate_px_s * (timeAt(k, clip) - timeAt(frame, clip));
   // So high above the horizon that the height is that of the frame shown.
   const pixelAt = (k: number): Point => {
     const [here, then] = [frame, k].map((one) => plan && horizonAt(plan, one, xAt(one)));
@@ -282,7 +282,7 @@ export function copyOf(flyer: Flyer, clip: Clip): Table {
 }
 
 export function ownSpeed(plan: Plan, frame: number, clip: Clip): number {
-  const own = velocityAt(plan, plan.own.ned, frame, clip.rate_hz);
+  const own = velocityAt(plan, plan.own.ned, frame, clip);
   return own ? Math.hypot(own[0], own[1]) : 0;
 }
 
@@ -303,8 +303,8 @@ export interface Across {
 export function acrossOf(flyer: Flyer, plan: Plan, clip: Clip): Across {
   const encounter = tableOf(flyer.table.encounter);
   const number = (key: string) => numberOf(encounter[key]) ?? 0;
-  const frame = number('cpa_time_s') * clip.rate_hz;
-  const [climb_mps, own] = [number('climb_mps'), velocityAt(plan, plan.own.ned, frame, clip.rate_hz)];
+  const frame = frameAt(number('cpa_time_s'), clip);
+  const [climb_mps, own] = [number('climb_mps'), velocityAt(plan, plan.own.ned, frame, clip)];
   const relative = relativeOf(ownSpeed(plan, frame, clip), number('speed_mps'), climb_mps, statedCourse(flyer));
   const length = Math.hypot(...relative);
   if (length < 1e-6) return {across: [1, 0], back: [0, 0]};
@@ -360,9 +360,11 @@ export function describedView({points}: Track, plan: Plan, clip: Clip): string {
   const seen = points.filter((point) => point[5]).map(([frame]) => frame);
   if (!seen.length) return '';
   const step = plan.frames.length > 1 ? plan.frames[1] - plan.frames[0] : 1;
-  const frames = seen.reduce((sum, frame, k) => sum + Math.min(step, (seen[k + 1] ?? clip.frames) - frame), 0);
-  const [from_s, to_s] = [seen[0], seen[seen.length - 1]].map((frame) => round(frame / clip.rate_hz, 1));
-  return `In view for ${round(frames / clip.rate_hz, 1)} s, between ${from_s} and ${to_s} s.`;
+  const lasts_s = seen.reduce(
+      (sum, frame, k) => sum + timeAt(Math.min(frame + step, seen[k + 1] ?? clip.frames), clip) - timeAt(frame, clip),
+      0);
+  const [from_s, to_s] = [seen[0], seen[seen.length - 1]].map((frame) => round(timeAt(frame, clip), 1));
+  return `In view for ${round(lasts_s, 1)} s, between ${from_s} and ${to_s} s.`;
 }
 
 export const describedApproach = (cpa: Approach) => `closest at ${round(cpa.time_s, 1)} s: ${

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {BoxPx, Ned, Plan, Track, TrackPoint} from './contract';
+import type {BoxPx, Clip, Ned, Plan, Track, TrackPoint} from './contract';
 
 export type Point = [number, number];
 
@@ -84,10 +84,27 @@ export function nedAt(plan: Plan, ned: (Ned|null)[], frame: number): Ned|null {
   return nedMix(a.ned, b.ned, (frame - a.f) / (b.f - a.f));
 }
 
+// The time of a frame, also between two, and the frame of a time. Beyond the clip they go on by the rate.
+export function timeAt(frame: number, {times_s, rate_hz}: Clip): number {
+  const last = times_s.length - 1;
+  if (last < 1 || frame <= 0) return frame / rate_hz;
+  if (frame >= last) return times_s[last] + (frame - last) / rate_hz;
+  const k = Math.floor(frame);
+  return mix(times_s[k], times_s[k + 1], frame - k);
+}
+export function frameAt(time_s: number, {times_s, rate_hz}: Clip): number {
+  const last = times_s.length - 1;
+  if (last < 1 || time_s <= 0) return time_s * rate_hz;
+  if (time_s >= times_s[last]) return last + (time_s - times_s[last]) * rate_hz;
+  const k = times_s.findIndex((one) => one > time_s) - 1;
+  return k + (time_s - times_s[k]) / (times_s[k + 1] - times_s[k]);
+}
+
 // Metres a second, north-east-down.
-export function velocityAt(plan: Plan, ned: (Ned|null)[], frame: number, rate_hz: number): Ned|null {
+export function velocityAt(plan: Plan, ned: (Ned|null)[], frame: number, clip: Clip): Ned|null {
   const [a, b] = [nedAt(plan, ned, frame - 0.5), nedAt(plan, ned, frame + 0.5)];
-  return a && b ? [(b[0] - a[0]) * rate_hz, (b[1] - a[1]) * rate_hz, (b[2] - a[2]) * rate_hz] : null;
+  const lasts_s = timeAt(frame + 0.5, clip) - timeAt(frame - 0.5, clip);
+  return a && b ? [(b[0] - a[0]) / lasts_s, (b[1] - a[1]) / lasts_s, (b[2] - a[2]) / lasts_s] : null;
 }
 
 export const courseOf = (velocity: Ned) => degrees(Math.atan2(velocity[1], velocity[0]));

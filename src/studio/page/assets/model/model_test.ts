@@ -3,8 +3,8 @@
 import {Lost, Refused} from './connection';
 import type {Clip, State, Table, Track} from './contract';
 import {type Edit, Edits} from './edits';
-import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, toMoments, withCourse, withMiss, withMoment} from './flyers';
-import {freePlace, nedAt, seenAt, turned} from './geometry';
+import {type Flyer, describedView, flyersOf, missOf, momentsOf, nearer, newFlyer, roomOf, timeOf, toMoments, withCourse, withMiss, withMoment} from './flyers';
+import {frameAt, freePlace, nedAt, seenAt, timeAt, turned} from './geometry';
 import {Store} from './store';
 
 type Test = () => void|Promise<void>;
@@ -25,6 +25,8 @@ const CLIP: Clip = {
   height: 960,
   frames: 150,
   rate_hz: 30,
+  begin_s: 0,
+  times_s: [],
   first_frame: 0,
 };
 const flyer = (table: Table, key = 'intruder'): Flyer => flyersOf({[key]: [table]})[0];
@@ -217,6 +219,21 @@ tests['Between the points of a track, and beyond its ends'] = () => {
   const plan = {frames: [0, 10], own: {ned: []}} as never;
   same(nedAt(plan, [[0, 0, -100], [10, 20, -110]], 15), [15, 30, -115]);
   same(turned(-90), 270);
+};
+tests['Frames of a variable rate have their own times'] = () => {
+  // Ten frames at 30 Hz, then ten at 10 Hz.
+  const clip: Clip = {
+    ...CLIP,
+    frames: 20,
+    rate_hz: 15,
+    times_s: Array.from({length: 20}, (_, k) => (k < 10 ? k : 10 + 3 * (k - 10)) / 30)
+  };
+  same([5, 10, 12, 19].map((frame) => timeOf(frame, clip)), [0.167, 0.333, 0.533, 1.233]);
+  for (let frame = -5; frame < 30; frame += 0.5) near(frameAt(timeAt(frame, clip), clip), frame, 1e-9);
+  same(
+      momentsOf(flyer({seen: [0.167, 0.533].map((time_s) => ({time_s, pixel: [1, 1], range_m: 9}))}), clip)
+          .map((one) => one.frame),
+      [5, 12]);
 };
 tests['What is new is in the clip, and at its pixel in the frame shown'] = () => {
   for (const frame of [0, 60, 149]) {

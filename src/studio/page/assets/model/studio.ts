@@ -41,8 +41,9 @@ export class Studio {
       done: (state) => this.took(state),
       dropped: (count) => {
         store.say(
-            'warning', `Not done, since the text of the scene is another one by now: ${count} ${
-                           count === 1 ? 'change' : 'changes'} made upon the text before.`);
+            'warning',
+            `Not done, since the text of the scene is another one by now: ${count} ${
+                count === 1 ? 'change' : 'changes'} made upon the text before.`);
         this.settle();
       },
       refused: (line) => {

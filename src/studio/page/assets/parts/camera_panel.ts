@@ -77,10 +77,9 @@ export class CameraPanel extends Part {
     const said = (...keys: string[]) => keys.map((key) => notes[key]).filter(Boolean).join('; ');
     text(
         this.used,
-        clip ?
-            `${clip.frames} frames are used, from ${(clip.first_frame / clip.rate_hz).toFixed(2)} s of the video on. ${
-                said('background.first_frame', 'background.frame_count')}` :
-            '');
+        clip ? `${clip.frames} frames are used, from ${clip.begin_s.toFixed(2)} s of the video on. ${
+                   said('background.first_frame', 'background.frame_count')}` :
+               '');
     for (const {field, value} of this.rows) field.show(value(scene));
     const lens = tableOf(scene.lens);
     const hasFov = 'vertical_fov_deg' in lens;

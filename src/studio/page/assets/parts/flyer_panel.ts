@@ -100,7 +100,7 @@ export class FlyerPanel extends Part {
     }
     moments.forEach((moment, k) => this.rows[k].show(moment, this.now.moment === k, roomOf(moments, k, clip), clip));
     const track = trackOf(plan, flyer.path);
-    const velocity = plan && track && velocityAt(plan, track.ned, this.now.frame, clip.rate_hz);
+    const velocity = plan && track && velocityAt(plan, track.ned, this.now.frame, clip);
     this.nearMiss.show(flyer, timeOf(this.now.frame, clip), velocity && speedOf(velocity));
     if (plan && flyer.statement === 'approach') {
       const {miss_m, least_m} = missOf(flyer, plan, clip);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
-import {type Flyer, frameOf, momentsOf, numberOf, roomOf, tableOf} from '../model/flyers';
-import {type Point, clamp, nedAt, round} from '../model/geometry';
-import {arrow, attribute, renewed, s} from './part';
+import {type Flyer, frameOf, momentsOf, numberOf, roomOf, tableOf, timeOf} from '../model/flyers';
+import {type Point, clamp, frameAt, nedAt, round, timeAt} from '../model/geometry';
+import {arrow, renewed, s} from './part';
 import {type Drag, SideView, niceStep} from './side_view';
 
 // Around the plot, where text is 16 px: left, right, top and bottom.
@@ -28,9 +28,9 @@ export class HeightView extends SideView {
   protected draw(plan: Plan, clip: Clip, flyers: Flyer[], own: Ned|null, width: number, height: number): void {
     [this.left, this.right, this.top, this.bottom] = MARGINS.map((margin) => margin * this.px);
     if (!this.drag) this.frameAll(plan);
-    const x = this.x(this.now.frame / clip.rate_hz);
+    const x = this.x(timeAt(this.now.frame, clip));
     renewed(this.svg, [
-      this.axes(clip, width, height),
+      this.axes(width, height),
       ...(own ? plan.volumes.filter((one) => one.vertical_m > 0)
                     .map((one) => this.volume(plan, one.vertical_m, one.name)) :
                 []),
@@ -42,7 +42,7 @@ export class HeightView extends SideView {
 
   private get end_s(): number {
     const {clip} = this.now;
-    return clip ? Math.max(0.1, (clip.frames - 1) / clip.rate_hz) : 1;
+    return clip ? Math.max(0.1, timeAt(clip.frames - 1, clip)) : 1;
   }
 
   private x(time_s: number): number {
@@ -79,7 +79,7 @@ export class HeightView extends SideView {
     [this.low_m, this.high_m] = [Math.min(low, high - LEAST_M) - room, Math.max(high, low + LEAST_M) + room];
   }
 
-  private axes(clip: Clip, width: number, height: number): SVGGElement {
+  private axes(width: number, height: number): SVGGElement {
     const group = s('g', {class: 'grid'});
     const metres =
         niceStep((this.high_m - this.low_m) / Math.max(2, (height - this.top - this.bottom) / (36 * this.px)));
@@ -108,7 +108,6 @@ export class HeightView extends SideView {
             height: Math.max(0, height - this.bottom - this.y(0))
           },
             s('title', {}, 'Below the ground')));
-    attribute(group, 'data-rate', clip.rate_hz);
     return group;
   }
 
@@ -123,7 +122,7 @@ export class HeightView extends SideView {
 
   protected approach(flyer: Flyer, track: Track, plan: Plan, clip: Clip): SVGElement[] {
     if (!track.cpa || track.cpa.time_s < 0 || track.cpa.time_s > this.end_s) return [];
-    const own = nedAt(plan, plan.own.ned, track.cpa.time_s * clip.rate_hz);
+    const own = nedAt(plan, plan.own.ned, frameAt(track.cpa.time_s, clip));
     if (!own) return [];
     const [x, y, oy] = [this.x(track.cpa.time_s), this.y(-own[2] + track.cpa.above_m), this.y(-own[2])];
     const label =
@@ -139,12 +138,12 @@ export class HeightView extends SideView {
     const {group, flyer, kind = 'time', index} = this.pressed(event);
     if (kind === 'moment') this.studio.store.put({moment: index});
     this.hold(event, kind, flyer, index);
-    if (kind === 'time' && !group) this.studio.show(this.timeAt(event) * this.now.clip!.rate_hz);
+    if (kind === 'time' && !group) this.studio.show(frameAt(this.timeAt(event), this.now.clip!));
   }
 
   protected changesOf({kind, flyer, index}: Drag, event: PointerEvent): Change[] {
     const {plan, clip} = this.now;
-    if (kind === 'time' && clip) this.studio.show(this.timeAt(event) * clip.rate_hz);
+    if (kind === 'time' && clip) this.studio.show(frameAt(this.timeAt(event), clip));
     if (kind === 'time' || !plan || !clip || !flyer) return [];
     const time_s = clamp(this.timeAt(event), 0, this.end_s);
     if (kind === 'moment') {
@@ -154,9 +153,9 @@ export class HeightView extends SideView {
       if (last < first) return [];
       const frame = clamp(frameOf(time_s, clip), first, last);
       this.studio.show(frame);
-      return [{set: [...moments[index].path, 'time_s'], to: round(frame / clip.rate_hz, 3)}];
+      return [{set: [...moments[index].path, 'time_s'], to: timeOf(frame, clip)}];
     }
-    const own = nedAt(plan, plan.own.ned, time_s * clip.rate_hz);
+    const own = nedAt(plan, plan.own.ned, frameAt(time_s, clip));
     const key = (name: string) => [...flyer.path, 'encounter', name];
     const above: Change[] = own ? [{set: key('cpa_above_m'), to: round(this.heightAt(event) + own[2], 1)}] : [];
     return [{set: key('cpa_time_s'), to: round(time_s, 2)}, ...above];

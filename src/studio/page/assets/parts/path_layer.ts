@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx, Clip, LinePoint, Path} from '../model/contract';
 import {type Flyer, type Moment, flyersOf, isSame, momentsOf, nearer, trackOf, writtenPixel} from '../model/flyers';
-import {type Point, clamp, degrees, freePlace, mix, round} from '../model/geometry';
+import {type Point, clamp, degrees, freePlace, mix, round, timeAt} from '../model/geometry';
 import type {Studio} from '../model/studio';
 import {distance} from './overlay_layer';
 import {Keyed, arrow, attribute, s, text, wordsWidth} from './part';
@@ -258,7 +258,7 @@ export class PathLayer {
     const all = pathData(points, () => true);
     const seen = pathData(points, isIn);
     for (const [k, data] of [all, all, seen, all].entries()) attribute(element.children[k], 'd', data);
-    attribute(element.children[4], 'd', secondsOf(points, isIn, clip.rate_hz, 2.2 * this.px));
+    attribute(element.children[4], 'd', secondsOf(points, isIn, clip, 2.2 * this.px));
   }
 
   // As the camera of the picture that is shown would see it.
@@ -346,11 +346,11 @@ function placeOn(points: LinePoint[], frame: number): Point|null {
 }
 
 // A dot at every whole second in view.
-function secondsOf(points: LinePoint[], isDrawn: (point: Point) => boolean, rate_hz: number, radius: number): string {
+function secondsOf(points: LinePoint[], isDrawn: (point: Point) => boolean, clip: Clip, radius: number): string {
   let data = '';
   let last = -1;
   for (const [frame, x, y] of points) {
-    const second = Math.floor(frame / rate_hz + 1e-6);
+    const second = Math.floor(timeAt(frame, clip) + 1e-6);
     if (x !== null && y !== null && second !== last && isDrawn([x, y]))
       data += `M${round(x - radius, 2)},${y}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${
           - 2 * radius},0`;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {BoxPx, Change, Clip, Ned, Plan, Track} from '../model/contract';
 import {type Flyer, acrossOf, flyerAt, isSame, momentsOf, numberOf, setAcross, statedCourse, tableOf, trackOf, withCourse, writtenRange, writtenWidth} from '../model/flyers';
-import {type Point, courseOf, degrees, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
+import {type Point, courseOf, degrees, frameAt, freePlace, nedAt, radians, round, turned, velocityAt} from '../model/geometry';
 import {arrow, renewed, s, wordsWidth} from './part';
 import {type Drag, SideView, niceStep} from './side_view';
 
@@ -69,7 +69,7 @@ export class PlanView extends SideView {
 
   private get ownVelocity(): Ned|null {
     const {plan, clip} = this.now;
-    return plan && clip ? velocityAt(plan, plan.own.ned, 0, clip.rate_hz) : null;
+    return plan && clip ? velocityAt(plan, plan.own.ned, 0, clip) : null;
   }
 
   private ground([n, e]: Ned): Ground {
@@ -155,7 +155,7 @@ export class PlanView extends SideView {
   }
 
   private ownMark(plan: Plan, clip: Clip, own: Ned): SVGGElement {
-    const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip.rate_hz);
+    const velocity = velocityAt(plan, plan.own.ned, this.now.frame, clip);
     const angle = velocity && Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) - this.course_deg : 0;
     const [x, y] = this.at(own);
     this.take(x, y, 9 * this.px);
@@ -297,9 +297,9 @@ interface CpaPlace {
 // Where the two are at their closest approach.
 function approachOf(plan: Plan, track: Track, clip: Clip): CpaPlace|null {
   if (!track.cpa) return null;
-  const frame = track.cpa.time_s * clip.rate_hz;
+  const frame = frameAt(track.cpa.time_s, clip);
   const own = nedAt(plan, plan.own.ned, frame);
-  const velocity = velocityAt(plan, plan.own.ned, frame, clip.rate_hz);
+  const velocity = velocityAt(plan, plan.own.ned, frame, clip);
   if (!own || !velocity) return null;
   const ownCourse_deg = Math.hypot(velocity[0], velocity[1]) > 0.1 ? courseOf(velocity) : 0;
   const [c, si] = [Math.cos(radians(ownCourse_deg)), Math.sin(radians(ownCourse_deg))];

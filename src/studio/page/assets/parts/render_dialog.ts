@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {BoxPx, Rendered} from '../model/contract';
-import {clamp} from '../model/geometry';
+import type {BoxPx, Clip, Rendered} from '../model/contract';
+import {clamp, frameAt, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {DialogPart} from './dialog';
 import {tick} from './fields';
@@ -66,8 +66,8 @@ export class RenderDialog extends DialogPart {
       if (event.buttons & 1) this.swipeTo(event);
     });
     this.stage.addEventListener('pointerdown', (event) => this.swipeTo(event));
-    this.tellFrames(this.rendered, (frame) => this.came(frame));
-    this.tellFrames(this.original, (frame) => {
+    this.tellFrames(this.rendered, () => 0, (frame) => this.came(frame));
+    this.tellFrames(this.original, () => this.now.clip?.begin_s ?? 0, (frame) => {
       this.originalFrame = frame;
       this.follow();
     });
@@ -138,14 +138,16 @@ export class RenderDialog extends DialogPart {
     this.partFilms();
   }
 
-  // Tells each frame that a film shows. A browser may leave out the callback of a frame, but never that a seek has ended.
-  private tellFrames(film: HTMLVideoElement, came: (frame: number) => void): void {
+  // Tells each frame of the clip that a film shows, from the clip's begin in it on. A browser may leave out the
+  // callback of a frame, but never that a seek has ended.
+  private tellFrames(film: HTMLVideoElement, begin_s: () => number, came: (frame: number) => void): void {
+    const at = (time_s: number) => (this.now.clip ? frameAt(time_s - begin_s(), this.now.clip) : 0);
     const next = (_: number, {mediaTime}: {mediaTime: number}) => {
       film.requestVideoFrameCallback(next);
-      came(Math.round(mediaTime * this.rate_hz));
+      came(Math.round(at(mediaTime)));
     };
     film.requestVideoFrameCallback?.(next);
-    film.addEventListener('seeked', () => came(Math.round(film.currentTime * this.rate_hz - 0.5)));
+    film.addEventListener('seeked', () => came(Math.round(at(film.currentTime) - 0.5)));
   }
 
   // As large as there is room for, with the boxes in the film's own pixels.
@@ -175,10 +177,6 @@ export class RenderDialog extends DialogPart {
     this.line.style.left = `${share}%`;
   }
 
-  private get rate_hz(): number {
-    return this.now.clip?.rate_hz ?? 1;
-  }
-
   private toggle(): void {
     if (!this.rendered.paused) return this.pause();
     if (this.rendered.ended) this.goTo(0);
@@ -194,7 +192,7 @@ export class RenderDialog extends DialogPart {
 
   private goTo(frame: number): void {
     this.frame = frame;
-    seek(this.rendered, frame, this.rate_hz);
+    if (this.now.clip) seek(this.rendered, 0, frame, this.now.clip);
     this.follow();
   }
 
@@ -210,19 +208,19 @@ export class RenderDialog extends DialogPart {
   private follow(): void {
     const {clip} = this.now;
     if (!this.shown || !clip) return;
-    const wanted = this.frame + clip.first_frame;
+    const wanted = this.frame;
     const ahead_s = (this.originalFrame - wanted) / clip.rate_hz;
     if (!this.rendered.paused && Math.abs(ahead_s) < MOST_AHEAD_S) {
       this.original.playbackRate = clamp(1 - CATCH_UP * ahead_s, 0.5, 1.5);
       this.sought = -1;
     } else if (this.originalFrame !== wanted && this.sought !== wanted) {
       this.sought = wanted;
-      seek(this.original, wanted, clip.rate_hz);
+      seek(this.original, clip.begin_s, wanted, clip);
     }
   }
 }
 
 // By the middle of the frame, so that no rounding shows the one before.
-function seek(film: HTMLVideoElement, frame: number, rate_hz: number): void {
-  film.currentTime = (frame + 0.5) / rate_hz;
+function seek(film: HTMLVideoElement, begin_s: number, frame: number, clip: Clip): void {
+  film.currentTime = begin_s + timeAt(frame + 0.5, clip);
 }

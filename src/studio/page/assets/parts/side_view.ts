@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {Change, Clip, Ned, Plan, Track} from '../model/contract';
 import {type Flyer, flyerAt, flyersOf, isSame, momentsOf, trackOf} from '../model/flyers';
-import {type Point, nedAt, round} from '../model/geometry';
+import {type Point, nedAt, round, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {Part, attribute, h, s, ui} from './part';
 
@@ -55,8 +55,8 @@ export abstract class SideView extends Part {
   protected take(_x: number, _y: number, _r: number): void {}
 
   protected points(plan: Plan, ned: (Ned|null)[]): string {
-    const rate_hz = this.now.clip!.rate_hz;
-    const at = (place: Ned, frame: number) => this.at(place, frame / rate_hz).map((v) => round(v, 1)).join();
+    const clip = this.now.clip!;
+    const at = (place: Ned, frame: number) => this.at(place, timeAt(frame, clip)).map((v) => round(v, 1)).join();
     return plan.frames.flatMap((frame, k) => (ned[k] ? [at(ned[k]!, frame)] : [])).join(' ');
   }
 
@@ -66,7 +66,7 @@ export abstract class SideView extends Part {
     if (!track) return [];
     const group = this.group(flyer, this.points(plan, track.ned));
     const now = nedAt(plan, track.ned, this.now.frame);
-    if (now) group.append(...this.place(this.at(now, this.now.frame / clip.rate_hz), flyer, own));
+    if (now) group.append(...this.place(this.at(now, timeAt(this.now.frame, clip)), flyer, own));
     if (isSame(flyer.path, this.now.selected))
       group.append(...this.approach(flyer, track, plan, clip), ...this.moments(flyer, track, plan, clip));
     return [group];

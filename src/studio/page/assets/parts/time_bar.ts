@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {flyersOf, isSame, momentsOf} from '../model/flyers';
-import {clamp, round} from '../model/geometry';
+import {clamp, frameAt, round, timeAt} from '../model/geometry';
 import type {Member} from '../model/store';
 import {Part, attribute, h, s, text, token} from './part';
 
@@ -53,7 +53,7 @@ export class TimeBar extends Part {
     if (!clip) return;
     attribute(this.input, 'max', clip.frames - 1);
     this.input.value = String(frame);
-    const words = `${round(frame / clip.rate_hz, 2).toFixed(2)} s`;
+    const words = `${round(timeAt(frame, clip), 2).toFixed(2)} s`;
     attribute(this.input, 'aria-valuetext', `${words}, frame ${frame} of ${clip.frames}`);
     text(this.label, `${words} · ${clip.first_frame + frame}`);
     attribute(
@@ -81,7 +81,8 @@ export class TimeBar extends Part {
       const {clip, playing, frame, speed} = this.now;
       if (!playing || !clip) return;
       if (frame !== last) this.begun = {frame, ms: now_ms};
-      const to = this.begun.frame + Math.floor(((now_ms - this.begun.ms) / 1000) * clip.rate_hz * speed);
+      const time_s = timeAt(this.begun.frame, clip) + ((now_ms - this.begun.ms) / 1000) * speed;
+      const to = Math.floor(frameAt(time_s, clip) + 1e-6);
       if (to >= clip.frames - 1) this.studio.store.put({playing: false});
       this.studio.show(to);
       last = this.now.frame;
