@@ -279,6 +279,34 @@ TEST_F(OfAFile, ABegunSceneIsWrittenAtTheFirstSave) {
   EXPECT_THROW(Document(folder_.path() / "none.toml", std::nullopt, {}), Error);
 }
 
+TEST_F(OfAFile, AJournalThatBeganAnewIsReadAfterEveryStep) {
+  Journal journal(file(), {});
+  History history("", "");
+  const auto text_read = [&journal] { return journal.read()->text(); };
+  for (int k = 0; k < 6; ++k) {
+    const std::string next(Journal::kMostBytes / 5, static_cast<char>('a' + k));
+    const Edit edit{0, history.text(), next, ""};
+    history.add(edit);
+    journal.add(edit, history);
+    EXPECT_TRUE(text_read() == history.text()) << "edit " << k;
+  }
+  while (history.undo_count() > 0) {
+    history.undo();
+    journal.undo(history);
+    EXPECT_TRUE(text_read() == history.text()) << history.undo_count();
+  }
+  while (history.redo_count() > 0) {
+    history.redo();
+    journal.redo(history);
+    EXPECT_TRUE(text_read() == history.text()) << history.redo_count();
+  }
+  journal.remove();
+  history.undo();
+  journal.undo(history);
+  EXPECT_TRUE(text_read() == history.text());
+  EXPECT_LE(fs::file_size(this->journal()), Journal::kMostBytes);
+}
+
 TEST_F(OfAFile, AFileThatIsNoJournalIsLeftAlone) {
   write_file(journal(), "{\"something\": 1}\n");
   EXPECT_THROW(open(), Error);

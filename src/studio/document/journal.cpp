@@ -149,18 +149,28 @@ std::optional<History> Journal::read() const {
 }
 
 void Journal::add(const Edit& edit, const History& history) {
-  append(json_of_edit(edit).dump() + "\n", history);
+  undone_ = 0;
+  append(json_of_edit(edit).dump() + "\n", history, true);
 }
-void Journal::undo(const History& history) { append("{\"undo\":1}\n", history); }
-void Journal::redo(const History& history) { append("{\"redo\":1}\n", history); }
+void Journal::undo(const History& history) {
+  ++undone_;
+  append("{\"undo\":1}\n", history, history.undo_count() >= begun_at_);
+}
+void Journal::redo(const History& history) {
+  const bool is_known = undone_ > 0;
+  if (is_known) --undone_;
+  append("{\"redo\":1}\n", history, is_known);
+}
 
-void Journal::append(const std::string& line, const History& history) {
-  if (!file_.is_open() || bytes_ + line.size() > kMostBytes)
+// `is_known`: the step is within what the file holds.
+void Journal::append(const std::string& line, const History& history, bool is_known) {
+  if (!file_.is_open() || !is_known || bytes_ + line.size() > kMostBytes)
     return write_anew(history, !file_.is_open());
   write(line);
 }
 
-// The file as the history has it, or with the present text alone.
+// The file as the history has it, or with the present text alone, also where the steps are too
+// large.
 void Journal::write_anew(const History& history, bool with_steps) {
   std::string text =
       Json{{"first", with_steps ? history.first : history.text()}, {"file", history.file_sha256}}
@@ -170,10 +180,13 @@ void Journal::write_anew(const History& history, bool with_steps) {
     for (const Edit& edit : history.edits()) text += json_of_edit(edit).dump() + "\n";
     for (std::size_t i = 0; i < history.redo_count(); ++i) text += "{\"undo\":1}\n";
   }
+  if (with_steps && text.size() > kMostBytes) return write_anew(history, false);
   write_file(path_, text);
   file_.reset(::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
   if (!file_.is_open()) throw Error(std::generic_category().message(errno), {path_.string()});
   bytes_ = text.size();
+  begun_at_ = with_steps ? 0 : history.undo_count();
+  undone_ = with_steps ? history.redo_count() : 0;
 }
 
 void Journal::write(const std::string& line) {

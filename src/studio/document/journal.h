@@ -55,7 +55,8 @@ class History {
 };
 
 // A file of JSON lines: the first text, then a line for each step. It is there from the first
-// change on. When it is larger than kMostBytes it begins anew with the text of that moment.
+// change on. When it is larger than kMostBytes it begins anew with the text of that moment,
+// and also where a step goes back beyond that text.
 // One process at a time has the journal of a file: the lock is on ".NAME.studio-lock" beside it,
 // which is removed at the end.
 class Journal {
@@ -85,7 +86,7 @@ class Journal {
   void remove();
 
  private:
-  void append(const std::string& line, const History& history);
+  void append(const std::string& line, const History& history, bool is_known);
   void write_anew(const History& history, bool with_steps);
   void write(const std::string& line);
 
@@ -94,6 +95,8 @@ class Journal {
   Descriptor lock_;
   Descriptor file_;
   std::size_t bytes_ = 0;
+  std::size_t begun_at_ = 0;  // steps of the history before the file's first text
+  std::size_t undone_ = 0;    // steps of the file that can be repeated
   bool is_flushed_ = true;
 };
 
