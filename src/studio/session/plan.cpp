@@ -211,7 +211,8 @@ class Planner {
             {"own",
              {{"ned", own},
               {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
-              {"attitude", stage_.attitude_words()}}},
+              {"attitude", stage_.attitude_words()},
+              {"attitude_deg", attitude()}}},
             {"horizontal_fov_deg", hundredths(preview::view_deg(stage_.world()))},
             {"tracks", tracks},
             {"horizon", horizon},
@@ -220,6 +221,13 @@ class Planner {
   }
 
  private:
+  Json attitude() const {
+    const auto& stated = stage_.attitude();
+    if (!stated) return nullptr;
+    return {
+        hundredths(stated->yaw_deg), hundredths(stated->pitch_deg), hundredths(stated->roll_deg)};
+  }
+
   // Of the middles, as they say, with what is ever in view.
   std::vector<std::string> approach_words() const {
     std::vector<preview::Party> single;

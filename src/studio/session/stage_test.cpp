@@ -314,6 +314,21 @@ TEST_F(OverAFlight, TheChecksOfOneTableAreNotThoseOfAnotherOnItsLine) {
   EXPECT_EQ(tracks[1]["table"], (nlohmann::ordered_json{"intruder", 1}));
 }
 
+TEST_F(OverAFlight, ThePlanHasTheAttitudeThatIsInForce) {
+  Stage stage(options());
+  const auto attitude = [&](std::int64_t revision, const std::string& more) {
+    const scene::Scene scene = scene_of(more);
+    stage.set(revision, scene, {});
+    return plan_of(stage, tables_of(scene))["own"]["attitude_deg"];
+  };
+  EXPECT_EQ(attitude(1, "attitude_yaw_pitch_roll_deg = [90, 1.5, -2]\n" + kSeen),
+            nlohmann::ordered_json({90.0, 1.5, -2.0}));
+  const auto found = attitude(2, kSeen);
+  const auto first = yaw_pitch_roll(stage.world().camera.at(0)->world_from_body);
+  EXPECT_NEAR(found[1].get<double>(), first.pitch_deg, 0.01);
+  EXPECT_NEAR(found[2].get<double>(), first.roll_deg, 0.01);
+}
+
 TEST_F(OverAFlight, TheClosestApproachOfAFlockSaysWhoseItIs) {
   const scene::Scene scene = scene_of(
       "[[distractor]]\nkind = \"bird\"\ncount = 5\nspread_m = 4\nposition_ned_m = [40, 0, "

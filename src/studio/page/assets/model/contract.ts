@@ -93,7 +93,8 @@ export interface Volume {
 export interface Plan {
   complete: boolean;  // nothing is left to be measured
   frames: number[];
-  own: {ned: Ned[]; heading_deg: number; attitude: string};
+  // attitude_deg: yaw, pitch and roll in the first frame; null where a path or log has them
+  own: {ned: Ned[]; heading_deg: number; attitude: string; attitude_deg: Ned | null};
   horizontal_fov_deg: number;
   tracks: Track[];
   horizon: [number, [number, number, number, number]][];

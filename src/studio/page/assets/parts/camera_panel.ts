@@ -52,7 +52,8 @@ export class CameraPanel extends Part {
               const attitude = tableOf(scene.camera).attitude_yaw_pitch_roll_deg;
               return Array.isArray(attitude) ? Number(attitude[k]) : null;
             },
-            setsPart('attitude_yaw_pitch_roll_deg', k)));
+            (value, scene) => setsPart('attitude_yaw_pitch_roll_deg', k, this.now.plan?.own.attitude_deg ?? undefined)(
+                value, scene)));
     const height = this.row(
         {label: 'Height', unit: 'm', step: 1, min: -MOST_M, max: MOST_M},
         (scene) => -numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150])[2],
