@@ -11,6 +11,7 @@ import json
 import os
 import random
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -136,6 +137,16 @@ class Server:
             pipe.close()
         if how == signal.SIGINT and code != 130:
             raise AssertionError(f"the server ended with {code}; expected 130\n{errors}")
+
+
+def web_socket(server):
+    """A page's connection, which says nothing."""
+    connection = socket.create_connection(("127.0.0.1", int(server.port)), timeout=60)
+    token = server.address.partition("token=")[2]
+    connection.sendall((f"GET /ws?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nOrigin: http://127.0.0.1:{server.port}\r\nConnection: Upgrade\r\n"
+                        "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n").encode())
+    expect("a page's connection", connection.recv(12), b"HTTP/1.1 101")
+    return connection
 
 
 class Page:
@@ -656,7 +667,15 @@ def test_broken(airtruth, browser, root):
     server.end()
     server = Server(airtruth, root, "flight.mp4")
     file = os.path.join(root, "flight.toml")
-    page.open(server.address)
+    # A ninth page says why it has no connection, and has one when another is closed.
+    others = [web_socket(server) for _ in range(8)]
+    browser.open(server.address)
+    browser.wait("[...document.querySelectorAll('.notice.error')].some((e) => e.checkVisibility() && e.textContent.includes('at most eight pages'))")
+    for other in others:
+        other.close()
+    page.rest()
+    browser.wait("![...document.querySelectorAll('.notice.error')].some((e) => e.checkVisibility())")
+    browser.errors[:] = [error for error in browser.errors if "WebSocket" not in error]
     good = page.state()["text"]
     opacity = "getComputedStyle(document.querySelector('studio-plan svg')).opacity"
     for broken in (good.replace("[light]", "[light]\nsun_elevaton_deg = 1"), "[[["):

@@ -39,6 +39,7 @@ export interface MadeNearMiss {
 const beginning = {
   connected: false,
   everConnected: false,
+  refused: false,  // the first attempt to connect failed
   file: '',
   out: '',  // the folder of rendered videos
   clip: null as Clip | null,

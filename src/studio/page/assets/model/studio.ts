@@ -444,7 +444,7 @@ export class Studio {
   private lost(): void {
     this.edits.stop();
     this.pictures.forget();
-    this.store.put({connected: false, playing: false});
+    this.store.put({connected: false, playing: false, refused: !this.store.now.everConnected});
   }
 
   private heard(event: ServerEvent): void {

@@ -8,7 +8,7 @@ const INFO_MS = 5000;
 // server says.
 export class NoticeBar extends Part {
   protected readonly watches: Member[] =
-      ['notices', 'connected', 'everConnected', 'state', 'planProblem', 'busy', 'progress', 'pending'];
+      ['notices', 'connected', 'everConnected', 'refused', 'state', 'planProblem', 'busy', 'progress', 'pending'];
   private lost = h('p', {class: 'notice error'});
   private problem = h('p', {class: 'notice error'});
   private progress = h('p', {class: 'notice info'});
@@ -28,12 +28,14 @@ export class NoticeBar extends Part {
   }
 
   protected update(): void {
-    const {connected, everConnected, state, planProblem, notices, busy, progress, pending} = this.now;
-    this.lost.hidden = connected || !everConnected;
+    const {connected, everConnected, refused, state, planProblem, notices, busy, progress, pending} = this.now;
+    this.lost.hidden = connected || !(everConnected || refused);
     text(
         this.lost,
-        `No connection to airtruth studio. What you do waits in this tab and is sent when it is back. If it was started again, open the address that it prints${
-            pending ? ` in this tab: at another port, or in another tab, what waits (${pending}) is lost` : ''}.`);
+        refused ?
+            'No connection to airtruth studio. It serves at most eight pages: close another one. If it was started again, open the address that it prints.' :
+            `No connection to airtruth studio. What you do waits in this tab and is sent when it is back. If it was started again, open the address that it prints${
+                pending ? ` in this tab: at another port, or in another tab, what waits (${pending}) is lost` : ''}.`);
     const problem = state?.problem ?? planProblem;
     this.problem.hidden = !problem;
     text(this.problem, problem ?? '');
