@@ -63,7 +63,8 @@ struct Step {
 std::vector<Step> steps_of(const std::vector<motion::FrameMotion>& motion) {
   std::vector<Step> steps;
   for (std::size_t k = 1; k < motion.size(); ++k) {
-    if (!motion[k].rotation || !is_known(motion[k].state) || !is_known(motion[k - 1].state))
+    if (!motion[k].rotation || motion[k].begins_anew || !is_known(motion[k].state) ||
+        !is_known(motion[k - 1].state))
       continue;
     const double dt = motion[k].time_s - motion[k - 1].time_s;
     if (!(dt > 0)) continue;
@@ -197,23 +198,26 @@ std::vector<motion::FrameMotion> bridged_by_gyro(const std::vector<motion::Frame
                                                  const std::vector<GyroSample>& gyro,
                                                  const GyroFit& fit) {
   std::vector<motion::FrameMotion> result = motion;
+  // The estimator measures a frame against frames before a gap, unless it has begun anew since: the
+  // rotation is then one against that frame. So it is linked to the latest of either kind.
+  std::size_t linked = 0;
   for (std::size_t k = 1; k < motion.size(); ++k) {
-    // The rotation against the previous frame is measured where both are linked; otherwise the
-    // motion continues from the end of the bridge. The estimator itself links frames across a gap.
-    if (motion[k].state == motion::State::kMeasured && motion[k - 1].state != motion::State::kCut) {
-      if (motion[k - 1].state != motion::State::kBridged)
-        result[k].rotation =
-            (*motion[k].rotation * motion[k - 1].rotation->conjugate() * *result[k - 1].rotation)
-                .normalized();
-      continue;
-    }
+    const bool is_linked = motion[k].state == motion::State::kMeasured && !motion[k].begins_anew;
     const auto rate =
-        mean_rate(gyro, motion[k - 1].time_s + fit.offset_s, motion[k].time_s + fit.offset_s);
-    if (!rate) continue;
-    const Vector3 in_cam = fit.cam_from_gyro * *rate + fit.bias_radps;
-    const double dt = motion[k].time_s - motion[k - 1].time_s;
-    result[k].rotation =
-        (rotation_from_vector(-dt * in_cam) * *result[k - 1].rotation).normalized();
+        is_linked
+            ? std::nullopt
+            : mean_rate(gyro, motion[k - 1].time_s + fit.offset_s, motion[k].time_s + fit.offset_s);
+    if (rate) {
+      const Vector3 in_cam = fit.cam_from_gyro * *rate + fit.bias_radps;
+      const double dt = motion[k].time_s - motion[k - 1].time_s;
+      result[k].rotation =
+          (rotation_from_vector(-dt * in_cam) * *result[k - 1].rotation).normalized();
+    } else {
+      result[k].rotation =
+          (*motion[k].rotation * motion[linked].rotation->conjugate() * *result[linked].rotation)
+              .normalized();
+    }
+    if (is_linked || motion[k].begins_anew) linked = k;
   }
   return result;
 }

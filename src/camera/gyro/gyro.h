@@ -55,8 +55,9 @@ std::optional<GyroFit> other_fit(const std::vector<GyroSample>& gyro,
                                  const GyroFit& best,
                                  double apart_s);
 
-// The motion with the rotation of unmeasured frames replaced by the gyroscope's. The frames after
-// such a bridge continue from its end. Replaced frames keep the state kBridged.
+// The motion with the turn of unmeasured frames, and of frames that begin anew, replaced by the
+// gyroscope's. Measured frames continue from the frames that they are measured against. All frames
+// keep their states.
 std::vector<motion::FrameMotion> bridged_by_gyro(const std::vector<motion::FrameMotion>& motion,
                                                  const std::vector<GyroSample>& gyro,
                                                  const GyroFit& fit);

@@ -28,10 +28,13 @@ class HorizonWatch {
       last_s_ = motion.time_s;
       const Quaternion before = hold_.held(*motion.rotation);
       const auto found = look(picture, *motion.rotation);
+      const bool was_lost = hold_.uncertainty_rad() > kLostRad;
       if (found && found->is_sharp()) hold_.see(*motion.rotation, found->up_in_cam);
       // After a correction of this size the frame does not continue the frame before it.
       if (hold_.held(*motion.rotation).angularDistance(before) > kLostRad)
         motion.state = State::kCut;
+      const bool is_found_again = was_lost && hold_.uncertainty_rad() <= kLostRad;
+      if (motion.state == State::kCut || is_found_again) motion.begins_anew = true;
     }
     motion.rotation = hold_.held(*motion.rotation);
     const auto up_in_cam = hold_.expected_up(measured);

@@ -100,6 +100,7 @@ struct PackedHead {
   std::int32_t inliers;
   std::uint8_t state;
   bool is_rotation;
+  bool begins_anew;
 };
 constexpr std::size_t kRotationNumbers = 4;
 constexpr std::size_t kHomographyNumbers = 9;
@@ -119,6 +120,7 @@ FrameMotion unpacked(const char* bytes, std::int64_t frame) {
                      .rms_px = head.rms_px,
                      .inliers = head.inliers,
                      .state = static_cast<State>(head.state)};
+  motion.begins_anew = head.begins_anew;
   if (head.is_rotation)
     motion.rotation = Quaternion(numbers[0], numbers[1], numbers[2], numbers[3]);
   else
@@ -168,6 +170,7 @@ void pack(const FrameMotion& motion, std::string& packed) {
   head.inliers = motion.inliers;
   head.state = static_cast<std::uint8_t>(motion.state);
   head.is_rotation = motion.rotation.has_value();
+  head.begins_anew = motion.begins_anew;
   packed.append(reinterpret_cast<const char*>(&head), sizeof head);
   const auto add = [&](const double* numbers, std::size_t count) {
     packed.append(reinterpret_cast<const char*>(numbers), count * sizeof(double));

@@ -70,6 +70,9 @@ struct FrameMotion {
   Homography frame_from_reference = Homography::Identity();
   // cam_from_reference_cam of the model rotation; empty for the model homography.
   std::optional<Quaternion> rotation;
+  // Whether the rotation does not continue that of the frame before it: a cut, tracking that starts
+  // anew, and the horizon's first correction after either.
+  bool begins_anew = false;
 };
 
 struct Options {

@@ -155,6 +155,16 @@ TEST(Estimator, ACutIsFlaggedWhereItIsSaidAndNothingIsFollowed) {
   EXPECT_EQ(estimator.next(blank(), 6 / 30.0).state, State::kBridged);
 }
 
+// A frame that follows one with too few corners to track is no cut, and continues nothing.
+TEST(Estimator, SaysWhereItsRotationBeginsAnew) {
+  Estimator estimator(lens::pinhole_from_vertical_fov(60, {kWidth, kHeight}), {});
+  EXPECT_FALSE(estimator.next(blank(), 0).begins_anew);
+  const FrameMotion next = estimator.next(blank(), 1 / 30.0);
+  EXPECT_EQ(next.state, State::kBridged);
+  EXPECT_TRUE(next.begins_anew);
+  EXPECT_FALSE(estimator.next(blank(), 2 / 30.0, true).begins_anew);  // damaged: passed over
+}
+
 // A bright object that suddenly covers a third of the view changes the picture as a cut does, while
 // the rest of the picture continues.
 TEST(Estimator, WhereMostCornersAreFollowedThereIsNoCut) {
@@ -305,6 +315,7 @@ TEST(Cache, KnowsTheFramesItHolds) {
   key.video_sha256 = "a";
   std::vector<FrameMotion> motion = shaking(1, 1.0 / 3, 5);
   motion[2].state = State::kBridged;
+  motion[2].begins_anew = true;
   motion[3].rms_px = 0.1 + 0.2;
   for (const bool is_rotation : {false, true}) {
     if (is_rotation)
@@ -323,6 +334,7 @@ TEST(Cache, KnowsTheFramesItHolds) {
       store(cache, key, motion);
     ASSERT_TRUE(cached(cache, key));
     EXPECT_EQ(csv_of(*cached(cache, key)), csv_of(motion));
+    EXPECT_TRUE(cached(cache, key)->at(2).begins_anew);
     CacheKey shorter = key;
     shorter.frame_count = 3;
     EXPECT_EQ(cached(cache, shorter)->size(), 3u);

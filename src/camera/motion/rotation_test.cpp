@@ -253,6 +253,19 @@ TEST(Gyro, AxesOffsetAndBiasAreSolvedAndAGapIsBridged) {
     const double by_gyro = degrees(bridged[k].rotation->angularDistance(*truth[k].rotation));
     EXPECT_LT(by_gyro, 0.12) << k << " (carried on: " << carried_on << ")";
   }
+  // Tracking that starts anew at the end of the gap stands on the rotation that was held in it. The
+  // turn of the gap stays, also over a second gap that the estimator links by itself.
+  motion[65].begins_anew = true;
+  const Quaternion lost = truth[65].rotation->conjugate() * *motion[65].rotation;
+  for (std::size_t k = 66; k < 120; ++k) motion[k].rotation = *truth[k].rotation * lost;
+  for (std::size_t k = 90; k < 93; ++k) {
+    motion[k].state = State::kBridged;
+    motion[k].rotation = motion[89].rotation;
+  }
+  EXPECT_GT(degrees(motion[119].rotation->angularDistance(*truth[119].rotation)), 0.3);
+  const auto after = gyro::bridged_by_gyro(motion, gyro, *fit);
+  for (std::size_t k = 65; k < 120; ++k)
+    EXPECT_LT(degrees(after[k].rotation->angularDistance(*truth[k].rotation)), 0.25) << k;
 }
 
 }  // namespace

@@ -414,7 +414,9 @@ class Spherical : public Follower {
       stray_rad_ = kUnknownTurnRad;
       bridged_in_row_ = 0;
     }
-    return unmeasured(loss.is_cut ? State::kCut : State::kBridged);
+    FrameMotion motion = unmeasured(loss.is_cut ? State::kCut : State::kBridged);
+    motion.begins_anew = loss.starts_anew;
+    return motion;
   }
 
   View view_;
