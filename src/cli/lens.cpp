@@ -43,10 +43,11 @@ std::string words_of(const focal_length::LensEstimator::Result& found) {
 // The result of an estimate: a file, or a table to copy.
 void hand_over(const focal_length::LensEstimator::Result& found,
                const std::string& why,
-               lens::ImageSize size,
+               const video::StreamInfo& info,
                const EstimateArguments& arguments,
                Console& console) {
-  const lens::Lens lens = lens::undistorted(found.fisheye, found.focal_px, size);
+  const lens::Lens lens = lens::undistorted(
+      found.fisheye, found.focal_px, {info.width, info.height}, info.sample_aspect.value());
   console.result(words_of(found) + "\nfor a scene:\n" + lens::scene_table(lens));
   if (!found.is_certain && !arguments.out.empty() && !arguments.uncertain)
     throw Error("is not written: " + why + "; --uncertain writes the estimate all the same",
@@ -75,7 +76,8 @@ void estimate(const EstimateArguments& arguments, Context& context) {
   const video::StreamInfo info = reader.info();
   std::optional<image::Mask> mask;
   if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
-  focal_length::LensEstimator estimator(info.width, info.height, mask ? &*mask : nullptr);
+  focal_length::LensEstimator estimator(
+      info.width, info.height, mask ? &*mask : nullptr, info.sample_aspect.value());
   while (const auto frame = reader.next()) {
     if (context.stop.stop_requested()) throw Interrupted();
     estimator.add(frame->picture, frame->begins_shot);
@@ -85,7 +87,7 @@ void estimate(const EstimateArguments& arguments, Context& context) {
   std::string why;
   const auto found = estimator.result(why);
   if (!found) throw Error("does not show its lens: " + why, {arguments.video});
-  hand_over(*found, why, {info.width, info.height}, arguments, console);
+  hand_over(*found, why, info, arguments, console);
 }
 
 struct CropArguments {

@@ -100,9 +100,13 @@ struct AlignArguments {
   std::optional<double> frame_rate_hz;
 };
 
-lens::Lens lens_of(const AlignArguments& arguments, lens::ImageSize size, const Warn& warn) {
+lens::Lens lens_of(const AlignArguments& arguments,
+                   const video::StreamInfo& info,
+                   const Warn& warn) {
+  const lens::ImageSize size{info.width, info.height};
   if (!arguments.lens.empty()) return lens::read_calibration(arguments.lens, size, warn);
-  if (arguments.fov_deg > 0) return lens::pinhole_from_vertical_fov(arguments.fov_deg, size);
+  if (arguments.fov_deg > 0)
+    return lens::pinhole_from_vertical_fov(arguments.fov_deg, size, info.sample_aspect.value());
   throw Error("--lens or --fov is missing; expected the camera's calibration or vertical view");
 }
 
@@ -114,13 +118,13 @@ std::vector<motion::FrameMotion> motion_of(const AlignArguments& arguments, Cont
   options.with_cuts = true;
   video::Reader reader(arguments.video, options, console.warn());
   video::expect_rate(arguments.video, reader.info(), arguments.frame_rate_hz);
-  const lens::ImageSize size{reader.info().width, reader.info().height};
+  const video::StreamInfo info = reader.info();
   std::optional<image::Mask> mask;
-  if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, size.width, size.height);
-  const std::int64_t total = reader.info().frame_count_estimate - arguments.first_frame;
+  if (!arguments.mask.empty()) mask = video::read_mask(arguments.mask, info.width, info.height);
+  const std::int64_t total = info.frame_count_estimate - arguments.first_frame;
   auto motion = setup::measure_motion(
       std::move(reader),
-      motion::Estimator(lens_of(arguments, size, console.warn()), {}, mask ? &*mask : nullptr),
+      motion::Estimator(lens_of(arguments, info, console.warn()), {}, mask ? &*mask : nullptr),
       context.stop,
       [&](std::int64_t done) { console.progress("measuring the motion", done, total); });
   console.end_progress();

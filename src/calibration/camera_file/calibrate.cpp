@@ -271,8 +271,8 @@ class Session {
 
   void take_sky() {
     const lens::ImageSize size{result_.width, result_.height};
-    const lens::Lens lens =
-        options_.lens.value_or(lens::pinhole_from_vertical_fov(kAssumedFovDeg, size));
+    const lens::Lens lens = options_.lens.value_or(lens::pinhole_from_vertical_fov(
+        kAssumedFovDeg, size, reader_.info().sample_aspect.value()));
     const horizon::HorizonFinder finder(lens, options_.own_aircraft);
     const Horizons horizons = accepted_horizons(finder, sampled_, [this] { stop_if_asked(); });
     take_horizons(horizons);

@@ -79,9 +79,15 @@ double miss_of(const Pair& pair, const lens::Lens& lens) {
   return sum / double(pair.size());
 }
 
+// The pictures of a camera.
+struct Format {
+  lens::ImageSize size;
+  double width_of_height = 1;  // of a pixel
+};
+
 // The focal length at a place among those that are tried.
-double focal_at(double place, const lens::ImageSize& size) {
-  return kShortest * size.width * std::exp(place * kLogStep);
+double focal_at(double place, const Format& format) {
+  return kShortest * format.size.width * format.width_of_height * std::exp(place * kLogStep);
 }
 
 // The mean squared residual of a pair with each of the focal lengths that are tried.
@@ -89,10 +95,11 @@ using Profile = std::array<double, kTried>;
 
 std::vector<Profile> profiles_of(const std::vector<Pair>& pairs,
                                  bool fisheye,
-                                 const lens::ImageSize& size) {
+                                 const Format& format) {
   std::vector<Profile> profiles(pairs.size());
   for (std::size_t k = 0; k < kTried; ++k) {
-    const lens::Lens lens = lens::undistorted(fisheye, focal_at(double(k), size), size);
+    const lens::Lens lens = lens::undistorted(
+        fisheye, focal_at(double(k), format), format.size, format.width_of_height);
     for (std::size_t i = 0; i < pairs.size(); ++i) profiles[i][k] = miss_of(pairs[i], lens);
   }
   return profiles;
@@ -156,7 +163,7 @@ std::pair<double, double> fitting(const Profile& profile, const Best& best) {
 }  // namespace
 
 struct LensEstimator::Impl {
-  lens::ImageSize size;
+  Format format;
   cv::Mat allowed;
   motion::Pyramid previous;
   motion::Tracks tracks;
@@ -201,15 +208,18 @@ struct LensEstimator::Impl {
       far.push_back(cv::norm(now[i] - begun[i]));
       pair.push_back({{begun[i].x + 0.5, begun[i].y + 0.5}, {now[i].x + 0.5, now[i].y + 0.5}});
     }
-    if (median(std::move(far)) < kMinCornerShiftShare * size.width) return;
+    if (median(std::move(far)) < kMinCornerShiftShare * format.size.width) return;
     keep(std::move(pair));
     begin(grey);
   }
 };
 
-LensEstimator::LensEstimator(int width, int height, const image::Mask* own_aircraft)
+LensEstimator::LensEstimator(int width,
+                             int height,
+                             const image::Mask* own_aircraft,
+                             double width_of_height)
     : impl_(std::make_unique<Impl>()) {
-  impl_->size = {width, height};
+  impl_->format = {{width, height}, width_of_height};
   impl_->allowed = motion::allowed_area(width, height, own_aircraft);
 }
 LensEstimator::~LensEstimator() = default;
@@ -220,22 +230,22 @@ void LensEstimator::add(const image::Picture& picture, bool begins_shot) {
 
 std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) const {
   const auto& pairs = impl_->pairs;
-  const lens::ImageSize& size = impl_->size;
+  const Format& format = impl_->format;
   if (pairs.size() < kMinPairs) {
     why = fmt::format("the camera turns far enough to tell in {} of the {} places that it takes",
                       pairs.size(),
                       kMinPairs);
     return std::nullopt;
   }
-  const std::vector<Profile> as_pinhole = profiles_of(pairs, false, size);
-  const std::vector<Profile> as_fisheye = profiles_of(pairs, true, size);
+  const std::vector<Profile> as_pinhole = profiles_of(pairs, false, format);
+  const std::vector<Profile> as_fisheye = profiles_of(pairs, true, format);
   const Profile pinhole = mean_of(as_pinhole);
   const Profile fisheye = mean_of(as_fisheye);
   Result result;
   result.fisheye = best_of(fisheye).miss < best_of(pinhole).miss;
   const Profile& whole = result.fisheye ? fisheye : pinhole;
   const Best best = best_of(whole);
-  result.focal_px = focal_at(best.place, size);
+  result.focal_px = focal_at(best.place, format);
   result.rms_px = std::sqrt(best.miss);
   result.other_rms_px = std::sqrt(best_of(result.fisheye ? pinhole : fisheye).miss);
   result.pairs = static_cast<int>(pairs.size());
@@ -243,7 +253,7 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   result.sigma_px = spread.sigma * kLogStep * result.focal_px;
   const auto [low, high] = fitting(whole, best);
   const auto tried_px = [&](double place) {
-    return focal_at(std::clamp(place, 0.0, double(kTried - 1)), size);
+    return focal_at(std::clamp(place, 0.0, double(kTried - 1)), format);
   };
   result.low_px = tried_px(std::min(low, best.place - spread.half_width));
   result.high_px = tried_px(std::max(high, best.place + spread.half_width));

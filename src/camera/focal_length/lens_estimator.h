@@ -31,7 +31,11 @@ constexpr const char* kEstimatedNote = "estimated by airtruth lens estimate";
 // they share does not average out. docs/lenses.md has how often it holds the other parts of a clip.
 class LensEstimator {
  public:
-  LensEstimator(int width, int height, const image::Mask* own_aircraft = nullptr);
+  // The shape of the pixels is stated by the video.
+  LensEstimator(int width,
+                int height,
+                const image::Mask* own_aircraft = nullptr,
+                double width_of_height = 1);
   ~LensEstimator();
 
   // Adds the next frame, in order. No corner is tracked across the begin of a shot
@@ -40,6 +44,7 @@ class LensEstimator {
 
   struct Result {
     bool fisheye = false;  // equidistant; else pinhole
+    // All lengths count heights of pixels, as in lens::undistorted().
     double focal_px = 0;
     // The standard deviation of the estimate of a stretch about focal_px.
     double sigma_px = 0;

@@ -403,16 +403,17 @@ Lens lens_of(const Facts& facts) {
   return Lens(Pinhole{focal, principal}, size);
 }
 
-Lens undistorted(bool fisheye, double focal_px, ImageSize size) {
-  const Pixel focal(focal_px, focal_px);
+Lens undistorted(bool fisheye, double focal_px, ImageSize size, double width_of_height) {
+  const Pixel focal(focal_px / width_of_height, focal_px);
   const Pixel centre(size.width / 2.0, size.height / 2.0);
   if (fisheye) return Lens(Fisheye{focal, centre, {0, 0, 0, 0}}, size);
   return Lens(Pinhole{focal, centre}, size);
 }
 
-Lens pinhole_from_vertical_fov(double vertical_fov_deg, ImageSize size) {
+Lens pinhole_from_vertical_fov(double vertical_fov_deg, ImageSize size, double width_of_height) {
   check_fov(vertical_fov_deg, 180, "pinhole", false);
-  return undistorted(false, 0.5 * size.height / std::tan(radians(vertical_fov_deg) / 2), size);
+  const double focal_px = 0.5 * size.height / std::tan(radians(vertical_fov_deg) / 2);
+  return undistorted(false, focal_px, size, width_of_height);
 }
 
 Lens fisheye_from_vertical_fov(double vertical_fov_deg, ImageSize size) {

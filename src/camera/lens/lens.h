@@ -131,13 +131,14 @@ struct Facts {
 Facts facts_of(const Lens& lens);
 Lens lens_of(const Facts& facts);
 
-// A pinhole, or an equidistant fisheye (all distortion coefficients are 0), with square pixels,
-// whose axis passes through the centre of the image.
-Lens undistorted(bool fisheye, double focal_px, ImageSize size);
+// A pinhole, or an equidistant fisheye (all distortion coefficients are 0), whose axis passes
+// through the centre of the image. The focal length counts heights of pixels, of which each is
+// `width_of_height` wide.
+Lens undistorted(bool fisheye, double focal_px, ImageSize size, double width_of_height = 1);
 
 // The undistorted pinhole with this vertical field of view. Throws Error unless 0 < fov < 180
 // degrees.
-Lens pinhole_from_vertical_fov(double vertical_fov_deg, ImageSize size);
+Lens pinhole_from_vertical_fov(double vertical_fov_deg, ImageSize size, double width_of_height = 1);
 
 // The undistorted fisheye with this vertical field of view. Throws Error unless 0 < fov <= 360
 // degrees.

@@ -39,6 +39,14 @@ TEST(Pinhole, NinetyDegreesOn960RowsIsAFocalLengthOf480) {
   EXPECT_FALSE(lens.pixel_from_cam({1, 0, 0}));
 }
 
+// 480 columns of pixels that are 4/3 as wide as high are as wide as 640 columns of square ones.
+TEST(Pinhole, OfPixelsThatAreNotSquareSeesTheSameView) {
+  const Lens square = pinhole_from_vertical_fov(60, {640, 480});
+  const Lens wide = pinhole_from_vertical_fov(60, {480, 480}, 4 / 3.0);
+  EXPECT_NEAR(wide.vertical_fov_deg(), 60, 1e-9);
+  EXPECT_NEAR(wide.horizontal_fov_deg(), square.horizontal_fov_deg(), 1e-9);
+}
+
 TEST(Fisheye, EquidistantMapsAngleToRadius) {
   const Lens lens = fisheye_from_vertical_fov(180, kSize);
   const double focal = 480 / (kPi / 2);

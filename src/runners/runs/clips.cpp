@@ -103,21 +103,21 @@ std::vector<results::ExpectedSequence> sequences_of(const labelled::LabelledSet&
   return sequences;
 }
 
-lens::Lens guessed_lens(int width, int height) {
-  const double half_across = std::tan(radians(30.0));
-  const double vertical_deg = degrees(2 * std::atan(half_across * height / width));
-  return lens::pinhole_from_vertical_fov(vertical_deg, {width, height});
+lens::Lens guessed_lens(const video::StreamInfo& info) {
+  const double width_of_height = info.sample_aspect.value();
+  const double half_across = std::tan(radians(30.0)) / width_of_height;
+  const double vertical_deg = degrees(2 * std::atan(half_across * info.height / info.width));
+  return lens::pinhole_from_vertical_fov(vertical_deg, {info.width, info.height}, width_of_height);
 }
 
 ClipFrames::ClipFrames(const DetectionClip& clip, bool with_motion, const Warn& warn)
     : clip_(clip),
       reader_(clip.media, with_cuts(clip.reading, with_motion), warn),
-      sequence_{
-          clip.name,
-          reader_.info().width,
-          reader_.info().height,
-          reader_.info().frame_rate.value(),
-          clip.lens ? *clip.lens : guessed_lens(reader_.info().width, reader_.info().height)} {
+      sequence_{clip.name,
+                reader_.info().width,
+                reader_.info().height,
+                reader_.info().frame_rate.value(),
+                clip.lens ? *clip.lens : guessed_lens(reader_.info())} {
   if (!reader_.info().is_rate_stated)
     throw Error(
         "is of numbered pictures, which state no rate; expected --frame-rate, or a set that "

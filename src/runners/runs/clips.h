@@ -53,7 +53,7 @@ std::vector<results::ExpectedSequence> sequences_of(const labelled::LabelledSet&
 // A pinhole of 60 degrees across, for clips whose lens nothing states. Between 40 and 90 degrees,
 // the rotation that is measured through it moves a pixel by the same amount within some per cent,
 // for turns of a few degrees.
-lens::Lens guessed_lens(int width, int height);
+lens::Lens guessed_lens(const video::StreamInfo& info);
 
 // The frames of a clip in order, with the camera's turn since the frame before, which is measured
 // once for all detectors.

@@ -60,7 +60,10 @@ std::optional<double> equivalent_mm_in_tags(const std::map<std::string, std::str
   return std::nullopt;
 }
 
-double half_diagonal_px(lens::ImageSize size) { return 0.5 * std::hypot(size.width, size.height); }
+// In heights of pixels.
+double half_diagonal_px(lens::ImageSize size, double width_of_height) {
+  return 0.5 * std::hypot(size.width * width_of_height, size.height);
+}
 
 }  // namespace
 
@@ -85,13 +88,17 @@ std::optional<double> diagonal_view_deg(std::span<const std::uint8_t> packet) {
   return view;
 }
 
-lens::Lens pinhole_from_equivalent(double equivalent_mm, lens::ImageSize size) {
-  const double focal_px = equivalent_mm / kFilmDiagonalMm * 2 * half_diagonal_px(size);
-  return lens::undistorted(false, focal_px, size);
+lens::Lens pinhole_from_equivalent(double equivalent_mm,
+                                   lens::ImageSize size,
+                                   double width_of_height) {
+  const double focal_px =
+      equivalent_mm / kFilmDiagonalMm * 2 * half_diagonal_px(size, width_of_height);
+  return lens::undistorted(false, focal_px, size, width_of_height);
 }
 
-lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size) {
-  return lens::undistorted(true, half_diagonal_px(size) / radians(view_deg / 2), size);
+lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size, double width_of_height) {
+  const double focal_px = half_diagonal_px(size, width_of_height) / radians(view_deg / 2);
+  return lens::undistorted(true, focal_px, size, width_of_height);
 }
 
 Stretch steady_stretch(const std::vector<motion::FrameMotion>& motion,
@@ -163,10 +170,12 @@ LensWords in_words(const lens::Lens& lens, const std::string& origin) {
   return {lens, lens::scene_table(lens), origin};
 }
 
-std::optional<LensWords> lens_from_files(const fs::path& video, lens::ImageSize size) {
+std::optional<LensWords> lens_from_files(const fs::path& video,
+                                         lens::ImageSize size,
+                                         double width_of_height) {
   for (const video::TelemetryPacket& packet : video::read_telemetry(video))
     if (const auto view = diagonal_view_deg(packet.bytes))
-      return in_words(fisheye_from_diagonal(*view, size),
+      return in_words(fisheye_from_diagonal(*view, size, width_of_height),
                       fmt::format("the GoPro's telemetry states a diagonal view of {:.1f} degrees; "
                                   "its distortion is not known",
                                   *view));
@@ -179,7 +188,7 @@ std::optional<LensWords> lens_from_files(const fs::path& video, lens::ImageSize 
   if (!mm) mm = equivalent_mm_in_tags(video::read_tags(video));
   if (!mm) return std::nullopt;
   return in_words(
-      pinhole_from_equivalent(*mm, size),
+      pinhole_from_equivalent(*mm, size, width_of_height),
       fmt::format("{} states {:.0f} mm for 35 mm film; a video mode that crops the sensor "
                   "has a longer focal length",
                   origin,
@@ -188,6 +197,7 @@ std::optional<LensWords> lens_from_files(const fs::path& video, lens::ImageSize 
 
 // A usual view, or an estimate that is not certain where that view is outside its interval.
 LensWords guessed_lens(lens::ImageSize size,
+                       double width_of_height,
                        const std::string& why,
                        const std::optional<focal_length::LensEstimator::Result>& within) {
   const std::string origin = fmt::format(
@@ -197,14 +207,14 @@ LensWords guessed_lens(lens::ImageSize size,
   const lens::Lens usual = within && within->fisheye
                                ? lens::fisheye_from_vertical_fov(kGuessedViewDeg, size)
                                : lens::pinhole_from_vertical_fov(kGuessedViewDeg, size);
+  const double usual_px = usual.focal_px();
   if (!within)
-    return {usual,
+    return {lens::undistorted(false, usual_px, size, width_of_height),
             fmt::format("[lens]\nmodel = \"pinhole\"\nvertical_fov_deg = {}\n", kGuessedViewDeg),
             origin};
-  const bool is_possible =
-      usual.focal_px() >= within->low_px && usual.focal_px() <= within->high_px;
-  const double focal_px = is_possible ? usual.focal_px() : within->focal_px;
-  return in_words(lens::undistorted(within->fisheye, focal_px, size), origin);
+  const bool is_possible = usual_px >= within->low_px && usual_px <= within->high_px;
+  const double focal_px = is_possible ? usual_px : within->focal_px;
+  return in_words(lens::undistorted(within->fisheye, focal_px, size, width_of_height), origin);
 }
 
 LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) {
@@ -214,7 +224,8 @@ LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) 
                         .with_cuts = true},
                        options.warn);
   const lens::ImageSize size{reader.info().width, reader.info().height};
-  focal_length::LensEstimator estimator(size.width, size.height);
+  const double width_of_height = reader.info().sample_aspect.value();
+  focal_length::LensEstimator estimator(size.width, size.height, nullptr, width_of_height);
   const std::int64_t total = std::min(kMaxEstimateFrames, reader.info().frame_count_estimate);
   while (const auto frame = reader.next()) {
     if (options.stop.stop_requested()) throw Interrupted();
@@ -223,8 +234,8 @@ LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) 
   }
   std::string why;
   const auto found = estimator.result(why);
-  if (!found || !found->is_certain) return guessed_lens(size, why, found);
-  return in_words(lens::undistorted(found->fisheye, found->focal_px, size),
+  if (!found || !found->is_certain) return guessed_lens(size, width_of_height, why, found);
+  return in_words(lens::undistorted(found->fisheye, found->focal_px, size, width_of_height),
                   fmt::format("estimated from the video: a focal length of {:.0f} px, {:.0f} to "
                               "{:.0f} px at 95 % (airtruth lens estimate); a calibration is better",
                               found->focal_px,
@@ -242,12 +253,15 @@ std::string note_in(const fs::path& calibration) {
   return fmt::format(", {}", trimmed(text.substr(at + 2, text.find('\n', at) - at - 2)));
 }
 
-LensWords lens_for(const fs::path& video, lens::ImageSize size, const NewSceneOptions& options) {
+LensWords lens_for(const fs::path& video,
+                   const video::StreamInfo& info,
+                   const NewSceneOptions& options) {
+  const lens::ImageSize size{info.width, info.height};
   if (options.lens)
     return {lens::read_calibration(*options.lens, size, options.warn),
             fmt::format("[lens]\nfile = {}\n", in_quotes(fs::absolute(*options.lens))),
             "the stated calibration" + note_in(*options.lens)};
-  if (auto found = lens_from_files(video, size)) return *found;
+  if (auto found = lens_from_files(video, size, info.sample_aspect.value())) return *found;
   return estimated_lens(video, options);
 }
 
@@ -514,8 +528,7 @@ std::string first_encounter(const lens::Lens& lens,
 std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
   const std::string background = as_written(video, options);
   const video::StreamInfo info = info_of(video, options);
-  const lens::ImageSize size{info.width, info.height};
-  const LensWords lens = lens_for(video, size, options);
+  const LensWords lens = lens_for(video, info, options);
   const Part part = part_of(video, info, lens.lens, options);
   const CameraWords camera = camera_for(video, part, options);
   const double rate_hz = info.frame_rate.value();

@@ -58,10 +58,12 @@ std::optional<double> diagonal_view_deg(std::span<const std::uint8_t> packet);
 
 // A pinhole with the focal length that gives the same diagonal view on 35 mm film, whose diagonal
 // is 43.27 mm.
-lens::Lens pinhole_from_equivalent(double equivalent_mm, lens::ImageSize size);
+lens::Lens pinhole_from_equivalent(double equivalent_mm,
+                                   lens::ImageSize size,
+                                   double width_of_height = 1);
 
 // An equidistant fisheye with a diagonal view.
-lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size);
+lens::Lens fisheye_from_diagonal(double view_deg, lens::ImageSize size, double width_of_height = 1);
 
 // Where a camera holds its direction: there an intruder on a straight path stays in view.
 

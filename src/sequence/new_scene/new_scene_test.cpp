@@ -41,6 +41,18 @@ TEST(LensHint, ADiagonalOfFilmBecomesTheDiagonalOfThePicture) {
   EXPECT_NEAR(degrees(std::atan2(std::hypot(corner->x(), corner->y()), corner->z())), 70, 1e-6);
 }
 
+// 300 columns of pixels that are 4/3 as wide as high make the same picture as 400 of square ones.
+TEST(LensHint, ADiagonalIsThatOfThePixelsShape) {
+  const lens::Lens film = pinhole_from_equivalent(43.27, {300, 300}, 4 / 3.0);
+  const lens::Lens wide = fisheye_from_diagonal(140, {300, 300}, 4 / 3.0);
+  EXPECT_TRUE(
+      film.ray_from_pixel({300, 300})
+          ->isApprox(*pinhole_from_equivalent(43.27, {400, 300}).ray_from_pixel({400, 300}), 1e-9));
+  EXPECT_TRUE(
+      wide.ray_from_pixel({300, 300})
+          ->isApprox(*fisheye_from_diagonal(140, {400, 300}).ray_from_pixel({400, 300}), 1e-9));
+}
+
 TEST(LensHint, AGoProsViewIsReadFromItsTelemetry) {
   const float view = 121.5F;
   std::uint32_t bits = 0;
