@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
 
 #include "camera/motion/shake.h"
@@ -236,6 +237,9 @@ constexpr double kScaleInMedians = 3;
 // A sensor cannot be read for longer than one interval; the rest allows for the error.
 constexpr double kMaxShareError = 0.15;
 constexpr double kMaxShare = 1.2;
+// The least share of a readout along the rows that is told from none, in standard errors. Chosen by
+// judgement: twice what tells a readout along the columns, since without a readout 0 is right.
+constexpr double kMinErrorsAlongRows = 4;
 
 // A low-pass filter with binomial weights. It removes what is faster than a third of the frame
 // rate, where the differentiator is no longer exact. NaN if a neighbour is NaN.
@@ -269,9 +273,16 @@ std::optional<Move> move_of(const std::optional<Homography>& h, const Pixel& cen
 
 using Pairs = std::vector<std::pair<double, double>>;
 
-// Appends, for the frames of one shot, the change of speed over the height of the picture together
+// The pairs of a sensor that is read along the picture's columns, and of one along its rows. The
+// former shears with the horizontal and stretches with the vertical change of speed, the latter the
+// other way round, so that the sum of products of either is 0 where the other is true.
+struct ReadoutPairs {
+  Pairs along_columns, along_rows;
+};
+
+// Appends, for the frames of one shot, the change of speed over the extent of the picture together
 // with the shear and the stretch.
-void add_pairs(const Steps& steps, const Pixel& centre, Pairs& pairs) {
+void add_pairs(const Steps& steps, const Pixel& centre, ReadoutPairs& pairs) {
   // Shear (0) and stretch (1) of each frame; NaN if not known.
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::array<std::vector<double>, 2> changes, bends;
@@ -297,7 +308,10 @@ void add_pairs(const Steps& steps, const Pixel& centre, Pairs& pairs) {
     for (std::size_t k = 0; k < changes[axis].size(); ++k) {
       const double x = slow_part(changes[axis], k);
       const double y = slow_part(bends[axis], k);
-      if (std::isfinite(x) && std::isfinite(y)) pairs.push_back({x, y});
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      pairs.along_columns.push_back({x, y});
+      const double other = slow_part(bends[1 - axis], k);
+      pairs.along_rows.push_back({x * centre.y() / centre.x(), axis == 0 ? -other : other});
     }
 }
 
@@ -327,14 +341,23 @@ Estimate line_through_origin(const Pairs& pairs) {
 }  // namespace
 
 Measured<Estimate> readout_share(const std::vector<Steps>& shots, int width, int height) {
-  Pairs pairs;
+  ReadoutPairs pairs;
   for (const Steps& shot : shots) add_pairs(shot, {width / 2.0, height / 2.0}, pairs);
-  if (pairs.size() < kMinFrames) return NotMeasured{"the motion of too few frames is known"};
-  const Estimate share = line_through_origin(pairs);
+  if (pairs.along_columns.size() < kMinFrames)
+    return NotMeasured{"the motion of too few frames is known"};
+  const Estimate share = line_through_origin(pairs.along_columns);
   if (!(share.sigma > 0) || share.sigma > kMaxShareError)
     return NotMeasured{"the picture's speed changes too little from frame to frame"};
   if (std::abs(share.value) > kMaxShare)
     return NotMeasured{"the picture's shear follows its speed by more than a whole frame would"};
+  const Estimate across = line_through_origin(pairs.along_rows);
+  const double errors = std::abs(across.value) / across.sigma;
+  if (errors > kMinErrorsAlongRows && errors > std::abs(share.value) / share.sigma)
+    return NotMeasured{fmt::format(
+        "the sensor is read along the picture's rows, to the {}, in about {:.2f} of a frame "
+        "interval; only a readout along its columns is measured",
+        across.value > 0 ? "right" : "left",
+        std::abs(across.value))};
   return share;
 }
 

@@ -59,7 +59,8 @@ using Steps = std::vector<std::optional<Homography>>;
 // frames: between neighbouring frames the shear is readout / height times the change of the
 // horizontal speed, and the stretch is readout / height times the change of the vertical speed.
 // `shots` has the steps of each shot. Not measured where too few motions are known, where the speed
-// changes too little, and where the shear is larger than a readout over a whole frame would cause.
+// changes too little, where the shear is larger than a readout over a whole frame would cause, and
+// where the sensor is read along the picture's rows, as that of a camera mounted on its side.
 Measured<Estimate> readout_share(const std::vector<Steps>& shots, int width, int height);
 
 }  // namespace airtruth::sensor
