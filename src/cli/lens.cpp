@@ -28,12 +28,11 @@ struct EstimateArguments {
 
 std::string words_of(const focal_length::LensEstimator::Result& found) {
   return fmt::format(
-      "{}, focal_px {:.1f}, {:.0f} to {:.0f} at 95 % ({} turns of the camera; {:.2f} px left over, "
+      "{}, focal_px {:.1f}, {} at 95 % ({} turns of the camera; {:.2f} px left over, "
       "{:.2f} as a {})",
       found.fisheye ? "fisheye (equidistant)" : "pinhole",
       found.focal_px,
-      found.low_px,
-      found.high_px,
+      focal_length::LensEstimator::interval_words(found, ""),
       found.pairs,
       found.rms_px,
       found.other_rms_px,
@@ -54,15 +53,14 @@ void hand_over(const focal_length::LensEstimator::Result& found,
                 {arguments.out});
   if (!found.is_certain) console.warning("this lens is not certain: " + why);
   if (!arguments.out.empty())
-    write_file(arguments.out,
-               lens::opencv_calibration(
-                   lens,
-                   fmt::format("{}: focal length {:.1f} px, {:.0f} to {:.0f} px at 95 %{}",
-                               focal_length::kEstimatedNote,
-                               found.focal_px,
-                               found.low_px,
-                               found.high_px,
-                               found.is_certain ? "" : "; not certain")));
+    write_file(
+        arguments.out,
+        lens::opencv_calibration(lens,
+                                 fmt::format("{}: focal length {:.1f} px, {} at 95 %{}",
+                                             focal_length::kEstimatedNote,
+                                             found.focal_px,
+                                             focal_length::LensEstimator::interval_words(found),
+                                             found.is_certain ? "" : "; not certain")));
 }
 
 void estimate(const EstimateArguments& arguments, Context& context) {

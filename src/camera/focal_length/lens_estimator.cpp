@@ -255,15 +255,27 @@ std::optional<LensEstimator::Result> LensEstimator::result(std::string& why) con
   const auto tried_px = [&](double place) {
     return focal_at(std::clamp(place, 0.0, double(kTried - 1)), format);
   };
-  result.low_px = tried_px(std::min(low, best.place - spread.half_width));
-  result.high_px = tried_px(std::max(high, best.place + spread.half_width));
-  result.is_certain = result.sigma_px <= kMaxSigmaShare * result.focal_px &&
+  const double lowest = std::min(low, best.place - spread.half_width);
+  const double highest = std::max(high, best.place + spread.half_width);
+  result.low_px = tried_px(lowest);
+  result.high_px = tried_px(highest);
+  result.is_open_low = lowest <= 0;
+  result.is_open_high = highest >= double(kTried - 1);
+  result.is_certain = !result.is_open_low && !result.is_open_high &&
+                      result.sigma_px <= kMaxSigmaShare * result.focal_px &&
                       result.high_px < (1 + kMaxExcessShare) * result.focal_px;
   if (!result.is_certain)
-    why = "the way the picture turns fits focal lengths from " +
-          std::to_string(static_cast<int>(result.low_px)) + " to " +
-          std::to_string(static_cast<int>(result.high_px)) + " px";
+    why = "the way the picture turns fits focal lengths from " + interval_words(result);
   return result;
+}
+
+std::string LensEstimator::interval_words(const Result& found, const char* unit) {
+  return fmt::format("{:.0f}{} to {:.0f}{}{}",
+                     found.low_px,
+                     found.is_open_low ? " or less" : "",
+                     found.high_px,
+                     unit,
+                     found.is_open_high ? " or more" : "");
 }
 
 }  // namespace airtruth::focal_length

@@ -49,10 +49,14 @@ class LensEstimator {
     // The standard deviation of the estimate of a stretch about focal_px.
     double sigma_px = 0;
     // The 95 % interval, widened to all focal lengths that fit equally well, whose mean squared
-    // residual is within 2 % of the least. The search ends at 0.25 and 6 widths of the picture.
+    // residual is within 2 % of the least. The search ends at 0.25 and 6 widths of the picture: an
+    // interval that reaches an end is open there.
     double low_px = 0;
     double high_px = 0;
-    // Whether that interval is narrow enough to use focal_px as the camera's focal length.
+    bool is_open_low = false;
+    bool is_open_high = false;
+    // Whether that interval is closed, and narrow enough to use focal_px as the camera's focal
+    // length.
     bool is_certain = false;
     // The root mean square residual.
     double rms_px = 0;
@@ -63,6 +67,9 @@ class LensEstimator {
   // The estimate. It is empty where the camera turned too little. `why` states the reason for an
   // empty result, and for an estimate that is not certain.
   std::optional<Result> result(std::string& why) const;
+
+  // The interval in words, such as "410 to 421 px" or "1177 to 2880 px or more".
+  static std::string interval_words(const Result& found, const char* unit = " px");
 
  private:
   struct Impl;

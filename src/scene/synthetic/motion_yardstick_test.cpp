@@ -339,6 +339,27 @@ TEST(LensYardstick, AFlightInTurnsTellsItsLens) {
   }
 }
 
+// A focal length of 7.2 widths of the picture, where the search ends at 6.
+TEST(LensYardstick, AnIntervalThatReachesTheEndOfTheSearchIsOpen) {
+  FlightOptions options;
+  options.seed = 4;
+  options.width = 320;
+  options.height = 240;
+  options.vertical_fov_deg = 6;
+  options.frame_count = 200;
+  options.shake_deg = 1;
+  options.own_aircraft = false;
+  const Flight flight(options);
+  focal_length::LensEstimator estimator(320, 240);
+  for (int k = 0; k < options.frame_count; ++k) estimator.add(flight.frame(k));
+  std::string why;
+  const auto found = estimator.result(why);
+  ASSERT_TRUE(found) << why;
+  EXPECT_FALSE(found->is_certain);
+  EXPECT_TRUE(found->is_open_high);
+  EXPECT_NE(why.find(" to 1920 px or more"), std::string::npos) << why;
+}
+
 TEST(LensYardstick, AStillCameraIsRefused) {
   FlightOptions options;
   options.width = 320;
