@@ -72,7 +72,7 @@ IMPORTED = [(0, 10, 20, 30, 40), (0, 100.5, 7.25, 12.5, 9), (2, 11.5, 20, 30.25,
 
 
 def airtruth(*arguments):
-    done = subprocess.run([AIRTRUTH, *map(str, arguments)], capture_output=True, text=True, timeout=240)
+    done = subprocess.run([AIRTRUTH, *map(str, arguments)], capture_output=True, text=True, errors="replace", timeout=240)
     if done.returncode != 0:
         raise AssertionError(f"airtruth {arguments}: {done.returncode}\n{done.stdout}{done.stderr}")
     return done

@@ -325,7 +325,9 @@ class Track(Case):
         anew = lambda: run("track", "elsewhere/flight.mkv", "-t", "am3", "--out", path(self.out, "anew"), *box)
         self.assertEqual(anew().returncode, 0)
         shutil.copy(path("flight.mkv"), path("elsewhere"))
-        self.assert_refused(anew(), "source_sha256")
+        refused = anew()
+        self.assertEqual((refused.returncode, refused.stderr.count("\n")), (2, 1), refused.stderr)
+        self.assertIn("source_sha256", refused.stderr)
         os.remove(path(self.out, "results", "am3", "flight.run.json"))  # as an older airtruth left it
         self.assertIn("1 were there", self.track(*box, source="elsewhere/flight.mkv").stdout)
 

@@ -175,10 +175,8 @@ class TrackerRun {
                          {kSha256, setup::sha256_of_video(video, inputs)},
                          {"first_frame", first_frame}};
     open_folder();
-    if (is_there(file, origin)) {
-      expect_begun_at(init, file);
-      return summary_;
-    }
+    if (fs::exists(file)) expect_begun_at(init, file);
+    if (is_there(file, origin)) return summary_;
     follower.begin(*picture, init);
     follower.add(Mark::kAnswer, init);
     for (std::int64_t i = first_frame + 1;

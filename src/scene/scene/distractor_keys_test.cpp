@@ -128,7 +128,7 @@ TEST(DistractorKeys, WrongKeysAreNamedAtTheirLine) {
             "/data/s.toml:7:9: count is 4 without spread_m; expected the flock's radius in metres "
             "with it");
   EXPECT_EQ(message_with_keys("kind = \"bird\"\nspread_m = 4\n" + kDistractorPath),
-            "/data/s.toml:7:12: spread_m has no effect without a count above 1");
+            "/data/s.toml:7:12: spread_m has no effect without a count");
   EXPECT_EQ(message_with_keys("kind = \"dirt\"\npixel = [9, 9]\narm_colour = [0, 0, 0]\n"),
             "/data/s.toml:8:14: arm_colour has no effect with kind = \"dirt\"");
   EXPECT_EQ(message_with_keys("kind = \"bird\"\nsize_m = nan\n" + kDistractorPath)

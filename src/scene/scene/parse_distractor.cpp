@@ -107,8 +107,8 @@ std::vector<Intruder> flock_in(const TableReader& table,
                fmt::format("count is {} without spread_m; expected the flock's radius in "
                            "metres with it",
                            count));
-  if (count == 1 && spread_m)
-    table.fail("spread_m", "spread_m has no effect without a count above 1");
+  if (spread_m && !table.has("count"))
+    table.fail("spread_m", "spread_m has no effect without a count");
   return flock_of(leader, count, spread_m.value_or(0), seed);
 }
 

@@ -214,7 +214,7 @@ TEST(Encounters, TheHorizonIsOnAnAircraftByItsHeightInTheWorld) {
   };
   EXPECT_EQ(horizon(24, 0), passage::AgainstHorizon::kAbove);
   EXPECT_EQ(horizon(24, 90), passage::AgainstHorizon::kOn);
-  EXPECT_EQ(horizon(9, 0), passage::AgainstHorizon::kOn);
+  EXPECT_EQ(horizon(5, 0), passage::AgainstHorizon::kOn);
 }
 
 TEST_F(EncounterTruth, TheRecordIsReadAsItWasWritten) {
