@@ -85,11 +85,18 @@ std::string scale_of(const char* axis, const Axis& a) {
   return fmt::format("{} logscale {}\n", a.is_logarithmic ? "set" : "unset", axis);
 }
 
+// The label of a tic is a format of its number.
+std::string quoted_label(const std::string& name) {
+  std::string label;
+  for (const char c : name) label += c == '%' ? "%%" : std::string(1, c);
+  return quoted(label);
+}
+
 std::string tics_of(const char* axis, const Axis& a) {
   if (a.names.empty()) return fmt::format("set {}tics auto norotate\n", axis);
   std::string places;
   for (std::size_t i = 0; i < a.names.size(); ++i)
-    places += fmt::format("{}{} {}", i > 0 ? ", " : "", quoted(a.names[i]), i);
+    places += fmt::format("{}{} {}", i > 0 ? ", " : "", quoted_label(a.names[i]), i);
   const bool is_crowded = *axis == 'x' && a.names.size() > 5;
   return fmt::format("set {}tics {} ({})\n", axis, is_crowded ? "rotate" : "norotate", places);
 }

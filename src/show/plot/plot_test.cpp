@@ -209,7 +209,7 @@ TEST(Gnuplot, NamesOfAUserRunNothing) {
   const std::string command = "' ; system('touch " + (folder / "ran").string() + "') ; '\n`touch " +
                               (folder / "ran").string() + "`";
   plot.title = plot.x.label = plot.series[0].name = command;
-  plot.y.names = {command, "b"};
+  plot.y.names = {command, "%06d.png 5 %"};
   Sheet sheet;
   sheet.plots.push_back(plot);
   draw(sheet, folder, "p", Format::kSvg);
