@@ -88,8 +88,8 @@ std::string scale_of(const char* axis, const Axis& a) {
 // The label of a tic is a format of its number.
 std::string quoted_label(const std::string& name) {
   std::string label;
-  for (const char c : name) label += c == '%' ? "%%" : std::string(1, c);
-  return quoted(label);
+  for (const char c : quoted(name)) label += c == '%' ? "%%" : std::string(1, c);
+  return label;
 }
 
 std::string tics_of(const char* axis, const Axis& a) {
