@@ -114,6 +114,8 @@ MEETING = r"""(() => {
 class Server:
     """`airtruth studio` on a video or a scene, in a folder."""
 
+    ended = set()  # ports of servers that a test has ended, of which a page may still ask
+
     def __init__(self, airtruth, folder, what, port=0):
         self.process = subprocess.Popen([airtruth, "--quiet", "studio", what, "--out", "out", "--port", str(port)], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
@@ -126,6 +128,7 @@ class Server:
             return next(int(line.split()[1]) << 10 for line in status if line.startswith("VmRSS"))
 
     def end(self, how=signal.SIGINT):
+        Server.ended.add(self.port)
         self.process.send_signal(how)
         try:
             code = self.process.wait(60)
@@ -215,6 +218,11 @@ def near(what, got, wanted, tolerance):
 def expect(what, got, wanted):
     if got != wanted:
         raise AssertionError(f"{what}: {got!r}; expected {wanted!r}")
+
+
+def complaints(browser):
+    """What the console complained of, but of connections that a test or a reload has ended."""
+    return [error for error in browser.errors if "WebSocket" not in error and not any(f":{port}/" in error for port in Server.ended)]
 
 
 def moments_of(table):
@@ -789,7 +797,7 @@ def test_edits(airtruth, browser, root):
     browser.wait(f"{STORE}.clip.video === 'other.mp4' && {STORE}.clip.frames === 20 && document.querySelector('.thumbs img').src.includes('other')")
     page.rest()
     expect("the picture's size", browser.run("(({ width, height }) => [width, height])(airtruthStudio.studio.pictures.canvas)"), [320, 240])
-    expect("console", [error for error in browser.errors if "WebSocket" not in error], [])
+    expect("console", complaints(browser), [])
     server.end()
     print("edits: undo to the beginning; reload, lost connection, crash and another program lose nothing")
 
@@ -921,7 +929,7 @@ def test_monkey(airtruth, browser, root, seconds):
     expect("done again", page.state()["text"], text)
     print(f"monkey: {steps} steps in {seconds:.0f} s, {reloads} reloads, {undo} steps of undo; heap {heap >> 20} -> {aged >> 20} MiB, "
           f"{nodes:.0f} -> {aged_nodes:.0f} nodes, server {resident >> 20} -> {server.memory() >> 20} MiB")
-    expect("console", [error for error in browser.errors if "WebSocket" not in error], [])
+    expect("console", complaints(browser), [])
     if aged > heap + HEAP_GROWTH or server.memory() > resident + SERVER_GROWTH:
         raise AssertionError("memory grows")
     server.end()

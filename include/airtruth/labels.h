@@ -93,6 +93,12 @@ struct Clip {
   std::map<std::int64_t, std::string> category_ids;
   // In order, including the frames without an object.
   std::vector<LabelledFrame> frames;
+
+  // When a frame is shown: as it is stated, else by the frame rate; empty where neither is known.
+  std::optional<double> time_s_of(const LabelledFrame& frame) const {
+    if (frame.time_s || !(frame_rate_hz.value_or(0) > 0)) return frame.time_s;
+    return static_cast<double>(frame.frame) / *frame_rate_hz;
+  }
 };
 
 // The text of labels.jsonl (docs/formats/labels.md): one line for the clip, then one for each

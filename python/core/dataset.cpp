@@ -33,16 +33,14 @@ IntruderTruth intruder_of(const exchange::Label& label) {
   return intruder;
 }
 
-// The truth of each frame; that of an imported clip is what its labels tell. A frame without a time
-// has that of its number at the clip's frame rate.
+// The truth of each frame; that of an imported clip is what its labels tell.
 std::vector<FrameTruth> truth_of(const Sequence& sequence) {
   if (sequence.truth) return sequence.truth->frames;
-  const double rate_hz = sequence.labels.frame_rate_hz.value_or(std::nan(""));
   std::vector<FrameTruth> frames;
   for (const exchange::LabelledFrame& labelled : sequence.labels.frames) {
     FrameTruth& frame = frames.emplace_back();
     frame.frame = labelled.frame;
-    frame.time_s = labelled.time_s.value_or(static_cast<double>(labelled.frame) / rate_hz);
+    frame.time_s = sequence.labels.time_s_of(labelled).value_or(std::nan(""));
     frame.motion_state = "none";
     for (const exchange::Label& label : labelled.labels)
       frame.intruders.push_back(intruder_of(label));

@@ -155,10 +155,6 @@ double area_before(const Pixel& normal, double t) {
   return 1 - left * left / (2 * wide * narrow);
 }
 
-}  // namespace
-
-namespace {
-
 // The up direction whose side ahead of the camera is raised by an angle.
 Vector3 raised_ahead(const Vector3& up_in_cam, double angle_rad) {
   const Vector3 up = up_in_cam.normalized();

@@ -13,12 +13,6 @@
 namespace airtruth::sequences {
 namespace {
 
-bool is_above_horizon(const Vector3& position_ned_m, const Vector3& camera_ned_m) {
-  const Vector3 way = position_ned_m - camera_ned_m;
-  const double elevation = std::atan2(-way.z(), std::hypot(way.x(), way.y()));
-  return elevation > -horizon_dip_rad(-camera_ned_m.z());
-}
-
 std::optional<Box> box_of(const annotation::Intruder& intruder,
                           dataset::Boxes boxes,
                           const Box& frame) {
@@ -49,8 +43,8 @@ exchange::Label label_of(const annotation::Intruder& intruder,
   label.contrast_to_noise = intruder.contrast_to_noise;
   if (intruder.covered_area_px) label.area_px = static_cast<double>(*intruder.covered_area_px);
   if (intruder.position_ned_m)
-    label.above_horizon = is_above_horizon(vector_of(*intruder.position_ned_m),
-                                           vector_of(frame.camera_position_ned_m));
+    label.above_horizon = above_horizon_rad(vector_of(*intruder.position_ned_m),
+                                            vector_of(frame.camera_position_ned_m)) > 0;
   return label;
 }
 

@@ -82,11 +82,7 @@ trajectory::Path beyond_clip(const trajectory::Path& path, double clip_end_s) {
   const double end_s = path.end_s();
   // The path tells whether its end is that of the clip, whose time is rounded to a stream's clock.
   if (!std::isfinite(end_s) || !path.at(std::max(clip_end_s, path.start_s()))) return path;
-  return {path.start_s(), HUGE_VAL, [path, end_s](double time_s) {
-            trajectory::State state = *path.at(std::min(time_s, end_s));
-            state.position_in_world += std::max(0.0, time_s - end_s) * state.velocity_in_world_mps;
-            return state;
-          }};
+  return trajectory::straight_on(path, path.start_s(), HUGE_VAL);
 }
 
 std::optional<Approach> closest_approach(const trajectory::Path& own,
@@ -178,9 +174,7 @@ VerticalMotion vertical_motion_of(const separation::Mover& intruder) {
 AgainstHorizon against_horizon(const separation::Mover& own,
                                const separation::Mover& intruder,
                                double half_height_deg) {
-  const Vector3 r = intruder.position_ned_m - own.position_ned_m;
-  const double elevation_deg = degrees(std::atan2(-r.z(), std::hypot(r.x(), r.y())));
-  const double above_deg = elevation_deg + degrees(horizon_dip_rad(-own.position_ned_m.z()));
+  const double above_deg = degrees(above_horizon_rad(intruder.position_ned_m, own.position_ned_m));
   if (std::abs(above_deg) <= half_height_deg) return AgainstHorizon::kOn;
   return above_deg > 0 ? AgainstHorizon::kAbove : AgainstHorizon::kBelow;
 }

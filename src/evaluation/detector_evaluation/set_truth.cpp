@@ -61,16 +61,14 @@ scores::TruthSequence imported_truth(const labelled::LabelledSet& set, const std
   truth.width = clip.width;
   truth.height = clip.height;
   truth.frame_rate_hz = clip.frame_rate_hz.value_or(0);
-  truth.has_times = clip.frame_rate_hz || std::ranges::all_of(clip.frames, [](const auto& frame) {
-                      return frame.time_s.has_value();
-                    });
   for (const exchange::LabelledFrame& labelled : clip.frames) {
     scores::TruthFrame& frame = truth.frames.emplace_back();
     frame.frame = labelled.frame;
     frame.picture = labelled.picture;
     frame.image_id = labelled.image_id;
-    frame.time_s = labelled.time_s.value_or(
-        truth.frame_rate_hz > 0 ? static_cast<double>(labelled.frame) / truth.frame_rate_hz : 0);
+    const std::optional<double> time_s = clip.time_s_of(labelled);
+    truth.has_times = truth.has_times && time_s;
+    frame.time_s = time_s.value_or(0);
     for (const exchange::Label& label : labelled.labels)
       if (label.object_class == kIgnore)
         frame.ignored_px.push_back(label.box_px);

@@ -48,9 +48,7 @@ void add_one_pass(const TruthClip& truth,
   for (const FramePair& pair : pairs) scored.answers.push_back(pair.answer);
   if (lost) {
     const exchange::LabelledFrame& frame = truth.clip.frames[*lost];
-    scored.loss = {frame.frame, frame.time_s, truth.range_m(*lost)};
-    if (!scored.loss->time_s && truth.clip.frame_rate_hz)
-      scored.loss->time_s = static_cast<double>(frame.frame) / *truth.clip.frame_rate_hz;
+    scored.loss = {frame.frame, truth.clip.time_s_of(frame), truth.range_m(*lost)};
   }
 }
 

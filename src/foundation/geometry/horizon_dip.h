@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foundation/geometry/transform.h"
+
 namespace airtruth {
 
 constexpr double kEarthRadiusM = 6'371'008.8;  // mean radius R1 of the WGS 84 ellipsoid (IUGG)
@@ -14,6 +16,13 @@ constexpr double kEarthRadiusM = 6'371'008.8;  // mean radius R1 of the WGS 84 e
 // out.
 inline double horizon_dip_rad(double height_m) {
   return std::acos(kEarthRadiusM / (kEarthRadiusM + std::max(0.0, height_m)));
+}
+
+// The angle of a place above that horizon as it is seen from an eye, north-east-down, with the
+// ground at down = 0.
+inline double above_horizon_rad(const Vector3& place_ned_m, const Vector3& eye_ned_m) {
+  const Vector3 way = place_ned_m - eye_ned_m;
+  return std::atan2(-way.z(), std::hypot(way.x(), way.y())) + horizon_dip_rad(-eye_ned_m.z());
 }
 
 }  // namespace airtruth

@@ -63,6 +63,14 @@ struct Shutter {
     }
     return dt_s;
   }
+  // Where a point that moves evenly from `at`, its place at the frame's time, is when its own row
+  // sees it.
+  Pixel seen_at(const Pixel& at, const Pixel& velocity_px_s, int width, int height) const {
+    constexpr int kRounds = 6;
+    if (velocity_px_s.isZero(0)) return at;
+    const auto place = [&](double dt_s) -> Pixel { return at + dt_s * velocity_px_s; };
+    return place(seen_s(place, width, height, kRounds));
+  }
 };
 
 // The measured shake of the camera in a frame and its change per second, in one of the two models

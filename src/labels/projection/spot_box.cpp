@@ -34,22 +34,12 @@ std::vector<Pixel> outline_about_centre(const image::Spot& spot) {
 }  // namespace
 
 Box spot_box(const image::Spot& spot, const Shutter& shutter, int frame_width, int frame_height) {
-  constexpr int kRounds = 6;
   const std::vector<Pixel> outline = outline_about_centre(spot);
   BoxBounds bounds;
   for (const double share : {-0.5, 0.5}) {
     const Pixel at = spot.centre + share * shutter.exposure_s * spot.velocity_px_s;
-    BoxBounds about_centre;
-    for (const Pixel& point : outline) {
-      const auto place_at = [&](double dt_s) -> Pixel {
-        return at + point + dt_s * spot.velocity_px_s;
-      };
-      const double row_s = shutter.seen_s(place_at, frame_width, frame_height, kRounds);
-      about_centre.add(point + row_s * spot.velocity_px_s);
-    }
-    const Box box = *about_centre.box();
-    bounds.add(at + Pixel(box.x, box.y));
-    bounds.add(at + Pixel(box.right(), box.bottom()));
+    for (const Pixel& point : outline)
+      bounds.add(shutter.seen_at(at + point, spot.velocity_px_s, frame_width, frame_height));
   }
   return *bounds.box();
 }

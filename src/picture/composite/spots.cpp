@@ -85,13 +85,6 @@ std::optional<PixelBox> pixels_in_frame(const image::Spot& spot, const Spots& al
                       {0, 0, all.frame_width, all.frame_height});
 }
 
-// Where a place of the spot at the frame's time is when its own row sees it.
-Pixel seen_at(const image::Spot& spot, const Pixel& place, const Spots& in) {
-  constexpr int kRounds = 6;
-  const auto place_at = [&](double dt_s) -> Pixel { return place + dt_s * spot.velocity_px_s; };
-  return place_at(in.shutter.seen_s(place_at, in.frame_width, in.frame_height, kRounds));
-}
-
 // Areas of the spot's alpha, which nothing hides.
 image::Areas areas_of(const image::Spot& spot, const Spots& in) {
   const Box box = bounds_of(spot, 0);
@@ -102,7 +95,8 @@ image::Areas areas_of(const image::Spot& spot, const Spots& in) {
                      box.y + (j + 0.5) * box.height / kAreaSide);
       const double alpha = spot_alpha(spot, at, 0);
       alone += alpha;
-      const Pixel seen = seen_at(spot, at, in);
+      const Pixel seen =
+          in.shutter.seen_at(at, spot.velocity_px_s, in.frame_width, in.frame_height);
       if (seen.x() >= 0 && seen.y() >= 0 && seen.x() < in.frame_width && seen.y() < in.frame_height)
         in_frame += alpha;
     }

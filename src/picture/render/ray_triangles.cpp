@@ -369,21 +369,28 @@ RayTriangles::RayTriangles(const View& view,
                            const PixelBox& patch,
                            const Span& span,
                            std::vector<PlacedInstance>& instances)
-    : patch_(patch), angle_of_rays_rad_(angle_of_rays(view, patch, span)) {
+    : patch_(patch) {
   std::size_t most = 0;
   for (const PlacedInstance& instance : instances)
     if (instance.pixels) most += instance.placed.model->mesh.triangle_count();
   all_.reserve(most);
+  std::optional<double> angle_rad;  // few triangles ask for it
+  const auto angle = [&] {
+    if (!angle_rad) angle_rad = angle_of_rays(view, patch, span);
+    return *angle_rad;
+  };
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     if (!instances[i].pixels) continue;
     const std::size_t parts = instances[i].placed.model->mesh.parts.size();
-    for (std::uint32_t part = 0; part < parts; ++part) add_part(view, span, instances[i], i, part);
+    for (std::uint32_t part = 0; part < parts; ++part)
+      add_part(view, span, angle, instances[i], i, part);
   }
   sort_into_rows();
 }
 
 void RayTriangles::add_part(const View& view,
                             const Span& span,
+                            const AngleOfRays& angle_of_rays,
                             PlacedInstance& placed,
                             std::uint32_t instance,
                             std::uint32_t part) {
@@ -410,13 +417,15 @@ void RayTriangles::add_part(const View& view,
       if (placed.is_outside && projected.is_hidden(t, model.outer_sides[part][t])) continue;
       triangle.in_part = static_cast<std::uint32_t>(t);
       triangle.is_opaque = model.opaque[part][t] != 0;
-      add(projected, t, triangle);
+      add(projected, angle_of_rays, t, triangle);
     }
   }
 }
 
-void RayTriangles::add(const Projected& projected, std::size_t t, RayTriangle result) {
-  if (projected.is_beyond(t, angle_of_rays_rad_)) return;
+void RayTriangles::add(const Projected& projected,
+                       const AngleOfRays& angle_of_rays,
+                       std::size_t t,
+                       RayTriangle result) {
   Thrice<Moment> of_moment;
   const auto moments = std::span(of_moment).first(projected.moments());
   for (std::size_t k = 0; k < moments.size(); ++k) moments[k] = projected.moment(t, k);
@@ -433,6 +442,8 @@ void RayTriangles::add(const Projected& projected, std::size_t t, RayTriangle re
         over_all.top < static_cast<float>(patch_.bottom()) &&
         over_all.bottom > static_cast<float>(patch_.y)))
     return;
+  // Without bounds every pixel would look at it.
+  if (!std::isfinite(over_all.left) && projected.is_beyond(t, angle_of_rays())) return;
   result.nearest = 0;
   result.farthest = std::numeric_limits<float>::infinity();
   for (const Moment& moment : moments) {

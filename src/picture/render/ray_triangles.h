@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -103,19 +104,23 @@ class RayTriangles {
   }
 
  private:
+  // An angle from the lens's axis within which the rays of the patch lie, rad.
+  using AngleOfRays = std::function<double()>;
   void add_part(const View& view,
                 const Span& span,
+                const AngleOfRays& angle_of_rays,
                 PlacedInstance& placed,
                 std::uint32_t instance,
                 std::uint32_t part);
   // Of one span of a part.
   class Projected;
-  void add(const Projected& projected, std::size_t triangle, RayTriangle result);
+  void add(const Projected& projected,
+           const AngleOfRays& angle_of_rays,
+           std::size_t triangle,
+           RayTriangle result);
   void sort_into_rows();
 
   PixelBox patch_;
-  // From the lens's axis; triangles that lie beyond are left out.
-  double angle_of_rays_rad_;
   std::vector<RayTriangle> all_;
   std::vector<Span> spans_;
   // The index in rows_ of each row's first triangle, and the end of the last.

@@ -111,22 +111,6 @@ void extend(trajectory::Samples& samples) {
   positions.insert(positions.begin(), before);
 }
 
-// The path, straight on to 1.5 s before the log's first position and after its last one: the ends
-// of the spline count from the means of half seconds.
-trajectory::Path reaching_beyond(const trajectory::Path& flown,
-                                 const FlightLog& log,
-                                 double offset_s) {
-  // What require_covered() has let through is reached whatever the rounding of a log's clock.
-  const double start_s = std::min(0.0, log.fixes.front().time_s - offset_s - kMaxExtensionS);
-  const double end_s = std::max(0.0, log.fixes.back().time_s - offset_s + kMaxExtensionS);
-  return {std::min(flown.start_s(), start_s), std::max(flown.end_s(), end_s), [flown](double t) {
-            const double within_s = std::clamp(t, flown.start_s(), flown.end_s());
-            trajectory::State state = *flown.at(within_s);
-            state.position_in_world += (t - within_s) * state.velocity_in_world_mps;
-            return state;
-          }};
-}
-
 }  // namespace
 
 trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
@@ -138,8 +122,12 @@ trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
         "more");
   require_flyable(samples, placement.offset_s);
   extend(samples);
-  const trajectory::Path flown =
-      reaching_beyond(trajectory::path_through_samples(samples), log, placement.offset_s);
+  // The spline ends beside the means of half seconds. What require_covered() has let through is
+  // reached whatever the rounding of a log's clock.
+  const trajectory::Path flown = trajectory::straight_on(
+      trajectory::path_through_samples(samples),
+      std::min(0.0, log.fixes.front().time_s - placement.offset_s - kMaxExtensionS),
+      std::max(0.0, log.fixes.back().time_s - placement.offset_s + kMaxExtensionS));
   const trajectory::Path placed =
       trajectory::displaced(flown, placement.first_position_ned_m - flown.at(0)->position_in_world);
   if (log.attitudes.empty()) return placed;

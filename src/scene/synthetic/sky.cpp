@@ -358,10 +358,6 @@ void cover(const Vector3& direction,
   }
 }
 
-}  // namespace
-
-namespace {
-
 // How far the panorama goes below the horizon: 1.1 degrees.
 constexpr float kBelowHorizon = 0.02F;
 

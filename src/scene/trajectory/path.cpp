@@ -167,7 +167,10 @@ std::vector<Vector3> unwrapped_angles(const Samples& samples, bool all_sampled) 
   std::vector<Vector3> angles = samples.angles_deg;
   angles.resize(samples.times_s.size(), Vector3::Zero());
   for (std::size_t i = 1; i < angles.size(); ++i) {
-    if (all_sampled) angles[i] = nearest_angles(angles[i], angles[i - 1]);
+    if (all_sampled) {
+      angles[i] = nearest_angles(angles[i], angles[i - 1]);
+      continue;
+    }
     for (const int axis : {0, 2})
       angles[i][axis] = nearest_turn(angles[i][axis], angles[i - 1][axis]);
   }
@@ -387,6 +390,15 @@ Path displaced(const Path& path, const Vector3& offset_ned_m) {
   return Path(path.start_s(), path.end_s(), [path, offset_ned_m](double t) {
     State state = *path.at(t);
     state.position_in_world += offset_ned_m;
+    return state;
+  });
+}
+
+Path straight_on(const Path& path, double start_s, double end_s) {
+  return Path(std::min(start_s, path.start_s()), std::max(end_s, path.end_s()), [path](double t) {
+    const double within_s = std::clamp(t, path.start_s(), path.end_s());
+    State state = *path.at(within_s);
+    state.position_in_world += (t - within_s) * state.velocity_in_world_mps;
     return state;
   });
 }

@@ -82,6 +82,9 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
 // The same path, delayed by `start_s` seconds.
 Path shifted(const Path& path, double start_s);
 
+// The same path, which goes straight on before its beginning and after its end, to these times.
+Path straight_on(const Path& path, double start_s, double end_s);
+
 // The same path, at the attitudes that a function gives for its state and the time.
 Path at_attitudes(const Path& path,
                   std::function<Quaternion(const State&, double time_s)> world_from_body);

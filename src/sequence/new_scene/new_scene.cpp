@@ -22,7 +22,6 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/text.h"
-#include "foundation/geometry/horizon_dip.h"
 #include "picture/video/metadata.h"
 #include "picture/video/numbered_frames.h"
 #include "picture/video/reader.h"
@@ -123,9 +122,10 @@ namespace {
 
 constexpr double kGuessedViewDeg = 60;  // vertical view of a lens that nothing states: chosen
 constexpr std::int64_t kMaxEstimateFrames =
-    900;                                 // half a minute at 30 frames/s turns enough or never
-constexpr double kGuessedHeightM = 150;  // of a camera without a log: chosen
+    900;  // half a minute at 30 frames/s turns enough or never
 constexpr std::int64_t kMaxMotionFrames = 1800;  // a minute at 30 frames/s
+// Height of a camera without a log: chosen.
+constexpr double kGuessedHeightM = 150;
 // How long a first encounter lasts.
 constexpr double kEncounterS = 13.2;
 // A camera that turns by less than this share of its view keeps what is in the middle in view.
@@ -236,11 +236,10 @@ LensWords estimated_lens(const fs::path& video, const NewSceneOptions& options) 
   const auto found = estimator.result(why);
   if (!found || !found->is_certain) return guessed_lens(size, width_of_height, why, found);
   return in_words(lens::undistorted(found->fisheye, found->focal_px, size, width_of_height),
-                  fmt::format("estimated from the video: a focal length of {:.0f} px, {:.0f} to "
-                              "{:.0f} px at 95 % (airtruth lens estimate); a calibration is better",
+                  fmt::format("estimated from the video: a focal length of {:.0f} px, {} at 95 % "
+                              "(airtruth lens estimate); a calibration is better",
                               found->focal_px,
-                              found->low_px,
-                              found->high_px));
+                              focal_length::LensEstimator::interval_words(*found)));
 }
 
 // What airtruth lens estimate has written of its doubt into a calibration, as opencv_calibration()
@@ -293,11 +292,10 @@ struct Part {
   std::vector<motion::FrameMotion> motion;  // of its frames, against the first of them
   std::optional<Vector3> seen_up_in_cam;    // of the horizon in the first of them
 
-  // Pitch and roll of a camera at that height; 0 without a horizon.
-  YawPitchRoll attitude(double height_m) const {
+  // Pitch and roll of a camera to which the horizon dips so; 0 without a horizon.
+  YawPitchRoll attitude(double dip_rad) const {
     if (!seen_up_in_cam) return {};
-    return horizon::attitude_from_up(
-        horizon::up_from_seen(*seen_up_in_cam, horizon_dip_rad(height_m)));
+    return horizon::attitude_from_up(horizon::up_from_seen(*seen_up_in_cam, dip_rad));
   }
 };
 
@@ -363,8 +361,7 @@ CameraWords camera_of_log(const fs::path& log,
   words.camera.log = log;
   setup::state_clip_start(words.camera, video, part.first_frame, options.picture_rate_hz);
   if (const auto heading = setup::level_attitude(words.camera)) {
-    const auto begin = setup::camera_path(words.camera).at(0);
-    const YawPitchRoll level = part.attitude(begin ? -begin->position_in_world.z() : 0);
+    const YawPitchRoll level = part.attitude(setup::first_dip_rad(words.camera));
     words.camera.attitude_yaw_pitch_roll_deg =
         YawPitchRoll{heading->yaw_deg, level.pitch_deg, level.roll_deg};
   }
@@ -373,10 +370,10 @@ CameraWords camera_of_log(const fs::path& log,
 
 CameraWords camera_for(const fs::path& video, const Part& part, const NewSceneOptions& options) {
   if (const auto log = log_of(video)) return camera_of_log(*log, video, part, options);
-  const YawPitchRoll attitude = part.attitude(kGuessedHeightM);
   CameraWords words;
   words.camera.position_ned_m = {0, 0, -kGuessedHeightM};
   words.camera.velocity_ned_mps = {20, 0, 0};
+  const YawPitchRoll attitude = part.attitude(setup::first_dip_rad(words.camera));
   words.camera.attitude_yaw_pitch_roll_deg = YawPitchRoll{0, attitude.pitch_deg, attitude.roll_deg};
   words.table = fmt::format(
       "[camera]\n"

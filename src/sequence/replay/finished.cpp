@@ -59,12 +59,11 @@ PixelBox area_around(const Box& box, const lens::Facts& lens) {
   return area;
 }
 
-// Boxes of an imported clip, in the form of a rendered sequence's truth. `time_s`: where the labels
-// state none.
-annotation::Frame frame_of(const exchange::LabelledFrame& labelled, double time_s) {
+// Boxes of an imported clip, in the form of a rendered sequence's truth.
+annotation::Frame frame_of(const exchange::Clip& clip, const exchange::LabelledFrame& labelled) {
   annotation::Frame frame;
   frame.frame = labelled.frame;
-  frame.time_s = labelled.time_s.value_or(time_s);
+  frame.time_s = clip.time_s_of(labelled).value_or(0);
   for (const exchange::Label& label : labelled.labels) {
     annotation::Intruder& intruder = frame.intruders.emplace_back();
     intruder.id = label.category + " " + std::to_string(label.track);
@@ -92,19 +91,13 @@ Finished open_labelled(const fs::path& folder) {
                     .video = clip.media,
                     .picture_rate_hz = clip.frame_rate_hz};
   if (clip.media.empty()) throw Error("names no video", {(folder / "labels.jsonl").string()});
-  const auto time_s = [&](std::int64_t frame) {
-    return clip.frame_rate_hz ? static_cast<double>(frame) / *clip.frame_rate_hz : 0.0;
-  };
   for (const exchange::LabelledFrame& frame : clip.frames) {
     if (frame.frame >= kMaxFrames)
       throw Error(fmt::format("labels frame {}; expected frames below {}", frame.frame, kMaxFrames),
                   {(folder / "labels.jsonl").string()});
-    while (std::ssize(finished.truth.frames) < frame.frame) {
-      const std::int64_t number = std::ssize(finished.truth.frames);
-      finished.truth.frames.emplace_back().frame = number;
-      finished.truth.frames.back().time_s = time_s(number);
-    }
-    finished.truth.frames.push_back(frame_of(frame, time_s(frame.frame)));
+    while (std::ssize(finished.truth.frames) < frame.frame)
+      finished.truth.frames.push_back(frame_of(clip, {.frame = std::ssize(finished.truth.frames)}));
+    finished.truth.frames.push_back(frame_of(clip, frame));
   }
   return finished;
 }

@@ -58,6 +58,11 @@ std::optional<YawPitchRoll> level_attitude(const scene::Camera& camera) {
   return YawPitchRoll{first ? yaw_pitch_roll(first->world_from_body).yaw_deg : 0, 0, 0};
 }
 
+double first_dip_rad(const scene::Camera& camera) {
+  const auto first = camera_path(camera).at(0);
+  return first ? horizon_dip_rad(-first->position_in_world.z()) : 0;
+}
+
 std::string state_attitude(scene::Camera& camera,
                            const lens::Lens& lens,
                            const image::Mask* own_aircraft,
@@ -71,10 +76,8 @@ std::string state_attitude(scene::Camera& camera,
   const camera_file::Horizons horizons = camera_file::accepted_horizons(finder, frames, [&] {
     if (stop.stop_requested()) throw Interrupted();
   });
-  const auto first = camera_path(camera).at(0);
-  const double height_m = first ? -first->position_in_world.z() : 0;
-  const auto cam_from_world = camera_file::level_attitude(
-      frames, horizons.found, attitude.yaw_deg, horizon_dip_rad(height_m));
+  const auto cam_from_world =
+      camera_file::level_attitude(frames, horizons.found, attitude.yaw_deg, first_dip_rad(camera));
   if (!cam_from_world)
     return level_words(horizons.why_none.empty() ? "no motion between its first frames is known"
                                                  : "of its first frames " + horizons.why_none);

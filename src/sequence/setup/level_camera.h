@@ -22,13 +22,16 @@ inline constexpr std::int64_t kLevelEvery = 5;
 // nor its path or log states one; empty where one does.
 std::optional<YawPitchRoll> level_attitude(const scene::Camera& camera);
 
+// By how much the horizon that the first frame shows lies below the horizontal: its dip from the
+// height of the path there.
+double first_dip_rad(const scene::Camera& camera);
+
 // States the attitude of a camera for which neither the scene nor its path or log does: pitch and
 // roll of the first frame are the median of the horizons in the first kLevelFrames frames, each
 // carried to the first by the rotation that is measured between them
-// (calibration/camera_file/level.h). The horizon lies below the horizontal by its dip at the height
-// of the path above the ground (down = 0). Yaw stays. Where these frames show no horizon, or
-// one that stands upside down, the camera is level. Returns
-// what was done in words, for the user; "" where the attitude was stated or need not be found.
+// (calibration/camera_file/level.h) and raised by its dip. Yaw stays. Where these frames show no
+// horizon, or one that stands upside down, the camera is level. Returns what was done in words, for
+// the user; "" where the attitude was stated or need not be found.
 //
 // `open` gives a reader from the scene's first frame on, and is called where frames are needed.
 std::string state_attitude(scene::Camera& camera,
