@@ -62,17 +62,14 @@ class Sweep {
     }
   }
 
+  // Adds a point that is fixed in the body.
   void add(const Vector3& p_in_body, BoxBounds& bounds, bool& partly_unseen) const {
-    std::array<Pixel, 3> at;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto pixel =
-          pixel_from_cam(sights_[k], rotation_[k] * p_in_body + cam_from_body_[k].translation);
-      if (!pixel) {
-        partly_unseen = true;
-        return;
-      }
-      at[k] = *pixel;
+    const auto places = places_of(p_in_body);
+    if (!places) {
+      partly_unseen = true;
+      return;
     }
+    const std::array<Pixel, 3>& at = *places;
     if (is_within(at, bounds)) return;
     // Number of steps of the exposure: a choice.
     constexpr int kSteps = 4;
@@ -83,7 +80,42 @@ class Sweep {
     }
   }
 
+  // Adds a point that moves in the body: `p_in_body(dt_s)`, at so many moments of the exposure of
+  // its own row.
+  template <typename Place>
+  void add_moving(const Place& p_in_body,
+                  int moments,
+                  BoxBounds& bounds,
+                  bool& partly_unseen) const {
+    const auto pixel_at = [&](double dt_s) -> std::optional<Pixel> {
+      const auto at = places_of(p_in_body(dt_s));
+      return at ? std::optional(along(*at, dt_s)) : std::nullopt;
+    };
+    const double row_s = shutter_.seen_s(pixel_at, size_.width, size_.height, kRounds);
+    for (int k = 0; k < moments; ++k) {
+      const double share = moments > 1 ? static_cast<double>(k) / (moments - 1) - 0.5 : 0;
+      if (const auto pixel = pixel_at(row_s + share * shutter_.exposure_s))
+        bounds.add(*pixel);
+      else
+        partly_unseen = true;
+    }
+  }
+
  private:
+  static constexpr int kRounds = 6;
+
+  // At the beginning, the middle and the end of the frame's time; empty where one has no pixel.
+  std::optional<std::array<Pixel, 3>> places_of(const Vector3& p_in_body) const {
+    std::array<Pixel, 3> at;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto pixel =
+          pixel_from_cam(sights_[k], rotation_[k] * p_in_body + cam_from_body_[k].translation);
+      if (!pixel) return std::nullopt;
+      at[k] = *pixel;
+    }
+    return at;
+  }
+
   // True where the path, at any time of the exposure and of the readout, lies inside the bounds: it
   // does where the control points of its Bezier form do.
   static bool is_within(const std::array<Pixel, 3>& at, const BoxBounds& bounds) {
@@ -105,7 +137,6 @@ class Sweep {
 
   // Row times are treated as linear over the rows: a box is not more accurate than its row.
   Pixel seen(const std::array<Pixel, 3>& at, double into_exposure_s) const {
-    constexpr int kRounds = 6;
     const auto pixel_at = [&](double dt_s) { return along(at, into_exposure_s + dt_s); };
     return pixel_at(shutter_.seen_s(pixel_at, size_.width, size_.height, kRounds));
   }
@@ -118,9 +149,8 @@ class Sweep {
   std::array<Matrix3, 3> rotation_;
 };
 
-// A part that spins or swings passes through many angles during the exposure. So many angles are
-// taken that neighbours are a few degrees apart, and the part counts as present at each of them all
-// the time.
+// A part that spins or swings passes through many angles during the exposure. So many moments are
+// taken that neighbours are a few degrees apart.
 constexpr double kSpinStepTurns = 1.0 / 120;
 constexpr int kMaxSpinSteps = 120;
 
@@ -132,20 +162,26 @@ void add_swept(const Sight& sight,
                BoxBounds& bounds,
                bool& partly_unseen) {
   const Sweep sweep(sight, body, world_from_body);
-  const double open_s = sight.shutter.exposure_s + sight.shutter.readout_s;
   for (std::size_t i = 0; i < silhouette.points.size(); ++i) {
     const model::Part& part = silhouette.mesh->parts[i];
-    const double turns = model::fastest_turn_per_s(part) * open_s;
-    const int steps =
-        1 + std::min(kMaxSpinSteps, static_cast<int>(std::ceil(turns / kSpinStepTurns)));
-    for (int step = 0; step < steps; ++step) {
-      const double dt_s = steps > 1 ? open_s * (double(step) / (steps - 1) - 0.5) : 0;
-      const Eigen::Affine3d body_from_part =
-          model::body_from_part(part, time_s + dt_s).cast<double>();
-      for (const Eigen::Vector3f& point : silhouette.points[i]) {
-        sweep.add(body_from_part * point.cast<double>(), bounds, partly_unseen);
-      }
+    const auto body_from_part = [&](double dt_s) -> Eigen::Affine3d {
+      return model::body_from_part(part, time_s + dt_s).cast<double>();
+    };
+    if (!part.moves()) {
+      const Eigen::Affine3d fixed = body_from_part(0);
+      for (const Eigen::Vector3f& point : silhouette.points[i])
+        sweep.add(fixed * point.cast<double>(), bounds, partly_unseen);
+      continue;
     }
+    const double turns = model::fastest_turn_per_s(part) * sight.shutter.exposure_s;
+    const int moments =
+        1 + std::min(kMaxSpinSteps, static_cast<int>(std::ceil(turns / kSpinStepTurns)));
+    for (const Eigen::Vector3f& point : silhouette.points[i])
+      sweep.add_moving(
+          [&](double dt_s) -> Vector3 { return body_from_part(dt_s) * point.cast<double>(); },
+          moments,
+          bounds,
+          partly_unseen);
   }
 }
 

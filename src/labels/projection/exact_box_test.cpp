@@ -142,5 +142,31 @@ TEST(ExactBox, TurnsWithASpinningPart) {
              1e-4);
 }
 
+// A blade of 2 m that turns 25 times a second, 4.8 m ahead: its tips are 100 px from the middle.
+// The sensor is read within half a turn of it, in which time each row sees the blade where it then
+// is.
+TEST(ExactBox, OfASpinningPartIsWhereTheRowsSeeIt) {
+  const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
+  model::Part propeller;
+  propeller.spins = true;
+  propeller.revolutions_per_s = 25;
+  Solid blade({{0, 0, -1}, {0, 0, 1}}, propeller);
+  for (const double exposure_s : {0.0, 0.002}) {
+    Sight sight = looking_north(lens);
+    sight.shutter = {exposure_s, 0.02, Readout::kDown};
+    // At each moment of the readout, the tips whose rows are exposed then.
+    constexpr double kRowS = 0.02 / kSize.height;
+    BoxBounds expected;
+    for (double t = -0.011; t < 0.011; t += 1e-6)
+      for (const double radius_px : {-100.0, 100.0}) {
+        const double angle = 2 * kPi * 25 * t;
+        const Pixel at(640 + radius_px * std::sin(angle), 480 - radius_px * std::cos(angle));
+        const double row_s = (at.y() / kSize.height - 0.5) * 0.02;
+        if (std::abs(t - row_s) <= 0.5 * (exposure_s + kRowS)) expected.add(at);
+      }
+    expect_box(blade.seen(sight, at(4.8, 0, 0)).box, *expected.box(), 0.4);
+  }
+}
+
 }  // namespace
 }  // namespace airtruth::projection

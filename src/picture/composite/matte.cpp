@@ -219,7 +219,7 @@ class Matte {
     const PixelBox& patch = layer_.patch;
     std::vector<float> luma(change_.size());
     for (std::size_t i = 0; i < luma.size(); ++i) luma[i] = colour_code_.luma(change_[i]);
-    sharpen(luma, patch.width, patch.height, sensor);
+    sharpen(luma, patch, {0, 0, picture_.width, picture_.height}, sensor);
     for (std::size_t i = 0; i < luma.size(); ++i)
       drawn_[i] = free_[i] && (drawn_[i] || std::abs(luma[i]) >= kLeastChange);
     if (sensor.has_noise()) {

@@ -42,10 +42,13 @@ int Sensor::chroma_px() const {
   return kSample * static_cast<int>(gaussian(chroma_spread_px / kSample).size() / 2) + 1;
 }
 
-void sharpen(std::vector<float>& change, int width, int height, const Sensor& sensor) {
+void sharpen(std::vector<float>& change,
+             const PixelBox& patch,
+             const PixelBox& frame,
+             const Sensor& sensor) {
   if (!(sensor.sharpening > 0)) return;
-  std::vector<float> soft = change;
-  blur(soft, width, height, gaussian(sensor.sharpening_px));
+  const std::vector<float> soft =
+      blurred(change, patch, patch, frame, gaussian(sensor.sharpening_px));
   const auto amount = static_cast<float>(sensor.sharpening);
   for (std::size_t i = 0; i < change.size(); ++i) change[i] += amount * (change[i] - soft[i]);
 }

@@ -36,9 +36,13 @@ struct Sensor {
   int reach_px() const { return std::max(halo_px(), chroma_px()); }
 };
 
-// Replaces the change by change + sharpening (change - G change). The background is already
-// sharpened, and sharpening is linear: a change of the background is therefore sharpened by itself.
-void sharpen(std::vector<float>& change, int width, int height, const Sensor& sensor);
+// Replaces the change in a patch of the frame by change + sharpening (change - G change). The
+// background is already sharpened, and sharpening is linear: a change of the background is
+// therefore sharpened by itself. What the frame cuts continues beyond it as in spread().
+void sharpen(std::vector<float>& change,
+             const PixelBox& patch,
+             const PixelBox& frame,
+             const Sensor& sensor);
 
 // Standard deviation of luma noise in code values, at a coded luma of 0..1.
 float noise_sigma(float luma, float codes_per_unit, const Sensor& sensor);

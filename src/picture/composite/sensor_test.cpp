@@ -76,6 +76,19 @@ TEST(Spread, IsCutByTheFrameAlone) {
   EXPECT_EQ(soft.patch, (PixelBox{0, 0, 9, 9}));
 }
 
+// A square of 40 pixels from (20, 20) on, whole, and in a frame that begins at (40, 40).
+TEST(Spread, WhatTheFrameCutsContinuesBeyondIt) {
+  const image::Layer whole = spread(square(40, 0.8F, 0.5F, 20), 1.7, 3, 100, 100);
+  const image::Layer cut = spread(square(20, 0.8F, 0.5F, 0), 1.7, 3, 60, 60);
+  for (int y = 0; y < cut.patch.bottom(); ++y)
+    for (int x = 0; x < cut.patch.right(); ++x) {
+      const std::size_t i = cut.index(x, y), j = whole.index(x + 40, y + 40);
+      ASSERT_NEAR(cut.pixels[i].alpha, whole.pixels[j].alpha, 1e-5) << x << ' ' << y;
+      ASSERT_NEAR(cut.pixels[i].red, whole.pixels[j].red, 1e-5);
+      ASSERT_NEAR(cut.coverage[0].at(x, y), whole.coverage[0].at(x + 40, y + 40), 1e-5);
+    }
+}
+
 TEST(Sharpen, LeavesEvenChangesAloneAndOvershootsAtSteps) {
   Sensor sensor;
   sensor.sharpening = 0.8;
@@ -83,10 +96,21 @@ TEST(Sharpen, LeavesEvenChangesAloneAndOvershootsAtSteps) {
   std::vector<float> change(40 * 40, 0.0F);
   for (int y = 0; y < 40; ++y)
     for (int x = 20; x < 40; ++x) change[static_cast<std::size_t>(y * 40 + x)] = 50;
-  sharpen(change, 40, 40, sensor);
+  sharpen(change, {0, 0, 40, 40}, {-9, -9, 99, 99}, sensor);
   EXPECT_NEAR(change[20 * 40 + 28], 50, 1e-3);
   EXPECT_GT(change[20 * 40 + 20], 55);
   EXPECT_LT(change[20 * 40 + 19], -5);
+  EXPECT_GT(change[20 * 40 + 39], 55);
+}
+
+TEST(Sharpen, LeavesWhatTheFrameCutsAlone) {
+  Sensor sensor;
+  sensor.sharpening = 0.8;
+  sensor.sharpening_px = 1.0;
+  const PixelBox frame{0, 0, 20, 20};
+  std::vector<float> change(20 * 20, 50.0F);
+  sharpen(change, frame, frame, sensor);
+  for (const float value : change) ASSERT_NEAR(value, 50, 1e-3);
 }
 
 TEST(Noise, HasItsCurveItsCorrelationAndAnotherFaceEachFrame) {

@@ -6,7 +6,6 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/vectors.h"
-#include "foundation/geometry/box.h"
 
 namespace airtruth::composite {
 namespace {
@@ -17,16 +16,6 @@ constexpr double kReach = 3;
 constexpr float kNothing = 1.0F / 4096;
 
 int reach_of(double sigma_px) { return static_cast<int>(std::ceil(kReach * sigma_px)); }
-
-// Values of the pixels of a box, copied into the middle of a larger box.
-template <typename Get>
-std::vector<float> placed(const PixelBox& from, const PixelBox& to, const Get& get) {
-  std::vector<float> plane(pixels_in(to), 0.0F);
-  std::size_t i = 0;
-  for (int y = from.y; y < from.bottom(); ++y)
-    for (int x = from.x; x < from.right(); ++x) plane[index_in(to, x, y)] = get(i++);
-  return plane;
-}
 
 // A loop that the compiler makes of vectors; each sum of a blur has one order, that of the kernel.
 AIRTRUTH_FOR_VECTORS void add_scaled(const float* __restrict from,
@@ -102,21 +91,52 @@ void blur(std::vector<float>& values, int width, int height, const std::vector<f
   blur(values, width, height, kernel, kernel);
 }
 
+std::vector<float> blurred(const std::vector<float>& values,
+                           const PixelBox& from,
+                           const PixelBox& to,
+                           const PixelBox& frame,
+                           const std::vector<float>& kernel) {
+  const int reach = static_cast<int>(kernel.size()) / 2;
+  const int left = to.x == frame.x ? reach : 0;
+  const int top = to.y == frame.y ? reach : 0;
+  const PixelBox around{to.x - left,
+                        to.y - top,
+                        to.width + left + (to.right() == frame.right() ? reach : 0),
+                        to.height + top + (to.bottom() == frame.bottom() ? reach : 0)};
+  std::vector<float> plane(pixels_in(around), 0.0F);
+  for (int y = around.y; y < around.bottom(); ++y)
+    for (int x = around.x; x < around.right(); ++x) {
+      const int at_x = std::clamp(x, frame.x, frame.right() - 1);
+      const int at_y = std::clamp(y, frame.y, frame.bottom() - 1);
+      if (from.contains(at_x, at_y))
+        plane[index_in(around, x, y)] = values[index_in(from, at_x, at_y)];
+    }
+  blur(plane, around.width, around.height, kernel);
+  if (around == to) return plane;
+  std::vector<float> result;
+  result.reserve(pixels_in(to));
+  for (int y = to.y; y < to.bottom(); ++y) {
+    const auto row = plane.begin() + static_cast<std::ptrdiff_t>(index_in(around, to.x, y));
+    result.insert(result.end(), row, row + to.width);
+  }
+  return result;
+}
+
 image::Layer spread(
     const image::Layer& layer, double sigma_px, int margin_px, int frame_width, int frame_height) {
   if (layer.empty()) return layer;
   const int reach = sigma_px > 0 ? std::max(1, reach_of(sigma_px)) : 0;
   const int more = reach + margin_px;
   if (more == 0) return layer;
-  image::Layer result(*intersection(wider(layer.patch, more), {0, 0, frame_width, frame_height}));
+  const PixelBox frame{0, 0, frame_width, frame_height};
+  image::Layer result(*intersection(wider(layer.patch, more), frame));
   result.areas = layer.areas;
   const std::vector<float> kernel = gaussian(sigma_px);
-  const auto through = [&](const PixelBox& from, const PixelBox& to, const auto& get) {
-    std::vector<float> plane = placed(from, to, get);
-    blur(plane, to.width, to.height, kernel);
-    return plane;
+  const auto of_layer = [&](const auto& get) {
+    std::vector<float> values(layer.pixels.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = get(i);
+    return blurred(values, layer.patch, result.patch, frame, kernel);
   };
-  const auto of_layer = [&](const auto& get) { return through(layer.patch, result.patch, get); };
   const auto alpha = of_layer([&](std::size_t i) { return layer.pixels[i].alpha; });
   const auto red = of_layer([&](std::size_t i) { return layer.pixels[i].red; });
   const auto green = of_layer([&](std::size_t i) { return layer.pixels[i].green; });
@@ -133,8 +153,7 @@ image::Layer spread(
     image::Coverage& spread = result.coverage.emplace_back();
     if (coverage.empty()) continue;
     spread.box = *intersection(wider(coverage.box, reach), result.patch);
-    spread.alpha =
-        through(coverage.box, spread.box, [&](std::size_t i) { return coverage.alpha[i]; });
+    spread.alpha = blurred(coverage.alpha, coverage.box, spread.box, frame, kernel);
     each_pixel(spread, [&](int x, int y, float& share) {
       if (!(result.pixels[result.index(x, y)].alpha > 0)) share = 0;
     });

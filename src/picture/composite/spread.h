@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "foundation/geometry/box.h"
 #include "foundation/image/layer.h"
 
 // Haze and point spread of a layer. The cost grows with the layer's size.
@@ -18,7 +19,8 @@ void add_haze(image::Layer& layer,
 
 // The layer after a Gaussian point spread of this standard deviation. Its patch grows by the reach
 // of the Gaussian (three deviations) and by `margin_px`, and is clipped to the frame. Coverage is
-// blurred with the colour, so that the labels agree with the picture.
+// blurred with the colour, so that the labels agree with the picture. What the frame cuts continues
+// beyond it as it is at the frame's edge.
 image::Layer spread(
     const image::Layer& layer, double sigma_px, int margin_px, int frame_width, int frame_height);
 
@@ -35,5 +37,14 @@ void blur(std::vector<float>& values,
           const std::vector<float>& down);
 // The same kernel along both axes.
 void blur(std::vector<float>& values, int width, int height, const std::vector<float>& kernel);
+
+// The values of the pixels of a box after such a blur, for the pixels of another box. Both boxes
+// are inside the frame. Values outside `from` count as 0, but beyond the edge of the frame they are
+// those at the edge.
+std::vector<float> blurred(const std::vector<float>& values,
+                           const PixelBox& from,
+                           const PixelBox& to,
+                           const PixelBox& frame,
+                           const std::vector<float>& kernel);
 
 }  // namespace airtruth::composite

@@ -46,10 +46,20 @@ Box everywhere(const lens::ImageSize& size) {
   return wider(Box{0, 0, double(size.width), double(size.height)}, kFarPx);
 }
 
-std::optional<Box> search_box(const projection::ExactBox& exact, const lens::ImageSize& size) {
+// The exact box is that of the silhouette's points. Through a lens that is no pinhole the straight
+// edges between them bulge: an arc over the angle a departs from its chord by a / 8 of it.
+double bulge_px(const Box& box, const lens::Lens& lens) {
+  if (std::holds_alternative<lens::Pinhole>(lens.model())) return 0;
+  const double side_px = std::hypot(box.width, box.height);
+  return side_px * side_px / (8 * lens.focal_px());
+}
+
+std::optional<Box> search_box(const projection::ExactBox& exact, const lens::Lens& lens) {
   if (!exact.box) return std::nullopt;
-  const Box box = exact.partly_unseen ? everywhere(size) : wider(*exact.box, kSearchMarginPx);
-  if (!meets_frame(box, size)) return std::nullopt;
+  const Box box = exact.partly_unseen
+                      ? everywhere(lens.size())
+                      : wider(*exact.box, kSearchMarginPx + bulge_px(*exact.box, lens));
+  if (!meets_frame(box, lens.size())) return std::nullopt;
   return box;
 }
 
@@ -213,7 +223,7 @@ Moment moment_at(const World& world, std::int64_t frame, double time_s, const Sh
                                                          actor.turned_s(time_s),
                                                          twist)
                                  : projection::ExactBox{});
-    moment.search.push_back(search_box(moment.boxes.back(), world.lens.size()));
+    moment.search.push_back(search_box(moment.boxes.back(), world.lens));
   }
   for (const scene::LensMark& mark : world.lens_marks)
     moment.spots.push_back(spot_of(mark, moment.sight, world.to_sun_in_world, time_s, world.seed));
