@@ -167,6 +167,31 @@ TEST_F(Models, SelectRotateAndSpinAreHonoured) {
   EXPECT_NEAR(model::extents(load_aircraft(with(rotate)).mesh).low_in_body.y(), -10, 1e-4);
 }
 
+// Nested models are effects by whole words of their path, below the aircraft's own folder.
+TEST_F(Models, ANestedPartIsAnEffectByWholeWordsOfItsPath) {
+  const auto triangles = [&](const std::string& part) {
+    fs::create_directories((folder_ / part).parent_path());
+    write_file(folder_ / part, asymmetric_ac());
+    write_file(folder_ / "body.ac", asymmetric_ac());
+    write_file(folder_ / "w.xml",
+               "<PropertyList><path>body.ac</path><model><path>" + part +
+                   "</path><offsets><x-m>20</x-m></offsets></model></PropertyList>");
+    return load_aircraft((folder_ / "w.xml").string()).mesh.triangle_count();
+  };
+  for (const char* part : {"FlightSurfaces/wing.ac",
+                           "Aircraft/UltraLight-Trike/Models/wing.ac",
+                           "Terrain/wing.ac",
+                           "smokewinder.ac"})
+    EXPECT_EQ(triangles(part), 6U) << part;
+  for (const char* lamp : {"Lights/green.ac",
+                           "Aircraft/trike/Models/NavLights.ac",
+                           "landinglight.ac",
+                           "StrobeWhite.ac",
+                           "Models/Effects/dust.ac",
+                           "contrail1.ac"})
+    EXPECT_EQ(triangles(lamp), 3U) << lamp;
+}
+
 // A helicopter's file holds every blade in one place, and the flight model turns blade k of n to
 // 360 k / n degrees: with two blades that point aft (x back), one stays and one points forward.
 TEST_F(Models, TheBladesOfARotorStandEvenlyAboutIt) {

@@ -68,7 +68,7 @@ std::optional<Sketch> sketch_of(const fs::path& file,
                                 wrapper::ModelFiles& files,
                                 const fs::path& root) {
   const std::string name = file.filename().string();
-  if (wrapper::is_effect_path(name)) return std::nullopt;
+  if (wrapper::is_effect_name(name)) return std::nullopt;
   try {
     const wrapper::Wrapper text =
         wrapper::parse_wrapper(read_file(file, wrapper::kMaxWrapperBytes), file);
@@ -104,7 +104,7 @@ Sketches sketches_in(const fs::path& folder) {
   };
   for (const auto& at : fs::directory_iterator(folder)) {
     add(at.path(), false);
-    if (!at.is_directory() || wrapper::is_effect_path(at.path().filename().string() + "/"))
+    if (!at.is_directory() || wrapper::is_effect_name(at.path().filename().string() + "/"))
       continue;
     for (const auto& below : fs::directory_iterator(at.path())) add(below.path(), true);
   }

@@ -21,10 +21,44 @@ std::string without(std::string text, std::string_view word) {
   return at == std::string::npos ? text : text.erase(at, word.size());
 }
 
+bool is_small(char c) { return c >= 'a' && c <= 'z'; }
+bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
+
+// The words in small letters, each between blanks. A word is a run of letters, and a capital after
+// a small letter begins one: "NavLights-2" is "nav" and "lights".
+std::string words_of(std::string_view name) {
+  std::string words = " ";
+  char before = ' ';
+  for (const char c : name) {
+    const bool is_letter = is_small(c) || is_capital(c);
+    if (!is_letter || (is_capital(c) && is_small(before))) words += ' ';
+    if (is_letter) words += static_cast<char>(c | 0x20);  // a small letter
+    before = c;
+  }
+  return words + ' ';
+}
+
 }  // namespace
 
 bool is_effect_path(const std::string& path) {
-  std::string text = lower_case(path);
+  std::string text = path;
+  std::replace(text.begin(), text.end(), '\\', '/');
+  // "Aircraft/NAME/" says nothing of the part: NAME may be UltraLight.
+  constexpr std::string_view kAircraft = "aircraft/";
+  const auto at = lower_case(text).find(kAircraft);
+  const auto name = at == std::string::npos ? at : at + kAircraft.size();
+  if (const auto end = text.find('/', name); end != std::string::npos) text.erase(0, end);
+  return contains_any(lower_case(text), {"/effects/", "/sounds/", "/sound/"}) ||
+         contains_any(
+             words_of(text),
+             {" light ",         " lights ",    " navlight ",   " navlights ", " landinglight ",
+              " landinglights ", " taxilight ", " taxilights ", " beacon ",    " beacons ",
+              " strobe ",        " strobes ",   " halo ",       " flare ",     " smoke ",
+              " contrail ",      " contrails ", " rain ",       " exhaust ",   " exhausts "});
+}
+
+bool is_effect_name(const std::string& file) {
+  std::string text = lower_case(file);
   std::replace(text.begin(), text.end(), '\\', '/');
   // An aircraft; and "train" as well as "trainer".
   text = without(without(std::move(text), "lightning"), "train");

@@ -8,8 +8,13 @@
 // that turn too fast to be seen, and wheels. Letter case matters only where it is said.
 namespace airtruth::wrapper {
 
-// Whether the path is that of a lamp, smoke, rain or a sound.
+// Whether the path of a nested model is, by whole words below the aircraft's own folder, that of a
+// lamp, smoke, rain or a sound.
 bool is_effect_path(const std::string& path);
+
+// The same of a file or folder of the catalogue, where the letters count wherever they stand, those
+// of UkraineIntl among them. A seed draws among the names that are listed by it.
+bool is_effect_name(const std::string& file);
 
 // Whether an object is a lamp, its glow, a shadow on the ground or smoke. These are effects of the
 // game and no part of the aircraft's body. A lamp that is lit has a name that ends in "On".
