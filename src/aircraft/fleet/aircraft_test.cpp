@@ -94,8 +94,13 @@ TEST_F(Models, APropellersDiscIsFaintAndDark) {
     EXPECT_FLOAT_EQ(named(disc).opacity, 0.1f) << disc;
     EXPECT_LT(named(disc).diffuse[0], 0.1f) << disc;
   }
-  for (const char* other :
-       {"body", "right_fan_disk", "no2engdisks", "Propeller", "ArCanopy-doublure"})
+  for (const char* other : {"body",
+                            "right_fan_disk",
+                            "no2engdisks",
+                            "Propeller",
+                            "ArCanopy-doublure",
+                            "Discus-2b",
+                            "DISCO"})
     EXPECT_EQ(named(other).opacity, 1) << other;
 }
 

@@ -60,6 +60,17 @@ TEST_F(Formats, AnObjWithItsMaterialIsReadAndAMissingOneIsNamed) {
   EXPECT_THAT(warnings_, testing::HasSubstr("gone.mtl"));
 }
 
+// Names are FlightGear's in its own files alone: a Disco is no disc, a Shadow no shadow.
+TEST_F(Formats, APartsNameSaysNothing) {
+  for (const char* name : {"Discus-2b", "disk", "prop_disc", "RQ-7_Shadow", "tail_beam", "smoke"}) {
+    const fleet::Aircraft loaded =
+        load(std::string(name) + ".obj",
+             std::string("g ") + name + "\nv 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n");
+    expect_size(loaded);
+    EXPECT_EQ(loaded.mesh.materials.at(0).opacity, 1) << name;
+  }
+}
+
 TEST_F(Formats, StlAndPlyAreRead) {
   const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
     return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +

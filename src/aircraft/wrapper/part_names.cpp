@@ -88,8 +88,10 @@ bool is_propeller_disc(const std::vector<std::string>& names) {
   if (names.empty()) return false;
   const std::string name = lower_case(names.back());
   if (contains_any(name, {"fan", "eng"})) return false;
-  return contains_any(name, {"_blur", "-blur"}) || name.starts_with("disk") ||
-         name.starts_with("disc") ||
+  const std::string words = words_of(names.back());
+  return contains_any(name, {"_blur", "-blur"}) || words.starts_with(" disk ") ||
+         words.starts_with(" disc ") || words.starts_with(" disklh") ||
+         words.starts_with(" diskrh") ||  // "disklha"; and no Discus
          (contains_any(name, {"prop", "prplr", "rotor"}) &&
           contains_any(name, {"disk", "disc", "blur", "fast"}));
 }

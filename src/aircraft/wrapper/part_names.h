@@ -5,7 +5,8 @@
 #include <vector>
 
 // What FlightGear's models tell by names alone: lamps and other effects of the game, propellers
-// that turn too fast to be seen, and wheels. Letter case matters only where it is said.
+// that turn too fast to be seen, and wheels. Letter case matters only where it is said. In other
+// files than .ac and the .xml that name them, a name says nothing of the kind.
 namespace airtruth::wrapper {
 
 // Whether the path of a nested model is, by whole words below the aircraft's own folder, that of a
@@ -21,7 +22,7 @@ bool is_effect_name(const std::string& file);
 bool is_effect(const std::string& object);
 
 // Whether the names, outermost first, are those of a propeller or rotor that turns fast, and not of
-// a jet engine's fan ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk").
+// a jet engine's fan ("Prop_Blur_L", "no1propdisk", "Propeller.Fast", "Disk.noshadow").
 bool is_propeller_disc(const std::vector<std::string>& names);
 
 bool is_wheel(const std::string& object);

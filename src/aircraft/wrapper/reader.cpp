@@ -165,6 +165,7 @@ bool is_known(const std::string& type) {
   return kKnown.contains(type);
 }
 
+// In FlightGear's files.
 PartChoice choice_by_names(const std::vector<std::string>& names) {
   PartChoice choice;
   choice.hidden = std::any_of(names.begin(), names.end(), is_effect);
@@ -281,7 +282,7 @@ void read_bare(const fs::path& file,
                Assembly& assembly) {
   const Eigen::Affine3d body_from_file = body_from_axes(options.axes.value_or(model::ModelAxes{}));
   const auto choose = [&](const std::vector<std::string>& names) {
-    PartChoice choice = choice_by_names(names);
+    PartChoice choice = ending_of(file) == ".ac" ? choice_by_names(names) : PartChoice{};
     choice.body_from_file = body_from_file;
     return choice;
   };
