@@ -267,8 +267,9 @@ class AcParser {
       object(index).crease_deg =
           std::min(tokens_.number("crease", model::kLargestCoordinate), kLargestCreaseDeg);
     } else if (word == "rot") {
+      // The rows are where x, y and z go, as OpenSceneGraph has it in FlightGear.
       for (int i = 0; i < 9; ++i)
-        state.outer_from_own.turn(i / 3, i % 3) = tokens_.number("rot", model::kLargestCoordinate);
+        state.outer_from_own.turn(i % 3, i / 3) = tokens_.number("rot", model::kLargestCoordinate);
     } else if (word == "loc") {
       for (double& value : state.outer_from_own.shift)
         value = tokens_.number("loc", model::kLargestCoordinate);

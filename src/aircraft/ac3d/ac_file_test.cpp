@@ -49,9 +49,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 TEST(AcFile, PlacesTexturesAndNamesFollowTheTree) {
-  // The inner object is turned by a quarter about z and shifted by the outer's place.
+  // The inner object is turned by a quarter about z and shifted by the outer's place. The rows of
+  // rot are where x, y and z go, as OpenSceneGraph 3.6.5 reads them: x goes to y.
   const AcFile file = parse_ac(
-      ac("kids 1\nOBJECT group\nname \"wing\"\nloc 10 0 0\nrot 0 -1 0 1 0 0 0 0 1\n"
+      ac("kids 1\nOBJECT group\nname \"wing\"\nloc 10 0 0\nrot 0 1 0 -1 0 0 0 0 1\n"
          "texture \"a b.rgb\"\nkids 1\n" +
          replaced(
              kTriangle, "numvert", "name \"tip\"\ntexrep 2 3\ntexoff 0.5 0\nloc 1 0 0\nnumvert")),
