@@ -157,6 +157,12 @@ TEST_F(Formats, WhatIsWhollyTransparentIsRefused) {
   write_file(folder_ / "g.mtl", "newmtl m\nKd 1 0 0\nd 0\n");
   EXPECT_THAT(fault("g.obj", "mtllib g.mtl\nusemtl m\nv 0 0 0\nv 3 0 0\nv 0 2 0\nf 1 2 3\n"),
               testing::HasSubstr("g.obj: is wholly transparent"));
+  // So is a model by its texture: one texel of 32 bits, of which 8 are an alpha of 0.
+  write_file(folder_ / "t.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\40\10\1\2\3\0", 22));
+  write_file(folder_ / "t.mtl", "newmtl m\nmap_Kd t.tga\n");
+  EXPECT_THAT(
+      fault("t.obj", "mtllib t.mtl\nusemtl m\nv 0 0 0\nv 3 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n"),
+      testing::HasSubstr("t.obj: is wholly transparent"));
 }
 
 TEST_F(Formats, ASizeThatNoAircraftHasIsSaid) {

@@ -286,7 +286,9 @@ class TgaReader {
     }
     Rgba value{0, 0, 0, 255};
     for (const std::size_t c : {2u, 1u, 0u}) value[c] = static_cast<std::uint8_t>(next());
-    if (bits == 32) value[3] = static_cast<std::uint8_t>(next());
+    if (bits != 32) return value;
+    const auto fourth = static_cast<std::uint8_t>(next());
+    if (header_.alpha_bits > 0) value[3] = fourth;  // else it states nothing
     return value;
   }
 

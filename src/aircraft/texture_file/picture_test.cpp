@@ -165,6 +165,10 @@ TEST(Pictures, TgaOfColourGrayAndPalette) {
   const Picture top =
       read_picture(tga_header(2, 1, 2, 32, 0x28) + "\x03\x02\x01\x09\x06\x05\x04\x08");
   EXPECT_EQ(at(top, 0, 1), (Pixel{1, 2, 3, 9}));
+  // 32 bits of which none is alpha: the fourth byte says nothing.
+  const Picture opaque =
+      read_picture(tga_header(2, 1, 1, 32, 0x20) + std::string("\x03\x02\x01\0", 4));
+  EXPECT_EQ(at(opaque, 0, 0), (Pixel{1, 2, 3, 255}));
   // Gray in runs: three times 7, then 8.
   const Picture gray =
       read_picture(tga_header(11, 4, 1, 8, 0) + std::string("\x82\x07\x00\x08", 4));

@@ -173,6 +173,13 @@ PartChoice choice_by_names(const std::vector<std::string>& names) {
   return choice;
 }
 
+// Whether any texel is not wholly transparent.
+bool has_opacity(const texture_file::Picture& picture) {
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
+    if (picture.rgba[i] > 0) return true;
+  return false;
+}
+
 // A model file by its ending; how it is read.
 void append_file(Assembly& assembly, const ModelFile& file, const AppendOther& append_other) {
   const std::string ending = ending_of(file.path);
@@ -314,8 +321,13 @@ model::RawModel read_model(ModelFiles& files,
   if (model.mesh.triangle_count() == 0)
     throw Error("holds no triangles; expected a 3D model", {files.shown(file).string()});
   model::check_model(model);
+  std::vector<bool> has_seen_texel;
+  for (const model::RawPicture& raw : model.pictures)
+    has_seen_texel.push_back(has_opacity(raw.picture));
   const auto is_seen = [&](const model::Triangle& triangle) {
-    return model.mesh.materials[triangle.material].opacity > 0;
+    const model::Material& material = model.mesh.materials[triangle.material];
+    return material.opacity > 0 &&
+           (material.texture < 0 || has_seen_texel[static_cast<std::size_t>(material.texture)]);
   };
   if (std::none_of(model.mesh.parts.begin(), model.mesh.parts.end(), [&](const model::Part& part) {
         return std::any_of(part.triangles.begin(), part.triangles.end(), is_seen);
