@@ -163,12 +163,12 @@ class SceneReader {
           face.mIndices[0], face.mIndices[1], face.mIndices[2]};
       for (const std::uint32_t vertex : triangle)
         if (vertex >= mesh.mNumVertices) throw Error("has a triangle without its vertex");
-      if (!mesh.HasNormals()) {
-        const aiVector3D normal = normal_of(mesh, triangle);
-        for (std::uint32_t& vertex : triangle) {
-          add_vertex(vertex, normal);
-          vertex = static_cast<std::uint32_t>(batch.positions.size() - 1);
-        }
+      const aiVector3D normal = normal_of(mesh, triangle);
+      for (std::uint32_t& vertex : triangle) {
+        // Many files state the normal 0 0 0 where they mean that of the triangle.
+        if (mesh.HasNormals() && mesh.mNormals[vertex].SquareLength() > 0) continue;
+        add_vertex(vertex, normal);
+        vertex = static_cast<std::uint32_t>(batch.positions.size() - 1);
       }
       batch.triangles.push_back(triangle);
     }

@@ -85,6 +85,27 @@ TEST_F(Formats, StlAndPlyAreRead) {
                    "end_header\n0 0 0\n3 0 0\n0 2 0\n0 0 1\n3 0 1 2\n3 0 2 3\n"));
 }
 
+// A normal 0 0 0 stands for that of the triangle: the wall of x and z faces right, -y of the file.
+TEST_F(Formats, ANormalWithoutLengthIsThatOfItsTriangle) {
+  const std::string corners = "0 0 0 0 0 0\n3 0 0 0 0 0\n0 0 1 0 0 0\n";
+  const std::string properties =
+      "property float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\n";
+  for (const fleet::Aircraft& loaded :
+       {load("a.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\n" + properties +
+                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + corners +
+                 "3 0 1 2\n"),
+        load("a.stl",
+             "solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 3 0 0\n"
+             "vertex 0 0 1\nendloop\nendfacet\nendsolid a\n"),
+        load("a.obj", "v 0 0 0\nv 3 0 0\nv 0 0 1\nvn 0 0 0\nf 1//1 2//1 3//1\n")}) {
+    ASSERT_EQ(loaded.mesh.positions.size(), 3U) << loaded.name;
+    for (const Eigen::Vector3f& normal : loaded.mesh.normals)
+      EXPECT_TRUE(normal.isApprox(Eigen::Vector3f(0, 1, 0))) << normal.transpose();
+  }
+}
+
 // Two triangles that share the edge from the origin along x, and whose planes differ by 27 degrees.
 std::string gltf_of(const std::string& material) {
   // The positions (0, 0, 0), (3, 0, 0), (0, 2, 0), (0, 0, 1), then the indices 0 1 2, 0 1 3,
