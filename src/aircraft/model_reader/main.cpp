@@ -64,6 +64,21 @@ fs::path plain_path(const char* path) {
   return fs::path(text).lexically_normal();
 }
 
+// The text of an OBJ file with a 0 before each number of a vertex that begins with its dot, for
+// which assimp (5.2.5) drops the line, so that all faces behind it name other vertices.
+std::string with_whole_parts(const std::string& obj) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  std::string text;
+  text.reserve(obj.size());
+  char first = '\n';  // of the line; a line break before there is one
+  for (const char c : obj) {
+    if (c == '.' && first == 'v' && is_blank(text.back())) text += '0';
+    if (c == '\n' || (first == '\n' && !is_blank(c))) first = c;
+    text += c;
+  }
+  return text;
+}
+
 // The file system that assimp sees: the model's files, complete and read-only. The class records
 // the requested files that do not exist.
 class AssimpFiles : public Assimp::IOSystem {
@@ -75,9 +90,14 @@ class AssimpFiles : public Assimp::IOSystem {
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
-    if (Exists(path)) return MemoryStream::of(files_.read(plain_path(path), model::kMaxModelBytes));
-    missing_.insert(plain_path(path).string());
-    return nullptr;
+    const fs::path file = plain_path(path);
+    if (!Exists(path)) {
+      missing_.insert(file.string());
+      return nullptr;
+    }
+    std::string bytes = files_.read(file, model::kMaxModelBytes);
+    if (wrapper::ending_of(file) == ".obj") bytes = with_whole_parts(bytes);
+    return MemoryStream::of(bytes);
   }
   void Close(Assimp::IOStream* stream) override { delete stream; }
   const std::set<std::string>& missing() const { return missing_; }

@@ -71,6 +71,15 @@ TEST_F(Formats, APartsNameSaysNothing) {
   }
 }
 
+TEST_F(Formats, ANumberOfAnObjMayBeginWithItsDot) {
+  // The last vertex is spare.
+  const auto loaded = load(
+      "a.obj",
+      "v .0 0 0\n\tv 3 .0 .0\nv 0 2 .0\nv 0 .0 1\nv 9 9 9\nvt .1 .5\nf 1 2 3\nf 1/1 3/1 4/1\n");
+  expect_size(loaded);
+  EXPECT_EQ(loaded.mesh.triangle_count(), 2U);
+}
+
 TEST_F(Formats, StlAndPlyAreRead) {
   const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
     return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
