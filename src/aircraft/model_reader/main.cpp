@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -30,6 +31,8 @@
 #include "aircraft/wrapper/reader.h"
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "foundation/image/colour.h"
 #include "foundation/sandbox/child.h"
 #include "foundation/sandbox/confine.h"
@@ -79,6 +82,20 @@ std::string with_whole_parts(const std::string& obj) {
   return text;
 }
 
+// Whether the text of an .mtl file moves, scales or warps the picture of a material.
+bool moves_pictures(std::string mtl) {
+  std::replace(mtl.begin(), mtl.end(), '\t', ' ');
+  std::istringstream lines(std::move(mtl));
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<std::string> words = words_in(line);
+    if (!words.empty() && lower_case(words[0]) == "map_kd" &&
+        std::ranges::any_of(
+            words, [](const auto& word) { return word == "-s" || word == "-o" || word == "-t"; }))
+      return true;
+  }
+  return false;
+}
+
 // The file system that assimp sees: the model's files, complete and read-only. The class records
 // the requested files that do not exist.
 class AssimpFiles : public Assimp::IOSystem {
@@ -97,14 +114,18 @@ class AssimpFiles : public Assimp::IOSystem {
     }
     std::string bytes = files_.read(file, model::kMaxModelBytes);
     if (wrapper::ending_of(file) == ".obj") bytes = with_whole_parts(bytes);
+    if (wrapper::ending_of(file) == ".mtl")
+      moves_pictures_ = moves_pictures_ || moves_pictures(bytes);
     return MemoryStream::of(bytes);
   }
   void Close(Assimp::IOStream* stream) override { delete stream; }
   const std::set<std::string>& missing() const { return missing_; }
+  bool moves_pictures_of_obj() const { return moves_pictures_; }
 
  private:
   wrapper::ModelFiles& files_;
   std::set<std::string> missing_;
+  bool moves_pictures_ = false;
 };
 
 // The colour with components in 0..1; a component that is not finite becomes 0.
@@ -125,6 +146,15 @@ bool turns_or_scales(const aiMaterial& material) {
         (change.mRotation != 0 || change.mScaling.x != 1 || change.mScaling.y != 1))
       return true;
   return false;
+}
+
+// A picture of where the material is there, which is not read. Where it is that of the colour, its
+// alpha is.
+bool has_picture_of_opacity(const aiMaterial& material) {
+  aiString opacity, colour;
+  return material.GetTexture(aiTextureType_OPACITY, 0, &opacity) == aiReturn_SUCCESS &&
+         (material.GetTexture(aiTextureType_DIFFUSE, 0, &colour) != aiReturn_SUCCESS ||
+          !(opacity == colour));
 }
 
 class SceneReader {
@@ -376,6 +406,13 @@ void append_other_format(wrapper::Assembly& assembly, const wrapper::ModelFile& 
     if (!error.where().file.empty()) throw;
     throw Error(error.message(), {shown});
   }
+  if (std::any_of(scene->mMaterials,
+                  scene->mMaterials + scene->mNumMaterials,
+                  [](const aiMaterial* material) { return has_picture_of_opacity(*material); }))
+    assembly.warn("a picture of opacity (map_d of OBJ) is not read; what it cuts out is opaque");
+  if (files->moves_pictures_of_obj())
+    assembly.warn(
+        "the options -s, -o and -t of map_Kd are not read; its picture may not show rightly");
   warn_of_missing(assembly, *files);
 }
 

@@ -80,6 +80,23 @@ TEST_F(Formats, ANumberOfAnObjMayBeginWithItsDot) {
   EXPECT_EQ(loaded.mesh.triangle_count(), 2U);
 }
 
+TEST_F(Formats, WhatOfAnMtlIsNotReadIsSaid) {
+  const auto warnings = [&](const std::string& lines) {
+    // A white texel.
+    write_file(folder_ / "t.tga",
+               std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\30\0", 18) + "\xff\xff\xff");
+    write_file(folder_ / "a.mtl", "newmtl m\n" + lines + "\n");
+    warnings_.clear();
+    load("a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 3 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+    return warnings_;
+  };
+  EXPECT_THAT(warnings("map_d t.tga"), testing::HasSubstr("map_d of OBJ) is not read"));
+  EXPECT_THAT(warnings("map_Kd -s 2 t.tga"), testing::HasSubstr("the options -s, -o and -t"));
+  EXPECT_THAT(warnings("map_Kd\t-o 0.5 0 0 t.tga"),
+              testing::HasSubstr("the options -s, -o and -t"));
+  EXPECT_EQ(warnings("map_Kd t.tga\nmap_d t.tga\nmap_Bump -s 2 2 2 t.tga"), "");
+}
+
 TEST_F(Formats, StlAndPlyAreRead) {
   const auto facet = [](const std::string& a, const std::string& b, const std::string& c) {
     return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
