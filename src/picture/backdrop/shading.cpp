@@ -27,9 +27,9 @@ void main() {
 }
 )";
 
-// The light equals the ray tracer's except for its shadows: Lambert for the sun, a hemisphere from
-// ground to zenith colour, and Blinn-Phong (Blinn 1977) for the glint. Surfaces are two-sided by
-// the visible side of the flat face. Texels are linear and premultiplied.
+// The light equals the ray tracer's except for its shadows and what materials emit: Lambert for the
+// sun, a hemisphere from ground to zenith colour, and Blinn-Phong (Blinn 1977) for the glint.
+// Surfaces are two-sided by the visible side of the flat face. Texels are linear and premultiplied.
 constexpr const char* kFragmentShader = R"(#version 120
 varying vec3 p_in_part;
 centroid varying vec3 p_in_eye;
