@@ -246,14 +246,37 @@ const std::vector<std::string> kHarmless = words_in(
     "rectification_matrix projection_matrix R P r p cam_overlaps rostopic T_cam_imu T_cn_cnm1 "
     "T_imu_cam timeshift_cam_imu");
 
-// Names of lens models, in any of kModels: true for a fisheye, false for a pinhole with or without
-// distortion. Throws Error for any other.
+// Words of names of lens models: those that tell one kind, and those that stand beside them.
+const std::vector<std::string> kFisheyeWords =
+    words_in("fisheye equidistant equi kannala kannalabrandt");
+const std::vector<std::string> kBesideFisheye =
+    words_in("opencv cv pinhole radial simple brandt camera lens model distortion");
+const std::vector<std::string> kPinholeWords =
+    words_in("pinhole plumb plumbbob rational radtan radial brown brownconrady opencv none");
+const std::vector<std::string> kBesidePinhole =
+    words_in("bob polynomial conrady tangential simple full cv camera lens model distortion");
+
+bool is_among(const std::string& key, const std::vector<std::string>& keys) {
+  return std::ranges::find(keys, key) != keys.end();
+}
+
+// Names of lens models, in any of kModels, whatever their case: true for a fisheye, false for a
+// pinhole with or without distortion. Throws Error for any other, such as a name with a word that
+// is not known.
 bool is_fisheye_model(const std::string& key, const Value& value, const std::string& file) {
-  const auto is = [&](const char* word) { return value.text.find(word) != std::string::npos; };
-  if (is("fisheye") || is("equidistant") || is("kannala")) return true;
-  if (is("plumb_bob") || is("rational") || is("pinhole") || is("radtan") || is("brown") ||
-      is("opencv") || is("none") || is("OPENCV"))
-    return false;
+  std::string letters = lower_case(value.text);
+  std::ranges::replace_if(
+      letters, [](char c) { return c < 'a' || c > 'z'; }, ' ');
+  const std::vector<std::string> words = words_in(letters);
+  const auto is_named_by = [&](const auto& telling, const auto& beside) {
+    const auto tells = [&](const std::string& word) { return is_among(word, telling); };
+    return std::ranges::any_of(words, tells) &&
+           std::ranges::all_of(words, [&](const std::string& word) {
+             return tells(word) || is_among(word, beside);
+           });
+  };
+  if (is_named_by(kFisheyeWords, kBesideFisheye)) return true;
+  if (is_named_by(kPinholeWords, kBesidePinhole)) return false;
   throw Error(key + " is '" + value.text.substr(0, 40) +
                   "', a lens model that cannot be honoured; expected pinhole, plumb_bob, radtan, "
                   "rational_polynomial, fisheye or equidistant",
@@ -289,9 +312,6 @@ bool is_idle(const std::string& key, const Value& value, const std::string& file
 // Keys that are neither used nor harmless: an error where the name is one of a lens's, and a
 // warning else.
 void expect_known_keys(const Values& values, const std::string& file, Calibration& c) {
-  const auto is_among = [](const std::string& key, const std::vector<std::string>& keys) {
-    return std::find(keys.begin(), keys.end(), key) != keys.end();
-  };
   for (const auto& [name, value] : values) {
     const std::string key = name.ends_with(".data") ? name.substr(0, name.size() - 5) : name;
     bool is_known = is_among(key, kHarmless) || is_idle(key, value, file);

@@ -236,6 +236,26 @@ TEST(OpenCv, FourCoefficientsOfNoModelAreAQuestion) {
   EXPECT_EQ(model("distortion_model: plumb_bob"), "brown_conrady");
 }
 
+// COLMAP's, nerfstudio's, Kalibr's, ROS's and RealSense's names, in any case.
+TEST(OpenCv, NamesOfModelsAreReadByTheirWords) {
+  const std::string four = opencv("distortion_coefficients: [0.1, 0.01, 0, 0]\nmodel: ");
+  const auto model = [&](const std::string& name) {
+    return std::string(parse_calibration(four + name, "a.yml", kProfileSize).name());
+  };
+  for (const char* name : {"OPENCV_FISHEYE", "Kannala Brandt4", "KannalaBrandt8", "pinhole-equi"})
+    EXPECT_EQ(model(name), "fisheye") << name;
+  for (const char* name : {"FULL_OPENCV", "Brown Conrady", "PINHOLE", "rational_polynomial"})
+    EXPECT_EQ(model(name), "brown_conrady") << name;
+  for (const char* name : {"opencv_omnidir",
+                           "omni-radtan",
+                           "Inverse Brown Conrady",
+                           "THIN_PRISM_FISHEYE",
+                           "Pinhole Hero",
+                           "camera"})
+    EXPECT_THAT(error_of(four + name, "a.yml"),
+                testing::StartsWith("a.yml:3: model is '" + std::string(name) + "', a lens model"));
+}
+
 TEST(OpenCv, KeysThatAreNotKnownAreSaid) {
   EXPECT_THAT(error_of(opencv("Distortion_Coefficient: [-0.3, 0.1, 0, 0, 0]"), "a.yml"),
               testing::StartsWith("a.yml:2: has 'Distortion_Coefficient', which is no key"));
