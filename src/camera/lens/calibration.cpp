@@ -376,8 +376,9 @@ std::array<double, 9> matrix_in(const Values& values, const std::string& file) {
 
 Calibration parse_opencv_calibration(std::string_view text, const std::filesystem::path& name) {
   const std::string file = name.string();
-  const Values values =
-      name.extension() == ".xml" ? values_of_xml(text, file) : values_of_yaml(text, file);
+  const Values values = lower_case(name.extension().string()) == ".xml"
+                            ? values_of_xml(text, file)
+                            : values_of_yaml(text, file);
   Calibration c;
   c.camera_matrix = matrix_in(values, file);
   std::string key;

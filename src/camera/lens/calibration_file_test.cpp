@@ -8,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/names.h"
 #include "support/error_of.h"
 #include "support/shared_folder.h"
 
@@ -139,8 +140,8 @@ TEST(Gyroflow, ReadsARealProfile) {
 TEST(OpenCv, ReadsWhatFileStorageWrites) {
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);
   const cv::Mat distortion = (cv::Mat_<double>(1, 5) << -0.28, 0.09, 1e-3, -5e-4, 0.02);
-  for (const char* name : {"a.yml", "a.xml"}) {
-    cv::FileStorage storage(name, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+  for (const char* name : {"a.yml", "a.xml", "A.XML"}) {
+    cv::FileStorage storage(lower_case(name), cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     storage << "image_width" << 1280 << "image_height" << 960 << "camera_matrix" << matrix
             << "distortion_coefficients" << distortion;
     const Lens lens = parse_calibration(storage.releaseAndGetString(), name, kProfileSize);
