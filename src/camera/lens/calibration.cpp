@@ -363,7 +363,10 @@ std::array<double, 9> matrix_in(const Values& values, const std::string& file) {
   }
   const Value* intrinsics = find(values, kIntrinsics, &key);
   if (intrinsics == nullptr)
-    throw Error("has no camera_matrix; expected an OpenCV calibration", {file});
+    throw Error(
+        "has no camera_matrix; expected a calibration of OpenCV, ROS or Kalibr, or a .json of "
+        "Gyroflow with fisheye_params",
+        {file});
   const auto n = numbers(*intrinsics, key, file);
   if (n.size() != 4)
     throw Error(

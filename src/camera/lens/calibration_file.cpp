@@ -94,7 +94,7 @@ Calibration parsed(std::string_view text, const std::filesystem::path& name) {
   const auto says = [&](const char* word) { return text.find(word) != std::string_view::npos; };
   // OpenCV's JSON is YAML too.
   const bool is_gyroflow =
-      extension == ".json" && (says("calib_dimension") || !says("camera_matrix"));
+      extension == ".json" && (says("calib_dimension") || says("fisheye_params"));
   const bool is_agisoft = extension == ".xml" && says("<calibration>");
   const bool is_known = extension == ".json" || extension == ".yml" || extension == ".yaml" ||
                         extension == ".xml" || extension == ".txt";
@@ -170,7 +170,8 @@ std::string profiles_that_fit(const std::filesystem::path& path,
   std::size_t count = 0;
   for (const std::filesystem::path& file : files) {
     try {
-      const Calibration other = parsed(read_file(file, kMaxBytes), file);
+      const Calibration other = parse_gyroflow_profile(read_file(file, kMaxBytes), file);
+      check_matrix(other, file.string());
       if (other.camera != c.camera || !same_aspect(other.size, size)) continue;
       if (++count <= kMaxProfilesNamed)
         named +=

@@ -116,8 +116,8 @@ TEST(Gyroflow, NamesTheFieldItCannotHonour) {
               testing::HasSubstr("interpolations is an object; expected none"));
   EXPECT_THAT(error_of(profile("\"use_opencv_standard\": true,\n"), "a.json"),
               testing::HasSubstr("use_opencv_standard"));
-  EXPECT_THAT(error_of("{\"a\": 1e999}", "a.json"), testing::HasSubstr("too large"));
-  EXPECT_THAT(error_of("{\"a\": ", "a.json"), testing::HasSubstr("is not JSON"));
+  EXPECT_THAT(error_of("{\"calib_dimension\": 1e999}", "a.json"), testing::HasSubstr("too large"));
+  EXPECT_THAT(error_of("{\"calib_dimension\": ", "a.json"), testing::HasSubstr("is not JSON"));
   EXPECT_THAT(error_of("{}", "a.json"), testing::HasSubstr("fisheye_params"));
 }
 
@@ -220,8 +220,14 @@ TEST(OpenCv, ReadsItsJson) {
   const cv::Mat matrix = (cv::Mat_<double>(3, 3) << 900.25, 0, 639.5, 0, 905, 479.5, 0, 0, 1);
   const cv::Mat distortion = (cv::Mat_<double>(1, 5) << -0.28, 0.09, 1e-3, -5e-4, 0.02);
   storage << "camera_matrix" << matrix << "distortion_coefficients" << distortion;
-  const Lens lens = parse_calibration(storage.releaseAndGetString(), "a.json", kProfileSize);
-  EXPECT_EQ(std::get<BrownConrady>(lens.model()).focal_px, Pixel(900.25, 905));
+  std::string text = storage.releaseAndGetString();
+  std::string key = "camera_matrix";
+  for (const char* spelling : {"camera_matrix", "cameraMatrix", "K"}) {
+    text.replace(text.find(key), key.size(), spelling);
+    key = spelling;
+    const Lens lens = parse_calibration(text, "a.json", kProfileSize);
+    EXPECT_EQ(std::get<BrownConrady>(lens.model()).focal_px, Pixel(900.25, 905)) << spelling;
+  }
 }
 
 // The same four numbers are two lenses that differ by many pixels.
