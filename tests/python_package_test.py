@@ -626,7 +626,7 @@ def hostile_targets():
         "Lens.pinhole": (airtruth.Lens.pinhole, [(500, 500), (320, 240), 640, 480]),
         "Lens.pinhole_from_vertical_fov": (airtruth.Lens.pinhole_from_vertical_fov, [60, 640, 480]),
         "Lens.brown_conrady": (airtruth.Lens.brown_conrady, [(500, 500), (320, 240), [0, 0, 0, 0], 640, 480]),
-        "Lens.fisheye": (airtruth.Lens.fisheye, [(500, 500), (320, 240), [0.1], 640, 480]),
+        "Lens.fisheye": (airtruth.Lens.fisheye, [(500, 500), (320, 240), [0.1], 640, 480, 1.5]),
         "Lens.from_file": (airtruth.Lens.from_file, ["calibration.yml", 640, 480]),
         "pixel_from_cam": (lens.pixel_from_cam, [[[0, 0, 1]]]),
         "ray_from_pixel": (lens.ray_from_pixel, [[[0, 0]]]),
@@ -999,11 +999,14 @@ class Hostile(unittest.TestCase):
             airtruth.Lens.pinhole((500, 510), (320, 240), 640, 480),
             airtruth.Lens.brown_conrady((500, 500), (320, 240), [-0.2, 0.03, 0, 0], 640, 480),
             airtruth.Lens.fisheye((300, 300), (320, 240), [0.1], 640, 480),
+            airtruth.Lens.fisheye((300, 300), (320, 240), [0.1], 640, 480, max_angle_rad=0.5),
         ):
             copy = pickle.loads(pickle.dumps(lens))
             self.assertEqual((copy.model, copy.width, copy.height), (lens.model, lens.width, lens.height))
             point = [[0.3, -0.2, 1]]
             self.assertTrue(np.array_equal(copy.pixel_from_cam(point), lens.pixel_from_cam(point)))
+            self.assertEqual(copy.max_angle_rad, lens.max_angle_rad)
+        self.assertEqual(copy.max_angle_rad, 0.5)
         moved = airtruth.Motion(640, 480, lens, *[np.zeros(0)] * 6, [], None)
         self.assertEqual(pickle.loads(pickle.dumps(moved)).lens.model, "fisheye")
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,12 +43,14 @@ class AIRTRUTH_API Lens {
                             int width,
                             int height);
   // The model of Kannala and Brandt (2006), as OpenCV's fisheye module has it:
-  // theta_d = theta (1 + k1 theta^2 + ... + k4 theta^8). At most 4 coefficients.
+  // theta_d = theta (1 + k1 theta^2 + ... + k4 theta^8). At most 4 coefficients. It is valid up to
+  // max_angle_rad from the axis, or to where theta_d stops rising.
   static Lens fisheye(const std::array<double, 2>& focal_px,
                       const std::array<double, 2>& principal_point_px,
                       const std::vector<double>& distortion,
                       int width,
-                      int height);
+                      int height,
+                      double max_angle_rad = std::numbers::pi);
   // A calibration: a Gyroflow lens profile (.json) or an OpenCV calibration (.yml, .yaml, .xml),
   // scaled to this size of the image. Throws Error with file and line; docs/lenses.md.
   static Lens from_file(const std::filesystem::path& calibration, int width, int height);
@@ -68,6 +71,8 @@ class AIRTRUTH_API Lens {
   std::array<double, 2> focal_px() const;
   std::array<double, 2> principal_point_px() const;
   std::vector<double> distortion() const;
+  // The largest angle from the axis for which the model is valid.
+  double max_angle_rad() const;
   // The full field of view through the principal point, in degrees.
   double horizontal_fov_deg() const;
   double vertical_fov_deg() const;

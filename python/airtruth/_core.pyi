@@ -21,6 +21,7 @@ class Lens:
     focal_px: Numbers
     principal_point_px: Numbers
     distortion: Numbers
+    max_angle_rad: float
     horizontal_fov_deg: float
     vertical_fov_deg: float
     @staticmethod
@@ -30,7 +31,9 @@ class Lens:
     @staticmethod
     def brown_conrady(focal_px: Row[float], centre_px: Row[float], k: Row[float], width: int, height: int) -> Lens: ...
     @staticmethod
-    def fisheye(focal_px: Row[float], centre_px: Row[float], k: Row[float], width: int, height: int) -> Lens: ...
+    def fisheye(
+        focal_px: Row[float], centre_px: Row[float], k: Row[float], width: int, height: int, max_angle_rad: float
+    ) -> Lens: ...
     @staticmethod
     def from_file(file: str, width: int, height: int) -> Lens: ...
     def pixel_from_cam(self, points: ArrayLike) -> Numbers: ...

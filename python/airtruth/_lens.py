@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import math
 import os
 from typing import Any, Sequence, Tuple
 
@@ -60,14 +61,21 @@ class Lens:
 
     @classmethod
     def fisheye(
-        cls, focal_px: Sequence[float], principal_point_px: Sequence[float], distortion: Sequence[float], width: int, height: int
+        cls,
+        focal_px: Sequence[float],
+        principal_point_px: Sequence[float],
+        distortion: Sequence[float],
+        width: int,
+        height: int,
+        max_angle_rad: float = math.pi,
     ) -> Lens:
-        """The model of Kannala and Brandt, as OpenCV's fisheye module has it, with at most 4 coefficients.
+        """The model of Kannala and Brandt, as OpenCV's fisheye module has it, with at most 4 coefficients. It is valid up to
+        `max_angle_rad` from the axis, or to where its curve stops rising.
 
         >>> airtruth.Lens.fisheye((300, 300), (320, 240), [], 640, 480).pixel_from_cam([[1, 0, 0]]).round(1)
         array([[791.2, 240. ]])
         """
-        return cls(_core.Lens.fisheye(focal_px, principal_point_px, distortion, width, height))
+        return cls(_core.Lens.fisheye(focal_px, principal_point_px, distortion, width, height, max_angle_rad))
 
     @classmethod
     def from_file(cls, calibration: Path, width: int, height: int) -> Lens:
@@ -131,6 +139,11 @@ class Lens:
         return self._core.distortion
 
     @property
+    def max_angle_rad(self) -> float:
+        """The largest angle from the axis for which the model is valid."""
+        return self._core.max_angle_rad
+
+    @property
     def horizontal_fov_deg(self) -> float:
         """The full field of view through the principal point."""
         return self._core.horizontal_fov_deg
@@ -142,7 +155,8 @@ class Lens:
 
     def __reduce__(self) -> Tuple[Any, ...]:
         distortion = [] if self.model == "pinhole" else [self.distortion.tolist()]
-        arguments = (self.focal_px.tolist(), self.principal_point_px.tolist(), *distortion, self.width, self.height)
+        limit = [self.max_angle_rad] if self.model == "fisheye" else []
+        arguments = (self.focal_px.tolist(), self.principal_point_px.tolist(), *distortion, self.width, self.height, *limit)
         return getattr(Lens, self.model), arguments
 
     def __repr__(self) -> str:

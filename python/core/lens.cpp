@@ -56,14 +56,22 @@ Lens pinhole_of_view(double fov_deg, const py::object& w, const py::object& h) {
   return Lens::pinhole_from_vertical_fov(fov_deg, size_of(w, "width"), size_of(h, "height"));
 }
 
-// A model of Lens whose distortion has coefficients.
-template <Lens (*kMake)(const Two&, const Two&, const Coefficients&, int, int)>
-Lens with_coefficients(const Two& focal_px,
-                       const Two& centre_px,
-                       const Coefficients& k,
-                       const py::object& w,
-                       const py::object& h) {
-  return kMake(focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
+Lens brown_conrady(const Two& focal_px,
+                   const Two& centre_px,
+                   const Coefficients& k,
+                   const py::object& w,
+                   const py::object& h) {
+  return Lens::brown_conrady(focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"));
+}
+
+Lens fisheye(const Two& focal_px,
+             const Two& centre_px,
+             const Coefficients& k,
+             const py::object& w,
+             const py::object& h,
+             double max_angle_rad) {
+  return Lens::fisheye(
+      focal_px, centre_px, k, size_of(w, "width"), size_of(h, "height"), max_angle_rad);
 }
 
 Lens from_file(const std::filesystem::path& file, const py::object& w, const py::object& h) {
@@ -77,20 +85,17 @@ void bind_lens(py::module_& core) {
       .def_static("pinhole", named(&pinhole, "focal_px", "principal_point_px", "width", "height"))
       .def_static("pinhole_from_vertical_fov",
                   named(&pinhole_of_view, "vertical_fov_deg", "width", "height"))
-      .def_static("brown_conrady",
-                  named(&with_coefficients<&Lens::brown_conrady>,
-                        "focal_px",
-                        "principal_point_px",
-                        "distortion",
-                        "width",
-                        "height"))
+      .def_static(
+          "brown_conrady",
+          named(&brown_conrady, "focal_px", "principal_point_px", "distortion", "width", "height"))
       .def_static("fisheye",
-                  named(&with_coefficients<&Lens::fisheye>,
+                  named(&fisheye,
                         "focal_px",
                         "principal_point_px",
                         "distortion",
                         "width",
-                        "height"))
+                        "height",
+                        "max_angle_rad"))
       .def_static("from_file", named(&from_file, "calibration", "width", "height"))
       .def("pixel_from_cam", &pixels_of)
       .def("ray_from_pixel", &rays_of)
@@ -101,6 +106,7 @@ void bind_lens(py::module_& core) {
       .def_property_readonly("principal_point_px",
                              [](const Lens& l) { return python_of(l.principal_point_px()); })
       .def_property_readonly("distortion", [](const Lens& l) { return python_of(l.distortion()); })
+      .def_property_readonly("max_angle_rad", &Lens::max_angle_rad)
       .def_property_readonly("horizontal_fov_deg", &Lens::horizontal_fov_deg)
       .def_property_readonly("vertical_fov_deg", &Lens::vertical_fov_deg);
 }

@@ -101,6 +101,11 @@ void crop(const CropArguments& arguments, Context& context) {
   const lens::Lens whole = lens::read_calibration(arguments.file);
   const lens::Lens lens = lens::cropped(whole, {width, height});
   const std::string from = fmt::format("{}x{}", whole.size().width, whole.size().height);
+  if (const double end_rad = lens::facts_of(lens).max_angle_rad; end_rad < kPi)
+    context.console().warning(
+        fmt::format("the calibration ends at {:.1f} degrees from the axis, which neither OpenCV's "
+                    "files nor [lens] in a scene can state; the lens that is written goes on",
+                    degrees(end_rad)));
   if (!arguments.out.empty())
     write_file(
         arguments.out,

@@ -510,6 +510,17 @@ class Others(Case):
         refused = run("lens", "crop", profile, "--size", "wide")
         self.assertEqual(refused.returncode, 2)
 
+    def test_lens_crop_says_that_a_limit_is_lost(self):
+        profile = os.path.join(self.out, "limited.json")
+        for limit, said in ((1, True), (0, False)):  # the tangent of 45 degrees; none
+            with open(profile, "w") as file:
+                json.dump({"calib_dimension": {"w": 160, "h": 120},
+                           "fisheye_params": {"camera_matrix": [[80, 0, 79.5], [0, 80, 59.5], [0, 0, 1]],
+                                              "distortion_coeffs": [0, 0, 0, 0], "radial_distortion_limit": limit}}, file)
+            made = run("lens", "crop", profile, "--size", "160x90")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.assertEqual("the calibration ends at 45.0 degrees" in made.stderr, said, made.stderr)
+
     def test_aircraft(self):
         result = run("aircraft", "list", "c172")
         self.assertEqual(result.returncode, 0)

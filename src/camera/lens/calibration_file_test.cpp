@@ -124,7 +124,9 @@ TEST(Gyroflow, NamesTheFieldItCannotHonour) {
 TEST(Gyroflow, EndsAtItsStatedRadius) {
   std::string text = profile();
   text.replace(text.find("\"distortion_coeffs\""), 0, "\"radial_distortion_limit\": 1.0, ");
-  EXPECT_NEAR(parse_calibration(text, "a.JSON", kProfileSize).max_angle_rad(), radians(45), 1e-12);
+  const Lens lens = parse_calibration(text, "a.JSON", kProfileSize);
+  EXPECT_NEAR(lens.max_angle_rad(), radians(45), 1e-12);
+  EXPECT_EQ(lens_of(facts_of(lens)).max_angle_rad(), lens.max_angle_rad());
 }
 
 TEST(Gyroflow, ReadsARealProfile) {

@@ -291,6 +291,8 @@ std::optional<Vector3> unproject(const Fisheye& lens, const Pixel& pixel, const 
 
 // What the numbers of a lens must be.
 
+constexpr double kLeastField_rad = radians(0.5);  // chosen: far below that of any lens
+
 std::string number(double x) { return fmt::format("{:g}", x); }
 
 bool finite(const Pixel& p) { return std::isfinite(p.x()) && std::isfinite(p.y()); }
@@ -311,7 +313,7 @@ Field checked_field(const Distorting& lens, bool has_right_number, const char* e
   for (double k : lens.distortion)
     if (!std::isfinite(k)) throw Error("distortion holds a number that is not finite");
   const Field field = field_of(lens);
-  if (!(field.max_angle_rad >= radians(0.5)))
+  if (!(field.max_angle_rad >= kLeastField_rad))
     throw Error("distortion makes the radial curve fall from the axis on; expected one that rises");
   return field;
 }
@@ -322,6 +324,9 @@ Field validated(const BrownConrady& lens) {
   return checked_field(lens, n == 4 || n == 5 || n == 8, "4, 5 or 8");
 }
 Field validated(const Fisheye& lens) {
+  if (!(lens.stated_max_angle_rad >= kLeastField_rad))
+    throw Error("max_angle_rad is " + number(lens.stated_max_angle_rad) +
+                "; expected half a degree or more");
   return checked_field(lens, lens.distortion.size() == 4, "4");
 }
 
@@ -352,6 +357,10 @@ Lens::Lens(Model model, ImageSize size) : model_(std::move(model)), size_(size) 
         return validated(lens);
       },
       model_);
+  if (auto* fisheye = std::get_if<Fisheye>(&model_);
+      fisheye != nullptr && fisheye->stated_max_angle_rad < kPi &&
+      !(fisheye->stated_max_angle_rad < max_angle(*fisheye)))
+    fisheye->stated_max_angle_rad = kPi;
 }
 
 std::optional<Pixel> Lens::pixel_from_cam(const Vector3& p_in_cam) const {
@@ -387,6 +396,8 @@ Facts facts_of(const Lens& lens) {
         facts.focal_px = {model.focal_px.x(), model.focal_px.y()};
         facts.principal_point_px = {model.principal_point_px.x(), model.principal_point_px.y()};
         if constexpr (requires { model.distortion; }) facts.distortion = model.distortion;
+        if constexpr (requires { model.stated_max_angle_rad; })
+          facts.max_angle_rad = model.stated_max_angle_rad;
       },
       lens.model());
   return facts;
@@ -397,7 +408,8 @@ Lens lens_of(const Facts& facts) {
   const Pixel principal = pixel_of(facts.principal_point_px);
   const ImageSize size{facts.width, facts.height};
   const auto kind = enum_named<ModelKind>(facts.model);
-  if (kind == ModelKind::kFisheye) return Lens(Fisheye{focal, principal, facts.distortion}, size);
+  if (kind == ModelKind::kFisheye)
+    return Lens(Fisheye{focal, principal, facts.distortion, facts.max_angle_rad}, size);
   if (kind == ModelKind::kBrownConrady)
     return Lens(BrownConrady{focal, principal, facts.distortion}, size);
   return Lens(Pinhole{focal, principal}, size);

@@ -58,7 +58,8 @@ struct Fisheye {
   Pixel principal_point_px{0, 0};
   // k1 to k4; missing coefficients are 0.
   std::vector<double> distortion;
-  // The angle at which the calibration states that its curve ends.
+  // The angle at which the calibration states that its curve ends. A Lens has kPi here where the
+  // curve stops rising no later.
   double stated_max_angle_rad = kPi;
 };
 
@@ -127,6 +128,8 @@ struct Facts {
   std::vector<double> distortion;
   int width = 0;
   int height = 0;
+  // Of a fisheye whose calibration ends before its curve; else kPi.
+  double max_angle_rad = kPi;
 };
 Facts facts_of(const Lens& lens);
 Lens lens_of(const Facts& facts);

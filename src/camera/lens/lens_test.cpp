@@ -39,6 +39,18 @@ TEST(Pinhole, NinetyDegreesOn960RowsIsAFocalLengthOf480) {
   EXPECT_FALSE(lens.pixel_from_cam({1, 0, 0}));
 }
 
+// theta (1 - 0.1 theta^2) rises to theta = sqrt(1 / 0.3), 105 degrees.
+TEST(Fisheye, StatesAnEndThatComesBeforeTheCurves) {
+  const auto stated_end = [](double end_rad) {
+    return facts_of(Lens(Fisheye{{500, 500}, {640, 480}, {-0.1}, end_rad}, kSize)).max_angle_rad;
+  };
+  EXPECT_EQ(stated_end(1.5), 1.5);
+  EXPECT_EQ(stated_end(1.9), kPi);
+  const Lens whole(Fisheye{{500, 500}, {640, 480}, {-0.1}}, kSize);
+  EXPECT_NEAR(whole.max_angle_rad(), std::sqrt(1 / 0.3), 1e-3);
+  EXPECT_EQ(stated_end(whole.max_angle_rad()), kPi);
+}
+
 // 480 columns of pixels that are 4/3 as wide as high are as wide as 640 columns of square ones.
 TEST(Pinhole, OfPixelsThatAreNotSquareSeesTheSameView) {
   const Lens square = pinhole_from_vertical_fov(60, {640, 480});

@@ -120,6 +120,7 @@ lens::Facts lens_from(const JsonObject& object) {
   lens.focal_px = tuple<2>(object, "focal_px");
   lens.principal_point_px = tuple<2>(object, "principal_point_px");
   lens.distortion = object.numbers("distortion");
+  lens.max_angle_rad = object.maybe_number("max_angle_rad").value_or(kPi);
   return lens;
 }
 
@@ -352,12 +353,14 @@ OrderedJson json(const Intruder& intruder) {
 }
 
 OrderedJson json(const lens::Facts& lens) {
-  return {{"model", lens.model},
-          {"width", lens.width},
-          {"height", lens.height},
-          {"focal_px", lens.focal_px},
-          {"principal_point_px", lens.principal_point_px},
-          {"distortion", lens.distortion}};
+  OrderedJson object = {{"model", lens.model},
+                        {"width", lens.width},
+                        {"height", lens.height},
+                        {"focal_px", lens.focal_px},
+                        {"principal_point_px", lens.principal_point_px},
+                        {"distortion", lens.distortion}};
+  if (lens.max_angle_rad < kPi) object["max_angle_rad"] = lens.max_angle_rad;
+  return object;
 }
 
 bool is_finite(const OrderedJson& json) {

@@ -291,6 +291,20 @@ TEST(TruthSchema, HoldsWhatIsWritten) {
   EXPECT_EQ(published_schema().fault(Json::parse(jsonl_line(frame_of_two(), kLens))), "");
 }
 
+TEST(Truth, ALensThatEndsEarlyIsReadBackTheSame) {
+  lens::Facts early = kLens;
+  early.max_angle_rad = 0.75;
+  const std::string line = jsonl_line(frame_of_two(), early);
+  EXPECT_EQ(published_schema().fault(Json::parse(line)), "");
+  const auto file = std::filesystem::temp_directory_path() / "airtruth_early_lens.jsonl";
+  Json first = Json::parse(line);
+  first["frame"] = 0;
+  write_file(file, first.dump() + "\n");
+  EXPECT_EQ(read_truth(file).lens.max_angle_rad, 0.75);
+  std::filesystem::remove(file);
+  EXPECT_FALSE(Json::parse(jsonl_line(frame_of_two(), kLens))["lens"].contains("max_angle_rad"));
+}
+
 // A frame with dirt on the lens, which has boxes and no place.
 Frame frame_with_dirt() {
   Frame frame = frame_of_two();

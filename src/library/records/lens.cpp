@@ -38,9 +38,10 @@ Lens Lens::fisheye(const std::array<double, 2>& focal_px,
                    const std::array<double, 2>& principal_point_px,
                    const std::vector<double>& distortion,
                    int width,
-                   int height) {
-  return public_lens(
-      lens::lens_of({"fisheye", focal_px, principal_point_px, distortion, width, height}));
+                   int height,
+                   double max_angle_rad) {
+  return public_lens(lens::lens_of(
+      {"fisheye", focal_px, principal_point_px, distortion, width, height, max_angle_rad}));
 }
 
 Lens Lens::from_file(const std::filesystem::path& calibration, int width, int height) {
@@ -70,6 +71,7 @@ std::array<double, 2> Lens::principal_point_px() const {
 }
 std::vector<double> Lens::distortion() const { return lens::facts_of(state_->lens).distortion; }
 
+double Lens::max_angle_rad() const { return state_->lens.max_angle_rad(); }
 double Lens::horizontal_fov_deg() const { return state_->lens.horizontal_fov_deg(); }
 double Lens::vertical_fov_deg() const { return state_->lens.vertical_fov_deg(); }
 

@@ -91,7 +91,8 @@ std::string words_of(const lens::Lens& lens) {
                      facts.model,
                      fmt::join(facts.focal_px, ","),
                      fmt::join(facts.principal_point_px, ","),
-                     fmt::join(facts.distortion, ","));
+                     fmt::join(facts.distortion, ",")) +
+         (facts.max_angle_rad < kPi ? fmt::format(" {}", facts.max_angle_rad) : "");
 }
 
 std::string sha256_of_video(const fs::path& video, SharedInputs& inputs) {
