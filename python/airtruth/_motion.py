@@ -58,8 +58,8 @@ def motion(
 
     `model`: "rotation", on the sphere, through a known lens; "homography", of one plane; "auto": a rotation with a lens, a homography
     without. `lens`: a calibration as of Lens.from_file(). `mask`: a picture that is black where the own aircraft is.
-    `reference`: "first_frame", or "smoothed": the camera's path under a window of `smoothing_s`. `frame_rate_hz`: of numbered
-    pictures, which state none. `cache` as in render(), whose measured motion is the same. `progress(done, total)` is called as the
+    `reference`: "first_frame", or "smoothed": the camera's path under a window whose standard deviation is `smoothing_s`.
+    `frame_rate_hz`: of numbered pictures, which state none. `cache` as in render(), whose measured motion is the same. `progress(done, total)` is called as the
     frames are measured; without it a terminal shows a line.
 
     airtruth.Error for a file that cannot be read and for arguments that do not fit together. Ctrl-C ends the work within 2 s.

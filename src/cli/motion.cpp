@@ -146,10 +146,11 @@ void add_motion(CLI::App& app, Context& context) {
   command->add_option("--reference", arguments->reference_name, "first_frame or smoothed")
       ->check(CLI::IsMember({"first_frame", "smoothed"}))
       ->capture_default_str();
-  const CLI::Option* smoothing = command->add_option("--smoothing", arguments->smoothing_s)
-                                     ->description("smoothed: width of the window in seconds")
-                                     ->check(above_0())
-                                     ->capture_default_str();
+  const CLI::Option* smoothing =
+      command->add_option("--smoothing", arguments->smoothing_s)
+          ->description("smoothed: standard deviation of the window in seconds")
+          ->check(above_0())
+          ->capture_default_str();
   const std::string& reference = arguments->reference_name;
   expect_effect(
       context,
