@@ -351,6 +351,18 @@ TEST(Yolo, KeyPointsStandBehindTheBox) {
   EXPECT_TRUE(error.find("s_000000.txt:1: has 7 numbers; expected") != std::string::npos) << error;
 }
 
+// A visibility of 2 is no share of a picture. The first line is a polygon that touches two sides.
+TEST(Yolo, KeyPointsThatNothingStatesAreRefused) {
+  const Folder folder;
+  folder.file("labels/s_000000.txt",
+              "0 0.5 0.5 0.25 0.5 0.45 0.5 1 0.55 0.5 0\n0 0.5 0.5 0.25 0.5 0.4 0.5 2 0.5 0.5 0\n");
+  const std::string error = test_support::error_of([&] {
+    read_clips(Format::kYolo, folder.path(), {{{64, 48}}, "aircraft"}, {});
+  });
+  EXPECT_TRUE(error.find("s_000000.txt:2: has 2 key points") != std::string::npos) << error;
+  EXPECT_TRUE(error.find("expected kpt_shape: [2, 3]") != std::string::npos) << error;
+}
+
 TEST(Yolo, PolygonsCountByTheirBounds) {
   const Folder folder;
   folder.file("labels/train/s_000000.txt", "0 0.1 0.2 0.3 0.2 0.3 0.6\n1 0.5 0.5 0.2 0.4 0.9\n");

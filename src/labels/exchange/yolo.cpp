@@ -121,6 +121,18 @@ Stated stated_in(const fs::path& root) {
   return stated;
 }
 
+// How many key points "x y visibility" stand behind the box of a line that is no polygon for sure:
+// each third number is 0, 1 or 2, and one is 2, which no share of a picture is. 0: it may be one.
+std::size_t seen_points_in(const std::vector<double>& numbers) {
+  if (numbers.size() < 8 || (numbers.size() - 5) % 3 != 0) return 0;
+  bool has_seen = false;
+  for (std::size_t i = 7; i < numbers.size(); i += 3) {
+    if (numbers[i] != 0 && numbers[i] != 1 && numbers[i] != 2) return 0;
+    has_seen = has_seen || numbers[i] == 2;
+  }
+  return has_seen ? (numbers.size() - 5) / 3 : 0;
+}
+
 // A folder of label files and the folder of their pictures.
 struct Folders {
   fs::path labels;
@@ -216,6 +228,11 @@ class YoloReader {
     // Key points stand behind the box. With more numbers after it the line is a polygon, as in
     // segmentation: "class x y x y x y".
     const std::size_t points = stated_.numbers_of_points;
+    if (const std::size_t seen = points > 0 ? 0 : seen_points_in(n); seen > 0)
+      throw Error(fmt::format("has {0} key points 'x y visibility' behind a box; expected "
+                              "kpt_shape: [{0}, 3] in data.yaml",
+                              seen),
+                  {file.string(), line.number});
     const bool is_polygon = (n.size() < 5 + points ? n.size() : n.size() - points) > 6;
     if (is_polygon && points > 0)
       throw Error(
