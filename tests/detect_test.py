@@ -218,9 +218,17 @@ class OverAVideo(Case):
         rate("25")
         detect = lambda: run("detect", "again", "--only", "one", "-d", "frame-difference", "-o", "of-again")
         self.assertEqual(detect().returncode, 0)
+        warnings = lambda: made("evaluate", "again", "of-again/frame-difference", "--no-page", "-o", "of-again-measures").stderr
+        self.assertNotIn("other content", warnings())
         shutil.rmtree(path("again"))
         rate("50")
+        self.assertEqual(warnings().count("results of 1 sequences were made of other content"), 1)
+        self.assertIn("(the first: one); `airtruth detect` with another --out", warnings())
         self.assert_refused(detect(), "one.json", "holds results with source_sha256")
+        facts = json.loads(read("of-again", "frame-difference", "one.json"))
+        del facts["source_sha256"]  # as an older airtruth left it
+        write("of-again/frame-difference/one.json", json.dumps(facts))
+        self.assertNotIn("other content", warnings())
 
     def test_the_rate_that_is_stated_for_a_set_without_one_is_of_its_results(self):
         made("dataset", "import", "otb", "-f", "otb", "-o", "rateless")

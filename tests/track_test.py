@@ -26,6 +26,7 @@ class Kept(program.Case):
         imported("otb", "otb", "anew")
         track = lambda *more: run("track", "anew", "-t", "opencv-kcf", "-o", "of-anew", *more)
         self.assertEqual(track("--only", "one").returncode, 0)
+        warnings = lambda: made("evaluate", "anew", "of-anew/opencv-kcf", "--no-page", "-o", "of-anew-measures").stderr
         truth = read("otb", "one", "groundtruth_rect.txt")
         try:
             write("otb/one/groundtruth_rect.txt", "50,60,20,14\n" * FRAMES)
@@ -34,8 +35,11 @@ class Kept(program.Case):
             write("otb/one/groundtruth_rect.txt", truth)
         self.assert_refused(track("--only", "one"), "one.run.json", "holds results with source_sha256", "give another --out")
         self.assertIn("1 runs tracked", track("--only", "two").stdout)
+        self.assertEqual(warnings().count("results of 1 sequences were made of other content"), 1)
+        self.assertIn("(the first: one); `airtruth track` with another --out", warnings())
         imported("otb", "otb", "anew")  # the same content again
         self.assertIn("2 were there", track().stdout)
+        self.assertNotIn("other content", warnings())
         os.remove(path("of-anew", "opencv-kcf", "one.run.json"))  # as an older airtruth left it
         self.assertIn("2 were there", track().stdout)
 

@@ -46,6 +46,7 @@ std::vector<scores::ScoredDetections> results_in(const fs::path& source,
   std::map<std::string, std::size_t> numbers;
   for (std::size_t i = 0; i < truths.size(); ++i) numbers[truths[i].name] = i;
   std::vector<scores::ScoredDetections> results;
+  std::vector<std::string> of_other_content;
   for (results::SequenceDetections& read : results::read_detections(source, expected_of(truths))) {
     const std::size_t truth = numbers.at(read.name);
     if (read.frames.size() != truths[truth].frames.size())
@@ -54,6 +55,8 @@ std::vector<scores::ScoredDetections> results_in(const fs::path& source,
                               read.name,
                               truths[truth].frames.size()),
                   {source.string()});
+    if (!read.source_sha256.empty() && read.source_sha256 != truths[truth].sha256)
+      of_other_content.push_back(read.name);
     results.push_back({truth, std::move(read), {}});
   }
   if (results.empty())
@@ -64,6 +67,7 @@ std::vector<scores::ScoredDetections> results_in(const fs::path& source,
                                source.string(),
                                results.size(),
                                truths.size()));
+  report::warn_of_other_content(source, of_other_content, "detect", warn);
   return results;
 }
 

@@ -372,6 +372,7 @@ SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path i
         set.is_imported(name) ? imported_truth(set, name) : rendered_truth(set, name, volume));
     weighted += truth.weight ? 1 : 0;
     truth.name = name;
+    truth.sha256 = set.sha256_of(name);
     start_at_0(truth);
     truth.duration_s = duration_s(truth);
   }

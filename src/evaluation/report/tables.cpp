@@ -75,6 +75,23 @@ std::string name_of_results(const fs::path& results) {
   return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
 }
 
+void warn_of_other_content(const fs::path& results,
+                           const std::vector<std::string>& sequences,
+                           const char* command,
+                           const Warn& warn) {
+  if (sequences.empty()) return;
+  airtruth::warn(
+      warn,
+      fmt::format(
+          "{}: the results of {} sequences were made of other content than the set has, which was "
+          "made or labelled anew since (the first: {}); `airtruth {}` with another --out makes new "
+          "ones",
+          results.string(),
+          sequences.size(),
+          sequences.front(),
+          command));
+}
+
 void write_files(const fs::path& out, const Files& files) {
   make_folders(out);
   for (const auto& [name, text] : files) write_file(out / name, text);

@@ -11,6 +11,7 @@
 #include <airtruth/statistics.h>
 #include <nlohmann/json.hpp>
 
+#include "foundation/base/log.h"
 #include "foundation/json/or_null.h"
 
 // What the tables of trackers and of detectors have in common: values of JSON, tables of CSV whose
@@ -37,6 +38,13 @@ std::string csv_rows(std::string_view columns, const std::vector<Json>& rows, co
 // The name of a tracker or detector is that of its folder of results or, without the ending, of its
 // file. Throws Error for one that is not UTF-8.
 std::string name_of_results(const std::filesystem::path& results);
+
+// Warns, where there are any, of the sequences whose results `airtruth COMMAND` made of other
+// content than the set holds.
+void warn_of_other_content(const std::filesystem::path& results,
+                           const std::vector<std::string>& sequences,
+                           const char* command,
+                           const Warn& warn);
 
 // Files by name with their text, in order, into a folder that is made where it is not there. Throws
 // Error where that fails.

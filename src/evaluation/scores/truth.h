@@ -106,6 +106,8 @@ struct TruthSequence {
   std::vector<TruthEncounter> encounters;  // one for each aircraft that any frame shows
   // Number of intruders that no frame shows. No measure holds them: no detector could find them.
   std::int64_t never_seen = 0;
+  // labelled::LabelledSet::sha256_of() of it.
+  std::string sha256;
 
   const TruthEncounter* encounter(std::int64_t id) const {
     for (const TruthEncounter& one : encounters)

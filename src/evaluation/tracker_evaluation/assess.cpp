@@ -52,8 +52,20 @@ void add_one_pass(const TruthClip& truth,
   }
 }
 
+// The names of the truths of which any run was made of other content.
+std::vector<std::string> of_other_content(const std::vector<TruthClip>& truths,
+                                          const std::vector<results::TrackerResults>& results) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    if (std::ranges::any_of(results[i].sources_sha256,
+                            [&](const std::string& sha256) { return sha256 != truths[i].sha256; }))
+      names.push_back(truths[i].clip.name);
+  return names;
+}
+
 // Reads the results of a folder for each truth. Throws Error where there are none. Warns of results
-// for sequences that the set lacks, of runs that were broken off, and of sequences without results.
+// for sequences that the set lacks, of those of other content, of runs that were broken off, and of
+// sequences without results.
 std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                                 const std::vector<TruthClip>& truths,
                                                 const AssessOptions& options) {
@@ -105,6 +117,7 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
                                "have, and counts as no answer; expected x,y,width,height",
                                to_string(first_negative),
                                negative));
+  report::warn_of_other_content(folder, of_other_content(truths, results), "track", options.warn);
   if (!doubts.empty())
     airtruth::warn(options.warn,
                    fmt::format("{} ({} of these results fit both)", doubts.front(), doubts.size()));

@@ -32,6 +32,7 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set) {
   for (const std::string& name : set.names()) {
     const auto lens = lens_of(set, name);
     const labelled::ClipFacts facts = set.facts(name);
+    const std::string sha256 = set.sha256_of(name);
     std::vector<exchange::Clip> clips = exchange::arranged(exchange::Format::kOtb, set.clip(name));
     exchange::add_names(names, name, clips);
     for (exchange::Clip& clip : clips) {
@@ -41,6 +42,7 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set) {
       truth.lens = lens;
       truth.background = facts.background_name;
       truth.weather = facts.weather;
+      truth.sha256 = sha256;
     }
   }
   results::expect_own_files(names);

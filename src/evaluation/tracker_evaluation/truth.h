@@ -33,6 +33,8 @@ struct TruthClip {
   std::vector<std::optional<double>> contrast;
   // Some frames, for the page.
   std::vector<drawing::Still> stills;
+  // labelled::LabelledSet::sha256_of() of its sequence.
+  std::string sha256;
 
   std::optional<Box> box(std::size_t i) const { return results::box_of(clip.frames[i]); }
   std::optional<double> range_m(std::size_t i) const {

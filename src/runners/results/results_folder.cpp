@@ -12,7 +12,6 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
-#include "foundation/json/json_object.h"
 #include "foundation/json/settings_record.h"
 #include "foundation/run_files/run_files.h"
 #include "labels/exchange/text.h"
@@ -80,7 +79,7 @@ fs::path facts_file(const fs::path& folder, const std::string& name) {
 Json origin_of(const SequenceDetections& detections) {
   Json origin = Json::object();
   if (!detections.source.empty()) origin["source"] = detections.source;
-  if (!detections.source_sha256.empty()) origin["source_sha256"] = detections.source_sha256;
+  if (!detections.source_sha256.empty()) origin[kSourceSha256] = detections.source_sha256;
   if (detections.stated_rate_hz) origin["frame_rate_hz"] = *detections.stated_rate_hz;
   return origin;
 }
@@ -262,6 +261,10 @@ bool has_sequence(const fs::path& folder, const std::string& name) {
   return fs::exists(facts_file(folder, name)) && fs::exists(text_file(folder, name));
 }
 
+std::string sha256_of_sequence(const JsonObject& record) {
+  return record.has("source") ? "" : record.maybe_text(kSourceSha256).value_or("");
+}
+
 void expect_made_of(const fs::path& folder, const SequenceDetections& detections) {
   refuse_other(facts_file(folder, detections.name), origin_of(detections));
 }
@@ -278,6 +281,7 @@ SequenceDetections read_sequence(const fs::path& folder, const std::string& name
   read_mot_text(text_file(folder, name), frames);
   SequenceDetections read = frames.take();
   name_categories(read, facts);
+  read.source_sha256 = sha256_of_sequence(facts);
   if (facts.has("seconds")) read.seconds = facts.numbers("seconds", read.frames.size());
   return read;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "foundation/base/files.h"
+#include "foundation/json/json_object.h"
 #include "runners/results/detections.h"
 
 // Detections as files (docs/detection.md). A folder holds one detector's:
@@ -61,7 +62,11 @@ bool has_sequence(const fs::path& folder, const std::string& name);
 // Throws Error where the sequence of that name in the folder has another source, content or
 // stated rate. What only one of the two states does not matter.
 void expect_made_of(const fs::path& folder, const SequenceDetections& detections);
-// Reads both files. Throws Error as read_detections does.
+// The key of a record of results for what names the content of its sequence or its video.
+inline constexpr const char* kSourceSha256 = "source_sha256";
+// Its value for a sequence of a set; "" where the record is of a video alone, or lacks it.
+std::string sha256_of_sequence(const JsonObject& record);
+// Reads both files; of a video alone, without its source. Throws Error as read_detections does.
 SequenceDetections read_sequence(const fs::path& folder, const std::string& name);
 
 // Reads the detections of a set, in the order of `set`. A sequence without results is left out:

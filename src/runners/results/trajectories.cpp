@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +15,7 @@
 #include "foundation/base/names.h"
 #include "labels/exchange/text.h"
 #include "runners/results/detections.h"
+#include "runners/results/results_folder.h"
 #include "runners/results/vot_regions.h"
 
 namespace airtruth::results {
@@ -35,6 +35,14 @@ constexpr std::size_t kMotColumns = 6;    // at least: frame, id, x, y, w, h
 std::optional<Box> box_from(const std::vector<double>& n, std::size_t first, int origin_px) {
   const Box box{n[first] - origin_px, n[first + 1] - origin_px, n[first + 2], n[first + 3]};
   return is_sound(box) ? std::optional(box) : std::nullopt;
+}
+
+// Takes down what the record beside a run says that it was made of.
+void add_source(const fs::path& run, TrackerResults& results) {
+  const fs::path record = run_record(run);
+  if (!fs::exists(record)) return;
+  if (const std::string sha256 = sha256_of_sequence(JsonDocument(record)); !sha256.empty())
+    results.sources_sha256.insert(sha256);
 }
 
 // Takes down a box with a side below 0.
@@ -235,6 +243,7 @@ void add_vot_runs(const fs::path& folder,
     const auto number = number_of(file, clip.name);
     if (!number) continue;
     Trajectory run = read_trajectory(file, origin_px, results);
+    add_source(file, results);
     // No measure has the times of these runs; they are checked alone.
     read_times(times_file(file, Protocol::kRestart), run.size());
     expect_begun(run, file);
@@ -291,6 +300,8 @@ fs::path times_file(const fs::path& trajectory, Protocol protocol) {
           (protocol == Protocol::kOnePass ? "_time.txt" : "_time.value"));
 }
 
+fs::path run_record(fs::path trajectory) { return trajectory.replace_extension(".run.json"); }
+
 void expect_own_files(const exchange::ArrangedNames& sequences) {
   for (const auto& [name, clip] : sequences)
     if (const auto other = sequences.find(name + "_time"); other != sequences.end())
@@ -331,6 +342,7 @@ TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, 
     const fs::path times = file.parent_path() / (clip.name + "_time.txt");
     results.one_pass = TrackerResults::OnePass{one_pass_run(file, clip, origin_px, results),
                                                read_times(times, clip.frames.size())};
+    add_source(file, results);
   }
   for (const char* place : kVotPlaces)
     add_vot_runs(folder / place / clip.name, clip, origin_px, results);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,8 @@ fs::path trajectory_file(const fs::path& folder,
                          const std::string& sequence,
                          std::int64_t number);
 fs::path times_file(const fs::path& trajectory, Protocol protocol);
+// The record of what a run was made of.
+fs::path run_record(fs::path trajectory);
 // Throws Error where the file of one's seconds is that of another's results: a and a_time.
 void expect_own_files(const exchange::ArrangedNames& sequences);
 
@@ -66,6 +69,8 @@ struct TrackerResults {
   Where first_negative;
   // How the file of one pass was read, where it fits MOTChallenge and polygons alike; else "".
   std::string doubt;
+  // sha256_of_sequence() of the records of the runs; of those that state none, nothing.
+  std::set<std::string> sources_sha256;
   bool empty() const { return !one_pass && restart.empty() && multistart.empty(); }
 };
 

@@ -42,8 +42,6 @@ using evaluation::Trajectory;
 
 // Number of frames from a failure to the next start (VOT2013).
 constexpr std::int64_t kSkip = 5;
-// The key of a run's record for what names the content of its sequence or its video.
-constexpr const char* kSha256 = "source_sha256";
 
 // One run of a tracker, with its answers and its times. A tracker that fails breaks the run off.
 class Follower {
@@ -150,7 +148,7 @@ class TrackerRun {
     expect_clear(set, names);
     open_folder();
     in_parallel(names.size(), options_, [&](std::size_t i) {
-      const Json origin = {{kSha256, set.sha256_of(names[i])}};
+      const Json origin = {{results::kSourceSha256, set.sha256_of(names[i])}};
       for (const exchange::Clip& clip :
            exchange::arranged(exchange::Format::kOtb, set.clip(names[i])))
         follow(clip, origin);
@@ -172,7 +170,7 @@ class TrackerRun {
     expect_inside(init, *picture);
     setup::SharedInputs inputs;
     const Json origin = {{"source", source.string()},
-                         {kSha256, setup::sha256_of_video(video, inputs)},
+                         {results::kSourceSha256, setup::sha256_of_video(video, inputs)},
                          {"first_frame", first_frame}};
     open_folder();
     if (fs::exists(file)) expect_begun_at(init, file);
@@ -267,13 +265,10 @@ class TrackerRun {
     write_file(summary_.folder / "tracker.json", record.dump(1) + "\n");
   }
 
-  // The record of a run's origin, beside its results.
-  static fs::path record_of(fs::path file) { return file.replace_extension(".run.json"); }
-
   // Counts a run that is there. Throws Error where it is of another origin.
   bool is_there(const fs::path& file, const Json& origin) {
     if (!fs::exists(file)) return false;
-    refuse_other(record_of(file), origin);
+    refuse_other(results::run_record(file), origin);
     const std::lock_guard lock(mutex_);
     ++summary_.kept;
     return true;
@@ -295,7 +290,7 @@ class TrackerRun {
     }
     fs::create_directories(file.parent_path());
     const fs::path times = results::times_file(file, protocol);
-    const fs::path record = record_of(file);
+    const fs::path record = results::run_record(file);
     RunFiles files;
     files.writes(record, true).writes(times, true).writes(file, true);
     files.begin();
