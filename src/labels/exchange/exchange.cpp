@@ -342,6 +342,10 @@ std::vector<Clip> read_clips(Format format,
   std::map<std::string, std::string> classes;
   std::vector<Clip> clips = about(format).read({format, source, options, warn, left_out, classes});
   classify(clips, classes, options, warn);
+  for (const Clip& clip : clips)
+    for (const LabelledFrame& frame : clip.frames)
+      if (const auto repeated = label_file::repeated_track_in(frame))
+        throw Error(fmt::format("'{}' {}", clip.name, *repeated), {source.string()});
   return clips;
 }
 

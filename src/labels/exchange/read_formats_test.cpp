@@ -707,5 +707,33 @@ TEST(Labels, NumbersOutOfRangeAreOneLine) {
   EXPECT_EQ(of_head(R"("width":640,"height":480,"frame_rate_hz":29.97)"), "no error");
 }
 
+TEST(Labels, ATrackIsOnceInAFrame) {
+  const Folder folder;
+  const auto of = [&](const std::string& second) {
+    const fs::path file = folder.file("labels.jsonl",
+                                      R"({"format":"airtruth labels 1","name":"s"}
+{"frame":4,"labels":[{"track":1,"category":"a","box_px":[1,2,3,4]},)" +
+                                          second + "]}\n");
+    return read_labels(file);
+  };
+  EXPECT_EQ(of(R"({"track":1,"class":"ignore","category":"a","box_px":[1,2,3,4]})").frames.size(),
+            1u);
+  try {
+    of(R"({"track":1,"category":"b","box_px":[5,2,3,4]})");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.message(), "has the track 1 a second time in frame 4");
+    EXPECT_EQ(error.where().line, 2);
+  }
+  const std::string entity =
+      R"({"time": 1, "blob": {"frame": 0}, "id": "Airplane7", "bb": [1, 2, 3, 4]})";
+  const std::string error =
+      error_of(Format::kAot,
+               folder.file("aot.json",
+                           R"({"samples": {"f": {"metadata": {}, "entities": [)" + entity + "," +
+                               entity + "]}}}"));
+  EXPECT_TRUE(error.ends_with("aot.json: 'f' has the track 7 a second time in frame 0")) << error;
+}
+
 }  // namespace
 }  // namespace airtruth::exchange

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include <airtruth/labels.h>
 #include <nlohmann/json.hpp>
@@ -44,5 +45,9 @@ void get_known(const JsonObject& json, Label& label, const char* visible_key);
 nlohmann::ordered_json json_of_label(const Label& label);
 // Throws Error where it is not as described there.
 Label label_of_json(const JsonObject& json);
+
+// What is wrong with the tracks of a frame, as the end of a message; empty where no two labels have
+// one track. Regions in which detections count neither way may share one.
+std::optional<std::string> repeated_track_in(const exchange::LabelledFrame& frame);
 
 }  // namespace airtruth::label_file

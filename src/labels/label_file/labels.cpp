@@ -61,6 +61,14 @@ Label label_of_json(const JsonObject& json) {
   return label;
 }
 
+std::optional<std::string> repeated_track_in(const exchange::LabelledFrame& frame) {
+  std::set<std::int64_t> seen;
+  for (const Label& label : frame.labels)
+    if (label.object_class != kIgnore && !seen.insert(label.track).second)
+      return fmt::format("has the track {} a second time in frame {}", label.track, frame.frame);
+  return std::nullopt;
+}
+
 }  // namespace airtruth::label_file
 
 namespace airtruth::exchange {
@@ -91,6 +99,7 @@ LabelledFrame frame_of(const JsonObject& json) {
   frame.image_id = json.maybe_integer("image_id");
   for (const JsonObject& label : json.objects("labels"))
     frame.labels.push_back(label_of_json(label));
+  if (const auto repeated = repeated_track_in(frame)) json.fail(*repeated);
   return frame;
 }
 
