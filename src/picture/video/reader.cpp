@@ -35,6 +35,9 @@ image::Siting siting_of(AVChromaLocation location) {
                                             : image::Siting::kLeft;
 }
 
+// More frames than a file holds.
+constexpr std::int64_t kAllFrames = std::int64_t{1} << 60;
+
 // Largest numerator and denominator of a stated frame rate: 30000/1001 is exact.
 constexpr int kMaxRateTerm = 100'000;
 
@@ -102,6 +105,9 @@ struct Reader::State {
   std::int64_t pts_step = 1;
   // What is added to the time stamps after they began anew.
   std::int64_t pts_shift = 0;
+  bool reset_is_told = false;
+  // Of all frames, once seek() needs it; an empty one where the file has none.
+  std::optional<FrameIndex> whole_index;
   std::optional<std::int64_t> first_pts;
   // Decoded frames that are not yet handed out: the constructor decodes the first one, and with
   // cuts the queue also holds the frames after the next.
@@ -276,15 +282,21 @@ struct Reader::State {
     if (first == AV_NOPTS_VALUE) return false;
     const auto index = index_frames(path, stream_index, first, options.first_frame);
     const auto target = static_cast<std::size_t>(options.first_frame);
-    if (!index || target >= index->pts.size()) return false;
+    if (!index || target >= index->pts.size() || !decode_up_to(target, *index)) return false;
+    decoded = options.first_frame;
+    return true;
+  }
+
+  // Makes a frame of the index the pending one, without the frames before its key frame; false
+  // where they have to be decoded.
+  bool decode_up_to(std::size_t target, const FrameIndex& index) {
     // The second key packet serves where the first is no true beginning: a picture after it refers
     // to one before it.
     for (const std::size_t back : {0u, 1u}) {
-      const auto key = index->key_for(target, back);
-      if (!key || !decode_from(*key, *index, target)) continue;
+      const auto key = index.key_for(target, back);
+      if (!key || !decode_from(*key, index, target)) continue;
       is_pending = true;
       last_pts = AV_NOPTS_VALUE;
-      decoded = options.first_frame;
       return true;
     }
     return false;
@@ -311,7 +323,29 @@ struct Reader::State {
     return false;
   }
 
-  // Goes to the key frame at or before a time stamp; false where the file cannot.
+  // Begins to read the file once more.
+  bool rewind() {
+    input = open_media(path, Media::kAny);
+    return find_streams(*input) >= 0;
+  }
+
+  // Goes to the frame that is shown at a time stamp, or to the first frame of all where the stamps
+  // do not say which one that is.
+  bool seek_by_index(std::int64_t pts) {
+    if (!whole_index)
+      whole_index = index_frames(path, stream_index, *first_pts, kAllFrames).value_or(FrameIndex{});
+    const auto& times = whole_index->pts;
+    const auto shown = std::ranges::upper_bound(times, pts) - times.begin() - 1;
+    if (!times.empty() &&
+        decode_up_to(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, shown)), *whole_index))
+      return true;
+    draining = broken = has_whole_frame = false;
+    decoded = 0;
+    avcodec_flush_buffers(codec.get());
+    return rewind();
+  }
+
+  // Goes to the key frame at or before a time stamp, or nearer; false where the file cannot.
   bool seek(std::int64_t pts) {
     ahead.clear();
     differences.clear();
@@ -319,15 +353,18 @@ struct Reader::State {
     avcodec_flush_buffers(codec.get());
     last_pts = AV_NOPTS_VALUE;
     pts_shift = 0;
+    options.first_frame = 0;
+    options.frame_count.reset();
     if (!pictures.empty()) {
       next_picture =
           std::min(pictures.size() - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, pts)));
       decoded = static_cast<std::int64_t>(next_picture);
+    } else if ((input->iformat->flags & AVFMT_TS_DISCONT) != 0) {
+      // MPEG's streams: libav seeks to a packet of any kind, and stamps may begin anew.
+      return seek_by_index(pts);
     } else if (av_seek_frame(input.get(), stream_index, pts, AVSEEK_FLAG_BACKWARD) < 0) {
       return false;
     }
-    options.first_frame = 0;
-    options.frame_count.reset();
     return true;
   }
 
@@ -368,8 +405,7 @@ struct Reader::State {
         find_packet(key))
       return true;
     // Some containers seek to a later packet. All packets from the first on are read instead.
-    input = open_media(path, Media::kAny);
-    return find_streams(*input) >= 0 && find_packet(key);
+    return rewind() && find_packet(key);
   }
 
   // Fills `frame`; false at the end.
@@ -470,7 +506,7 @@ struct Reader::State {
 
   // The parts of a recording, put together, may each begin their time stamps anew.
   std::int64_t after_reset(std::int64_t pts) {
-    if (pts_shift == 0)
+    if (!std::exchange(reset_is_told, true))
       airtruth::warn(
           warn,
           fmt::format("{}: its time stamps go back by {:.2f} s at frame {}; the frames from there "

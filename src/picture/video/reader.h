@@ -134,9 +134,10 @@ class Reader {
   // cannot be read at all.
   std::optional<Frame> next();
   // The frame that is shown at a time of the clip; the last one for a later time. It is decoded
-  // from the key frame before it, so that a long clip costs no more than a short one. Its index is
-  // that of a clip of constant rate. at() may be called for any times in any order, and next() no
-  // more after it. Empty where the file cannot be read there.
+  // from the key frame before it, so that a long clip costs no more than a short one; of MPEG's
+  // streams all packets are read once, and where their time stamps begin anew it is decoded from
+  // the first frame on. Its index is that of a clip of constant rate. at() may be called for any
+  // times in any order, and next() no more after it. Empty where the file cannot be read there.
   std::optional<Frame> at(double time_s);
   // After the first next(): when each of at most `most` frames from that one on is shown, in
   // seconds from it. They are found without decoding; empty where the file does not say.

@@ -271,6 +271,29 @@ TEST_F(Video, FramesAfterAResetOfTheTimeStampsFollowThoseBefore) {
   EXPECT_NEAR(time_of_first_frame_s(folder_ / "all.ts", {.first_frame = 30}), 1.2, 1e-4);
 }
 
+// libav seeks to any packet of such a stream, not to a key frame alone.
+TEST_F(Video, AFrameOfATransportStreamIsFoundByItsTime) {
+  ffmpeg(
+      "-f lavfi -i testsrc2=s=64x48:r=25:d=2 -c:v libx264 -g 5 -f segment -segment_time 1 "
+      "-reset_timestamps 1 part%d.ts");
+  write_file(folder_ / "all.ts", read_file(folder_ / "part0.ts") + read_file(folder_ / "part1.ts"));
+  for (const auto& [file, count] : {std::pair("part1.ts", 25u), std::pair("all.ts", 50u)}) {
+    Reader through(folder_ / file);
+    std::vector<std::string> pictures;
+    while (const auto frame = through.next()) pictures.push_back(planes_of(frame->picture));
+    ASSERT_EQ(pictures.size(), count);
+    int warnings = 0;
+    Reader reader(folder_ / file, {}, [&](const std::string&) { ++warnings; });
+    for (const std::size_t k : {count - 1, 7u, count / 2 + 5, count / 2, 0u}) {
+      const auto frame = reader.at(static_cast<double>(k) / 25);
+      ASSERT_TRUE(frame) << k;
+      EXPECT_TRUE(planes_of(frame->picture) == pictures[k]) << file << " at frame " << k;
+      EXPECT_EQ(frame->index, static_cast<std::int64_t>(k));
+    }
+    EXPECT_EQ(warnings, count == 50u ? 1 : 0) << file;
+  }
+}
+
 // A clip of two shots and a slow change. Only the frame that begins the second shot is marked, and
 // every frame equals the one that a reader without cuts returns.
 TEST_F(Video, CutsAreFoundWhereTheyAreAskedFor) {
