@@ -20,6 +20,11 @@ std::size_t cell_of(const PixelBox& box, int width, int height) {
          part(box.x + box.width / 2.0, width, Portrait::kCellColumns);
 }
 
+void widen(Portrait::Ends& ends, double value) {
+  if (!ends) ends = {value, value};
+  ends = {std::min(ends->first, value), std::max(ends->second, value)};
+}
+
 void count(const replay::Finished& finished, Portrait& portrait) {
   std::optional<lens::Lens> lens;
   if (finished.scene) lens = lens::lens_of(finished.truth.lens);
@@ -31,7 +36,10 @@ void count(const replay::Finished& finished, Portrait& portrait) {
       if (is_aircraft) ++portrait.frames_by_state[static_cast<std::size_t>(intruder.state)];
       portrait.covered_boxes += is_aircraft && intruder.covered_box_px ? 1 : 0;
       portrait.without_box += lens && annotation::lacks_box(frame, intruder, *lens) ? 1 : 0;
-      is_seen = is_seen || (is_aircraft && annotation::box_to_show(intruder));
+      const auto shown = annotation::box_to_show(intruder);
+      is_seen = is_seen || (is_aircraft && shown);
+      if (shown) widen(portrait.size_px, std::max(shown->width, shown->height));
+      if (shown && intruder.range_m) widen(portrait.range_m, *intruder.range_m);
       const auto box = labelled_box(finished, intruder);
       if (!box) continue;
       ++portrait.boxes_by_class[sequences::category_of(intruder)];

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dataset/labelled/labelled_set.h"
@@ -39,6 +40,11 @@ struct Portrait {
   std::map<std::string, std::int64_t> boxes_by_class;
   // Number of centres of these boxes in each cell, row by row from the top.
   std::vector<std::int64_t> centres;
+  // The least and the greatest of all frames that show an intruder: its range, and the longer side
+  // of its box.
+  using Ends = std::optional<std::pair<double, double>>;
+  Ends range_m;
+  Ends size_px;
   Film film;
 };
 

@@ -150,6 +150,11 @@ Json mean_contrast(const Film& film) {
   return rounded(sum / static_cast<double>(film.contrasts.size()), 0.1);
 }
 
+Json ends_json(const Portrait::Ends& ends) {
+  if (!ends) return Json::array({nullptr, nullptr});
+  return Json::array({rounded(ends->first, 0.1), rounded(ends->second, 0.1)});
+}
+
 // A path as the page links to it.
 fs::path beside(const fs::path& page, const fs::path& path) {
   return fs::absolute(path).lexically_relative(fs::absolute(page).parent_path());
@@ -185,6 +190,8 @@ Json json_of(const replay::Finished& finished, const Portrait& portrait, const f
       {"motion_model", scene ? enum_name(scene->motion.model) : ""},
       {"visible", portrait.frames_by_state[0]},
       {"hidden", portrait.frames_by_state[1]},
+      {"range_m", ends_json(portrait.range_m)},
+      {"size_px", ends_json(portrait.size_px)},
       {"contrast", mean_contrast(portrait.film)},
       {"loop_frames", portrait.film.loop_frames},
       {"loop_side", portrait.film.loop_side},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dataset/set_report/report.h"
 
+#include <airtruth/labels.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -8,9 +9,22 @@
 #include "foundation/base/files.h"
 #include "support/small_catalogue.h"
 #include "support/temporary_folder.h"
+#include "support/video_folder.h"
 
 namespace airtruth::set_report {
 namespace {
+
+// The data that the page holds: the JSON object whose keys begin with "frames".
+nlohmann::json data_of_page_of(const fs::path& set, const fs::path& page, std::size_t max_shown) {
+  ReportOptions options;
+  options.overwrite = true;
+  options.max_shown = max_shown;
+  write_report(set, page, options);
+  const std::string text = read_file(page);
+  const auto begin = text.find("{\"frames\":");
+  const auto end = text.find("</script>", begin);
+  return nlohmann::json::parse(text.substr(begin, end - begin));
+}
 
 class Report : public testing::Test {
  protected:
@@ -19,16 +33,8 @@ class Report : public testing::Test {
         catalogue::parse_catalogue(test_support::kCatalogue, "c.toml"), root_ / "set", {});
   }
 
-  // The data that the page holds: the JSON object whose keys begin with "frames".
   nlohmann::json data_of_page(std::size_t max_shown) const {
-    ReportOptions options;
-    options.overwrite = true;
-    options.max_shown = max_shown;
-    write_report(root_ / "set", root_ / "page.html", options);
-    const std::string page = read_file(root_ / "page.html");
-    const auto begin = page.find("{\"frames\":");
-    const auto end = page.find("</script>", begin);
-    return nlohmann::json::parse(page.substr(begin, end - begin));
+    return data_of_page_of(root_ / "set", root_ / "page.html", max_shown);
   }
 
   test_support::TemporaryFolder temporary_;
@@ -74,6 +80,32 @@ TEST_F(Report, WhatHasNoLabelIsNoBox) {
   for (const char* plot : {"classes", "range_m", "size_px", "azimuth_deg"})
     EXPECT_EQ(boxes(after, plot), boxes(before, plot) - 1) << plot;
   EXPECT_EQ(after.at("frames_with_intruder"), before.at("frames_with_intruder"));
+}
+
+// The page has the series of at most 120 of the 241 frames, of which the second is none.
+class OfALongClip : public video::Video {};
+TEST_F(OfALongClip, TheNearestRangeIsThatOfAllFrames) {
+  ffmpeg("-f lavfi -i testsrc2=s=64x48:r=25:d=10 -c:v libx264 clip.mp4");
+  exchange::Clip clip{.name = "a", .media = "../../../clip.mp4", .width = 64, .height = 48};
+  clip.frame_rate_hz = 25;
+  for (std::int64_t k = 0; k <= 240; ++k) {
+    exchange::Label label{.track = 1, .category = "738", .box_px = {20, 20, 10, 6}};
+    label.range_m = 900;
+    if (k == 1) label.box_px.width = 30;
+    if (k == 1) label.range_m = 100;
+    clip.frames.push_back({k, {}, {label}});
+  }
+  const fs::path folder = folder_ / "set" / "sequences" / "a";
+  fs::create_directories(folder);
+  write_file(folder / "labels.jsonl", exchange::labels_jsonl(clip));
+  write_file(folder / "sequence.json",
+             R"({"format": "airtruth labelled clip 1", "name": "a", "frames": 241, "labels": 241,
+                 "categories": ["738"]})");
+  const nlohmann::json a =
+      data_of_page_of(folder_ / "set", folder_ / "page.html", 1).at("sequences").at(0);
+  EXPECT_LE(a.at("intruders").at(0).at("range_m").size(), 120u);
+  EXPECT_EQ(a.at("range_m"), nlohmann::json({100, 900}));
+  EXPECT_EQ(a.at("size_px"), nlohmann::json({10, 30}));
 }
 
 }  // namespace

@@ -9,18 +9,8 @@
   // What a sequence is sorted and filtered by: over the frames that show an intruder.
   data.sequences.forEach((sequence, index) => {
     sequence.index = index;
-    const ranges = [];
-    const sizes = [];
-    for (const intruder of sequence.intruders)
-      intruder.width_px.forEach((width, i) => {
-        if (width === null) return;
-        sizes.push(Math.max(width, intruder.height_px[i]));
-        if (intruder.range_m[i] !== null) ranges.push(intruder.range_m[i]);
-      });
-    sequence.nearest = least(ranges);
-    sequence.farthest = most(ranges);
-    sequence.largest = most(sizes);
-    sequence.smallest = least(sizes);
+    [sequence.nearest, sequence.farthest] = sequence.range_m;
+    [sequence.smallest, sequence.largest] = sequence.size_px;
     encounters.addKeys(sequence);
   });
   // How what is inserted departs from the clip: the keys that any sequence states.
