@@ -144,4 +144,6 @@ def run(command: str, *arguments: Path, progress: Optional[Progress] = None, **o
     Traceback (most recent call last):
     airtruth.Error: none: ...
     """
+    if not isinstance(command, str):
+        raise TypeError(f"command is of the type {type(command).__name__}; expected a text")
     return run_from(3, command, arguments, options, progress)

@@ -49,6 +49,8 @@ def toml_of(source: Mapping[str, Any]) -> str:
     "camera" = {"position_ned_m" = [0, 0, -150]}
     <BLANKLINE>
     """
+    if not isinstance(source, Mapping):
+        raise TypeError(f"source is of the type {type(source).__name__}; expected a dict")
     try:
         return "".join(f"{_key(key, 'the dict')} = {_value(value, str(key))}\n" for key, value in source.items())
     except RecursionError:

@@ -192,7 +192,11 @@ def mean_of(scores: Iterable[Score]) -> Score:
     >>> airtruth.evaluate.mean_of([one, one]).frames
     6
     """
-    return Score(**_core.mean_of(list(scores)))
+    all_scores = list(scores)
+    for one in all_scores:
+        if not isinstance(one, Score):
+            raise TypeError(f"scores holds one of the type {type(one).__name__}; expected a Score")
+    return Score(**_core.mean_of(all_scores))
 
 
 def first_loss(truth: ArrayLike, answers: ArrayLike) -> Optional[int]:
