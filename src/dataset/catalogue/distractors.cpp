@@ -125,12 +125,22 @@ namespace {
 // crows, buzzards and eagles, pigeons.
 constexpr std::array<double, 4> kUsualAspectRatios = {9.6, 6.5, 6.3, 7.2};
 
-// True for a share of the sequences; rule by rule another irrational number turns.
-bool is_in_share(const DistractorRule& rule, std::size_t place, double turn, std::int64_t index) {
-  // Square roots of two primes have no rational ratio.
-  constexpr std::array<double, 8> kPrimes = {2, 3, 7, 11, 13, 17, 19, 23};
-  const double step = std::sqrt(kPrimes[place % kPrimes.size()]);
-  const double turned = turn + static_cast<double>(index) * step;
+// The next of the primes that rules turn by: all but 5, a choice.
+int prime_after(int number) {
+  const auto is_prime = [](int n) {
+    for (int divisor = 2; divisor * divisor <= n; ++divisor)
+      if (n % divisor == 0) return false;
+    return true;
+  };
+  do ++number;
+  while (number == 5 || !is_prime(number));
+  return number;
+}
+
+// True for a share of the sequences; rule by rule the root of another prime turns. Square roots of
+// two primes have no rational ratio.
+bool is_in_share(const DistractorRule& rule, int prime, double turn, std::int64_t index) {
+  const double turned = turn + static_cast<double>(index) * std::sqrt(prime);
   return turned - std::floor(turned) < rule.share;
 }
 
@@ -229,10 +239,12 @@ DrawnDistractors draw_distractors(const std::vector<DistractorRule>& rules,
                                   std::int64_t index) {
   DrawnDistractors result;
   std::map<scene::DistractorKind, int> numbers;
+  int prime = 1;
   for (std::size_t place = 0; place < rules.size(); ++place) {
     const DistractorRule& rule = rules[place];
+    prime = prime_after(prime);
     const std::string name = fmt::format("distractor {} ", place + 1);
-    if (!is_in_share(rule, place, Seed(seed).stream(name + "turn").uniform(), index)) continue;
+    if (!is_in_share(rule, prime, Seed(seed).stream(name + "turn").uniform(), index)) continue;
     const auto number = static_cast<std::uint64_t>(index);
     Random of_count = Seed(seed).stream(name + "count", number);
     const std::int64_t count = drawn(of_count, rule.count);

@@ -60,6 +60,21 @@ TEST(DistractorRules, TheirSharesHoldAndAreIndependentOfTheNegatives) {
   EXPECT_NEAR(birds_in_negatives, 50, 6);
 }
 
+// A bird in half of the sequences and a balloon in half of them meet in a quarter, whatever stands
+// between their tables.
+TEST(DistractorRules, TheNinthTableIsIndependentOfTheFirst) {
+  std::string tables = "[[distractor]]\nkind = \"bird\"\nshare = 0.5\n";
+  for (int i = 0; i < 7; ++i) tables += "[[distractor]]\nkind = \"dirt\"\nshare = 0\n";
+  const Catalogue catalogue =
+      catalogue_with(tables + "[[distractor]]\nkind = \"balloon\"\nshare = 0.5\n");
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    std::int64_t both = 0;
+    for (std::int64_t i = 0; i < 200; ++i)
+      both += draw_distractors(catalogue.distractors, seed, i).flocks.size() == 2 ? 1 : 0;
+    EXPECT_NEAR(static_cast<double>(both), 50, 8) << seed;
+  }
+}
+
 TEST(DistractorRules, AFlockIsPlacedWhereTheRuleSays) {
   const Catalogue catalogue = catalogue_with(
       "[[distractor]]\nkind = \"bird\"\nflock = [4, 9]\nspread_m = [2, 3]\nrange_m = [60, "
