@@ -8,6 +8,7 @@
 #include "encounter/separation/violation.h"
 #include "foundation/base/names.h"
 #include "foundation/geometry/units.h"
+#include "scene/trajectory/heading.h"
 #include "scene/trajectory/path.h"
 
 // The encounter of two whole paths, between frames too. Times are on the clock of the paths.
@@ -23,8 +24,7 @@ struct Offset {
   double right_m = 0;
   double above_m = 0;
 };
-// Below it the direction of the velocity says little: a choice.
-constexpr double kCourseMps = 0.1;
+using trajectory::kCourseMps;
 double course_rad(const trajectory::State& own);
 Offset offset_from(const trajectory::State& own, const Vector3& offset_ned_m);
 

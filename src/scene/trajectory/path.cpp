@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,50 +15,79 @@
 
 #include "foundation/base/error.h"
 #include "foundation/geometry/units.h"
+#include "scene/trajectory/heading.h"
 
 namespace airtruth::trajectory {
 
 namespace {
 
-// Below this horizontal speed, in metres a second, the velocity defines no heading.
+// Below this horizontal speed, in metres a second, or this share of the length of a curve's
+// tangent, what flies at a stated speed goes straight up or down.
 constexpr double kHorizontalMps = 1e-6;
 // Points that are nearer to each other are the same.
 constexpr double kSamePointM = 1e-6;
 // Largest coordinate, in metres. It keeps squares and lengths far from overflow.
 constexpr double kFarthestM = 1e9;
 
-bool has_heading(const Vector3& v) {
-  return std::hypot(v.x(), v.y()) > std::max(kHorizontalMps, 1e-9 * v.norm());
-}
+// Where a spline stands still before its first knot, or after its last one: its slope is 0 there.
+struct Rests {
+  bool before = false;
+  bool after = false;
+};
 
 // Second derivatives at the knots: the tridiagonal system of a continuous slope, solved by Thomas's
 // algorithm.
-std::vector<Vector3> second_derivatives(const std::vector<double>& t,
-                                        const std::vector<Vector3>& p) {
+std::vector<Vector3> second_derivatives(std::span<const double> t,
+                                        std::span<const Vector3> p,
+                                        const Rests& rests) {
   const std::size_t n = p.size();
   std::vector<Vector3> m(n, Vector3::Zero());
-  if (n < 3) return m;
   std::vector<double> upper(n, 0.0);
+  const auto slope = [&](std::size_t i) -> Vector3 {
+    return (p[i + 1] - p[i]) / (t[i + 1] - t[i]);
+  };
+  if (rests.before) {
+    upper[0] = 0.5;
+    m[0] = 3.0 / (t[1] - t[0]) * slope(0);
+  }
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double before = t[i] - t[i - 1];
     const double after = t[i + 1] - t[i];
-    const Vector3 right = 6.0 * ((p[i + 1] - p[i]) / after - (p[i] - p[i - 1]) / before);
+    const Vector3 right = 6.0 * (slope(i) - slope(i - 1));
     const double pivot = 2.0 * (before + after) - before * upper[i - 1];
     upper[i] = after / pivot;
     m[i] = (right - before * m[i - 1]) / pivot;
   }
-  for (std::size_t i = n - 2; i > 0; --i) m[i] -= upper[i] * m[i + 1];
+  if (rests.after)
+    m[n - 1] = (-6.0 / (t[n - 1] - t[n - 2]) * slope(n - 2) - m[n - 2]) / (2.0 - upper[n - 2]);
+  for (std::size_t i = n - 1; i-- > 0;) m[i] -= upper[i] * m[i + 1];
   return m;
 }
 
 // A natural cubic spline (C2, second derivative 0 at both ends) through points at strictly
-// increasing knots. Two points make a straight line. Source: de Boor (1978), chapter IV.
+// increasing knots. Two points make a straight line. Source: de Boor (1978), chapter IV. A spline
+// that `rests` where neighbouring points are equal holds the value there; each stretch between
+// rests is a spline whose slope is 0 at its rests (C1).
 class CubicSpline {
  public:
-  CubicSpline(std::vector<double> knots, std::vector<Vector3> points)
+  CubicSpline(std::vector<double> knots, std::vector<Vector3> points, bool rests = false)
       : knots_(std::move(knots)),
         points_(std::move(points)),
-        curvature_(second_derivatives(knots_, points_)) {}
+        rests_(rests),
+        curvature_(points_.size(), Vector3::Zero()) {
+    const std::size_t pieces = points_.size() - 1;
+    for (std::size_t first = 0; first < pieces; ++first) {
+      if (is_rest(first)) continue;
+      std::size_t last = first + 1;
+      while (last < pieces && !is_rest(last)) ++last;
+      const std::size_t count = last - first + 1;
+      std::ranges::copy(second_derivatives(std::span(knots_).subspan(first, count),
+                                           std::span(points_).subspan(first, count),
+                                           {first > 0, last < pieces}),
+                        curvature_.begin() + static_cast<std::ptrdiff_t>(first));
+      first = last;
+    }
+  }
 
   // The value (derivative 0) or the derivative 1 or 2 at u. A u outside the knots' range is clamped
   // to it.
@@ -66,6 +95,7 @@ class CubicSpline {
     u = std::clamp(u, begin(), end());
     const auto after = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, u);
     const auto i = static_cast<std::size_t>(after - knots_.begin()) - 1;
+    if (is_rest(i)) return derivative == 0 ? points_[i] : Vector3::Zero();
     const double h = knots_[i + 1] - knots_[i];
     const double a = (knots_[i + 1] - u) / h;
     const double b = (u - knots_[i]) / h;
@@ -82,22 +112,35 @@ class CubicSpline {
   const std::vector<double>& knots() const { return knots_; }
 
  private:
+  bool is_rest(std::size_t piece) const { return rests_ && points_[piece] == points_[piece + 1]; }
+
   std::vector<double> knots_;
   std::vector<Vector3> points_;
-  // Second derivatives at the knots.
+  bool rests_;
+  // Second derivatives at the knots, beside a rest those of the stretch.
   std::vector<Vector3> curvature_;
 };
 
 // Heading and climb angle from the velocity, bank angle from a coordinated turn: tan(bank) = v_h *
-// turn rate / g.
+// turn rate / g, which is the acceleration across the heading over g. What is slow has the heading
+// that is kept and banks by the acceleration across it; it is level where it stands still.
 YawPitchRoll attitude_along(const Vector3& velocity,
                             const Vector3& acceleration,
-                            double kept_yaw_deg) {
+                            const std::optional<double>& kept_yaw_deg,
+                            double least_mps) {
   const double horizontal = std::hypot(velocity.x(), velocity.y());
   YawPitchRoll attitude;
   attitude.pitch_deg = velocity.norm() > 0 ? degrees(std::atan2(-velocity.z(), horizontal)) : 0.0;
-  attitude.yaw_deg = kept_yaw_deg;
-  if (!has_heading(velocity)) return attitude;
+  if (kept_yaw_deg) {
+    attitude.pitch_deg *= std::min(1.0, velocity.norm() / least_mps);
+    attitude.yaw_deg = *kept_yaw_deg;
+    const double yaw = radians(*kept_yaw_deg);
+    const double across_mps2 = acceleration.y() * std::cos(yaw) - acceleration.x() * std::sin(yaw);
+    // Without the sign of a zero.
+    if (across_mps2 != 0)
+      attitude.roll_deg = degrees(std::atan2(across_mps2, kStandardGravityMps2));
+    return attitude;
+  }
   attitude.yaw_deg = degrees(std::atan2(velocity.y(), velocity.x()));
   const double turn_rate = (velocity.x() * acceleration.y() - velocity.y() * acceleration.x()) /
                            (horizontal * horizontal);
@@ -116,49 +159,30 @@ State state_with(const Vector3& position,
 }
 
 // A spline that an object flies along. Neighbouring points may be equal: the object then stands
-// still.
+// still. Below `least`, of its derivative, it keeps its heading.
 class Curve : public CubicSpline {
  public:
-  Curve(std::vector<double> knots, std::vector<Vector3> points, const AttitudeOverride& stated)
-      : CubicSpline(std::move(knots), std::move(points)),
+  Curve(std::vector<double> knots,
+        std::vector<Vector3> points,
+        const AttitudeOverride& stated,
+        double least)
+      : CubicSpline(std::move(knots), std::move(points), true),
         stated_(stated),
-        step_((end() - begin()) / kSteps) {}
+        least_(least),
+        heading_([this](double u) { return at(u, 1); }, this->knots(), least) {}
   // Where the knots are times.
   State state_at(double t) const { return state(t, at(t, 1), at(t, 2)); }
   State state(double u, const Vector3& velocity, const Vector3& acceleration) const {
-    const double kept_yaw_deg = has_heading(velocity) ? 0.0 : kept_deg_at(u);
+    std::optional<double> kept_yaw_deg;
+    if (heading_.is_slow(velocity)) kept_yaw_deg = heading_.held_deg_at(u).value_or(0);
     return state_with(
-        at(u, 0), velocity, attitude_along(velocity, acceleration, kept_yaw_deg), stated_);
+        at(u, 0), velocity, attitude_along(velocity, acceleration, kept_yaw_deg, least_), stated_);
   }
 
  private:
-  // Number of equal parts of the path at whose ends a heading is looked for.
-  static constexpr int kSteps = 1024;
-
-  // The heading to keep where the path goes straight up or down or the object stands still: the
-  // last defined heading before there, else the first one after. They are looked for once, when one
-  // is needed.
-  double kept_deg_at(double u) const {
-    std::call_once(once_, [this] { look(); });
-    const double step = std::clamp((u - begin()) / step_, 0.0, static_cast<double>(kSteps));
-    return yaw_deg_[static_cast<std::size_t>(step)];
-  }
-  void look() const {
-    std::vector<std::optional<double>> defined(kSteps + 1);
-    for (int i = 0; i <= kSteps; ++i) {
-      const Vector3 v = at(begin() + step_ * i, 1);
-      if (has_heading(v)) defined[static_cast<std::size_t>(i)] = degrees(std::atan2(v.y(), v.x()));
-    }
-    const auto first =
-        std::ranges::find_if(defined, [](const auto& yaw) { return yaw.has_value(); });
-    double kept_deg = first == defined.end() ? 0.0 : **first;
-    for (const auto& yaw : defined) yaw_deg_.push_back(kept_deg = yaw.value_or(kept_deg));
-  }
-
   AttitudeOverride stated_;
-  double step_;
-  mutable std::once_flag once_;
-  mutable std::vector<double> yaw_deg_;
+  double least_;
+  Heading heading_;
 };
 
 // The angles of all samples, without turns by 360 degrees from one to the next in yaw and roll. An
@@ -185,7 +209,7 @@ class AtSpeed {
           std::vector<Vector3> points,
           double speed,
           const AttitudeOverride& stated)
-      : curve_(std::move(knots), std::move(points), stated), speed_(speed) {
+      : curve_(std::move(knots), std::move(points), stated, kHorizontalMps), speed_(speed) {
     // Number of equal parts of a span.
     constexpr int kParts = 64;
     u_.push_back(curve_.begin());
@@ -266,9 +290,11 @@ State steady_state(const SteadyFlight& flight, const AttitudeOverride& stated, d
   const double now = course + 2 * half_angle;
   const Vector3 velocity(speed_mps * std::cos(now), speed_mps * std::sin(now), -flight.climb_mps);
   const Vector3 acceleration(-velocity.y() * rate, velocity.x() * rate, 0);
+  std::optional<double> kept_yaw_deg;
+  if (!(speed_mps > kHorizontalMps)) kept_yaw_deg = degrees(now);
   return state_with(flight.position_ned_m + moved,
                     velocity,
-                    attitude_along(velocity, acceleration, degrees(now)),
+                    attitude_along(velocity, acceleration, kept_yaw_deg, kHorizontalMps),
                     stated);
 }
 
@@ -344,7 +370,8 @@ Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
   const auto curve = std::make_shared<const Curve>(
       std::vector<double>(times_s.begin(), times_s.end()),
       std::vector<Vector3>(waypoints_ned_m.begin(), waypoints_ned_m.end()),
-      attitude);
+      attitude,
+      kCourseMps);
   return Path(times_s.front(), times_s.back(), [curve](double t) { return curve->state_at(t); });
 }
 
@@ -368,7 +395,7 @@ Path steady(const SteadyFlight& flight, const AttitudeOverride& attitude) {
 // and the path elsewhere.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude) {
   const auto along =
-      std::make_shared<const Curve>(samples.times_s, samples.positions_ned_m, attitude);
+      std::make_shared<const Curve>(samples.times_s, samples.positions_ned_m, attitude, kCourseMps);
   const std::array<bool, 3> sampled = {samples.has_angle[0] && !attitude.yaw_deg,
                                        samples.has_angle[1] && !attitude.pitch_deg,
                                        samples.has_angle[2] && !attitude.roll_deg};

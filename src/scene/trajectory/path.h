@@ -74,7 +74,9 @@ Path spline_at_speed(std::span<const Vector3> waypoints_ned_m,
                      double speed_mps,
                      const AttitudeOverride& attitude = {});
 
-// The same spline, flown through the waypoints at the stated, strictly increasing times.
+// The same spline, flown through the waypoints at the stated, strictly increasing times. Where it
+// is slower over the ground than kCourseMps, its heading is held (Heading), its bank is that of the
+// acceleration across the heading, and its climb angle goes to 0 with its speed.
 Path spline_at_times(std::span<const Vector3> waypoints_ned_m,
                      std::span<const double> times_s,
                      const AttitudeOverride& attitude = {});
@@ -109,10 +111,11 @@ struct Samples {
   std::array<bool, 3> has_angle{};
 };
 
-// The C2 spline through samples. An angle that the samples state follows a spline through its
-// unwrapped values, and three together also across the pole (nearest_angles()); any other angle
-// follows from the path as above. `attitude` replaces either. The samples must hold at least two
-// times.
+// The C2 spline through samples, flown as that at times. Between equal neighbouring positions it
+// stands still, and the spline ends there and begins anew (C1). An angle that the samples state
+// follows a spline through its unwrapped values, and three together also across the pole
+// (nearest_angles()); any other angle follows from the path as above. `attitude` replaces either.
+// The samples must hold at least two times.
 Path path_through_samples(const Samples& samples, const AttitudeOverride& attitude = {});
 
 // Flight at constant speed, climb and rate of turn: a straight line or a helix. It passes

@@ -235,6 +235,69 @@ TEST(PathFile, AnAttitudeGoesAcrossThePole) {
   }
 }
 
+// It flies north at 10 m/s, stands for 20 s, and leaves to the east.
+TEST(PathFile, WhatStopsHoldsItsPlaceAndItsHeading) {
+  std::string text = "time_s,north_m,east_m,down_m\n";
+  for (int i = 0; i <= 30; ++i)
+    text += std::to_string(i) + "," + std::to_string(10 * std::min(i, 5)) + "," +
+            std::to_string(10 * std::max(i - 25, 0)) + ",-300\n";
+  const Path path = parse_path_csv(text, "p.csv");
+  const auto yaw_deg = [&](double t) {
+    return yaw_pitch_roll(path.at(t)->world_from_body).yaw_deg;
+  };
+  const double h = 1e-3;
+  for (double t = h; t < 30; t += h) {
+    const State state = *path.at(t);
+    // Smoothly by 90 degrees at up to 30 degrees a second: in 4.5 s.
+    EXPECT_NEAR(yaw_deg(t),
+                t < 20.5 ? 0
+                : t > 25 ? 90
+                         : 45,
+                t < 20.5 || t > 25.01 ? 1e-6 : 45.001)
+        << t;
+    EXPECT_LT(std::abs(yaw_deg(t) - yaw_deg(t - h)), 31 * h) << t;
+    EXPECT_LT((state.velocity_in_world_mps - path.at(t - h)->velocity_in_world_mps).norm(), 40 * h);
+    EXPECT_NEAR(yaw_pitch_roll(state.world_from_body).pitch_deg, 0, 1e-9);
+    if (t < 5 || t > 25) continue;
+    EXPECT_EQ(state.position_in_world, Vector3(50, 0, -300)) << t;
+    EXPECT_EQ(state.velocity_in_world_mps, Vector3::Zero()) << t;
+  }
+}
+
+// A reversal along a line at v = 10 (1.015 - t), slow from 1.005 to 1.025 s.
+TEST(AtTimes, AReversalTurnsTheNoseWithoutAJump) {
+  Points points;
+  std::vector<double> times;
+  for (int i = 0; i <= 40; ++i) {
+    const double t = 0.5 * i - 9;
+    times.push_back(t);
+    points.emplace_back(10 * (1.015 * t - 0.5 * t * t), 0, -100);
+  }
+  const Path path = spline_at_times(points, times);
+  const auto yaw_deg = [&](double t) {
+    return std::abs(yaw_pitch_roll(path.at(t)->world_from_body).yaw_deg);
+  };
+  EXPECT_NEAR(yaw_deg(1.004), 0, 1e-6);
+  EXPECT_NEAR(yaw_deg(1.015), 90, 0.1);
+  EXPECT_NEAR(yaw_deg(1.026), 180, 1e-6);
+  // A smooth step by 180 degrees in 0.02 s turns by 13,500 degrees a second in its middle.
+  for (double t = 1; t < 1.03; t += 1e-5)
+    EXPECT_LT(std::abs(yaw_deg(t + 1e-5) - yaw_deg(t)), 0.136) << t;
+}
+
+// Slower than kCourseMps throughout, it has the heading that is stated, or north.
+TEST(AtTimes, WhatIsAlwaysSlowHasNoHeadingOfItsOwn) {
+  const Points points = {{0, 0, 0}, {0, 0.2, 0}, {0, 0.3, 0}};
+  const std::vector<double> times = {0, 10, 20};
+  EXPECT_NEAR(
+      yaw_pitch_roll(spline_at_times(points, times).at(9)->world_from_body).yaw_deg, 0, 1e-9);
+  EXPECT_NEAR(
+      yaw_pitch_roll(spline_at_times(points, times, {.yaw_deg = 40.0}).at(9)->world_from_body)
+          .yaw_deg,
+      40,
+      1e-9);
+}
+
 TEST(PathFile, PointsAtTheLineThatIsWrong) {
   const std::string header = "time_s,north_m,east_m,down_m\n";
   EXPECT_EQ(error_of([&] { parse_path_csv("time_s,nort_m,east_m,down_m\n", "a.csv"); }),
