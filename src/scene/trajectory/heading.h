@@ -13,6 +13,9 @@ namespace airtruth::trajectory {
 
 // Below this speed over the ground the direction of the velocity says little: a choice.
 constexpr double kCourseMps = 0.1;
+// The same where positions are measured: those of 0.1 m that a hover repeats, in means of half
+// seconds, move by up to 0.4 m/s.
+constexpr double kMeasuredCourseMps = 1;
 
 // The heading of what is slower over the ground than `least_mps`: that of the last moment before
 // which was not, held, then turned to that of the first moment after; where only one of the two

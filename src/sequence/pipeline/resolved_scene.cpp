@@ -396,6 +396,7 @@ OpenedScene open_over(const video::StreamInfo& of_video,
   std::shared_ptr<const image::Mask> mask;
   if (opened.background.mask) mask = inputs->mask_of(*opened.background.mask, size);
   std::vector<std::string> notes;
+  setup::warn_of_hover(opened.camera, options.warn);
   const std::string attitude_words = setup::state_attitude(
       opened.camera,
       setup::lens_of(opened.lens, size),

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,6 +22,7 @@
 #include "picture/video/reader.h"
 #include "scene/flight_log/flight_log.h"
 #include "scene/flight_log/local_path.h"
+#include "scene/trajectory/heading.h"
 
 namespace airtruth::setup {
 namespace {
@@ -88,29 +92,41 @@ double offset_of(const scene::Camera& camera, const flight_log::FlightLog& log) 
               camera.where);
 }
 
-// The attitude at the first frame.
-YawPitchRoll first_attitude(const scene::Camera& camera,
-                            const flight_log::FlightLog& log,
-                            const trajectory::Path& path,
-                            double offset_s) {
-  if (const auto& stated = camera.attitude_yaw_pitch_roll_deg) return *stated;
-  if (const auto logged = flight_log::attitude_at(log, offset_s)) return *logged;
-  return {yaw_pitch_roll(path.at(0)->world_from_body).yaw_deg, 0, 0};
+using HeadingDeg = std::function<double(const trajectory::State&, double time_s)>;
+
+// The heading of a log's path, held where measured positions are too slow to tell it.
+HeadingDeg heading_along(const trajectory::Path& path) {
+  // Positions are means of half seconds.
+  constexpr double kStepS = 0.5;
+  std::vector<double> times_s;
+  for (double time_s = path.start_s(); time_s < path.end_s(); time_s += kStepS)
+    times_s.push_back(time_s);
+  times_s.push_back(path.end_s());
+  const auto heading = std::make_shared<const trajectory::Heading>(
+      [path](double time_s) { return path.at(time_s)->velocity_in_world_mps; },
+      std::move(times_s),
+      trajectory::kMeasuredCourseMps);
+  return [heading](const trajectory::State& state, double time_s) {
+    return heading->is_slow(state.velocity_in_world_mps)
+               ? heading->held_deg_at(time_s).value_or(0)
+               : yaw_pitch_roll(state.world_from_body).yaw_deg;
+  };
 }
 
 // The path with that attitude at the first frame, turned from there as the log's attitudes turn, or
 // as a level aircraft along its path where the log has none.
 trajectory::Path turning(const trajectory::Path& path,
                          const YawPitchRoll& first,
-                         bool has_attitudes) {
-  const auto flown = [has_attitudes](const trajectory::State& state) {
+                         bool has_attitudes,
+                         const HeadingDeg& heading_deg) {
+  const auto flown = [has_attitudes, heading_deg](const trajectory::State& state, double time_s) {
     if (has_attitudes) return state.world_from_body;
-    return world_from_body({yaw_pitch_roll(state.world_from_body).yaw_deg, 0, 0});
+    return world_from_body({heading_deg(state, time_s), 0, 0});
   };
-  const Quaternion mount = flown(*path.at(0)).conjugate() * world_from_body(first);
+  const Quaternion mount = flown(*path.at(0), 0).conjugate() * world_from_body(first);
   return trajectory::at_attitudes(
-      path, [flown, mount](const trajectory::State& state, double) -> Quaternion {
-        return flown(state) * mount;
+      path, [flown, mount](const trajectory::State& state, double time_s) -> Quaternion {
+        return flown(state, time_s) * mount;
       });
 }
 
@@ -139,9 +155,12 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
     const bool has_attitudes = !log.attitudes.empty();
     if (camera.follows_attitude && has_attitudes && !camera.attitude_yaw_pitch_roll_deg)
       return path;
-    const YawPitchRoll first = first_attitude(camera, log, path, offset_s);
-    return camera.follows_attitude ? turning(path, first, has_attitudes)
-                                   : trajectory::at_attitude(path, first);
+    const HeadingDeg heading_deg = heading_along(path);
+    const YawPitchRoll along{heading_deg(*path.at(0), 0), 0, 0};
+    const YawPitchRoll attitude = camera.attitude_yaw_pitch_roll_deg.value_or(
+        flight_log::attitude_at(log, offset_s).value_or(along));
+    return camera.follows_attitude ? turning(path, attitude, has_attitudes, heading_deg)
+                                   : trajectory::at_attitude(path, attitude);
   } catch (const Error& error) {
     throw Error(error.message(), camera.where);
   }
@@ -177,6 +196,27 @@ trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn) {
   return trajectory::uniform(camera.position_ned_m,
                              camera.velocity_ned_mps,
                              camera.attitude_yaw_pitch_roll_deg.value_or(YawPitchRoll{}));
+}
+
+void warn_of_hover(const scene::Camera& camera, const Warn& warn) {
+  const bool is_stated = camera.attitude_yaw_pitch_roll_deg.has_value();
+  if (!camera.log || (is_stated && !camera.follows_attitude)) return;
+  const trajectory::State first = *camera_path(camera).at(0);
+  if (first.velocity_in_world_mps.head<2>().norm() > trajectory::kMeasuredCourseMps ||
+      !read_log(*camera.log).attitudes.empty())
+    return;
+  airtruth::warn(
+      warn,
+      fmt::format(
+          "{}: at the first frame the aircraft is slower than {:g} m/s, too slow for a path "
+          "without attitudes to tell its heading: {}",
+          camera.log->string(),
+          trajectory::kMeasuredCourseMps,
+          is_stated ? "the stated attitude is held until it flies"
+                    : fmt::format("the yaw is {:.0f} degrees, from the flight before or "
+                                  "after, else north; expected "
+                                  "attitude_yaw_pitch_roll_deg",
+                                  yaw_pitch_roll(first.world_from_body).yaw_deg)));
 }
 
 trajectory::Path unmeasured_camera_path(scene::Camera camera) {

@@ -46,13 +46,17 @@ void state_clip_start(scene::Camera& camera,
 // Of a log the position at the first frame is the stated one; without it the aircraft is over the
 // origin at the log's height above take-off, or at the default height of a scene where the log
 // states none. The attitude at the first frame is the stated one; without it it is the log's, and
-// for a log without attitudes the aircraft is level and heads along its path. Where
-// follows_attitude is true the stated one turns from there as the log's does.
+// for a log without attitudes the aircraft is level and heads along its path, or keeps its heading
+// where it hovers (trajectory::Heading). Where follows_attitude is true the stated one turns from
+// there as the log's does.
 //
 // Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
 // not cover the first frame.
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn = {});
-// The same where no motion is measured yet: the file's attitude is all that turns the camera.
+// Warns of a log without attitudes whose aircraft is too slow at the first frame for its path to
+// tell the heading (trajectory::kMeasuredCourseMps), where that heading is used.
+void warn_of_hover(const scene::Camera& camera, const Warn& warn);
+// The same path where no motion is measured yet: the file's attitude is all that turns the camera.
 trajectory::Path unmeasured_camera_path(scene::Camera camera);
 
 // [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is

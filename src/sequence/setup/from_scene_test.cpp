@@ -108,6 +108,38 @@ TEST_F(OwnLog, AStatedAttitudeTurnsWithTheLogUnlessTheMotionDoesSo) {
   }
 }
 
+// East at 10 m/s for 10 s, then a hover in which the last digit of the positions, 0.1 m, toggles.
+TEST_F(OwnLog, AHoverHoldsTheHeadingAndSaysSo) {
+  std::string text = "time_s,latitude_deg,longitude_deg,altitude_m\n", hover = text;
+  unsigned random = 1;
+  const auto digit = [&] { return (random = random * 1103515245 + 12345) >> 16 & 1; };
+  for (int i = 0; i <= 400; ++i) {
+    const double moved_deg = degrees(std::min(i, 100) / (6389000 * std::cos(radians(47))));
+    const std::string row = "{:.1f},{:.6f},{:.6f},500\n";
+    const double north_deg = 47 + 1e-6 * digit(), east_deg = 8 + 1e-6 * digit();
+    text += fmt::format(fmt::runtime(row), 0.1 * i, north_deg, east_deg + moved_deg);
+    hover += fmt::format(fmt::runtime(row), 0.1 * i, north_deg, east_deg);
+  }
+  const fs::path stops = write("stops.csv", text), hovers = write("hovers.csv", hover);
+  const std::string offset = "log_offset_s = 15\n", follow = "[motion]\nmodel = \"none\"\n";
+  const std::string stated = offset + "attitude_yaw_pitch_roll_deg = [40, -5, 2]\n";
+  const auto held_deg = [&](const fs::path& log, const std::string& camera) {
+    const scene::Camera own = scene_of(log, camera, follow).camera;
+    int warnings = 0;
+    warn_of_hover(own, [&](const std::string&) { ++warnings; });
+    EXPECT_EQ(warnings, 1);
+    const auto path = camera_path(own);
+    for (double t = 0; t < 20; t += 0.1)
+      EXPECT_NEAR(attitude(path, t).yaw_deg, attitude(path, 0).yaw_deg, 1e-6) << t;
+    return attitude(path, 0).yaw_deg;
+  };
+  // Where it has slowed to 1 m/s, the digit turns the path by some 10 degrees.
+  EXPECT_NEAR(held_deg(stops, offset), 90, 30);
+  EXPECT_NEAR(held_deg(stops, stated), 40, 1e-6);
+  EXPECT_NEAR(held_deg(hovers, offset), 0, 1e-6);
+  EXPECT_NEAR(held_deg(hovers, stated), 40, 1e-6);
+}
+
 // With columns of angles, and along a curve without: the measured motion turns the camera as well.
 TEST_F(OwnLog, AnAttitudeOfAPathFileIsHeldUnlessItIsAllThatTurnsTheCamera) {
   const auto turning = [&](const std::string& file, const std::string& motion) {
