@@ -20,7 +20,7 @@
 // | GoPro GPMF        | .mp4, .360 | yes      |          |       | the video's                    |
 // | PX4 ULog          | .ulg       | yes      | yes      | yes   | since the log's first message  |
 // | ArduPilot DataFlash | .bin     | yes      | yes      | yes   | since the log's first message  |
-// | GPX               | .gpx       | yes      |          |       | since the log's first point    |
+// | GPX               | .gpx       | yes      |          |       | since the first point's time   |
 // | airtruth CSV      | .csv       | yes      | optional | optional | as the file states it       |
 //
 // docs/formats/flight-log.md describes what is read from each.

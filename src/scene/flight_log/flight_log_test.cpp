@@ -198,6 +198,20 @@ TEST(Gpx, APointThatLacksSomethingIsLeftOut) {
               testing::StartsWith("a.gpx:3: is no XML: "));
 }
 
+// Receivers write points before they know their height. The clock begins with them.
+TEST(Gpx, TimesCountFromTheFirstPointThatHasOneAlsoWhereItIsLeftOut) {
+  const auto point = [](const std::string& height, const char* seconds) {
+    return "<trkpt lat=\"47\" lon=\"8\">" + height + "<time>2024-05-17T08:30:" + seconds +
+           "Z</time></trkpt>";
+  };
+  const FlightLog log =
+      parse_flight_log("<gpx><trk><trkseg>" + point("", "05") + point("<ele>1</ele>", "10.5") +
+                           point("<ele>1</ele>", "11.5") + "</trkseg></trk></gpx>",
+                       "a.gpx");
+  ASSERT_EQ(log.fixes.size(), 2u);
+  EXPECT_DOUBLE_EQ(log.fixes[0].time_s, 5.5);
+}
+
 // A day of points is read at once: the lines of all of them are counted in one go through the text.
 TEST(Gpx, ALongTrackNamesTheLineOfAFault) {
   constexpr int kPoints = 86'400;

@@ -67,8 +67,8 @@ std::string_view text_of(const pugi::xml_node& point, const char* name) {
 }
 
 // A point without height or time says where, but not when or how high: it is left out. `first_s`:
-// the time of the first point. Times are kept from there on: seconds since 1970 would lose the
-// microseconds.
+// the time of the first point that states one, with which the clock begins whether the point is
+// kept or not. Times are kept from there on: seconds since 1970 would lose the microseconds.
 void add_point(FlightLog& log,
                std::optional<double>& first_s,
                const pugi::xml_node& point,
@@ -89,8 +89,8 @@ void add_point(FlightLog& log,
   if (!seconds && fault.empty())
     fault = fmt::format("<time> is '{}'; expected a time such as 2024-05-17T08:30:05Z",
                         printable(time));
+  if (!first_s) first_s = seconds;
   if (!fault.empty()) return leave_out(log, fault, where);
-  if (!first_s) first_s = *seconds;
   fix.time_s = *seconds - *first_s;
   add_record(log, fix, where);
 }
@@ -127,7 +127,7 @@ FlightLog from_gpx(std::string_view text, const std::string& file) {
     for (const pugi::xml_node& segment : children(track, "trkseg"))
       for (const pugi::xml_node& point : children(segment, "trkpt"))
         add_point(log, first_s, point, {file, next_line(point.offset_debug()), 0});
-  return from_first_record(std::move(log));
+  return log;
 }
 
 }  // namespace airtruth::flight_log
