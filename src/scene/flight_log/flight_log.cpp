@@ -23,9 +23,11 @@ constexpr double kMaxHeightM = 1e5;    // the border of space
 constexpr double kMaxAngleDeg = 1e4;   // some loggers count turns
 constexpr double kMaxRateRadps = 1e3;  // gyroscopes of aircraft end at 4,000 degrees a second
 
-// An aircraft moves by less than this in a second, and fixes of one place scatter by less than the
-// distance.
+// An aircraft moves by less than this in a second, climbs or sinks by less than that, and fixes of
+// one place scatter by less than the distance. 330 m/s is a jet fighter's limit in
+// docs/flight-limits.md.
 constexpr double kFastestBetweenFixesMps = 1e3;
+constexpr double kFastestClimbBetweenFixesMps = 330;
 constexpr double kScatterM = 100;
 // Of a degree of latitude.
 constexpr double kMetresOfDegree = 111e3;
@@ -52,7 +54,9 @@ bool are_in_reach(const Fix& a, const Fix& b) {
   east -= 360 * std::round(east / 360);
   const double distance_m = kMetresOfDegree * std::hypot(b.latitude_deg - a.latitude_deg,
                                                          east * std::cos(radians(a.latitude_deg)));
-  return distance_m <= kScatterM + kFastestBetweenFixesMps * std::abs(b.time_s - a.time_s);
+  const double step_s = std::abs(b.time_s - a.time_s);
+  return distance_m <= kScatterM + kFastestBetweenFixesMps * step_s &&
+         std::abs(b.altitude_m - a.altitude_m) <= kScatterM + kFastestClimbBetweenFixesMps * step_s;
 }
 
 }  // namespace
@@ -155,12 +159,15 @@ FlightLog without_jumps(FlightLog log, const std::string& file) {
   std::vector<Fix> before, kept(all.begin() + static_cast<std::ptrdiff_t>(longest_begin),
                                 all.begin() + static_cast<std::ptrdiff_t>(longest_begin + longest));
   const auto left_out = [&](const Fix& fix) {
-    leave_out(log,
-              fmt::format("the position at {:.3f} s, {:.6f}, {:.6f}, is out of reach of the others",
-                          fix.time_s,
-                          fix.latitude_deg,
-                          fix.longitude_deg),
-              {file});
+    leave_out(
+        log,
+        fmt::format(
+            "the position at {:.3f} s, {:.6f}, {:.6f}, {:.1f} m, is out of reach of the others",
+            fix.time_s,
+            fix.latitude_deg,
+            fix.longitude_deg,
+            fix.altitude_m),
+        {file});
   };
   for (std::size_t i = longest_begin; i-- > 0;) {
     if (are_in_reach(before.empty() ? kept.front() : before.back(), all[i]))

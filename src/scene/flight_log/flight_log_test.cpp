@@ -156,6 +156,22 @@ TEST(DjiSubtitles, PositionsOutOfReachAreLeftOutWhereverTheyStand) {
   }
 }
 
+// One height of 9500 m, or of 0 in a log of one point a second.
+TEST(DjiSubtitles, HeightsOutOfReachAreLeftOut) {
+  for (const double wrong_m : {9500, 0}) {
+    std::string text;
+    for (int i = 0; i < 10; ++i)
+      text += subtitle(i,
+                       fmt::format("[latitude: {}] [longitude: 8.5] [rel_alt: 30 abs_alt: {}]",
+                                   47 + 1e-5 * i,
+                                   i == 4 ? wrong_m : 700 + 200 * (i % 2)));
+    const FlightLog log = parse_flight_log(text, "a.srt");
+    EXPECT_EQ(log.fixes.size(), 9u) << wrong_m;
+    EXPECT_EQ(log.left_out, 1) << wrong_m;
+    EXPECT_THAT(log.first_fault, testing::HasSubstr(fmt::format(", {:.1f} m, is out", wrong_m)));
+  }
+}
+
 TEST(Gpx, PointsWithTimesOfAnyZoneAreRead) {
   const FlightLog log = parse_flight_log(
       R"(<?xml version="1.0"?>
