@@ -28,13 +28,21 @@ using flight_log::FlightLog;
 template <typename Record>
 std::string records(const std::vector<Record>& list, const char* what) {
   if (list.empty()) return fmt::format("{}: none", what);
-  const double span_s = list.back().time_s - list.front().time_s;
-  return fmt::format("{}: {}, {:.3f} to {:.3f} s, {:.1f} a second",
-                     what,
-                     list.size(),
-                     list.front().time_s,
-                     list.back().time_s,
-                     span_s > 0 ? static_cast<double>(list.size() - 1) / span_s : 0.0);
+  const double first_s = list.front().time_s, last_s = list.back().time_s,
+               span_s = last_s - first_s;
+  const auto gaps = flight_log::gaps(list, 0, first_s, last_s);
+  const auto longest = std::ranges::max_element(gaps, {}, &flight_log::Gap::length_s);
+  return fmt::format(
+      "{}: {}, {:.3f} to {:.3f} s, {:.1f} a second{}",
+      what,
+      list.size(),
+      first_s,
+      last_s,
+      span_s > 0 ? static_cast<double>(list.size() - 1) / span_s : 0.0,
+      longest == gaps.end()
+          ? ""
+          : fmt::format(
+                ", the longest gap from {:.3f} to {:.3f} s", longest->from_s, longest->to_s));
 }
 
 std::string range_of(const FlightLog& log, double flight_log::Fix::*member) {
@@ -47,7 +55,8 @@ std::string flown(const FlightLog& log) {
   const double first_s = log.fixes.front().time_s, last_s = log.fixes.back().time_s;
   constexpr double kMinSpanS = 1;  // a path needs positions in two half seconds
   if (last_s - first_s < kMinSpanS) return "flown: the positions span less than a second";
-  const auto path = flight_log::local_path(log, {first_s, Vector3::Zero()});
+  const auto path =
+      flight_log::local_path(FlightLog{.fixes = log.fixes}, {first_s, Vector3::Zero()});
   // Step at which the path is walked.
   constexpr double kStepS = 0.5;
   double distance_m = 0, top_mps = 0;

@@ -78,6 +78,27 @@ FlightLog read_flight_log(const std::filesystem::path& path);
 // The same from the content of the file `name`.
 FlightLog parse_flight_log(std::string_view content, const std::filesystem::path& name);
 
+// A time between two neighbouring records.
+struct Gap {
+  double from_s = 0, to_s = 0;
+  double length_s() const { return to_s - from_s; }
+};
+
+// The gaps of more than a length that share a time with [from_s, to_s].
+template <typename Record>
+std::vector<Gap> gaps(const std::vector<Record>& records,
+                      double longer_than_s,
+                      double from_s,
+                      double to_s) {
+  std::vector<Gap> found;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const Gap gap{records[i - 1].time_s, records[i].time_s};
+    if (gap.length_s() > longer_than_s && gap.from_s < to_s && gap.to_s > from_s)
+      found.push_back(gap);
+  }
+  return found;
+}
+
 // Adds one of a DJI aircraft's subtitles, as a video holds them in a track of their own.
 void add_dji_subtitle(FlightLog& log,
                       std::string_view text,

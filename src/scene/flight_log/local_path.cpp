@@ -35,12 +35,14 @@ auto between(const std::vector<Record>& records, double time_s, const Value& val
   return decltype(before)(before + share * (value(b) - before));
 }
 
-void require_covered(const FlightLog& log, double offset_s) {
-  const double first_s = log.fixes.front().time_s, last_s = log.fixes.back().time_s;
+template <typename Record>
+void require_covered(const std::vector<Record>& records, const char* what, double offset_s) {
+  const double first_s = records.front().time_s, last_s = records.back().time_s;
   if (offset_s >= first_s - kMaxExtensionS && offset_s <= last_s + kMaxExtensionS) return;
   throw Error(fmt::format(
-      "the log's positions go from {:.2f} to {:.2f} s, and the clip begins at {:.3f} s of the log; "
+      "the log's {} go from {:.2f} to {:.2f} s, and the clip begins at {:.3f} s of the log; "
       "expected a log of the same flight, or another log_offset_s",
+      what,
       first_s,
       last_s,
       offset_s));
@@ -114,27 +116,35 @@ void extend(trajectory::Samples& samples) {
 }  // namespace
 
 trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
-  require_covered(log, placement.offset_s);
+  const double offset_s = placement.offset_s;
+  require_covered(log.fixes, "positions", offset_s);
+  if (!log.attitudes.empty()) require_covered(log.attitudes, "attitudes", offset_s);
   trajectory::Samples samples = local_positions(log, placement);
   if (samples.times_s.size() < 2)
     throw Error(
         "the log's positions span less than half a second; expected one a second or "
         "more");
-  require_flyable(samples, placement.offset_s);
+  require_flyable(samples, offset_s);
   extend(samples);
   // The spline ends beside the means of half seconds. What require_covered() has let through is
   // reached whatever the rounding of a log's clock.
-  const trajectory::Path flown = trajectory::straight_on(
-      trajectory::path_through_samples(samples),
-      std::min(0.0, log.fixes.front().time_s - placement.offset_s - kMaxExtensionS),
-      std::max(0.0, log.fixes.back().time_s - placement.offset_s + kMaxExtensionS));
+  const trajectory::Path flown =
+      trajectory::straight_on(trajectory::path_through_samples(samples),
+                              std::min(0.0, log.fixes.front().time_s - offset_s - kMaxExtensionS),
+                              std::max(0.0, log.fixes.back().time_s - offset_s + kMaxExtensionS));
   const trajectory::Path placed =
       trajectory::displaced(flown, placement.first_position_ned_m - flown.at(0)->position_in_world);
   if (log.attitudes.empty()) return placed;
+  const trajectory::Path covered(
+      std::max(placed.start_s(),
+               std::min(0.0, log.attitudes.front().time_s - offset_s - kMaxExtensionS)),
+      std::min(placed.end_s(),
+               std::max(0.0, log.attitudes.back().time_s - offset_s + kMaxExtensionS)),
+      [placed](double time_s) { return *placed.at(time_s); });
   // Attitudes are recorded more often than positions are averaged.
   const auto attitudes = std::make_shared<const FlightLog>(FlightLog{.attitudes = log.attitudes});
   return trajectory::at_attitudes(
-      placed, [attitudes, offset_s = placement.offset_s](const trajectory::State&, double time_s) {
+      covered, [attitudes, offset_s](const trajectory::State&, double time_s) {
         return world_from_body(*attitude_at(*attitudes, time_s + offset_s));
       });
 }

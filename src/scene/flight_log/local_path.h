@@ -19,10 +19,11 @@ struct Placement {
 // (GeographicLib's LocalCartesian, Karney 2011). A C2 spline runs through the means of half
 // seconds. The attitude is the log's where it has one, and changes linearly from record to record;
 // else it follows from the path. The path is extended by 1.5 s at both ends, for logs of one record
-// a second.
+// a second; it ends so long after the last attitude where these end before the positions.
 //
-// Throws Error (without a file) where the log's positions do not cover the clip's first frame; the
-// message states the range of time that they cover. Likewise where they are faster than 10 km/s.
+// Throws Error (without a file) where the log's positions, or the attitudes of one that has them,
+// do not cover the clip's first frame; the message states the range of time that they cover.
+// Likewise where they are faster than 10 km/s.
 trajectory::Path local_path(const FlightLog& log, const Placement& placement);
 
 // The height above the place of take-off at a time of the log; empty where the log has none there.

@@ -122,6 +122,16 @@ TEST(LocalPath, AJumpAcrossTheWorldIsRefused) {
   }
 }
 
+// As positions, attitudes hold for 1.5 s beyond their ends.
+TEST(LocalPath, APathEndsWhereItsAttitudesEnd) {
+  FlightLog log = straight(30, 0, 0, 5);
+  for (int i = 0; i <= 100; ++i) log.attitudes.push_back({10 + i / 10.0, {5, 0, 0}});
+  EXPECT_NEAR(local_path(log, {9, {0, 0, 0}}).end_s(), 12.5, 1e-9);
+  EXPECT_NEAR(local_path(log, {9, {0, 0, 0}}).start_s(), -0.5, 1e-9);
+  EXPECT_THROW(local_path(log, {8, {0, 0, 0}}), Error);
+  EXPECT_THROW(local_path(log, {22, {0, 0, 0}}), Error);
+}
+
 TEST(LocalPath, ALogOfAnotherTimeIsRefused) {
   const FlightLog log = straight(30, 0, 0, 1);
   EXPECT_NO_THROW(local_path(log, {-1, {0, 0, 0}}));

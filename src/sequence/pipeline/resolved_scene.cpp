@@ -420,6 +420,9 @@ OpenedScene open_over(const video::StreamInfo& of_video,
       opened.intruders[i].catalogue_scale = scale;
   const video::StreamInfo info = used_stream(of_video, scene.background);
   setup::check_camera_path(world, info);
+  if (const double rate_hz = info.frame_rate.value(); rate_hz > 0)
+    setup::warn_of_gaps(
+        opened.camera, static_cast<double>(info.frame_count_estimate) / rate_hz, options.warn);
   // A container may state a frame or two more than it holds.
   const std::int64_t at_least = scene.background.frame_count.value_or(
       std::max<std::int64_t>(0, info.frame_count_estimate - 2));

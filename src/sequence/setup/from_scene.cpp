@@ -138,7 +138,7 @@ trajectory::Path path_from_file(const scene::Camera& camera) {
 }
 
 trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
-  const flight_log::FlightLog log = read_log(*camera.log);
+  flight_log::FlightLog log = read_log(*camera.log);
   if (!log.first_fault.empty())
     airtruth::warn(warn,
                    fmt::format("{}: {} records are left out (the first with a fault: {})",
@@ -150,6 +150,7 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
   if (!camera.position_is_stated)
     if (const auto height_m = flight_log::height_at(log, offset_s)) first = {0, 0, -*height_m};
   const flight_log::Placement placement{offset_s, first};
+  if (camera.attitude_yaw_pitch_roll_deg && !camera.follows_attitude) log.attitudes.clear();
   try {
     const trajectory::Path path = flight_log::local_path(log, placement);
     const bool has_attitudes = !log.attitudes.empty();
@@ -159,8 +160,9 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
     const YawPitchRoll along{heading_deg(*path.at(0), 0), 0, 0};
     const YawPitchRoll attitude = camera.attitude_yaw_pitch_roll_deg.value_or(
         flight_log::attitude_at(log, offset_s).value_or(along));
-    return camera.follows_attitude ? turning(path, attitude, has_attitudes, heading_deg)
-                                   : trajectory::at_attitude(path, attitude);
+    if (camera.follows_attitude) return turning(path, attitude, has_attitudes, heading_deg);
+    log.attitudes.clear();  // only that of the first frame counts
+    return trajectory::at_attitude(flight_log::local_path(log, placement), attitude);
   } catch (const Error& error) {
     throw Error(error.message(), camera.where);
   }
@@ -355,6 +357,34 @@ composite::Sensor sensor_of(const scene::CameraModel& model) {
 }
 
 bool has_codec(const scene::CameraModel& model) { return model.codec_step.value_or(0) > 0; }
+
+void warn_of_gaps(const scene::Camera& camera, double clip_s, const Warn& warn) {
+  // Receivers record once a second or more often, and miss one or two.
+  constexpr double kLongGapS = 3;
+  if (!camera.log) return;
+  const flight_log::FlightLog log = read_log(*camera.log);
+  const double begin_s = offset_of(camera, log);
+  const auto look = [&](const auto& records, const char* what, double end_s) {
+    const auto gaps = flight_log::gaps(records, kLongGapS, begin_s, end_s);
+    if (gaps.empty()) return;
+    const auto longest = std::ranges::max_element(gaps, {}, &flight_log::Gap::length_s);
+    airtruth::warn(
+        warn,
+        fmt::format(
+            "{}: the clip lies over {} in the log's {} (the longest from {:.2f} to {:.2f} s "
+            "of the log, {:.2f} to {:.2f} s of the clip), across which they are interpolated",
+            camera.log->string(),
+            gaps.size() == 1 ? "a gap" : fmt::format("{} gaps", gaps.size()),
+            what,
+            longest->from_s,
+            longest->to_s,
+            longest->from_s - begin_s,
+            longest->to_s - begin_s));
+  };
+  look(log.fixes, "positions", begin_s + clip_s);
+  if (camera.follows_attitude || !camera.attitude_yaw_pitch_roll_deg)
+    look(log.attitudes, "attitudes", begin_s + (camera.follows_attitude ? clip_s : 0));
+}
 
 flight_log::FlightLog read_log(const std::filesystem::path& path) {
   return is_mp4(path) ? log_in_video(path) : flight_log::read_flight_log(path);

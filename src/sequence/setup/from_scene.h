@@ -51,13 +51,17 @@ void state_clip_start(scene::Camera& camera,
 // there as the log's does.
 //
 // Throws Error where the log cannot be read, has a clock of its own and no log_offset_s, or does
-// not cover the first frame.
+// not cover the first frame, with its attitudes too where they turn the camera.
 trajectory::Path camera_path(const scene::Camera& camera, const Warn& warn = {});
 // Warns of a log without attitudes whose aircraft is too slow at the first frame for its path to
 // tell the heading (trajectory::kMeasuredCourseMps), where that heading is used.
 void warn_of_hover(const scene::Camera& camera, const Warn& warn);
 // The same path where no motion is measured yet: the file's attitude is all that turns the camera.
 trajectory::Path unmeasured_camera_path(scene::Camera camera);
+
+// Warns of gaps of more than 3 s in the log's positions, and in those of its attitudes that turn
+// the camera, over which a clip of that length lies.
+void warn_of_gaps(const scene::Camera& camera, double clip_s, const Warn& warn);
 
 // [[intruder]]: its path on the clip's clock, beside the own aircraft's nominal path. What is
 // `seen` must have been placed (seen.h).

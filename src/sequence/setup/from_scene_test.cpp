@@ -30,6 +30,20 @@ struct OwnLog : testing::Test {
           std::to_string(i) + "," + std::to_string(47 + 1e-4 * i) + ",8,500,90" + attitude + "\n";
     return write("log.csv", text);
   }
+  // A position a second for 30 s, with attitudes in the first 5.
+  fs::path subtitles() const {
+    std::string text;
+    for (int i = 0; i < 30; ++i)
+      text += fmt::format(
+          "{}\n00:00:{:02},000 --> 00:00:{:02},500\n[latitude: {}] [longitude: 8.5] "
+          "[rel_alt: 90 abs_alt: 500]{}\n\n",
+          i + 1,
+          i,
+          i,
+          47 + 1e-4 * i,
+          i <= 5 ? " [gb_yaw: 0 gb_pitch: 0 gb_roll: 0]" : "");
+    return write("log.srt", text);
+  }
   static scene::Scene scene_of(const fs::path& log,
                                const std::string& more,
                                const std::string& motion = "") {
@@ -168,6 +182,49 @@ TEST_F(OwnLog, AnAttitudeOfAPathFileIsHeldUnlessItIsAllThatTurnsTheCamera) {
     EXPECT_NEAR(turning(file, "reference = \"smoothed\"\n"), 30, 2) << file;
     EXPECT_NEAR(turning(file, "model = \"none\"\n"), 30, 2) << file;
   }
+}
+
+// A log of 30 s without records from 10 to 15 s.
+TEST_F(OwnLog, AGapOverWhichTheClipLiesIsWarnedOf) {
+  std::string text =
+      "time_s,latitude_deg,longitude_deg,altitude_m,height_m,yaw_deg,pitch_deg,roll_deg\n";
+  for (int i = 0; i <= 30; ++i)
+    if (i <= 10 || i >= 15) text += fmt::format("{},{},8,500,90,0,0,0\n", i, 47 + 1e-4 * i);
+  const fs::path log = write("gap.csv", text);
+  const auto warnings = [&](const std::string& camera, double clip_s, const std::string& motion) {
+    std::vector<std::string> said;
+    warn_of_gaps(scene_of(log, camera, motion).camera, clip_s, [&](const std::string& words) {
+      said.push_back(words);
+    });
+    return said;
+  };
+  const std::string followed = "[motion]\nmodel = \"none\"\n";
+  EXPECT_THAT(warnings("log_offset_s = 8\n", 3, followed),
+              testing::ElementsAre(
+                  log.string() +
+                      ": the clip lies over a gap in the log's positions (the longest from 10.00 "
+                      "to 15.00 s "
+                      "of the log, 2.00 to 7.00 s of the clip), across which they are interpolated",
+                  testing::HasSubstr("attitudes")));
+  // Of the attitudes the first frame's alone is used, or none.
+  EXPECT_EQ(warnings("log_offset_s = 8\n", 3, "").size(), 1u);
+  EXPECT_EQ(warnings("log_offset_s = 12\n", 3, "").size(), 2u);
+  const std::string stated = "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n";
+  EXPECT_EQ(warnings("log_offset_s = 12\n" + stated, 3, "").size(), 1u);
+  EXPECT_TRUE(warnings("log_offset_s = 1\n", 8, followed).empty());
+  EXPECT_TRUE(warnings("log_offset_s = 16\n", 8, followed).empty());
+}
+
+// What no attitude of the log turns is not bound to where they end.
+TEST_F(OwnLog, AttitudesMustCoverWhatTheyTurn) {
+  const auto scene = [&](const std::string& more, const std::string& motion) {
+    return scene_of(subtitles(), "log_offset_s = 2\n" + more, motion);
+  };
+  const std::string followed = "[motion]\nmodel = \"none\"\n";
+  const std::string stated = "attitude_yaw_pitch_roll_deg = [0, 0, 0]\n";
+  EXPECT_NEAR(camera_path(scene("", followed).camera).end_s(), 4.5, 1e-6);
+  EXPECT_NEAR(camera_path(scene("", "").camera).end_s(), 28.5, 1e-6);
+  EXPECT_NEAR(camera_path(scene(stated, "").camera).end_s(), 28.5, 1e-6);
 }
 
 TEST_F(OwnLog, ASceneWithALogIsWrittenAndReadTheSame) {

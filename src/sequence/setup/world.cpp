@@ -169,12 +169,14 @@ void place_seen(scene::Scene& scene,
 void check_camera_path(const World& world, const video::StreamInfo& info) {
   const trajectory::Path& camera = world.camera;
   const auto refuse = [&](const char* what, double path_s, double clip_s) {
-    throw Error(fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
-                            "{:.3f} s; expected a path as long as the clip, or a frame_count",
-                            what,
-                            path_s,
-                            clip_s),
-                world.camera_where);
+    throw Error(
+        fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
+                    "{:.3f} s; expected a path as long as the clip (of a log with attitudes "
+                    "that turn the camera these too), or a frame_count",
+                    what,
+                    path_s,
+                    clip_s),
+        world.camera_where);
   };
   const double rate_hz = info.frame_rate.value();
   const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
