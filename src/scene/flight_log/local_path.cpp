@@ -48,20 +48,54 @@ void require_covered(const std::vector<Record>& records, const char* what, doubl
       offset_s));
 }
 
+// Positions within this time count as one.
+constexpr double kBinS = 0.5;
+
+// How many of the fixes [begin, end), whose places are equal, count. Writers of many records a
+// second hold a position until the receiver's next one: where that lasts longer than the averaging,
+// the first of them is the receiver's. What stands still for longer than receivers take hovers; it
+// then does so until the receiver's last position before the next one, about a second before.
+std::size_t number_that_counts(const std::vector<Fix>& fixes, std::size_t begin, std::size_t end) {
+  constexpr double kHoverS = 2, kReceiverS = 0.9;
+  const double length_s = fixes[end - 1].time_s - fixes[begin].time_s;
+  if (length_s <= kBinS || fixes[begin + 1].time_s - fixes[begin].time_s >= kBinS)
+    return end - begin;
+  if (length_s <= kHoverS) return 1;
+  if (end == fixes.size()) return end - begin;
+  const double next_s = fixes[end].time_s;
+  while (end > begin + 1 && next_s - fixes[end - 1].time_s < kReceiverS) --end;
+  return end - begin;
+}
+
+std::vector<Fix> without_repeats(const std::vector<Fix>& fixes) {
+  std::vector<Fix> kept;
+  for (std::size_t begin = 0; begin < fixes.size();) {
+    std::size_t end = begin + 1;
+    while (end < fixes.size() && fixes[end].latitude_deg == fixes[begin].latitude_deg &&
+           fixes[end].longitude_deg == fixes[begin].longitude_deg)
+      ++end;
+    const auto first = fixes.begin() + static_cast<std::ptrdiff_t>(begin);
+    kept.insert(kept.end(),
+                first,
+                first + static_cast<std::ptrdiff_t>(number_that_counts(fixes, begin, end)));
+    begin = end;
+  }
+  if (kept.size() < 2) kept.push_back(fixes.back());
+  return kept;
+}
+
 // The positions in the plane that touches the ellipsoid at the clip's first position. Positions
 // within half a second count as one, at the mean of their times: DJI's subtitles repeat a position
 // of 0.1 m of resolution in every frame, and a spline through each would shake. An acceleration of
 // 5 m/s2 moves the mean by 0.05 m.
 trajectory::Samples local_positions(const FlightLog& log, const Placement& placement) {
-  // Positions within this time count as one.
-  constexpr double kBinS = 0.5;
   const Fix& first =
       log.fixes[std::min(after(log.fixes, placement.offset_s), log.fixes.size() - 1)];
   const GeographicLib::LocalCartesian local(
       first.latitude_deg, first.longitude_deg, first.altitude_m);
   trajectory::Samples samples;
   double bin = 0, members = 0;
-  for (const Fix& fix : log.fixes) {
+  for (const Fix& fix : without_repeats(log.fixes)) {
     const double time_s = fix.time_s - placement.offset_s;
     double east = 0, north = 0, up = 0;
     local.Forward(fix.latitude_deg, fix.longitude_deg, fix.altitude_m, east, north, up);

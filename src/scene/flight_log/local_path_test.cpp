@@ -72,6 +72,38 @@ TEST(LocalPath, APositionOfOneMicrodegreeDoesNotShake) {
   }
 }
 
+// A log of 50 records a second that holds the positions of a receiver of one a second; the height
+// is a barometer's.
+FlightLog held(FlightLog log) {
+  FlightLog result;
+  for (std::size_t i = 0; i + 1 < log.fixes.size(); ++i)
+    for (int part = 0; part < 50; ++part) {
+      Fix& fix = result.fixes.emplace_back(log.fixes[i]);
+      fix.time_s += part / 50.0;
+      fix.altitude_m += part / 50.0 * (log.fixes[i + 1].altitude_m - fix.altitude_m);
+    }
+  return result;
+}
+
+TEST(LocalPath, PositionsThatALogRepeatsAreThoseOfTheirFirstRecords) {
+  const auto path = local_path(held(straight(15, 20, 2, 1)), {20, {0, 0, 0}});
+  for (double t = -5; t <= 39; t += 0.25) {
+    EXPECT_LT((path.at(t)->velocity_in_world_mps - Vector3(15, 20, -2)).norm(), 0.1) << t;
+    EXPECT_LT((path.at(t)->position_in_world - Vector3(15, 20, -2) * t).norm(), 0.1) << t;
+  }
+}
+
+// It stands for 30 s and flies away at 10 m/s: no step within a record follows, only the overshoot
+// of a spline at a speed that begins at once.
+TEST(LocalPath, AHoverIsNoRepetition) {
+  FlightLog log = straight(0, 0, 0, 1);
+  for (int i = 31; i <= 60; ++i) log.fixes[i].latitude_deg += degrees((i - 30) * 10 / 6.367e6);
+  const auto path = local_path(held(log), {0, {0, 0, 0}});
+  for (double t = 1; t <= 28; t += 0.25) EXPECT_LT(path.at(t)->position_in_world.norm(), 0.3) << t;
+  for (double t = 30; t <= 59; t += 0.25)
+    EXPECT_LT(path.at(t)->velocity_in_world_mps.norm(), 15) << t;
+}
+
 TEST(LocalPath, AttitudesAreInterpolatedAcrossNorth) {
   FlightLog log = straight(30, 0, 0, 5);
   for (int i = 0; i <= 60; ++i)
