@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include <GeographicLib/LocalCartesian.hpp>
+#include <GeographicLib/Ellipsoid.hpp>
 #include <fmt/format.h>
 
 #include "foundation/base/error.h"
@@ -84,22 +84,33 @@ std::vector<Fix> without_repeats(const std::vector<Fix>& fixes) {
   return kept;
 }
 
-// The positions in the plane that touches the ellipsoid at the clip's first position. Positions
+// North, east and down of a step, by the radii of curvature of the meridian and of the prime
+// vertical in its middle.
+Vector3 step_ned_m(const Fix& from, const Fix& to) {
+  const GeographicLib::Ellipsoid& wgs84 = GeographicLib::Ellipsoid::WGS84();
+  const double latitude_deg = 0.5 * (from.latitude_deg + to.latitude_deg);
+  const double height_m = 0.5 * (from.altitude_m + to.altitude_m);
+  return {(wgs84.MeridionalCurvatureRadius(latitude_deg) + height_m) *
+              radians(to.latitude_deg - from.latitude_deg),
+          (wgs84.TransverseCurvatureRadius(latitude_deg) + height_m) *
+              std::cos(radians(latitude_deg)) *
+              radians(std::remainder(to.longitude_deg - from.longitude_deg, 360)),
+          from.altitude_m - to.altitude_m};
+}
+
+// The positions from the first one, in the frame that is carried along (local_path.h). Positions
 // within half a second count as one, at the mean of their times: DJI's subtitles repeat a position
 // of 0.1 m of resolution in every frame, and a spline through each would shake. An acceleration of
 // 5 m/s2 moves the mean by 0.05 m.
-trajectory::Samples local_positions(const FlightLog& log, const Placement& placement) {
-  const Fix& first =
-      log.fixes[std::min(after(log.fixes, placement.offset_s), log.fixes.size() - 1)];
-  const GeographicLib::LocalCartesian local(
-      first.latitude_deg, first.longitude_deg, first.altitude_m);
+trajectory::Samples local_positions(const FlightLog& log, double offset_s) {
   trajectory::Samples samples;
+  Fix before = log.fixes.front();
+  Vector3 position = Vector3::Zero();
   double bin = 0, members = 0;
   for (const Fix& fix : without_repeats(log.fixes)) {
-    const double time_s = fix.time_s - placement.offset_s;
-    double east = 0, north = 0, up = 0;
-    local.Forward(fix.latitude_deg, fix.longitude_deg, fix.altitude_m, east, north, up);
-    const Vector3 position(north, east, -up);
+    const double time_s = fix.time_s - offset_s;
+    position += step_ned_m(before, fix);
+    before = fix;
     if (samples.times_s.empty() || std::floor(time_s / kBinS) != bin) {
       samples.times_s.push_back(time_s);
       samples.positions_ned_m.push_back(position);
@@ -153,7 +164,7 @@ trajectory::Path local_path(const FlightLog& log, const Placement& placement) {
   const double offset_s = placement.offset_s;
   require_covered(log.fixes, "positions", offset_s);
   if (!log.attitudes.empty()) require_covered(log.attitudes, "attitudes", offset_s);
-  trajectory::Samples samples = local_positions(log, placement);
+  trajectory::Samples samples = local_positions(log, offset_s);
   if (samples.times_s.size() < 2)
     throw Error(
         "the log's positions span less than half a second; expected one a second or "

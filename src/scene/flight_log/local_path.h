@@ -15,11 +15,13 @@ struct Placement {
 };
 
 // The path of the aircraft on the clip's clock. Positions go from the ellipsoid to a local
-// north-east-down frame that touches it near the position of the clip's first frame
-// (GeographicLib's LocalCartesian, Karney 2011). A C2 spline runs through the means of half
-// seconds. The attitude is the log's where it has one, and changes linearly from record to record;
-// else it follows from the path. The path is extended by 1.5 s at both ends, for logs of one record
-// a second; it ends so long after the last attitude where these end before the positions.
+// north-east-down frame that is carried along with the aircraft: down is the height above the
+// ground however far it flies, and north and east are the sums of the steps on the ellipsoid along
+// its meridians and parallels. Logged attitudes and the horizon count from the same directions. A
+// C2 spline runs through the means of half seconds. The attitude is the log's where it has one, and
+// changes linearly from record to record; else it follows from the path. The path is extended
+// by 1.5 s at both ends, for logs of one record a second; it ends so long after the last attitude
+// where these end before the positions.
 //
 // Throws Error (without a file) where the log's positions, or the attitudes of one that has them,
 // do not cover the clip's first frame; the message states the range of time that they cover.

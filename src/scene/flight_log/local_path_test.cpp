@@ -48,11 +48,31 @@ TEST(LocalPath, MetresFollowFromTheEllipsoidsRadii) {
   for (const double rate : {1.0, 10.0, 30.0}) {
     const auto path = local_path(straight(30, -20, 2, rate), {20, {100, 200, -80}});
     EXPECT_NEAR((path.at(0)->position_in_world - Vector3(100, 200, -80)).norm(), 0, 1e-9);
-    // Over some hundred metres the plane leaves the ellipsoid by millimetres.
+    // Over some hundred metres to the north a degree of longitude shortens by millimetres.
     EXPECT_NEAR((path.at(10)->position_in_world - Vector3(400, 0, -100)).norm(), 0, 0.02) << rate;
     EXPECT_NEAR((path.at(5)->velocity_in_world_mps - Vector3(30, -20, -2)).norm(), 0, 0.01);
     EXPECT_NEAR(
         yaw_pitch_roll(path.at(5)->world_from_body).yaw_deg, degrees(std::atan2(-20, 30)), 0.02);
+  }
+}
+
+// Level to the east along a parallel, across the date line: over 45 km a plane that touches the
+// ellipsoid would leave it by 160 m.
+TEST(LocalPath, TheFrameIsCarriedAlong) {
+  FlightLog log;
+  for (int i = 0; i <= 900; ++i)
+    log.fixes.push_back(
+        {double(i),
+         60,
+         std::remainder(
+             179.8 + degrees(50.0 * i / ((radii_at(60).normal_m + 150) * std::cos(radians(60)))),
+             360),
+         150,
+         {}});
+  const auto path = local_path(log, {0, {0, 0, -150}});
+  for (const double t : {0.0, 200.5, 900.0}) {
+    EXPECT_NEAR((path.at(t)->position_in_world - Vector3(0, 50 * t, -150)).norm(), 0, 1e-3) << t;
+    EXPECT_NEAR((path.at(t)->velocity_in_world_mps - Vector3(0, 50, 0)).norm(), 0, 1e-5) << t;
   }
 }
 
