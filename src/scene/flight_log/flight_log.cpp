@@ -107,8 +107,16 @@ void add_record(FlightLog& log, const Record& record, const Where& where) {
     return leave_out(log, fault, where);
   if (records.empty() || record.time_s > records.back().time_s)
     records.push_back(record);
-  else
+  else if (record.time_s == records.back().time_s)
     ++log.left_out;
+  else
+    leave_out(
+        log,
+        fmt::format("time is {:.3f} s, before the {:.3f} s of an earlier record; expected times "
+                    "that increase",
+                    record.time_s,
+                    records.back().time_s),
+        where);
 }
 template void add_record(FlightLog& log, const Fix& fix, const Where& where);
 template void add_record(FlightLog& log, const Attitude& attitude, const Where& where);

@@ -214,6 +214,18 @@ TEST(Gpx, APointThatLacksSomethingIsLeftOut) {
               testing::StartsWith("a.gpx:3: is no XML: "));
 }
 
+TEST(Gpx, PointsThatStandNewestFirstAreSaidToBeSo) {
+  std::string text = "<gpx>\n<trk><trkseg>\n";
+  for (int i = 9; i > 6; --i)
+    text += fmt::format(
+        "<trkpt lat=\"47\" lon=\"8\"><ele>1</ele><time>2024-05-17T08:30:0{}Z</time></trkpt>\n", i);
+  EXPECT_EQ(
+      error_of(text + "</trkseg></trk></gpx>", "a.gpx"),
+      "a.gpx: holds 1 position (GPX, 2 records left out, the first: a.gpx:4: time is -1.000 s, "
+      "before the 0.000 s of an earlier record; expected times that increase); expected at "
+      "least two");
+}
+
 // Receivers write points before they know their height. The clock begins with them.
 TEST(Gpx, TimesCountFromTheFirstPointThatHasOneAlsoWhereItIsLeftOut) {
   const auto point = [](const std::string& height, const char* seconds) {

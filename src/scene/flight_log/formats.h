@@ -41,7 +41,8 @@ T little_endian(std::string_view bytes, std::size_t at) {
 }
 
 // Records are added to a log under the rules that every log obeys. One whose time does not follow
-// the one before is left out and counted; loggers repeat a time when they write a value twice.
+// the one before is left out and counted; loggers repeat a time when they write a value twice, and a
+// time that lies before is a fault.
 
 // What is wrong with a record, as a sentence; empty where nothing is: a number that is not finite,
 // a latitude beyond 90 degrees, a longitude beyond 180 degrees, a height beyond 100 km, a turn rate
