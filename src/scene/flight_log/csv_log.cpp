@@ -33,10 +33,17 @@ const std::vector<std::string> kNames = words_in(
     "rate_x_radps rate_y_radps rate_z_radps");
 using Places = std::vector<std::size_t>;
 
+// Where each known column stands, and how many columns there are.
+struct Header {
+  Places places;
+  std::size_t columns = 0;
+};
+
 std::string_view line_at_start(std::string_view text) { return text.substr(0, text.find('\n')); }
 
-Places columns_of(std::string_view header, const std::string& file) {
-  const Places places = places_of(kNames, cells_of(header), {file, 1});
+Header columns_of(std::string_view header, const std::string& file) {
+  const auto cells = cells_of(header);
+  const Places places = places_of(kNames, cells, {file, 1});
   const auto require_together = [&](std::vector<Column> columns) {
     for (const Column column : columns)
       if (places[column] == kNoColumn)
@@ -47,7 +54,7 @@ Places columns_of(std::string_view header, const std::string& file) {
        {std::vector{kYaw, kPitch, kRoll}, std::vector{kRateX, kRateY, kRateZ}})
     if (std::ranges::any_of(group, [&](Column c) { return places[c] != kNoColumn; }))
       require_together(group);
-  return places;
+  return {places, cells.size()};
 }
 
 // What a file of our own format states is right, or an error.
@@ -57,8 +64,13 @@ void add_good(FlightLog& log, const Record& record, const Where& where) {
   add_record(log, record, where);
 }
 
-void add_row(FlightLog& log, const Places& places, std::string_view line, const Where& where) {
+void add_row(FlightLog& log, const Header& header, std::string_view line, const Where& where) {
+  const Places& places = header.places;
   const auto cells = cells_of(line);
+  if (cells.size() > header.columns)
+    throw Error(
+        fmt::format("has {} cells for {} columns; expected one each", cells.size(), header.columns),
+        where);
   const auto number = [&](Column column) {
     if (places[column] >= cells.size())
       throw Error(fmt::format("has no value for {}", kNames[column]), where);
@@ -71,6 +83,14 @@ void add_row(FlightLog& log, const Places& places, std::string_view line, const 
                             fix.time_s),
                 where);
   add_good(log, fix, where);
+  if (log.fixes.size() > 1 && !are_in_reach(*(log.fixes.end() - 2), fix))
+    throw Error(
+        fmt::format("{}, {}, {} m is out of reach of the row before; expected a position that "
+                    "an aircraft reaches",
+                    fix.latitude_deg,
+                    fix.longitude_deg,
+                    fix.altitude_m),
+        where);
   if (places[kYaw] != kNoColumn)
     add_good(log, Attitude{fix.time_s, {number(kYaw), number(kPitch), number(kRoll)}}, where);
   if (places[kRateX] != kNoColumn)
@@ -89,12 +109,12 @@ FlightLog from_csv(std::string_view text, const std::string& file) {
   text = without_mark(text);
   FlightLog log;
   log.format = Format::kCsv;
-  const Places places = columns_of(line_at_start(text), file);
+  const Header header = columns_of(line_at_start(text), file);
   for (int number = 1; !text.empty(); ++number) {
     const std::string_view line = line_at_start(text);
     text.remove_prefix(std::min(line.size() + 1, text.size()));
     if (number > 1 && line.find_first_not_of(" \t\r") != std::string_view::npos)
-      add_row(log, places, line, {file, number});
+      add_row(log, header, line, {file, number});
   }
   return log;
 }

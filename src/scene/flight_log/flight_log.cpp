@@ -47,8 +47,9 @@ std::string first_of(std::initializer_list<std::string> faults) {
   return {};
 }
 
-// Whether an aircraft can be at both positions. The plane of the first is near enough: what is
-// excluded is far away.
+}  // namespace
+
+// The plane of the first is near enough: what is excluded is far away.
 bool are_in_reach(const Fix& a, const Fix& b) {
   double east = b.longitude_deg - a.longitude_deg;
   east -= 360 * std::round(east / 360);
@@ -58,8 +59,6 @@ bool are_in_reach(const Fix& a, const Fix& b) {
   return distance_m <= kScatterM + kFastestBetweenFixesMps * step_s &&
          std::abs(b.altitude_m - a.altitude_m) <= kScatterM + kFastestClimbBetweenFixesMps * step_s;
 }
-
-}  // namespace
 
 std::string fault_of(const Fix& fix) {
   const bool is_place = fix.latitude_deg != 0 || fix.longitude_deg != 0;

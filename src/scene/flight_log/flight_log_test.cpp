@@ -285,6 +285,14 @@ TEST(CsvLog, OptionalColumnsComeInGroups) {
   EXPECT_EQ(error_of(head + "\n0,47,8,5\n0,47,8,5\n", "a.csv"),
             "a.csv:3: time_s is 0, not after the row before; expected times that increase");
   EXPECT_EQ(error_of(head + "\n0,47,8\n", "a.csv"), "a.csv:2: has no value for altitude_m");
+  EXPECT_EQ(error_of(head + "\n0,47,8,500,5\n", "a.csv"),
+            "a.csv:2: has 5 cells for 4 columns; expected one each");
+  EXPECT_EQ(error_of(head + "\n0,47,8,500\n1,-47,8,500\n2,47,8,500\n", "a.csv"),
+            "a.csv:3: -47, 8, 500 m is out of reach of the row before; expected a position that an "
+            "aircraft reaches");
+  EXPECT_EQ(error_of(head + "\n0,47,8,500\n1,47,8,5000\n", "a.csv"),
+            "a.csv:3: 47, 8, 5000 m is out of reach of the row before; expected a position that an "
+            "aircraft reaches");
   EXPECT_EQ(error_of(head + "\n0,47,8,5\n", "a.csv"),
             "a.csv: holds 1 position (CSV); expected at least two");
 }

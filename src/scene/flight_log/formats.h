@@ -41,8 +41,8 @@ T little_endian(std::string_view bytes, std::size_t at) {
 }
 
 // Records are added to a log under the rules that every log obeys. One whose time does not follow
-// the one before is left out and counted; loggers repeat a time when they write a value twice, and a
-// time that lies before is a fault.
+// the one before is left out and counted; loggers repeat a time when they write a value twice, and
+// a time that lies before is a fault.
 
 // What is wrong with a record, as a sentence; empty where nothing is: a number that is not finite,
 // a latitude beyond 90 degrees, a longitude beyond 180 degrees, a height beyond 100 km, a turn rate
@@ -50,6 +50,9 @@ T little_endian(std::string_view bytes, std::size_t at) {
 std::string fault_of(const Fix& fix);
 std::string fault_of(const Attitude& attitude);
 std::string fault_of(const Rates& rates);
+
+// Whether an aircraft can be at both positions at their times.
+bool are_in_reach(const Fix& a, const Fix& b);
 
 // Adds a Fix, an Attitude or Rates; one that has a fault is left out.
 template <typename Record>
