@@ -50,18 +50,19 @@ std::optional<std::string_view> behind(std::string_view text, std::string_view w
   return std::nullopt;
 }
 
+bool is_digit_at(std::string_view text, std::size_t at) {
+  return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
+}
+
 // The number behind a word. A comma between digits is a decimal one, which some devices write by
 // their language: "latitude: 47,000100".
 std::optional<double> value_of(std::string_view text, std::string_view word) {
   const auto rest = behind(text, word);
   if (!rest) return std::nullopt;
   std::string number(rest->substr(0, kMaxNumberBytes));
-  const auto is_digit = [&](std::size_t at) {
-    return at < number.size() && std::isdigit(static_cast<unsigned char>(number[at])) != 0;
-  };
   const std::size_t first = std::min(number.find_first_of("0123456789"), number.size());
   const std::size_t end = std::min(number.find_first_not_of("0123456789", first), number.size());
-  if (end > first && end < number.size() && number[end] == ',' && is_digit(end + 1))
+  if (end > first && end < number.size() && number[end] == ',' && is_digit_at(number, end + 1))
     number[end] = '.';
   return number_at_start(number);
 }
@@ -86,8 +87,26 @@ std::optional<double> time_of(std::string_view text) {
   return 3600.0 * parts[0] + 60.0 * parts[1] + parts[2] + 0.001 * parts[3];
 }
 
+// The text with points for the commas between digits in the brackets at its beginning, where two
+// others are left between three numbers: "(8,5400, 47,0012, 16)", and not "(8.54,47.0012,16)".
+std::string with_decimal_points(std::string_view text) {
+  std::string changed(text);
+  std::size_t others = 0;
+  const std::size_t end = std::min(text.find(')'), text.size());
+  for (std::size_t at = 0; at < end; ++at) {
+    if (text[at] != ',') continue;
+    if (at > 0 && is_digit_at(text, at - 1) && is_digit_at(text, at + 1))
+      changed[at] = '.';
+    else
+      ++others;
+  }
+  return others == 2 ? changed : std::string(text);
+}
+
 // The numbers in the brackets that follow; empty where there are not three.
-std::optional<std::array<double, 3>> three_numbers(std::string_view text) {
+std::optional<std::array<double, 3>> three_numbers(std::string_view after_word) {
+  const std::string changed = with_decimal_points(after_word);
+  std::string_view text = changed;
   std::array<double, 3> numbers{};
   for (double& number : numbers) {
     const auto value = number_at_start(text);

@@ -142,6 +142,19 @@ TEST(DjiSubtitles, DecimalCommasAreDecimal) {
   EXPECT_DOUBLE_EQ(log.fixes.at(2).altitude_m, 430.2);
 }
 
+TEST(DjiSubtitles, DecimalCommasWithinBracketsAreDecimal) {
+  std::string text;
+  for (int i = 0; i < 3; ++i)
+    text += subtitle(
+        i, fmt::format("GPS (8,540{}, -47,0012, 16), H 6,5m, G.PRY (-27,3, 0,5, -76,2)", i));
+  const FlightLog log = parse_flight_log(text, "a.srt");
+  EXPECT_DOUBLE_EQ(log.fixes.at(2).latitude_deg, -47.0012);
+  EXPECT_DOUBLE_EQ(log.fixes.at(2).longitude_deg, 8.5402);
+  EXPECT_DOUBLE_EQ(log.attitudes.at(2).angles.yaw_deg, -76.2);
+  EXPECT_DOUBLE_EQ(log.attitudes.at(2).angles.pitch_deg, -27.3);
+  EXPECT_DOUBLE_EQ(log.attitudes.at(2).angles.roll_deg, 0.5);
+}
+
 TEST(DjiSubtitles, PositionsOutOfReachAreLeftOutWhereverTheyStand) {
   for (const int wrong : {0, 3, 9}) {
     std::string text;
