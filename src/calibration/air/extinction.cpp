@@ -35,11 +35,11 @@ constexpr double kMinExtinctionPerKm = 0.004, kMaxExtinctionPerKm = 4, kExtincti
 constexpr double kMinOverWeakest = 1.2;
 // Number of parts of the view, whose scatter is the error.
 constexpr int kParts = 3;
-// Relative error of an extinction because dark ground is not the same everywhere: the scatter over
-// virtual flights (extinction.h).
-constexpr double kUnevenGroundError = 0.15;
-// Largest relative error of an extinction that is returned.
-constexpr double kMaxRelativeError = 0.5;
+// Relative error of an extinction because dark ground is not the same everywhere, nor the lens's
+// fall-off known: the scatter over virtual flights (docs/calibration/air.md).
+constexpr double kUnevenGroundError = 0.6;
+// Largest scatter between the parts of an extinction that is returned, as a share of it.
+constexpr double kMaxRelativeScatter = 0.5;
 
 // The darkest ground of one sector at one depression. It consists of woods and shadows, which have
 // nearly the same light everywhere; fields do not.
@@ -242,7 +242,7 @@ Measured<Fading> fading_of_ground(const std::vector<SeenLight>& ground,
     const double scatter = std::max(sigma, std::sqrt(squares / (n * (n - 1))));
     sigma = std::hypot(scatter, kUnevenGroundError * beta);
     if (beta < kMinOverWeakest * kMinExtinctionPerKm ||
-        beta > kMaxExtinctionPerKm / kMinOverWeakest || sigma > kMaxRelativeError * beta)
+        beta > kMaxExtinctionPerKm / kMinOverWeakest || scatter > kMaxRelativeScatter * beta)
       return NotMeasured{"the ground's colour does not go over into the airlight clearly enough"};
   }
   return all;

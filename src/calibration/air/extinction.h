@@ -21,7 +21,7 @@ namespace airtruth::air {
 // curves as prior. It also solves for the elevation of the true horizon above the one that was
 // found, since haze lowers the visible horizon; the prior of that elevation is 0 +- 3 degrees. The
 // error of the extinction combines the scatter between three parts of the view, each fitted alone,
-// with 15 % of the value for ground that is not equally dark everywhere. Not measured
+// with 60 % of the value for ground that is not equally dark everywhere. Not measured
 // where the ground does not fade clearly.
 struct Fading {
   ColourEstimate extinction_per_km;

@@ -36,9 +36,12 @@ constexpr std::size_t kMaxPairs = 60;
 constexpr std::size_t kMinPairs = 8;
 // Largest length of a blur that is tried, as a multiple of the motion in one frame interval.
 constexpr double kMaxLengthShare = 1.3;
-// Least share of the interval that is measured, absolute and in standard errors: below them the
-// frames in motion are as sharp as those at rest.
-constexpr double kMinShare = 0.04;
+// Error that all pairs share, as a share of the interval and of the value: the scatter of virtual
+// flights (docs/calibration/shutter.md). The codec takes detail from frames in motion, too.
+constexpr double kSharedError = 0.04;
+constexpr double kSharedRelativeError = 0.1;
+// Least share of the interval that is measured, in standard errors: below it the frames in motion
+// are as sharp as those at rest.
 constexpr double kMinShareInErrors = 2;
 
 // The picture without the detail that noise dominates.
@@ -214,9 +217,10 @@ Measured<Estimate> BlurMeter::share() const {
             ? "too few frames in fast motion have a neighbour at rest"
             : "moving frames have lost more detail than a whole frame's exposure would take"};
   }
-  const Estimate result{median(shares),
-                        1.25 * half_spread(shares) / std::sqrt(double(shares.size()))};
-  if (result.value < kMinShare || result.value < kMinShareInErrors * result.sigma) {
+  const double share = median(shares);
+  const double scatter = 1.25 * half_spread(shares) / std::sqrt(double(shares.size()));
+  const Estimate result{share, std::hypot(scatter, kSharedError, kSharedRelativeError * share)};
+  if (result.value < kMinShareInErrors * result.sigma) {
     return NotMeasured{
         "frames in motion are as sharp as others: the exposure is too short to be measured"};
   }

@@ -128,11 +128,12 @@ FramePtr in_format(const AVFrame& frame, AVPixelFormat format) {
   return result;
 }
 
-image::Matrix matrix_of(AVColorSpace space, int height) {
+std::optional<image::Matrix> matrix_of(AVColorSpace space, int height) {
   switch (space) {
     case AVCOL_SPC_RGB:
       return image::Matrix::kRgb;
     case AVCOL_SPC_BT709:
+    case AVCOL_SPC_SMPTE240M:
       return image::Matrix::kBt709;
     case AVCOL_SPC_BT470BG:
     case AVCOL_SPC_SMPTE170M:
@@ -141,8 +142,11 @@ image::Matrix matrix_of(AVColorSpace space, int height) {
     case AVCOL_SPC_BT2020_NCL:
     case AVCOL_SPC_BT2020_CL:
       return image::Matrix::kBt2020;
-    default:
+    case AVCOL_SPC_UNSPECIFIED:
+    case AVCOL_SPC_RESERVED:
       return height < 720 ? image::Matrix::kBt601 : image::Matrix::kBt709;
+    default:
+      return std::nullopt;
   }
 }
 

@@ -94,8 +94,9 @@ AVPixelFormat plain_kin(AVPixelFormat format);
 // Converts a frame to that format (libswscale, no dithering). Alpha is dropped.
 FramePtr in_format(const AVFrame& frame, AVPixelFormat format);
 
-// By the picture's height where `space` is untagged or another.
-image::Matrix matrix_of(AVColorSpace space, int height);
+// By the picture's height where `space` is untagged; empty for one that a Picture cannot hold.
+// SMPTE 240M, whose coefficients are within 0.015 of BT.709's, is read as it.
+std::optional<image::Matrix> matrix_of(AVColorSpace space, int height);
 AVColorSpace space_of(image::Matrix matrix);
 
 // The samples of a decoded frame as a Picture of that colour, which must fit the layout.

@@ -240,10 +240,15 @@ struct Reader::State {
                      path.string() + ": has " + std::to_string(8 + layout.shift) +
                          " bits a sample; they are rounded to 8");
     coded_colour.chroma = layout.chroma;
-    coded_colour.matrix =
+    const auto matrix =
         layout.rgb ? image::Matrix::kRgb : matrix_of(first.colorspace, first.height);
-    if (!layout.rgb && coded_colour.matrix == image::Matrix::kRgb)
-      coded_colour.matrix = image::Matrix::kBt601;
+    if (!matrix) {
+      const char* space = av_color_space_name(first.colorspace);
+      fail(std::string("has the colour matrix ") + (space != nullptr ? space : "?") +
+           "; expected bt709, bt470bg, smpte170m, smpte240m, fcc or bt2020");
+    }
+    const bool is_unlikely = !layout.rgb && *matrix == image::Matrix::kRgb;
+    coded_colour.matrix = is_unlikely ? image::Matrix::kBt601 : *matrix;
     // libav's readers of PGM and TIFF state no range; grey of a still is of the full one.
     const bool is_grey_still = layout.chroma == image::Chroma::kNone &&
                                (info.is_of_pictures || is_picture_file(*input)) &&
