@@ -2,6 +2,7 @@
 #include "dataset/labelled/export.h"
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -18,6 +19,7 @@
 #include "foundation/json/json_object.h"
 #include "foundation/json/parse_json.h"
 #include "labels/annotation/object_class.h"
+#include "labels/label_file/coco_numbers.h"
 #include "labels/label_file/label_file.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
@@ -199,9 +201,16 @@ class Export {
  private:
   void survey() {
     std::vector<ClipFacts> facts;
-    std::set<std::string> categories;
+    std::set<std::string> categories, aircraft;
     for (const std::string& name : set_.names()) {
       facts.push_back(set_.facts(name));
+      std::ranges::set_difference(facts.back().categories,
+                                  facts.back().distractors,
+                                  std::inserter(aircraft, aircraft.end()));
+      if (is_coco() && set_.is_imported(name))
+        numbers_.add(set_.clip(name));
+      else
+        numbers_.add(facts.back().frames, {}, {}, {});
       const auto& named = options_.one_class ? facts.back().distractors : facts.back().categories;
       categories.insert(named.begin(), named.end());
     }
@@ -215,6 +224,7 @@ class Export {
     for (auto& [name, part] : parts_)
       if (part == "all") part = whole;
     write_.categories = {categories.begin(), categories.end()};
+    write_.category_ids = numbers_.category_ids(categories, aircraft);
     write_.image_extension = extension_of(*options_.images);
     write_.with_images = *options_.images != Images::kNone;
     write_.mot_classes = options_.mot_classes;
@@ -293,6 +303,10 @@ class Export {
 
   exchange::Clip clip_of(const std::string& name, bool with_masks = false) const {
     exchange::Clip clip = set_.clip(name, options_.boxes, with_masks);
+    if (is_coco())
+      numbers_.number(clip,
+                      static_cast<std::size_t>(std::ranges::lower_bound(set_.names(), name) -
+                                               set_.names().begin()));
     std::erase_if(clip.frames, [&](const exchange::LabelledFrame& frame) {
       return frame.frame % options_.every != 0;
     });
@@ -370,6 +384,7 @@ class Export {
   }
 
   bool is_table() const { return options_.format == exchange::Format::kTable; }
+  bool is_coco() const { return options_.format == exchange::Format::kCoco; }
 
   // The truth of the sequence whose labels are being written, for the table.
   void read_truth(const std::string& name) {
@@ -391,7 +406,7 @@ class Export {
   void write_labels() {
     for (const std::string& name : set_.names()) {
       if (options_.stop.stop_requested()) throw Interrupted();
-      exchange::Clip clip = clip_of(name, options_.format == exchange::Format::kCoco);
+      exchange::Clip clip = clip_of(name, is_coco());
       summary_.faint += sift(clip);
       const std::string& part = parts_.at(name);
       if (is_table()) read_truth(name);
@@ -438,7 +453,7 @@ class Export {
           options_.min_contrast,
           options_.min_size_px,
           marks_faint() ? "marked as counting neither way" : "dropped");
-    if (options_.format != exchange::Format::kCoco) return text;
+    if (!is_coco()) return text;
     text +=
         summary_.masks > 0
             ? fmt::format(
@@ -459,6 +474,7 @@ class Export {
   exchange::WriteOptions write_;
   std::unique_ptr<exchange::Writer> writer_;
   std::map<std::string, std::string> parts_;
+  label_file::CocoNumbers numbers_;
   // For the table: the intruders by frame, and the lines of encounters so far.
   std::map<std::int64_t, std::vector<annotation::Intruder>> truth_;
   std::string encounters_;

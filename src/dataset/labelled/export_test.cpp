@@ -313,6 +313,42 @@ TEST_F(Made, EveryNthFrameAndOneClass) {
       testing::StartsWith("0 " + std::to_string((box.x + box.width / 2) / 160).substr(0, 5)));
 }
 
+// The numbers and names of a set are the same in each export of it.
+TEST_F(Made, CocoHasTheIdsAndNamesOfTheWholeSet) {
+  const auto images_of = [&](const fs::path& source, Split split) {
+    const fs::path out = fresh();
+    export_set(source, out, {.images = Images::kNone, .every = 3, .split = split});
+    std::map<std::string, std::int64_t> images;
+    for (const fs::path& file : entries(out / "annotations"))
+      for (const auto& image : nlohmann::json::parse(read_file(file)).at("images"))
+        images[image.at("file_name")] = image.at("id");
+    return images;
+  };
+  const auto images = images_of(set(), Split::kNone);  // four clips of 8 frames
+  EXPECT_EQ(images.size(), 12U);
+  EXPECT_EQ(images.at("more-across-b737/000003.jpg"), 4);
+  EXPECT_EQ(images.at("sky-across-c172/000006.jpg"), 3 * 8 + 7);
+  EXPECT_EQ(images_of(set(), Split::kBySequence), images);
+  const fs::path source = fresh();
+  fs::create_directories(source);
+  write_file(source / "a.json",
+             R"({"categories": [{"id": 1, "name": "bird"}, {"id": 7, "name": "plane"}],
+    "images": [{"id": 90, "file_name": "f/000012.png", "width": 64, "height": 48},
+               {"id": 80, "file_name": "f/000018.png", "width": 64, "height": 48}],
+    "annotations": [{"id": 1, "image_id": 80, "category_id": 7, "bbox": [1, 2, 3, 4]}]})");
+  const fs::path imported = fresh();
+  import_set(source, imported, {});
+  EXPECT_EQ(images_of(imported, Split::kNone),
+            (std::map<std::string, std::int64_t>{{"f/000012.jpg", 90}, {"f/000018.jpg", 80}}));
+  const fs::path out = fresh();
+  export_set(imported, out, {.images = Images::kNone, .split = Split::kNone, .one_class = true});
+  EXPECT_EQ(nlohmann::json::parse(read_file(out / "annotations/instances_all.json"))
+                .at("annotations")
+                .at(0)
+                .at("category_id"),
+            7);
+}
+
 TEST_F(Made, SequencesThatAFormatLeavesOutAreNotCounted) {
   std::vector<std::string> warnings;
   ExportOptions options;

@@ -245,6 +245,8 @@ Clips read_coco(const Reading& in) {
 // count, and not an object.
 // Videos and tracks follow the video data sets that are derived from COCO: videos, video_id,
 // frame_id, track_id.
+// Frames and categories have the numbers and names of label_file::CocoNumbers where the clips and
+// the options hold them.
 
 namespace {
 
@@ -257,7 +259,7 @@ struct Lists {
 
   PartFile images, annotations;  // never finished: they are removed at the end
   Json videos = Json::array();
-  std::int64_t next_image = 1;
+  std::int64_t images_written = 0;
   std::int64_t next_annotation = 1;
   // Number of annotations that hold their object's pixels.
   std::int64_t masks = 0;
@@ -315,11 +317,19 @@ class CocoWriter : public FolderWriter {
       throw Error("cannot be written: is the disk full?", {folder().string()});
   }
   std::string file_name(const Clip& clip, std::size_t i) const {
-    return clip.name + "/" + padded(static_cast<std::int64_t>(i), 6) + options_.image_extension;
+    const std::string stem = fs::path(clip.frames[i].picture).stem().string();
+    return clip.name + "/" + (stem.empty() ? padded(static_cast<std::int64_t>(i), 6) : stem) +
+           options_.image_extension;
+  }
+  std::int64_t category_id(const std::string& category) const {
+    const auto found = options_.category_ids.find(category);
+    if (found != options_.category_ids.end()) return found->second;
+    return static_cast<std::int64_t>(class_of(category)) + 1;
   }
   void add_frame(const Clip& clip, std::size_t i, std::int64_t video, Lists& lists) {
     const LabelledFrame& frame = clip.frames[i];
-    const std::int64_t id = lists.next_image++;
+    const std::int64_t id = frame.image_id.value_or(lists.images_written + 1);
+    ++lists.images_written;
     Json image = {{"id", id},
                   {"file_name", file_name(clip, i)},
                   {"width", clip.width},
@@ -327,7 +337,7 @@ class CocoWriter : public FolderWriter {
                   {"video_id", video},
                   {"frame_id", i}};
     put(image, "time_s", frame.time_s);
-    lists.images.out() << (id > 1 ? ",\n" : "") << image.dump();
+    lists.images.out() << (lists.images_written > 1 ? ",\n" : "") << image.dump();
     for (const Label& label : frame.labels) {
       const Box& b = label.box_px;
       const std::int64_t number = lists.next_annotation++;
@@ -338,7 +348,7 @@ class CocoWriter : public FolderWriter {
           {"id", number},
           {"image_id", id},
           {"video_id", video},
-          {"category_id", class_of(label.category) + 1},
+          {"category_id", category_id(label.category)},
           {"track_id", label.track},
           {"bbox", {b.x, b.y, b.width, b.height}},
           {"area", label.area_px.value_or(label.mask ? double(label.mask->area_px) : b.area())},
@@ -353,7 +363,7 @@ class CocoWriter : public FolderWriter {
   void write(const std::string& part, const Lists& lists) const {
     Json categories = Json::array();
     for (const std::string& category : options_.categories)
-      categories.push_back({{"id", class_of(category) + 1},
+      categories.push_back({{"id", category_id(category)},
                             {"name", category},
                             {"supercategory", supercategory_of(category)}});
     PartFile file(whole(part));

@@ -15,6 +15,7 @@
 #include "foundation/base/names.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/parts.h"
+#include "labels/label_file/coco_numbers.h"
 #include "labels/label_file/label_file.h"
 
 namespace airtruth::exchange {
@@ -353,11 +354,19 @@ void write_clips(Format format, const fs::path& folder, std::span<const Part> pa
   if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder)))
     throw Error("exists and is not empty; expected a new folder", {folder.string()});
   make_folders(folder);
-  const auto writer = make_writer(format, folder, options_of(parts));
+  label_file::CocoNumbers numbers;
+  for (const Part& part : parts)
+    for (const Clip& clip : part.clips) numbers.add(clip);
+  WriteOptions options = options_of(parts);
+  options.category_ids =
+      numbers.category_ids({options.categories.begin(), options.categories.end()}, {});
+  const auto writer = make_writer(format, folder, options);
+  std::size_t clip_number = 0;
   for (const Part& part : parts) {
     ArrangedNames names;
     for (const Clip& clip : part.clips) {
-      const std::vector<Clip> clips = arranged(format, clip);
+      std::vector<Clip> clips = arranged(format, clip);
+      if (format == Format::kCoco) numbers.number(clips.front(), clip_number++);
       if (is_single_object(format)) add_names(names, clip.name, clips);
       for (const Clip& one : clips)
         // Single-object toolkits refuse a sequence of one frame: they read its truth as four

@@ -36,6 +36,9 @@ struct WriteOptions {
   // clip that is added.
   std::vector<std::string> columns;
   std::function<std::vector<std::string>(std::int64_t frame, const Label& label)> cells;
+  // COCO only: the ids of the categories by name (label_file::CocoNumbers); those that are not here
+  // are counted from 1.
+  std::map<std::string, std::int64_t> category_ids = {};
 };
 
 // Writes a set into a folder, clip by clip. Of clips that are written it keeps only the names in
