@@ -32,6 +32,8 @@ std::vector<results::ExpectedSequence> expected_of(
   for (const scores::TruthSequence& truth : truths) {
     expected.push_back({truth.name, truth.width, truth.height, std::ssize(truth.frames)});
     expected.back().category_ids = truth.category_ids;
+    expected.back().categories = truth.categories;
+    expected.back().distractors = truth.distractors;
     for (const scores::TruthFrame& frame : truth.frames) {
       expected.back().pictures.push_back(frame.picture);
       expected.back().image_ids.push_back(frame.image_id);
@@ -47,7 +49,8 @@ std::vector<scores::ScoredDetections> results_in(const fs::path& source,
   for (std::size_t i = 0; i < truths.size(); ++i) numbers[truths[i].name] = i;
   std::vector<scores::ScoredDetections> results;
   std::vector<std::string> of_other_content;
-  for (results::SequenceDetections& read : results::read_detections(source, expected_of(truths))) {
+  for (results::SequenceDetections& read :
+       results::read_detections(source, expected_of(truths), warn)) {
     const std::size_t truth = numbers.at(read.name);
     if (read.frames.size() != truths[truth].frames.size())
       throw Error(fmt::format("holds {} frames of '{}'; the data set has {}",

@@ -370,6 +370,9 @@ SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path i
   for (const std::string& name : set.names()) {
     scores::TruthSequence& truth = result.sequences.emplace_back(
         set.is_imported(name) ? imported_truth(set, name) : rendered_truth(set, name, volume));
+    labelled::ClipFacts facts = set.facts(name);
+    truth.categories = std::move(facts.categories);
+    truth.distractors = std::move(facts.distractors);
     weighted += truth.weight ? 1 : 0;
     truth.name = name;
     truth.sha256 = set.sha256_of(name);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,8 @@ struct TruthSequence {
   std::optional<double> weight;
   // Of an imported clip: its categories by their numbers in its set.
   std::map<std::int64_t, std::string> category_ids;
+  // labelled::ClipFacts of these names.
+  std::set<std::string> categories, distractors;
   std::vector<TruthFrame> frames;
   std::vector<TruthEncounter> encounters;  // one for each aircraft that any frame shows
   // Number of intruders that no frame shows. No measure holds them: no detector could find them.

@@ -12,6 +12,8 @@
 #include "foundation/base/names.h"
 #include "foundation/base/text.h"
 #include "foundation/json/json_object.h"
+#include "labels/annotation/object_class.h"
+#include "labels/label_file/coco_numbers.h"
 #include "runners/results/results_folder.h"
 
 namespace airtruth::results {
@@ -180,59 +182,87 @@ struct Names {
 struct SetImage {
   std::size_t sequence = 0;  // index in the set
   std::int64_t frame = 0;
+  bool operator==(const SetImage&) const = default;
 };
+
+// What the numbers of a file are: those that the set's source states, those that are counted over
+// the set, or those that pictures are named. And what its texts are: the set's own names, or
+// SEQUENCE/NUMBER with frames from 0.
+enum class Ids { kStated, kCounted, kInNames };
+enum class Texts { kNames, kPlaces };
+
+const char* words(Ids ids) {
+  return ids == Ids::kStated    ? "the ids that the set states"
+         : ids == Ids::kCounted ? "ids that are counted over the set"
+                                : "the numbers in the names of its pictures";
+}
+const char* words(Texts texts) {
+  return texts == Texts::kNames ? "the names of the set's pictures" : "places in its sequences";
+}
 
 // The images of a set by their number and by their name (read_detections states both).
 class SetImages {
  public:
+  using Images = std::vector<SetImage>;
+
   // `set` must outlive the object.
   explicit SetImages(std::span<const ExpectedSequence> set) : set_(set) {
     for (std::size_t i = 0; i < set.size(); ++i) {
       names_.emplace(set[i].name, i);
-      first_ids_.push_back(frames_ + 1);
-      frames_ += set[i].frames;
+      numbers_.add(set[i].frames, set[i].pictures, set[i].image_ids, set[i].category_ids);
       const std::size_t named = std::max(set[i].pictures.size(), set[i].image_ids.size());
       for (std::size_t frame = 0; frame < named; ++frame) add(i, frame);
     }
   }
 
-  bool has_id(std::int64_t id) const {
-    return states_ids() ? ids_.contains(id) : id >= 1 && id <= frames_;
+  // What numbers may be, the likeliest first.
+  std::vector<Ids> readings() const {
+    if (ids_.empty()) return {Ids::kCounted, Ids::kInNames};
+    if (numbers_.states_image_ids()) return {Ids::kStated, Ids::kInNames};
+    return {Ids::kStated, Ids::kCounted, Ids::kInNames};
   }
-  bool has_number_in_name(std::int64_t number) const { return numbers_.contains(number); }
-  bool has_numbers_in_names() const { return !numbers_.empty(); }
+  // The images of that number, or of that name: none, one, or several.
+  Images find(std::int64_t id, Ids ids) const {
+    if (ids == Ids::kCounted) return counted(id);
+    const auto& numbers = ids == Ids::kStated ? ids_ : in_names_;
+    const auto found = numbers.find(id);
+    return found == numbers.end() ? Images() : found->second;
+  }
+  Images find(const std::string& text, Texts texts) const {
+    if (texts == Texts::kPlaces) return placed(text);
+    const fs::path path(text);
+    const std::string stem = path.stem().string();
+    for (const auto& [name, pictures] :
+         {std::pair{text, &pictures_},
+          std::pair{(path.parent_path() / stem).string(), &pictures_},
+          std::pair{(path.parent_path().filename() / stem).string(), &in_sequences_},
+          std::pair{path.filename().string(), &pictures_},
+          std::pair{stem, &pictures_}})
+      if (const auto found = pictures->find(name); found != pictures->end()) return found->second;
+    Images there = placed(text);
+    std::erase_if(there, [&](const SetImage& image) { return !picture_of(image).empty(); });
+    return there;
+  }
 
-  // All throw Error at `where` for an image that the set does not have, and for one that it has
+  // Both throw Error at `where` for an image that the set does not have, and for one that it has
   // twice.
-  SetImage by_id(std::int64_t id, const Where& where) const {
-    if (!has_id(id))
+  SetImage by_id(std::int64_t id, Ids ids, const Where& where) const {
+    const Images found = find(id, ids);
+    const bool are_stated = ids == Ids::kStated;
+    if (found.empty())
       throw Error(fmt::format("image_id is {}; the set has {} images with ids from {} to {}",
                               id,
-                              states_ids() ? std::ssize(ids_) : frames_,
-                              states_ids() ? ids_.begin()->first : 1,
-                              states_ids() ? ids_.rbegin()->first : frames_),
+                              are_stated ? std::ssize(ids_) : numbers_.frames(),
+                              are_stated ? ids_.begin()->first : 1,
+                              are_stated ? ids_.rbegin()->first : numbers_.frames()),
                   where);
-    if (states_ids()) return only(ids_.at(id), fmt::format("image_id {}", id), where);
-    const auto after = std::upper_bound(first_ids_.begin(), first_ids_.end(), id);
-    const auto sequence = static_cast<std::size_t>(after - first_ids_.begin()) - 1;
-    return {sequence, id - first_ids_[sequence]};
+    return only(found, fmt::format("image_id {}", id), where);
   }
-  SetImage by_number_in_name(std::int64_t number, const Where& where) const {
-    return only(numbers_.at(number), fmt::format("image_id {}", number), where);
-  }
-  SetImage by_name(const std::string& text, const Where& where) const {
-    const fs::path path(text);
-    for (const std::string& name : {text,
-                                    (path.parent_path() / path.stem()).string(),
-                                    path.filename().string(),
-                                    path.stem().string()})
-      if (const auto found = pictures_.find(name); found != pictures_.end())
-        return only(found->second, "'" + text.substr(0, 200) + "'", where);
-    const std::string name = path.parent_path().filename().string();
+  SetImage by_name(const std::string& text, Texts texts, const Where& where) const {
+    const Images images = find(text, texts);
+    if (!images.empty()) return only(images, "'" + text.substr(0, 200) + "'", where);
+    const std::string name = fs::path(text).parent_path().filename().string();
     const auto found = names_.find(name);
-    const auto frame = number_from_text<std::int64_t>(path.stem().string());
-    if (found != names_.end() && frame && *frame >= 0 && *frame < set_[found->second].frames)
-      return {found->second, *frame};
     std::string hint;
     if (found != names_.end()) {
       hint = fmt::format("; '{}' has the frames 0 to {}", name, set_[found->second].frames - 1);
@@ -243,14 +273,13 @@ class SetImages {
         hint = "; did you mean the sequence '" + *near + "'?";
     }
     throw Error("the set has no image '" + text.substr(0, 200) +
-                    "'; expected a picture's file name, or SEQUENCE/NUMBER.jpg with frames from 0" +
+                    "'; expected a picture's file name, or SEQUENCE/NUMBER.jpg with frames from "
+                    "0, the same for all" +
                     hint,
                 where);
   }
 
  private:
-  using Images = std::vector<SetImage>;
-
   void add(std::size_t sequence, std::size_t frame) {
     const ExpectedSequence& of = set_[sequence];
     const SetImage image{sequence, static_cast<std::int64_t>(frame)};
@@ -264,8 +293,30 @@ class SetImages {
                                                          picture.filename().string(),
                                                          stem})
       pictures_[name].push_back(image);
+    in_sequences_[of.name + "/" + stem].push_back(image);
     if (const auto number = number_from_text<std::int64_t>(stem); number && *number >= 0)
-      numbers_[*number].push_back(image);
+      in_names_[*number].push_back(image);
+  }
+
+  std::string picture_of(const SetImage& image) const {
+    const std::vector<std::string>& pictures = set_[image.sequence].pictures;
+    const auto frame = static_cast<std::size_t>(image.frame);
+    return frame < pictures.size() ? pictures[frame] : "";
+  }
+
+  Images counted(std::int64_t id) const {
+    if (id < 1 || id > numbers_.frames()) return {};
+    const auto [sequence, frame] = numbers_.counted(id);
+    return {{sequence, frame}};
+  }
+
+  Images placed(const std::string& text) const {
+    const fs::path path(text);
+    const auto found = names_.find(path.parent_path().filename().string());
+    const auto frame = number_from_text<std::int64_t>(path.stem().string());
+    if (found == names_.end() || !frame || *frame < 0 || *frame >= set_[found->second].frames)
+      return {};
+    return {{found->second, *frame}};
   }
 
   SetImage only(const Images& found, const std::string& what, const Where& where) const {
@@ -279,16 +330,14 @@ class SetImages {
         where);
   }
 
-  // Whether the set gives its pictures numbers; else the frames are counted from 1.
-  bool states_ids() const { return !ids_.empty(); }
-
   std::span<const ExpectedSequence> set_;
-  std::vector<std::int64_t> first_ids_;  // by sequence
-  std::int64_t frames_ = 0;
+  label_file::CocoNumbers numbers_;
   std::map<std::int64_t, Images> ids_;
-  std::map<std::int64_t, Images> numbers_;
+  std::map<std::int64_t, Images> in_names_;
   // By the whole name, by the file name, and by either without its ending.
   std::map<std::string, Images> pictures_;
+  // By SEQUENCE/STEM, as the export names them.
+  std::map<std::string, Images> in_sequences_;
   std::map<std::string, std::size_t> names_;
 };
 
@@ -319,48 +368,180 @@ std::map<std::int64_t, std::string> texts_by_id(const std::optional<JsonPart>& l
   return texts;
 }
 
-// What the numbers of a file are: ids of its set, or the numbers that pictures are named.
-enum class Ids { kOfTheSet, kInNames };
+// By which numbers and texts a whole file names images and categories.
+struct Keys {
+  std::set<std::int64_t> ids;
+  std::set<std::string> texts;
+  std::set<std::int64_t> categories;
+};
+
+// How a file's keys are read.
+struct Readings {
+  Ids ids = Ids::kStated;
+  Texts texts = Texts::kNames;
+  std::map<std::int64_t, std::string> categories;  // where a sequence states no such id
+};
+
+// The name of an image in a result; empty where it has a number.
+std::optional<std::string> name_in(const JsonObject& object) {
+  for (const char* key : {"file_name", "image_name"})
+    if (auto name = object.maybe_text(key)) return name;
+  if (object.has("image_id") && object.value("image_id").is_string())
+    return object.text("image_id");
+  return std::nullopt;
+}
 
 SetImage image_of(const JsonObject& object,
                   const std::optional<Names>& names,
                   const SetImages& images,
-                  Ids ids,
+                  const Readings& readings,
                   const Where& where) {
-  for (const char* key : {"file_name", "image_name"})
-    if (const auto name = object.maybe_text(key)) return images.by_name(*name, where);
+  if (const auto name = name_in(object)) return images.by_name(*name, readings.texts, where);
   if (!object.has("image_id")) throw Error(std::string("has no image_id; ") + kExpected, where);
-  if (object.value("image_id").is_string()) return images.by_name(object.text("image_id"), where);
   const std::int64_t id = object.whole("image_id");
-  if (names && !names->image_files.empty()) {
-    const auto named = names->image_files.find(id);
-    if (named == names->image_files.end())
-      throw Error(fmt::format("image_id is {}, which the file's images do not have", id), where);
-    return images.by_name(named->second, where);
-  }
-  return ids == Ids::kOfTheSet ? images.by_id(id, where) : images.by_number_in_name(id, where);
+  if (!names || names->image_files.empty()) return images.by_id(id, readings.ids, where);
+  const auto named = names->image_files.find(id);
+  if (named == names->image_files.end())
+    throw Error(fmt::format("image_id is {}, which the file's images do not have", id), where);
+  return images.by_name(named->second, readings.texts, where);
 }
 
-// Looks through a list of detections: its numbers are ids where all are, and else the numbers in
-// the names of pictures where all are those.
-Ids ids_in(const JsonPart& list, const fs::path& file, const char* what, const SetImages& images) {
-  bool are_ids = true;
-  bool are_in_names = true;
+// Looks through a list of detections. A whole COCO file names all its images, with or without
+// detections.
+Keys keys_in(const JsonPart& list,
+             const std::optional<Names>& names,
+             const fs::path& file,
+             const char* what) {
+  Keys keys;
+  if (names)
+    for (const auto& [id, name] : names->image_files) keys.texts.insert(name);
   JsonElements elements(list, file, what);
   while (const auto element = elements.next()) {
     const JsonDocument object = parsed(*element, file);
-    if (!object.has("image_id") || !object.value("image_id").is_number_integer()) continue;
-    const std::int64_t id = object.whole("image_id");
-    are_ids = are_ids && images.has_id(id);
-    are_in_names = are_in_names && images.has_number_in_name(id);
+    const auto is_number = [&](const char* key) {
+      return object.has(key) && object.value(key).is_number();
+    };
+    if (auto name = name_in(object))
+      keys.texts.insert(*std::move(name));
+    else if (is_number("image_id") && (!names || names->image_files.empty()))
+      keys.ids.insert(object.whole("image_id"));
+    if (is_number("category_id") && !object.has("category_name") &&
+        (!names || names->categories.empty()))
+      keys.categories.insert(object.whole("category_id"));
   }
-  return !are_ids && are_in_names ? Ids::kInNames : Ids::kOfTheSet;
+  return keys;
+}
+
+// The first of `readings` by which the set has all images that it has by any, and else the first.
+// Warns where another one finds all as well, and not the same.
+template <typename Key, typename Reading>
+Reading reading_of(const std::set<Key>& keys,
+                   const std::vector<Reading>& readings,
+                   const SetImages& images,
+                   const fs::path& file,
+                   const Warn& warn) {
+  const auto is_known = [&](const Key& key) {
+    return std::ranges::any_of(readings,
+                               [&](Reading reading) { return !images.find(key, reading).empty(); });
+  };
+  std::vector<Reading> fitting;
+  for (const Reading reading : readings)
+    if (std::ranges::all_of(keys, [&](const Key& key) {
+          return !images.find(key, reading).empty() || !is_known(key);
+        }))
+      fitting.push_back(reading);
+  if (fitting.empty()) return readings.front();
+  for (const Reading other : fitting) {
+    if (other == fitting.front()) continue;
+    bool is_one_each = true;
+    bool is_same = true;
+    for (const Key& key : keys) {
+      const auto first = images.find(key, fitting.front());
+      const auto found = images.find(key, other);
+      is_one_each = is_one_each && found.size() <= 1 && first.size() <= 1;
+      is_same = is_same && found == first;
+    }
+    if (is_one_each && !is_same)
+      airtruth::warn(warn,
+                     fmt::format("{}: names its images by {} or by {}, and is read by the first",
+                                 file.string(),
+                                 words(fitting.front()),
+                                 words(other)));
+  }
+  return fitting.front();
+}
+
+using Categories = std::map<std::int64_t, std::string>;
+
+Categories counted_from_1(const std::set<std::string>& names) {
+  Categories categories;
+  for (const std::string& name : names) categories.emplace(std::ssize(categories) + 1, name);
+  return categories;
+}
+
+// What the ids of categories mean that the file does not name: those that the set states, or of an
+// export of it, with or without --one-class, in which they are all there and one is an aircraft's.
+// Throws Error where both exports fit and differ in what is an aircraft; warns where nothing fits.
+// Category 1 alone is every detector's aircraft, unless the set states it.
+Categories categories_of(const std::set<std::int64_t>& ids,
+                         std::span<const ExpectedSequence> set,
+                         const fs::path& file,
+                         const Warn& warn) {
+  Categories stated;
+  std::set<std::string> all;
+  std::set<std::string> distractors;
+  for (const ExpectedSequence& sequence : set) {
+    stated.insert(sequence.category_ids.begin(), sequence.category_ids.end());
+    all.insert(sequence.categories.begin(), sequence.categories.end());
+    distractors.insert(sequence.distractors.begin(), sequence.distractors.end());
+  }
+  if (ids.empty() || (stated.empty() && ids == std::set<std::int64_t>{1})) return {};
+  std::set<std::string> of_one_class = distractors;
+  of_one_class.insert(Detection{}.category);
+  const Categories whole = stated.empty() ? counted_from_1(all) : stated;
+  const Categories one_class = stated.empty() ? counted_from_1(of_one_class) : stated;
+  const auto is_aircraft = [&](const Categories& categories, std::int64_t id) {
+    if (!categories.contains(id) || distractors.contains(categories.at(id))) return false;
+    const auto of_class = annotation::class_of_category(categories.at(id));
+    return !of_class || annotation::is_aircraft(*of_class);
+  };
+  const auto fits = [&](const Categories& categories) {
+    return std::ranges::all_of(ids, [&](auto id) { return categories.contains(id); }) &&
+           std::ranges::any_of(ids, [&](auto id) { return is_aircraft(categories, id); });
+  };
+  if (fits(whole) && fits(one_class))
+    for (const std::int64_t id : ids)
+      if (is_aircraft(whole, id) != is_aircraft(one_class, id))
+        throw Error(fmt::format("names no categories, and category_id {} is '{}' in an export of "
+                                "the set and '{}' in one with --one-class; expected category_name "
+                                "in each line",
+                                id,
+                                whole.at(id),
+                                one_class.at(id)),
+                    {file.string()});
+  if (fits(whole)) return whole;
+  if (fits(one_class)) return one_class;
+  const auto odd = std::ranges::find_if(ids, [&](auto id) { return !whole.contains(id); });
+  const auto named = stated.find(*ids.begin());
+  airtruth::warn(
+      warn,
+      odd == ids.end() && named != stated.end()
+          ? fmt::format("{}: names no categories, and category_id {} is '{}' in the set; no other "
+                        "is an aircraft's",
+                        file.string(),
+                        named->first,
+                        named->second)
+          : fmt::format("{}: category_id {} is none of the set's, and counts as an aircraft",
+                        file.string(),
+                        odd == ids.end() ? *ids.begin() : *odd));
+  return {};
 }
 
 // Category 1 is "aircraft" where nothing names it.
 std::string category_of(const JsonObject& object,
                         const std::optional<Names>& names,
                         const ExpectedSequence& sequence,
+                        const Readings& readings,
                         const Where& where) {
   if (const auto category = object.maybe_text("category_name")) return *category;
   if (!object.has("category_id")) return Detection{}.category;
@@ -374,12 +555,15 @@ std::string category_of(const JsonObject& object,
   }
   const auto in_set = sequence.category_ids.find(id);
   if (in_set != sequence.category_ids.end()) return in_set->second;
+  const auto counted = readings.categories.find(id);
+  if (counted != readings.categories.end()) return counted->second;
   return id == 1 ? Detection{}.category : fmt::format("{}", id);
 }
 
 Detection detection_of(const JsonObject& object,
                        const std::optional<Names>& names,
                        const ExpectedSequence& sequence,
+                       const Readings& readings,
                        const Where& where) {
   Detection detection;
   const std::vector<double> box = object.numbers("bbox", 4);
@@ -387,7 +571,7 @@ Detection detection_of(const JsonObject& object,
   if (names && !object.has("score"))
     throw Error(std::string("is an annotation without a score; ") + kExpected, where);
   detection.score = object.number("score");
-  detection.category = category_of(object, names, sequence, where);
+  detection.category = category_of(object, names, sequence, readings, where);
   if (const auto track = object.maybe_integer("track_id"); track && *track >= 0)
     detection.track = *track;
   return detection;
@@ -414,7 +598,8 @@ Found found_in(std::string_view text, const fs::path& file) {
 }  // namespace
 
 std::vector<SequenceDetections> read_coco_results(const fs::path& file,
-                                                  std::span<const ExpectedSequence> set) {
+                                                  std::span<const ExpectedSequence> set,
+                                                  const Warn& warn) {
   const std::string text = read_file(file, kMaxBytes);
   const SetImages images(set);
   std::vector<FrameList> lists;
@@ -422,16 +607,17 @@ std::vector<SequenceDetections> read_coco_results(const fs::path& file,
     lists.emplace_back(sequence.name, sequence.width, sequence.height, sequence.frames);
   const Found found = found_in(text, file);
   const char* what = found.names ? "annotations" : "detections";
-  const bool names_images = found.names && !found.names->image_files.empty();
-  const Ids ids = names_images || !images.has_numbers_in_names()
-                      ? Ids::kOfTheSet
-                      : ids_in(found.list, file, what, images);
+  const Keys keys = keys_in(found.list, found.names, file, what);
+  const Readings readings = {
+      reading_of(keys.ids, images.readings(), images, file, warn),
+      reading_of(keys.texts, std::vector{Texts::kNames, Texts::kPlaces}, images, file, warn),
+      categories_of(keys.categories, set, file, warn)};
   JsonElements elements(found.list, file, what);
   while (const auto element = elements.next()) {
     const Where where{file.string(), element->line};
     const JsonDocument object = parsed(*element, file);
-    const SetImage image = image_of(object, found.names, images, ids, where);
-    Detection detection = detection_of(object, found.names, set[image.sequence], where);
+    const SetImage image = image_of(object, found.names, images, readings, where);
+    Detection detection = detection_of(object, found.names, set[image.sequence], readings, where);
     lists[image.sequence].add(image.frame, std::move(detection), where);
   }
   std::vector<SequenceDetections> all;

@@ -13,6 +13,7 @@
 namespace airtruth::results {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 class Results : public testing::Test {
@@ -29,6 +30,26 @@ class Results : public testing::Test {
   void put(const std::string& file, const std::string& text) const {
     fs::create_directories((folder_ / file).parent_path());
     write_file(folder_ / file, text);
+  }
+  // Where a result of the box {1, 1, 1, 1} with each of the `keys` is in a set, as "sequence frame
+  // category", with what is warned of; or the error.
+  std::vector<std::string> read(const std::vector<std::string>& keys,
+                                const std::vector<ExpectedSequence>& set) const {
+    std::string text;
+    for (const std::string& key : keys)
+      text += (text.empty() ? "[{" : ",\n{") + key + R"(,"bbox":[1,1,1,1],"score":1})";
+    put("r.json", text + "]");
+    std::vector<std::string> found;
+    try {
+      const auto note = [&](const std::string& warning) { found.push_back(warning); };
+      for (const auto& sequence : read_detections(folder_ / "r.json", set, note))
+        for (std::size_t i = 0; i < sequence.frames.size(); ++i)
+          for (const Detection& d : sequence.frames[i])
+            found.push_back(sequence.name + " " + std::to_string(i) + " " + d.category);
+    } catch (const Error& error) {
+      found.emplace_back(error.what());
+    }
+    return found;
   }
   // The message for what a file holds.
   std::string fault(const std::string& file, const std::string& text) const {
@@ -117,6 +138,49 @@ TEST_F(Results, OfCocoMayNameTheirImages) {
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[1].frames[1].at(0), (Detection{{1, 2, 3, 4}, 1, "aircraft", {}}));
   EXPECT_EQ(all[0].frames[0].at(0), (Detection{{1, 2, 3, 4}, 2, "3", {}}));
+}
+
+// The pictures 2 to 5 of a video, which an export of their places names 0 to 3.
+TEST_F(Results, OfCocoNameAllTheirImagesByOneRule) {
+  ExpectedSequence clip{"clip", 64, 48, 4};
+  for (const char* number : {"2", "3", "4", "5"})
+    clip.pictures.push_back(std::string("clip/00000") + number + ".jpg");
+  const auto images = [&](const std::vector<std::string>& numbers) {
+    std::vector<std::string> keys;
+    for (const std::string& number : numbers)
+      keys.push_back(R"("file_name":"clip/00000)" + number + R"(.jpg")");
+    return read(keys, {clip});
+  };
+  EXPECT_THAT(images({"0", "3"}), ElementsAre("clip 0 aircraft", "clip 3 aircraft"));
+  EXPECT_THAT(images({"3", "5"}), ElementsAre("clip 1 aircraft", "clip 3 aircraft"));
+  EXPECT_THAT(
+      images({"3"}),
+      ElementsAre(HasSubstr("by the names of the set's pictures or by places"), "clip 1 aircraft"));
+  EXPECT_THAT(images({"0", "5"}), ElementsAre(HasSubstr("no image 'clip/000000.jpg'")));
+  EXPECT_THAT(read({R"("image_id":2)", R"("image_id":3)"}, {clip}),
+              ElementsAre(HasSubstr("counted over the set or by the numbers in the names"),
+                          "clip 1 aircraft",
+                          "clip 2 aircraft"));
+}
+
+// An export has {1: bird, 2: c172}, and one of one class {1: aircraft, 2: bird}.
+TEST_F(Results, OfCocoHaveTheCategoryIdsOfAnExport) {
+  ExpectedSequence clip{"clip", 64, 48, 1};
+  clip.categories = {"bird", "c172"};
+  clip.distractors = {"bird"};
+  const std::string one = R"("image_id":1,"category_id":1)",
+                    two = R"("image_id":1,"category_id":2)";
+  EXPECT_THAT(read({one}, {clip}), ElementsAre("clip 0 aircraft"));
+  EXPECT_THAT(read({two}, {clip}), ElementsAre("clip 0 c172"));
+  EXPECT_THAT(read({one, two}, {clip}), ElementsAre(HasSubstr("'bird' in an export of the set")));
+  EXPECT_THAT(read({R"("image_id":1,"category_id":5)"}, {clip}),
+              ElementsAre(HasSubstr("category_id 5 is none of the set's"), "clip 0 5"));
+  clip.categories = {"bird", "b737", "c172"};
+  EXPECT_THAT(read({two, R"("image_id":1,"category_id":3)"}, {clip}),
+              ElementsAre("clip 0 bird", "clip 0 c172"));
+  clip.category_ids = {{1, "bird"}, {2, "c172"}};
+  EXPECT_THAT(read({one}, {clip}),
+              ElementsAre(HasSubstr("category_id 1 is 'bird' in the set"), "clip 0 bird"));
 }
 
 TEST_F(Results, OfMotChallengeHaveThreePlaces) {

@@ -287,14 +287,16 @@ SequenceDetections read_sequence(const fs::path& folder, const std::string& name
 }
 
 std::vector<SequenceDetections> read_detections(const fs::path& source,
-                                                std::span<const ExpectedSequence> set) {
+                                                std::span<const ExpectedSequence> set,
+                                                const Warn& warn) {
   expect_distinct(set);
   if (!fs::exists(source)) throw Error("does not exist", {source.string()});
-  if (!fs::is_directory(source)) return read_coco_results(source, set);
+  if (!fs::is_directory(source)) return read_coco_results(source, set, warn);
   const std::vector<std::string> names = mot_names(source);
   const bool is_own = fs::exists(source / "detector.json");
   if (is_own || !names.empty()) return read_folder(source, is_own, names, set);
-  if (const fs::path file = only_json(source); !file.empty()) return read_coco_results(file, set);
+  if (const fs::path file = only_json(source); !file.empty())
+    return read_coco_results(file, set, warn);
   throw Error(
       "holds no results; expected what `airtruth detect` made, MOTChallenge text (SEQUENCE.txt) or "
       "one COCO results file",

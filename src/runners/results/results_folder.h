@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "foundation/base/files.h"
+#include "foundation/base/log.h"
 #include "foundation/json/json_object.h"
 #include "runners/results/detections.h"
 
@@ -44,6 +46,9 @@ struct ExpectedSequence {
   std::vector<std::optional<std::int64_t>> image_ids = {};
   // The categories by their numbers in that set.
   std::map<std::int64_t, std::string> category_ids = {};
+  // The categories of its objects, and those of them that are no aircraft.
+  std::set<std::string> categories = {};
+  std::set<std::string> distractors = {};
 };
 
 // Coordinates are written as multiples of it.
@@ -77,23 +82,27 @@ SequenceDetections read_sequence(const fs::path& folder, const std::string& name
 //     bbox, score, track_id}.
 // `file_name` or `image_name` of a COCO result, or an image_id that is a text, names the picture:
 // by the file name that its set gave it, with or without folders and ending, or as NAME/000000.jpg.
-// An image_id that is a number is the set's own id. Where the set states no ids, they follow from
-// `set`: the frames of all sequences are counted through in its order, from 1, as `airtruth dataset
-// export --format coco` counts them. Where the file has an id that no picture has, and every id of
-// it is the number that a picture is named (000012.jpg), as Ultralytics writes them, these numbers
-// name the pictures. A category is named `category_name`, else by the set's categories, else
-// category_id 1 is "aircraft" and others are "2", "3", ...
-// Throws Error with file and line for text that is no result, a sequence, image or frame that the
-// set does not have, a box outside its image or without area, a score or coordinate that is not
-// finite, a track that is twice in one frame, and a sequence that is there twice.
+// An image_id that is a number is the set's own id. Where the set states none, or one twice, they
+// follow from `set`: the frames of all sequences are counted through in its order, from 1, as
+// `airtruth dataset export --format coco` counts them (label_file::CocoNumbers). Where the file has
+// an id that no picture has, and every id of it is the number that a picture is named (000012.jpg),
+// as Ultralytics writes them, these numbers name the pictures. A category is named `category_name`,
+// else by the set's category ids, else by those of its export; category_id 1 alone is "aircraft",
+// and what fits none is "2", "3", ... What fits is decided by the whole file; `warn` hears of a
+// file that fits two of these, or none. Throws Error with file and line for text that is no result,
+// a sequence, image or frame that the set does not have, a box outside its image or without area, a
+// score or coordinate that is not finite, a track that is twice in one frame, and a sequence that
+// is there twice.
 std::vector<SequenceDetections> read_detections(const fs::path& source,
-                                                std::span<const ExpectedSequence> set);
+                                                std::span<const ExpectedSequence> set,
+                                                const Warn& warn = {});
 
 // The same from COCO's results format alone (cocodataset.org, "Results format"): a list of
 // {image_id, category_id, bbox, score}; bbox is [x, y, width, height] with the first pixel at 0. Or
 // a whole COCO file whose annotations each have a score.
 std::vector<SequenceDetections> read_coco_results(const fs::path& file,
-                                                  std::span<const ExpectedSequence> set);
+                                                  std::span<const ExpectedSequence> set,
+                                                  const Warn& warn = {});
 // Writes COCO results of `set` to a file. Categories are numbered from 1 in alphabetical order;
 // `set` gives the image ids, as read_detections() takes them. The sequences are read from `folder`
 // one at a time; a sequence of the set that is not in the folder has no results.
