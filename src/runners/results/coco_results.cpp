@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -625,42 +626,43 @@ std::vector<SequenceDetections> read_coco_results(const fs::path& file,
   return all;
 }
 
-namespace {
-
-// The number of a frame's picture in its set, or else its place, counted from `first` on.
-std::int64_t image_id_of(const ExpectedSequence& sequence, std::size_t frame, std::int64_t first) {
-  const auto stated = frame < sequence.image_ids.size() ? sequence.image_ids[frame] : std::nullopt;
-  return stated.value_or(first + static_cast<std::int64_t>(frame));
-}
-
-}  // namespace
-
 void write_coco_results(const fs::path& file,
                         const fs::path& folder,
                         std::span<const ExpectedSequence> set) {
-  std::set<std::string> categories;
-  for (const ExpectedSequence& sequence : set)
+  std::set<std::string> categories, aircraft;
+  label_file::CocoNumbers numbers;
+  for (const ExpectedSequence& sequence : set) {
+    numbers.add(sequence.frames, sequence.pictures, sequence.image_ids, sequence.category_ids);
+    std::ranges::set_difference(
+        sequence.categories, sequence.distractors, std::inserter(aircraft, aircraft.end()));
     if (has_sequence(folder, sequence.name))
       for (const auto& frame : read_sequence(folder, sequence.name).frames)
         for (const Detection& d : frame) categories.insert(d.category);
+  }
+  const auto ids = numbers.category_ids(categories, aircraft);
   std::string text = "[";
-  std::int64_t first = 1;
-  for (const ExpectedSequence& sequence : set) {
-    if (has_sequence(folder, sequence.name)) {
-      const SequenceDetections read = read_sequence(folder, sequence.name);
-      for (std::size_t i = 0; i < read.frames.size(); ++i)
-        for (const Detection& d : read.frames[i]) {
-          Json json = {
-              {"image_id", image_id_of(sequence, i, first)},
-              {"category_id", 1 + std::distance(categories.begin(), categories.find(d.category))},
-              {"bbox", {d.box_px.x, d.box_px.y, d.box_px.width, d.box_px.height}},
-              {"score", d.score}};
-          if (d.track) json["track_id"] = *d.track;
-          if (categories.size() > 1 || d.category != "aircraft") json["category_name"] = d.category;
-          text += (text.size() > 1 ? ",\n" : "") + json.dump();
-        }
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const ExpectedSequence& sequence = set[k];
+    if (!has_sequence(folder, sequence.name)) continue;
+    const SequenceDetections read = read_sequence(folder, sequence.name);
+    for (std::size_t i = 0; i < read.frames.size(); ++i) {
+      const auto stated = i < sequence.image_ids.size() ? sequence.image_ids[i] : std::nullopt;
+      for (const Detection& d : read.frames[i]) {
+        const std::int64_t category = ids.at(d.category);
+        Json json = {{"image_id", numbers.image_id(k, i, stated)},
+                     {"category_id", category},
+                     {"bbox", {d.box_px.x, d.box_px.y, d.box_px.width, d.box_px.height}},
+                     {"score", d.score}};
+        if (d.track) json["track_id"] = *d.track;
+        if (categories.size() > 1 || d.category != "aircraft" || category != 1)
+          json["category_name"] = d.category;
+        // Beside an id that the set states otherwise, or twice.
+        if (stated && !numbers.states_image_ids() && i < sequence.pictures.size())
+          json["file_name"] =
+              sequence.name + "/" + fs::path(sequence.pictures[i]).filename().string();
+        text += (text.size() > 1 ? ",\n" : "") + json.dump();
+      }
     }
-    first += sequence.frames;
   }
   write_file(file, text + "]\n");
 }

@@ -140,6 +140,37 @@ TEST_F(Results, OfCocoMayNameTheirImages) {
   EXPECT_EQ(all[0].frames[0].at(0), (Detection{{1, 2, 3, 4}, 2, "3", {}}));
 }
 
+// Category 1 of the set is a bird.
+TEST_F(Results, InCocosFormatHaveTheCategoryIdsThatTheSetStates) {
+  std::vector<ExpectedSequence> set = kSet;
+  for (ExpectedSequence& one : set) one.category_ids = {{1, "bird"}, {2, "airplane"}};
+  set[0].categories = {"airplane"};
+  const SequenceDetections written{"b", 320, 240, {{{{1, 1, 9, 9}, 1, "aircraft", {}}}, {}}, {}};
+  write_sequence(folder_, written);
+  write_coco_results(folder_ / "detections.json", folder_, set);
+  EXPECT_THAT(read_file(folder_ / "detections.json"),
+              HasSubstr(R"("image_id":4,"category_id":2,)"));
+  EXPECT_EQ(read_detections(folder_ / "detections.json", set)[1].frames, written.frames);
+}
+
+// Two files that number their images from 1 make one set.
+TEST_F(Results, InCocosFormatHaveImageIdsOfTheirOwnWhereTheSetStatesOneTwice) {
+  std::vector<ExpectedSequence> set = kSet;
+  set[0].pictures = {"train/p.jpg", "train/q.jpg", "train/r.jpg"};
+  set[0].image_ids = {1, 2, 3};
+  set[1].pictures = {"val/p.jpg", "val/q.jpg"};
+  set[1].image_ids = {1, 2};
+  const SequenceDetections written = one_of_each_kind();
+  write_sequence(folder_, written);
+  write_coco_results(folder_ / "detections.json", folder_, set);
+  EXPECT_THAT(read_file(folder_ / "detections.json"), HasSubstr(R"("image_id":5)"));
+  EXPECT_EQ(read_detections(folder_ / "detections.json", set)[1].frames, written.frames);
+  EXPECT_THAT(read({R"("image_id":4)", R"("image_id":1)"}, set),
+              ElementsAre("a 0 aircraft", "b 0 aircraft"));
+  EXPECT_THAT(read({R"("image_id":2)", R"("image_id":1)"}, set),
+              ElementsAre(HasSubstr("image_id 2 is an image of 'a' and of 'b'")));
+}
+
 // The pictures 2 to 5 of a video, which an export of their places names 0 to 3.
 TEST_F(Results, OfCocoNameAllTheirImagesByOneRule) {
   ExpectedSequence clip{"clip", 64, 48, 4};

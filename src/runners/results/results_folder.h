@@ -103,9 +103,9 @@ std::vector<SequenceDetections> read_detections(const fs::path& source,
 std::vector<SequenceDetections> read_coco_results(const fs::path& file,
                                                   std::span<const ExpectedSequence> set,
                                                   const Warn& warn = {});
-// Writes COCO results of `set` to a file. Categories are numbered from 1 in alphabetical order;
-// `set` gives the image ids, as read_detections() takes them. The sequences are read from `folder`
-// one at a time; a sequence of the set that is not in the folder has no results.
+// Writes COCO results of `set` to a file. `set` gives the ids, as read_detections() takes them;
+// where it states none, categories are numbered from 1 in alphabetical order. The sequences are
+// read from `folder` one at a time; a sequence of the set that is not in the folder has no results.
 void write_coco_results(const fs::path& file,
                         const fs::path& folder,
                         std::span<const ExpectedSequence> set);

@@ -94,11 +94,18 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
 std::vector<results::ExpectedSequence> sequences_of(const labelled::LabelledSet& set) {
   std::vector<results::ExpectedSequence> sequences;
   for (const std::string& name : set.names()) {
+    const labelled::ClipFacts facts = set.facts(name);
     results::ExpectedSequence& sequence =
-        sequences.emplace_back(results::ExpectedSequence{name, 0, 0, set.facts(name).frames});
+        sequences.emplace_back(results::ExpectedSequence{name, 0, 0, facts.frames});
+    sequence.categories = facts.categories;
+    sequence.distractors = facts.distractors;
     if (!set.is_imported(name)) continue;
-    for (const exchange::LabelledFrame& frame : set.clip(name).frames)
+    const exchange::Clip clip = set.clip(name);
+    sequence.category_ids = clip.category_ids;
+    for (const exchange::LabelledFrame& frame : clip.frames) {
+      sequence.pictures.push_back(frame.picture);
       sequence.image_ids.push_back(frame.image_id);
+    }
   }
   return sequences;
 }
