@@ -216,6 +216,7 @@ struct Reader::State {
     orientation = orientation_of_stream(stream);
     info.rotation_deg = orientation.clockwise_deg;
     info.frame_count_estimate = shown_frames(stream);
+    info.is_frame_count_stated = info.frame_count_estimate > 0 || !pictures.empty();
     if (info.frame_count_estimate <= 0 && input->duration > 0)
       info.frame_count_estimate = static_cast<std::int64_t>(std::llround(
           static_cast<double>(input->duration) / AV_TIME_BASE * info.frame_rate.value()));

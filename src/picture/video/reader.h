@@ -72,6 +72,9 @@ struct StreamInfo {
   int rotation_deg = 0;
   // Number of frames as the container gives it; 0: unknown.
   std::int64_t frame_count_estimate = 0;
+  // False where it follows from the length of the container, which is that of its longest stream,
+  // and the rate: Matroska and MPEG-TS state no number.
+  bool is_frame_count_stated = false;
   // Name of the codec, for example "h264".
   std::string codec;
   // Name of the pixel format, for example "yuv420p".

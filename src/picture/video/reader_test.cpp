@@ -80,6 +80,18 @@ TEST_F(Video, OddSizesAndNumberedImages) {
   }
 }
 
+// Ten frames with two seconds of sound.
+TEST_F(Video, ANumberOfFramesThatFollowsFromTheLengthIsNotStated) {
+  for (const char* file : {"sound.mkv", "sound.mov"}) {
+    ffmpeg(std::string("-f lavfi -i testsrc2=s=64x48:r=25:d=0.4 -f lavfi -i sine=d=2 -c:v mjpeg "
+                       "-c:a pcm_s16le ") +
+           file);
+    const StreamInfo info = Reader(folder_ / file).info();
+    EXPECT_EQ(info.is_frame_count_stated, info.frame_count_estimate == 10) << file;
+    EXPECT_EQ(info.is_frame_count_stated, file == std::string("sound.mov"));
+  }
+}
+
 TEST_F(Video, AClipIsNamedByItsFileOrItsFolder) {
   const auto name_of = [&](const char* video) { return clip_name(folder_ / video); };
   EXPECT_EQ(name_of("clip.mp4"), "clip");

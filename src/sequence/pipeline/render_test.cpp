@@ -16,6 +16,7 @@
 #include "foundation/image/colour.h"
 #include "picture/video/reader.h"
 #include "picture/video/still.h"
+#include "picture/video/writer.h"
 #include "sequence/demo/demo.h"
 #include "sequence/replay/finished.h"
 #include "support/error_of.h"
@@ -446,6 +447,28 @@ TEST_F(Sequence, AClipThatRunsAcrossACutIsNamed) {
   options.warn = [&](const std::string& w) { warnings.push_back(w); };
   rendered(scene, options);
   EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("the clip is cut at its frame 6:")));
+}
+
+// Matroska states no number of frames: of twelve with a tenth of the rate that it states, more than
+// a hundred are expected.
+TEST_F(Sequence, AMaskForEachFrameServesAClipThatStatesNoNumberOfFrames) {
+  video::Reader reader(root_ / "flight.mkv");
+  video::Writer writer(out_ / "slow.mkv", reader.info(), {.format = video::Format::kMkv});
+  while (auto frame = reader.next()) {
+    frame->pts *= 10;
+    writer.write(*frame);
+  }
+  writer.finish();
+  const std::string half(std::size_t{kWidth} * kHeight / 2, '\0');
+  for (int k = 0; k < kFrames; ++k)
+    write_file(
+        out_ / fmt::format("hill{:02}.pgm", k),
+        fmt::format("P5\n{} {}\n255\n", kWidth, kHeight) + half + std::string(half.size(), '\xff'));
+  scene::Scene scene = scene_of("slow", crossing("a", "c172/news", 60));
+  scene.background.video = out_ / "slow.mkv";
+  scene.occluders = {{50, out_ / "hill%02d.pgm", false, {}}};
+  EXPECT_GT(video::Reader(scene.background.video).info().frame_count_estimate, kFrames + 2);
+  EXPECT_EQ(rendered(scene).truth.frames.size(), std::size_t{kFrames});
 }
 
 TEST_F(Sequence, ARateOfAVideoIsRefused) {

@@ -231,6 +231,7 @@ video::StreamInfo used_stream(video::StreamInfo info, const scene::Background& b
   if (background.frame_count)
     info.frame_count_estimate =
         left > 0 ? std::min(left, *background.frame_count) : *background.frame_count;
+  info.is_frame_count_stated = info.is_frame_count_stated || background.frame_count;
   return info;
 }
 
@@ -423,9 +424,9 @@ OpenedScene open_over(const video::StreamInfo& of_video,
   if (const double rate_hz = info.frame_rate.value(); rate_hz > 0)
     setup::warn_of_gaps(
         opened.camera, static_cast<double>(info.frame_count_estimate) / rate_hz, options.warn);
-  // A container may state a frame or two more than it holds.
+  // A container may state a frame or two more than it holds; nothing bounds an estimate.
   const std::int64_t at_least = scene.background.frame_count.value_or(
-      std::max<std::int64_t>(0, info.frame_count_estimate - 2));
+      info.is_frame_count_stated ? std::max<std::int64_t>(0, info.frame_count_estimate - 2) : 0);
   insertion::Occluders occluders(opened, world.lens, mask.get(), at_least, options.warn);
   return {{std::nullopt,
            info,

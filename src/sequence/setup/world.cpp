@@ -179,9 +179,11 @@ void check_camera_path(const World& world, const video::StreamInfo& info) {
         world.camera_where);
   };
   const double rate_hz = info.frame_rate.value();
-  const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
+  // An estimated number may be any more than the clip's; moment_at() refuses where the path ends.
+  const std::int64_t frames = info.is_frame_count_stated ? info.frame_count_estimate : 0;
+  const std::int64_t last = std::max<std::int64_t>(0, frames - 1);
   const double clip_s = rate_hz > 0 ? static_cast<double>(last) / rate_hz : 0;
-  // A container's length is that of its longest stream; its sound may be longer than its picture.
+  // A container may state some frames more than it holds.
   constexpr double kLengthError_s = 1;
   if (!camera.at(0)) refuse("begins", camera.start_s(), clip_s);
   if (camera.end_s() < clip_s - kLengthError_s) refuse("ends", camera.end_s(), clip_s);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "foundation/base/error.h"
+#include "foundation/base/files.h"
+#include "support/temporary_folder.h"
+
 namespace airtruth::setup {
 namespace {
 
@@ -58,6 +62,21 @@ TEST(LoadWorld, GearIsThatOfTheClipWhereAPathBeginsBeforeIt) {
   const World world =
       load_world(scene_of({flying("level", "738/738-Ryanair", 110), climbing}), {320, 240}, {});
   EXPECT_EQ(world.actors[0].type, world.actors[1].type);
+}
+
+// 95 frames of 30/s last 3.2 s.
+TEST(CameraPath, IsHeldAgainstAStatedNumberOfFramesAlone) {
+  const test_support::TemporaryFolder folder;
+  write_file(folder.path() / "path.csv",
+             "time_s,north_m,east_m,down_m\n0,0,0,-150\n1.7,40,0,-150\n");
+  scene::Scene scene = scene_of({});
+  scene.camera.path_file = folder.path() / "path.csv";
+  const World world = load_world(scene, {320, 240}, {});
+  video::StreamInfo info;
+  info.frame_count_estimate = 95;
+  EXPECT_NO_THROW(check_camera_path(world, info));
+  info.is_frame_count_stated = true;
+  EXPECT_THROW(check_camera_path(world, info), Error);
 }
 
 }  // namespace
