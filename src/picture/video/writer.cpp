@@ -102,10 +102,33 @@ void check_size(const StreamInfo& info, Chroma chroma, Format format, const Wher
               where);
 }
 
+[[noreturn]] void refuse_rate(const std::string& found, const Where& where) {
+  throw Error(
+      "avi cannot hold the times of a variable frame rate" + found + "; expected mp4 or mkv",
+      where);
+}
+
 // AVI states one rate and no times.
 void check_rate(const StreamInfo& info, Format format, const Where& where) {
-  if (format == Format::kAvi && info.variable_frame_rate)
-    throw Error("avi cannot hold the times of a variable frame rate; expected mp4 or mkv", where);
+  if (format == Format::kAvi && info.variable_frame_rate) refuse_rate("", where);
+}
+
+// Throws Error where the time of a frame of AVI would differ from its own by more than one frame,
+// as where a single frame is missing, and what the rounding of two time stamps adds. Stamps of
+// whole milliseconds also have their camera's jitter.
+void check_time(std::int64_t count, std::int64_t pts, const StreamInfo& info, const Where& where) {
+  constexpr double kCoarseStamp = 0.01;  // of a frame
+  constexpr double kJitter = 0.5;        // of a frame
+  const double stamp = info.time_base.value() * info.frame_rate.value();
+  const double most = 1 + (stamp < kCoarseStamp ? stamp : kJitter);
+  const double late = static_cast<double>(pts) * stamp - static_cast<double>(count);
+  if (std::abs(late) <= most) return;
+  refuse_rate(fmt::format(" (frame {} is {:.1f} frames {} than at {:.6g} frames/s)",
+                          count,
+                          std::abs(late),
+                          late > 0 ? "later" : "earlier",
+                          info.frame_rate.value()),
+              where);
 }
 
 AVPixelFormat pixel_format(const Colour& colour, Format format) {
@@ -461,8 +484,10 @@ void Writer::write(const Frame& frame) {
     ++s.count;
     return;
   }
-  const FramePtr out = copied_frame(*s.codec, frame.picture, s.stored, s.options.format);
   if (s.count == 0) s.first_pts = frame.pts;
+  if (s.options.format == Format::kAvi)
+    check_time(s.count, frame.pts - s.first_pts, s.info, {s.path.string()});
+  const FramePtr out = copied_frame(*s.codec, frame.picture, s.stored, s.options.format);
   std::int64_t pts = s.options.format == Format::kAvi ? s.count : frame.pts - s.first_pts;
   if (pts <= s.last_pts) pts = s.last_pts + 1;
   s.last_pts = pts;

@@ -46,7 +46,9 @@ void check_output(const StreamInfo& info, Format format, const Where& where);
 // H.264 keeps the picture's own chroma layout (High, High 4:2:2 or High 4:4:4 profile). Odd sizes
 // are kept where the layout allows them; otherwise an Error names a format that supports them. RGB
 // becomes 4:4:4 BT.709 full range in mp4 and avi, and stays RGB in mkv and png. avi has
-// only full-range samples, and one frame rate: a variable one is an Error. png is sRGB, without
+// only full-range samples, and one frame rate: a variable one is an Error, at the latest at the
+// frame whose time departs by more than a frame (a frame and a half where time stamps are coarse,
+// as whole milliseconds). png is sRGB, without
 // times. mkv keeps time stamps in whole milliseconds.
 class Writer {
  public:

@@ -140,6 +140,36 @@ TEST_F(Video, AviRefusesAVariableFrameRate) {
   EXPECT_FALSE(fs::exists(part_path(folder_ / "out.avi")));
 }
 
+// Thirty frames of 30000/1001 per second with these time stamps; one more frame is missing from
+// each of the frames `missing` on. "no error" where they are written.
+std::string avi_error(const fs::path& file, Rational time_base, std::vector<int> missing) {
+  StreamInfo info = stream_of({});
+  info.frame_rate = {30000, 1001};
+  info.time_base = time_base;
+  return test_support::error_of([&] {
+    Writer writer(file, info, {.format = Format::kAvi});
+    for (int k = 0; k < 30; ++k) {
+      Frame frame = noise(0, {});
+      const auto place = k + std::ranges::count_if(missing, [&](int from) { return from <= k; });
+      frame.pts =
+          7 + std::lround(static_cast<double>(place) / info.frame_rate.value() / time_base.value());
+      writer.write(frame);
+    }
+    writer.finish();
+  });
+}
+
+TEST_F(Video, AviRefusesTimesThatDepartFromItsRateByMoreThanAFrame) {
+  for (const Rational& time_base : {Rational{1, 90000}, Rational{1, 1000}, Rational{1001, 30000}}) {
+    EXPECT_EQ(avi_error(folder_ / "whole.avi", time_base, {}), "no error");
+    EXPECT_EQ(avi_error(folder_ / "one.avi", time_base, {12}), "no error");
+    EXPECT_THAT(avi_error(folder_ / "two.avi", time_base, {12, 20}),
+                testing::HasSubstr("avi cannot hold the times of a variable frame rate (frame 20 "
+                                   "is 2.0 frames later than at 29.97 frames/s)"));
+    EXPECT_FALSE(fs::exists(folder_ / "two.avi"));
+  }
+}
+
 TEST_F(Video, NumberedImagesNeverReplaceAFolder) {
   fs::create_directories(folder_ / "frames");
   write_file(folder_ / "frames/user.txt", "mine");
