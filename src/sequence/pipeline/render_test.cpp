@@ -526,15 +526,15 @@ TEST_F(Sequence, AnAttitudeThatIsNotStatedIsThatOfTheHorizon) {
       0);
 }
 
-// The pictures f0.png to f2.png of the folder as a clip, seen by a camera without an attitude.
-Summary render_pictures(const fs::path& folder, const std::string& intruder) {
+// The pictures f0.png, f1.png ... of the folder as a clip, seen by a camera without an attitude.
+Summary render_pictures(const fs::path& folder, const std::string& intruder, const Warn& to = {}) {
   return render(scene::parse_scene("name = \"pictures\"\n[background]\nvideo = \"f%d.png\"\n"
                                    "frame_rate_hz = 30\n[lens]\nvertical_fov_deg = 75\n[motion]\n"
                                    "model = \"none\"\n" +
                                        intruder,
                                    folder / "s.toml"),
                 folder,
-                {.use_cache = false});
+                {.use_cache = false, .warn = to});
 }
 
 // A camera that nothing states to be upside down is not: what looks like it is no horizon.
@@ -567,8 +567,14 @@ TEST_F(Sequence, AHorizonThatStandsUpsideDownIsNone) {
 TEST_F(Sequence, WithoutAHorizonTheCameraIsLevelAndItIsSaid) {
   image::Rgb8 grey = image::make_rgb8(kWidth, kHeight);
   std::fill_n(grey.samples.get(), std::size_t{kWidth} * kHeight * 3, std::uint8_t{120});
-  for (int k = 0; k < 3; ++k) video::write_still(out_ / ("f" + std::to_string(k) + ".png"), grey);
-  const Summary summary = render_pictures(out_, crossing("a", "c172/news", 60));
+  for (const char* name : {"f0.png", "f1.png", "f3.png"}) video::write_still(out_ / name, grey);
+  std::vector<std::string> warnings;
+  const Summary summary = render_pictures(
+      out_, crossing("a", "c172/news", 60), [&](const auto& text) { warnings.push_back(text); });
+  // Two readers of the clip say once what is to be said of it.
+  EXPECT_EQ(std::ranges::count_if(
+                warnings, [](const auto& text) { return text.find("gaps between") != text.npos; }),
+            1);
   EXPECT_THAT(summary.notes, testing::Contains(testing::HasSubstr("it is level, since ")));
   const auto attitude =
       replay::open_finished(summary.folder).truth.frames[0].camera_attitude_yaw_pitch_roll_deg;

@@ -256,6 +256,12 @@ bool is_given_by_what_is_seen(const scene::Scene& scene) {
                              [](const auto& intruder) { return !intruder.seen.empty(); });
 }
 
+// For a second reading: what is to be said of the video, the first says.
+video::Reader reopened_background(const scene::Scene& scene, Options options) {
+  options.warn = {};
+  return open_background(scene, options);
+}
+
 lens::ImageSize size_of(const video::StreamInfo& info) { return {info.width, info.height}; }
 
 // The scene as a preview draws it (Options::is_preview).
@@ -402,7 +408,7 @@ OpenedScene open_over(const video::StreamInfo& of_video,
       opened.camera,
       setup::lens_of(opened.lens, size),
       mask.get(),
-      [&] { return open_background(scene, options); },
+      [&] { return reopened_background(scene, options); },
       options.stop);
   if (!attitude_words.empty()) notes.push_back(attitude_words);
   if (as_stated.realism.profile != scene.realism.profile)
@@ -477,7 +483,7 @@ ResolvedScene resolve(OpenedScene opened, const Options& options) {
   const bool has_seen = is_given_by_what_is_seen(scene);
   setup::MotionSource motion(motion_inputs(opened, video_sha256, options),
                              {.for_all = has_seen,
-                              .open = [&] { return open_background(scene, options); },
+                              .open = [&] { return reopened_background(scene, options); },
                               .stop = options.stop,
                               .seen = {}});
   if (has_seen) place_seen(opened, motion, options.stop);
