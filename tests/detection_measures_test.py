@@ -290,6 +290,17 @@ class Classes(program.Case):
         self.assertEqual(got["strongest_false_alarms"][0]["frames"], 20)
         self.assertEqual(got["tracks"]["false_tracks"], 2)
 
+    def test_a_detector_that_calls_a_bird_one_raises_no_alarm(self):
+        """By the words that an import knows, and by those of the set's own labels."""
+        frames = [[label(1, HERE, 1000.0 - 10 * i, 1), {**label(2, BESIDE, kind="bird"), "category": "gull"}] for i in range(20)]
+        write_sequence("named", "pass", frames)
+        for word, alarms in {"Birds": 0, "gull": 0, "drone": 0, "glider": 1, "UFO": 1}.items():
+            results = [{"image_id": i + 1, "category_id": k + 1, "category_name": name, "bbox": list(box), "score": 0.9}
+                       for i in range(20) for k, (name, box) in enumerate([("aircraft", HERE), (word, BESIDE)])]
+            got = evaluated("named", [write(f"{word}.json", json.dumps(results))], "--score", "0")["detectors"][0]
+            self.assertEqual(got["point"]["false_alarms_per_image"], alarms, word)
+            self.assertEqual(got["point"]["detection"]["share"], 1, word)
+
     def test_an_ignored_label_counts_neither_way(self):
         got = evaluated("ignore", [self.set_up("ignore", "ignore")], "--score", "0")["detectors"][0]
         self.assertEqual(got["false_alarms_by"], {"background": 20})

@@ -337,6 +337,17 @@ void say_what_is_missing(SetTruth& set, const std::string& volume) {
               "declarations in time leave them out");
 }
 
+// A category that has objects of several classes is an aircraft's where any of them is one.
+void add_classes(std::vector<scores::TruthSequence>& sequences) {
+  std::map<std::string, std::string> class_of;
+  for (const scores::TruthSequence& truth : sequences)
+    for (const scores::TruthFrame& frame : truth.frames)
+      for (const scores::TruthObject& object : frame.objects)
+        if (std::string& known = class_of[object.category]; known.empty() || object.is_aircraft())
+          known = object.object_class;
+  for (scores::TruthSequence& truth : sequences) truth.class_of = class_of;
+}
+
 void drop_hours_unless_all_known(SetTruth& set) {
   const auto unknown =
       std::ranges::count_if(set.sequences, [](const auto& t) { return !(t.duration_s > 0); });
@@ -386,6 +397,7 @@ SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path i
                     "a weight of 1",
                     result.sequences.size() - weighted,
                     result.sequences.size()));
+  add_classes(result.sequences);
   expect_volume(result, volume);
   if (ignore.empty() && fs::exists(folder / kIgnoreFile)) ignore = folder / kIgnoreFile;
   if (!ignore.empty()) ignore_regions(ignore, result.sequences);

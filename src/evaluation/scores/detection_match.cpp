@@ -43,9 +43,11 @@ Match match_of(const Box& detection_px, const TruthFrame& truth, double centre_p
   return {MatchKind::kFalseAlarm, {}, kBackground};
 }
 
-bool claims_aircraft(const std::string& category) {
-  return annotation::is_aircraft(category) ||
-         (!annotation::is_object_class(category) && category != "ignore");
+bool claims_aircraft(const std::string& category, const TruthSequence& truth) {
+  const auto by_words = annotation::class_of_category(category);
+  if (by_words == annotation::kAircraft) return true;
+  const auto labelled = truth.class_of.find(category);
+  return labelled != truth.class_of.end() ? annotation::is_aircraft(labelled->second) : !by_words;
 }
 
 std::vector<std::vector<Match>> matches_of(const results::SequenceDetections& detections,
@@ -56,7 +58,7 @@ std::vector<std::vector<Match>> matches_of(const results::SequenceDetections& de
   for (std::size_t i = 0; i < frames; ++i) {
     std::vector<Match>& of_frame = matches.emplace_back();
     for (const results::Detection& detection : detections.frames[i])
-      of_frame.push_back(claims_aircraft(detection.category)
+      of_frame.push_back(claims_aircraft(detection.category, truth)
                              ? match_of(detection.box_px, truth.frames[i], centre_px)
                              : Match{MatchKind::kIgnored, {}, detection.category});
   }

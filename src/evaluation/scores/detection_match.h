@@ -46,10 +46,11 @@ struct Match {
 // region), and last other objects, by the same rule of distance as aircraft.
 Match match_of(const Box& detection_px, const TruthFrame& truth, double centre_px);
 
-// True for a detection that claims to be an aircraft: its category is no class of another object
-// (<airtruth/truth.h>). A detector that names birds as birds has no false alarm on them. Types of
-// aircraft ("738") are aircraft.
-bool claims_aircraft(const std::string& category);
+// True for a detection that claims to be an aircraft: its words (annotation::class_of_category())
+// say so, or the labels of the set (TruthSequence::class_of) do, or neither names another object. A
+// detector that names birds as birds has no false alarm on them. Types of aircraft ("738") and
+// unknown words are aircraft.
+bool claims_aircraft(const std::string& category, const TruthSequence& truth);
 
 // The matches of a sequence, in the order of its detections. A detection that claims something
 // else than an aircraft is kIgnored. Frames that only one of the two has get none.

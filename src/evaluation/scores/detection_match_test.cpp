@@ -63,9 +63,16 @@ TEST(Found, FaintAircraftAndIgnoredRegionsCountNeitherWay) {
 }
 
 TEST(Found, WhatDoesNotClaimAnAircraftIsIgnored) {
-  EXPECT_TRUE(claims_aircraft("aircraft"));
-  EXPECT_TRUE(claims_aircraft("738"));
-  EXPECT_FALSE(claims_aircraft("bird"));
+  for (const char* word : {"aircraft", "738", "Airplane", "UFO"})
+    EXPECT_TRUE(claims_aircraft(word, {})) << word;
+  for (const char* word : {"bird", "Bird", "birds", "drone", "UAV", "ignore", "Ignored regions"})
+    EXPECT_FALSE(claims_aircraft(word, {})) << word;
+  // What the labels of the set say comes before the words of what is no aircraft.
+  TruthSequence labelled;
+  labelled.class_of = {{"drone", "aircraft"}, {"gull", "bird"}, {"airplane", "bird"}};
+  EXPECT_TRUE(claims_aircraft("drone", labelled));
+  EXPECT_TRUE(claims_aircraft("airplane", labelled));
+  EXPECT_FALSE(claims_aircraft("gull", labelled));
   results::SequenceDetections detections;
   detections.frames = {{{at(100, 100), 1, "bird", {}}, {at(100, 100), 1, "738", {}}}, {}};
   TruthSequence truth;

@@ -45,7 +45,7 @@ std::vector<evaluation::ScoredImage> images_of(const TruthSequence& truth,
     for (const Box& region : truth.frames[i].ignored_px)
       images[i].truths.push_back({region, true, false});
     for (const results::Detection& detection : scored.detections.frames[i])
-      if (claims_aircraft(detection.category))
+      if (claims_aircraft(detection.category, truth))
         images[i].detections.push_back({detection.box_px, detection.score});
   }
   return images;

@@ -111,6 +111,8 @@ struct TruthSequence {
   std::int64_t never_seen = 0;
   // labelled::LabelledSet::sha256_of() of it.
   std::string sha256;
+  // The classes (TruthObject::object_class) of the categories that the set's objects have.
+  std::map<std::string, std::string> class_of;
 
   const TruthEncounter* encounter(std::int64_t id) const {
     for (const TruthEncounter& one : encounters)
