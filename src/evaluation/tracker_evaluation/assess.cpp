@@ -78,7 +78,8 @@ std::vector<results::TrackerResults> results_in(const fs::path& folder,
   std::vector<std::string> doubts;
   std::set<std::string> known;
   for (const TruthClip& truth : truths) {
-    results.push_back(results::read_results(folder, truth.clip, options.origin_px));
+    results.push_back(
+        results::read_results(folder, truth.clip, options.origin_px, truth.first_place));
     const results::TrackerResults& read = results.back();
     missing += read.empty() ? 1 : 0;
     if (negative == 0) first_negative = read.first_negative;

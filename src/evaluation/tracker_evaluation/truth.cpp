@@ -33,11 +33,14 @@ std::vector<TruthClip> truths_of(const labelled::LabelledSet& set) {
     const auto lens = lens_of(set, name);
     const labelled::ClipFacts facts = set.facts(name);
     const std::string sha256 = set.sha256_of(name);
-    std::vector<exchange::Clip> clips = exchange::arranged(exchange::Format::kOtb, set.clip(name));
+    const exchange::Clip whole = set.clip(name);
+    std::vector<exchange::Clip> clips = exchange::arranged(exchange::Format::kOtb, whole);
     exchange::add_names(names, name, clips);
     for (exchange::Clip& clip : clips) {
       TruthClip& truth = truths.emplace_back();
       truth.contrast.resize(clip.frames.size());
+      truth.first_place = std::ranges::count_if(
+          whole.frames, [&](const auto& frame) { return frame.frame < clip.frames.front().frame; });
       truth.clip = std::move(clip);
       truth.lens = lens;
       truth.background = facts.background_name;

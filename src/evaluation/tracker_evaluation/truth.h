@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <stop_token>
@@ -35,6 +36,8 @@ struct TruthClip {
   std::vector<drawing::Still> stills;
   // labelled::LabelledSet::sha256_of() of its sequence.
   std::string sha256;
+  // Of the first frame among those of the sequence.
+  std::int64_t first_place = 0;
 
   std::optional<Box> box(std::size_t i) const { return results::box_of(clip.frames[i]); }
   std::optional<double> range_m(std::size_t i) const {

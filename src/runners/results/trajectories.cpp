@@ -115,7 +115,7 @@ std::optional<FrameAndId> frame_and_id(const std::vector<double>& n) {
   return frame && id ? std::optional(FrameAndId(*frame, *id)) : std::nullopt;
 }
 
-// "frame,id,x,y,w,h,confidence,..." with frames of the video from 1.
+// "frame,id,x,y,w,h,confidence,..." with frames from 1; `clip` has theirs from 0.
 Trajectory read_mot(const fs::path& file, const exchange::Clip& clip, TrackerResults& results) {
   Tracks tracks;
   for (const exchange::Line& line : exchange::lines_of(file)) {
@@ -198,9 +198,12 @@ void expect_begun(const Trajectory& trajectory, const fs::path& file) {
 }
 
 Trajectory one_pass_run(const fs::path& file,
-                        const exchange::Clip& clip,
+                        exchange::Clip clip,
                         int origin_px,
+                        std::int64_t first_place,
                         TrackerResults& results) {
+  // Whoever answers has the pictures in turn, and not their numbers in a video.
+  for (exchange::LabelledFrame& frame : clip.frames) frame.frame = first_place++;
   Trajectory run = is_mot(file, clip, results) ? read_mot(file, clip, results)
                                                : read_trajectory(file, origin_px, results);
   // VOT's unsupervised runs mark their start.
@@ -333,15 +336,19 @@ std::string text_of(const std::vector<double>& seconds) {
   return text;
 }
 
-TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px) {
+TrackerResults read_results(const fs::path& folder,
+                            const exchange::Clip& clip,
+                            int origin_px,
+                            std::int64_t first_place) {
   TrackerResults results;
   const fs::path own = folder / (clip.name + ".txt");
   const fs::path got10k = folder / clip.name / (clip.name + "_001.txt");
   const fs::path& file = fs::exists(own) ? own : got10k;
   if (fs::exists(file)) {
     const fs::path times = file.parent_path() / (clip.name + "_time.txt");
-    results.one_pass = TrackerResults::OnePass{one_pass_run(file, clip, origin_px, results),
-                                               read_times(times, clip.frames.size())};
+    results.one_pass =
+        TrackerResults::OnePass{one_pass_run(file, clip, origin_px, first_place, results),
+                                read_times(times, clip.frames.size())};
     add_source(file, results);
   }
   for (const char* place : kVotPlaces)

@@ -83,7 +83,12 @@ struct TrackerResults {
 // at the first frame on which any track overlaps it. Throws Error with file and line for text that
 // is not a result, for a run whose length differs from the clip's, and for times whose number
 // differs from their run's.
-TrackerResults read_results(const fs::path& folder, const exchange::Clip& clip, int origin_px);
+// `first_place` is that of the clip's first frame among the frames of its sequence, by whose places
+// from 1 MOTChallenge's lines count.
+TrackerResults read_results(const fs::path& folder,
+                            const exchange::Clip& clip,
+                            int origin_px,
+                            std::int64_t first_place = 0);
 
 // The box of a clip's object in a frame; empty where it is not shown.
 std::optional<Box> box_of(const exchange::LabelledFrame& frame);

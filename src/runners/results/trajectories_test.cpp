@@ -241,6 +241,23 @@ TEST(MotTracks, AreSortedByFrameOrById) {
   }
 }
 
+// The part from the fourth labelled frame on of a video of which every fifth frame is labelled.
+TEST(MotTracks, CountTheLabelledFramesOfTheSequence) {
+  exchange::Clip part = with_truth();
+  for (exchange::LabelledFrame& frame : part.frames) frame.frame = 40 + 5 * frame.frame;
+  for (const char* columns : {",1", ",1,1"}) {
+    const ResultsFolder folder;
+    folder.file("a.txt", lines_of(6, [&](int i) {
+                  return std::to_string(4 + i) + ",1," + std::to_string(11 + i) + ",21,8,6" +
+                         columns;
+                }));
+    const TrackerResults read = read_results(folder.path(), part, 0, 3);
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_EQ(read.one_pass->frames.at(i).box, results::box_of(part.frames[i])) << columns;
+    EXPECT_EQ(read.doubt, "");
+  }
+}
+
 TEST(Polygons, OfWholeNumbersAreToldFromMotChallengeByAllLines) {
   // Four and five corners; the first line alone could be of frame 50 and id 30.
   for (const char* corners : {",58,30,58,36,50,36", ",58,30,58,36,54,39,50,36"}) {
