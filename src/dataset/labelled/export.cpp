@@ -310,7 +310,9 @@ class Export {
     std::erase_if(clip.frames, [&](const exchange::LabelledFrame& frame) {
       return frame.frame % options_.every != 0;
     });
-    if (clip.frame_rate_hz) *clip.frame_rate_hz /= static_cast<double>(options_.every);
+    if (clip.frame_rate_hz)
+      *clip.frame_rate_hz /=
+          static_cast<double>(exchange::frame_step(clip).value_or(options_.every));
     if (options_.one_class)
       for (exchange::LabelledFrame& frame : clip.frames)
         for (exchange::Label& label : frame.labels)
@@ -408,6 +410,9 @@ class Export {
       if (options_.stop.stop_requested()) throw Interrupted();
       exchange::Clip clip = clip_of(name, is_coco());
       summary_.faint += sift(clip);
+      if (clip.frames.empty())
+        warn(options_.warn,
+             fmt::format("{} has no frame whose number is a multiple of {}", name, options_.every));
       const std::string& part = parts_.at(name);
       if (is_table()) read_truth(name);
       const auto clips = arranged(clip);

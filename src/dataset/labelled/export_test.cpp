@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -347,6 +348,39 @@ TEST_F(Made, CocoHasTheIdsAndNamesOfTheWholeSet) {
                 .at(0)
                 .at("category_id"),
             7);
+}
+
+// Labels of frames 3, 8, 13 and 18 of a video of 25 frames a second are 0.2 s apart.
+TEST_F(Made, TheRateIsThatOfTheFramesThatAreExported) {
+  std::string images, boxes;
+  for (int i = 0; i < 4; ++i) {
+    const char* comma = i > 0 ? "," : "";
+    images += fmt::format(R"({}{{"id":{},"file_name":"clip/{:06}.jpg","width":64,"height":48}})",
+                          comma,
+                          i,
+                          3 + 5 * i);
+    boxes += fmt::format(
+        R"({}{{"id":{},"image_id":{},"category_id":1,"bbox":[9,9,6,4]}})", comma, i + 1, i);
+  }
+  const fs::path json = fresh().replace_extension(".json");
+  write_file(json,
+             R"({"categories":[{"id":1,"name":"aircraft"}],"images":[)" + images +
+                 R"(],"annotations":[)" + boxes + "]}");
+  const fs::path imported = fresh();
+  import_set(json, imported, {.format = exchange::Format::kCoco, .frame_rate_hz = 25});
+  std::vector<std::string> warnings;
+  ExportOptions options;
+  options.format = exchange::Format::kMot;
+  options.images = Images::kNone;
+  options.split = Split::kNone;
+  options.warn = [&](const std::string& text) { warnings.push_back(text); };
+  const fs::path out = fresh();
+  EXPECT_EQ(export_set(imported, out, options).frames, 4);
+  EXPECT_THAT(read_file(out / "all/clip/seqinfo.ini"), HasSubstr("frameRate=5\n"));
+  EXPECT_THAT(warnings, testing::IsEmpty());
+  options.every = 5;
+  EXPECT_EQ(export_set(imported, fresh(), options).frames, 0);
+  EXPECT_THAT(warnings, ElementsAre("clip has no frame whose number is a multiple of 5"));
 }
 
 TEST_F(Made, SequencesThatAFormatLeavesOutAreNotCounted) {

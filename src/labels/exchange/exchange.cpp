@@ -272,6 +272,15 @@ std::vector<Clip> arranged(Format format, const Clip& clip) {
   return clips;
 }
 
+std::optional<std::int64_t> frame_step(const Clip& clip) {
+  const std::vector<LabelledFrame>& frames = clip.frames;
+  if (frames.size() < 2) return std::nullopt;
+  const std::int64_t step = frames[1].frame - frames[0].frame;
+  for (std::size_t i = 2; i < frames.size(); ++i)
+    if (frames[i].frame - frames[i - 1].frame != step) return std::nullopt;
+  return step;
+}
+
 void add_names(ArrangedNames& names, const std::string& clip, const std::vector<Clip>& arranged) {
   for (const Clip& one : arranged)
     if (const auto [other, is_new] = names.emplace(one.name, clip); !is_new)

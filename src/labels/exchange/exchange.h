@@ -68,6 +68,10 @@ bool has_ignore_mark(Format format);
 // The clip without its distractors.
 Clip aircraft_alone(Clip clip);
 
+// By how much the number of each frame is more than that of the frame before, where it is the same
+// throughout; empty for other clips, and for fewer than two frames.
+std::optional<std::int64_t> frame_step(const Clip& clip);
+
 // By the name of each clip that arranged() makes, the clip of which it is made.
 using ArrangedNames = std::map<std::string, std::string>;
 // Adds what is made of `clip`. Throws Error where a name is there: the object of track 2 in a clip

@@ -13,6 +13,7 @@
 #include "foundation/base/error.h"
 #include "foundation/json/json_object.h"
 #include "labels/annotation/truth.h"
+#include "labels/exchange/exchange.h"
 #include "picture/video/numbered_images.h"
 #include "picture/video/still.h"
 #include "scene/scene/scene.h"
@@ -36,6 +37,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
     if (labelled.media.empty()) throw Error("'" + name + "' has no video");
     clip.media = labelled.media;
     clip.reading.picture_rate_hz = labelled.frame_rate_hz;
+    clip.frame_step = exchange::frame_step(labelled).value_or(1);
     for (const exchange::LabelledFrame& frame : labelled.frames) clip.frames.push_back(frame.frame);
     return clip;
   }
@@ -123,7 +125,7 @@ ClipFrames::ClipFrames(const DetectionClip& clip, bool with_motion, const Warn& 
       sequence_{clip.name,
                 reader_.info().width,
                 reader_.info().height,
-                reader_.info().frame_rate.value(),
+                reader_.info().frame_rate.value() / static_cast<double>(clip.frame_step),
                 clip.lens ? *clip.lens : guessed_lens(reader_.info())} {
   if (!reader_.info().is_rate_stated)
     throw Error(

@@ -31,6 +31,9 @@ struct DetectionClip {
   std::optional<lens::Lens> lens;
   // A picture that is black where the own aircraft is; empty where nothing states one.
   std::optional<fs::path> own_aircraft;
+  // By which the numbers in `frames` follow one another (exchange::frame_step()); the clip's frame
+  // rate is the video's over it.
+  std::int64_t frame_step = 1;
 };
 
 // A sequence of a set with all its frames. Throws Error where it has no video.

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "dataset/labelled/import.h"
 #include "support/video_folder.h"
 
 namespace airtruth::runs {
@@ -27,6 +28,20 @@ TEST_F(Clips, ACutBetweenLabelledFramesBeginsAShot) {
   while (const auto frame = frames.next())
     if (frame->begins_shot) beginnings.push_back(frame->index);
   EXPECT_THAT(beginnings, testing::ElementsAre(0, 3));
+}
+
+TEST_F(Clips, TheRateIsThatOfTheLabelledFrames) {
+  ffmpeg("-f lavfi -i testsrc=s=64x48:r=25:d=0.4 -c:v ffv1 v.mkv");
+  write_file(folder_ / "a.json",
+             R"({"categories":[{"id":1,"name":"aircraft"}],"annotations":[],"images":[
+                 {"id":1,"file_name":"a/000000.jpg","width":64,"height":48},
+                 {"id":2,"file_name":"a/000005.jpg","width":64,"height":48}]})");
+  labelled::ImportOptions options;
+  options.format = exchange::Format::kCoco;
+  options.videos[""] = folder_ / "v.mkv";
+  labelled::import_set(folder_ / "a.json", folder_ / "set", options);
+  const DetectionClip clip = clip_of(labelled::LabelledSet(folder_ / "set"), "a");
+  EXPECT_DOUBLE_EQ(ClipFrames(clip, false, {}).sequence().frame_rate_hz, 5);
 }
 
 }  // namespace
