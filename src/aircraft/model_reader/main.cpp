@@ -67,16 +67,19 @@ fs::path plain_path(const char* path) {
   return fs::path(text).lexically_normal();
 }
 
-// The text of an OBJ file with a 0 before each number of a vertex that begins with its dot, for
-// which assimp (5.2.5) drops the line, so that all faces behind it name other vertices.
-std::string with_whole_parts(const std::string& obj) {
+// The text of an OBJ file as assimp (5.2.5) reads it rightly: without blanks at the beginning of a
+// line, and with a 0 before each number of a vertex that begins with its dot. assimp drops such
+// lines, so that all faces behind them name other vertices.
+std::string plain_obj(const std::string& obj) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   std::string text;
   text.reserve(obj.size());
   char first = '\n';  // of the line; a line break before there is one
   for (const char c : obj) {
+    if (first == '\n' && is_blank(c)) continue;
     if (c == '.' && first == 'v' && is_blank(text.back())) text += '0';
-    if (c == '\n' || (first == '\n' && !is_blank(c))) first = c;
+    const bool goes_on = text.ends_with('\\') || text.ends_with("\\\r");
+    if (c == '\n' ? !goes_on : first == '\n') first = c;
     text += c;
   }
   return text;
@@ -113,7 +116,7 @@ class AssimpFiles : public Assimp::IOSystem {
       return nullptr;
     }
     std::string bytes = files_.read(file, model::kMaxModelBytes);
-    if (wrapper::ending_of(file) == ".obj") bytes = with_whole_parts(bytes);
+    if (wrapper::ending_of(file) == ".obj") bytes = plain_obj(bytes);
     if (wrapper::ending_of(file) == ".mtl")
       moves_pictures_ = moves_pictures_ || moves_pictures(bytes);
     return MemoryStream::of(bytes);
