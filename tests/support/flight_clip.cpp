@@ -78,9 +78,9 @@ image::Picture taken(const image::Picture& fine, const Injected& what, std::int6
   for (float& v : luma) v = (v - dark) / unit;
   luma = coded_of(std::move(luma), fine.width, what);
   for (float& v : luma) v *= unit;
-  composite::sharpen(luma, width, height, what.sensor);
-  const auto noise =
-      composite::noise_field({0, 0, width, height}, 7, frame, what.sensor.noise_correlation_px);
+  const PixelBox all{0, 0, width, height};
+  composite::sharpen(luma, all, all, what.sensor);
+  const auto noise = composite::noise_field(all, 7, frame, what.sensor.noise_correlation_px);
   for (std::size_t i = 0; i < luma.size(); ++i) {
     const float sigma =
         what.sensor.has_noise() ? composite::noise_sigma(luma[i] / unit, unit, what.sensor) : 0;
