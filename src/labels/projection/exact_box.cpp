@@ -91,10 +91,11 @@ class Sweep {
       const auto at = places_of(p_in_body(dt_s));
       return at ? std::optional(along(*at, dt_s)) : std::nullopt;
     };
-    const double row_s = shutter_.seen_s(pixel_at, size_.width, size_.height, kRounds);
     for (int k = 0; k < moments; ++k) {
       const double share = moments > 1 ? static_cast<double>(k) / (moments - 1) - 0.5 : 0;
-      if (const auto pixel = pixel_at(row_s + share * shutter_.exposure_s))
+      const double into_exposure_s = share * shutter_.exposure_s;
+      const auto later = [&](double dt_s) { return pixel_at(into_exposure_s + dt_s); };
+      if (const auto pixel = later(shutter_.seen_s(later, size_.width, size_.height, kRounds)))
         bounds.add(*pixel);
       else
         partly_unseen = true;
