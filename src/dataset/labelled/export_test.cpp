@@ -320,9 +320,10 @@ TEST_F(Made, CocoHasTheIdsAndNamesOfTheWholeSet) {
     const fs::path out = fresh();
     export_set(source, out, {.images = Images::kNone, .every = 3, .split = split});
     std::map<std::string, std::int64_t> images;
-    for (const fs::path& file : entries(out / "annotations"))
-      for (const auto& image : nlohmann::json::parse(read_file(file)).at("images"))
-        images[image.at("file_name")] = image.at("id");
+    for (const fs::path& file : entries(out / "annotations")) {
+      const auto json = nlohmann::json::parse(read_file(file));
+      for (const auto& image : json.at("images")) images[image.at("file_name")] = image.at("id");
+    }
     return images;
   };
   const auto images = images_of(set(), Split::kNone);  // four clips of 8 frames
