@@ -120,6 +120,7 @@ class Server:
         self.process = subprocess.Popen([airtruth, "--quiet", "studio", what, "--out", "out", "--port", str(port)], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         self.port = self.address.partition("?")[0].rstrip("/").rpartition(":")[2]
+        Server.ended.discard(self.port)
         if not self.address.startswith("http://127.0.0.1:"):
             raise AssertionError(f"{self.address!r} {self.process.stderr.read()}")
 
@@ -222,7 +223,7 @@ def expect(what, got, wanted):
 
 def complaints(browser):
     """What the console complained of, but of connections that a test or a reload has ended."""
-    return [error for error in browser.errors if "WebSocket" not in error and not any(f":{port}/" in error for port in Server.ended)]
+    return [error for error in browser.errors if "WebSocket" not in error and not ("net::ERR_" in error and any(f":{port}/" in error for port in Server.ended))]
 
 
 def moments_of(table):

@@ -71,6 +71,11 @@ catalogue::BackgroundFiles prepare(const catalogue::Background& background,
              files);
   files.frames = end_of(background, files.frames);
   files.camera = camera_with_log(background, files.video);
+  if (files.camera) {
+    scene::Camera as_stated = *files.camera;
+    as_stated.attitude_yaw_pitch_roll_deg = background.camera.attitude_yaw_pitch_roll_deg;
+    setup::warn_of_hover(as_stated, options.warn);
+  }
   return files;
 }
 
@@ -110,6 +115,7 @@ video::StreamInfo stream_of(const catalogue::Background& background) {
   info.height = flight->height;
   info.frame_rate = {static_cast<int>(std::lround(1000 * flight->frame_rate_hz)), 1000};
   info.frame_count_estimate = flight->frame_count;
+  info.is_frame_count_stated = true;
   return info;
 }
 

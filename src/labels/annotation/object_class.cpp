@@ -47,8 +47,11 @@ std::optional<std::string_view> class_of_category(std::string_view category) {
   std::string text = plain(category);
   for (int attempt = 0; attempt < 2; ++attempt) {
     for (const auto& [object_class, words] : kWords)
-      if ((", " + std::string(words) + ", ").find(", " + text + ", ") != std::string::npos)
-        return object_class;
+      for (std::string_view rest = words; !rest.empty();) {
+        const auto end = rest.find(", ");
+        if (rest.substr(0, end) == text) return object_class;
+        rest = end == std::string_view::npos ? "" : rest.substr(end + 2);
+      }
     if (!text.ends_with('s')) break;
     text.pop_back();
   }

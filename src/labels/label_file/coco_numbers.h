@@ -32,6 +32,7 @@ class CocoNumbers {
 
   // The rest needs all clips. `clip` is the place of a clip in the set, from 0.
   bool states_image_ids() const { return are_numbered_; }
+  bool states_names() const { return are_named_; }
   std::int64_t frames() const { return frames_; }
   // The clip and the frame in it that have a number where they are counted, which is 1 to frames().
   std::pair<std::size_t, std::int64_t> counted(std::int64_t id) const;

@@ -99,6 +99,7 @@ std::string begin_line(const SequenceInput& sequence, const std::string& shared_
                   {"focal_px", lens.focal_px},
                   {"principal_point_px", lens.principal_point_px},
                   {"distortion", lens.distortion}}}};
+  if (lens.max_angle_rad < kPi) begin["lens"]["max_angle_rad"] = lens.max_angle_rad;
   if (!shared_memory.empty()) begin["shared_memory"] = shared_memory;
   return Json{{"begin", begin}}.dump() + "\n";
 }

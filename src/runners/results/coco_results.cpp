@@ -216,7 +216,11 @@ class SetImages {
     }
   }
 
-  // What numbers may be, the likeliest first.
+  // What numbers and texts may be, the likeliest first.
+  std::vector<Texts> text_readings() const {
+    if (numbers_.states_names()) return {Texts::kNames, Texts::kPlaces};
+    return {Texts::kPlaces, Texts::kNames};
+  }
   std::vector<Ids> readings() const {
     if (ids_.empty()) return {Ids::kCounted, Ids::kInNames};
     if (numbers_.states_image_ids()) return {Ids::kStated, Ids::kInNames};
@@ -609,10 +613,9 @@ std::vector<SequenceDetections> read_coco_results(const fs::path& file,
   const Found found = found_in(text, file);
   const char* what = found.names ? "annotations" : "detections";
   const Keys keys = keys_in(found.list, found.names, file, what);
-  const Readings readings = {
-      reading_of(keys.ids, images.readings(), images, file, warn),
-      reading_of(keys.texts, std::vector{Texts::kNames, Texts::kPlaces}, images, file, warn),
-      categories_of(keys.categories, set, file, warn)};
+  const Readings readings = {reading_of(keys.ids, images.readings(), images, file, warn),
+                             reading_of(keys.texts, images.text_readings(), images, file, warn),
+                             categories_of(keys.categories, set, file, warn)};
   JsonElements elements(found.list, file, what);
   while (const auto element = elements.next()) {
     const Where where{file.string(), element->line};
@@ -654,7 +657,10 @@ void write_coco_results(const fs::path& file,
                      {"bbox", {d.box_px.x, d.box_px.y, d.box_px.width, d.box_px.height}},
                      {"score", d.score}};
         if (d.track) json["track_id"] = *d.track;
-        if (categories.size() > 1 || d.category != "aircraft" || category != 1)
+        // The clip's own source may state that id of another category.
+        const auto in_clip = sequence.category_ids.find(category);
+        if (categories.size() > 1 || d.category != "aircraft" || category != 1 ||
+            (in_clip != sequence.category_ids.end() && in_clip->second != d.category))
           json["category_name"] = d.category;
         // Beside an id that the set states otherwise, or twice.
         if (stated && !numbers.states_image_ids() && i < sequence.pictures.size())

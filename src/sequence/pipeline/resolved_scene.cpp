@@ -426,7 +426,7 @@ OpenedScene open_over(const video::StreamInfo& of_video,
     if (const double scale = world.actors[i].type->aircraft->catalogue_scale; scale != 1)
       opened.intruders[i].catalogue_scale = scale;
   const video::StreamInfo info = used_stream(of_video, scene.background);
-  setup::check_camera_path(world, info);
+  setup::check_camera_path(world, info, options.warn);
   if (const double rate_hz = info.frame_rate.value(); rate_hz > 0)
     setup::warn_of_gaps(
         opened.camera, static_cast<double>(info.frame_count_estimate) / rate_hz, options.warn);

@@ -157,12 +157,12 @@ trajectory::Path path_from_log(const scene::Camera& camera, const Warn& warn) {
     if (camera.follows_attitude && has_attitudes && !camera.attitude_yaw_pitch_roll_deg)
       return path;
     const HeadingDeg heading_deg = heading_along(path);
-    const YawPitchRoll along{heading_deg(*path.at(0), 0), 0, 0};
-    const YawPitchRoll attitude = camera.attitude_yaw_pitch_roll_deg.value_or(
-        flight_log::attitude_at(log, offset_s).value_or(along));
-    if (camera.follows_attitude) return turning(path, attitude, has_attitudes, heading_deg);
+    auto attitude = camera.attitude_yaw_pitch_roll_deg;
+    if (!attitude) attitude = flight_log::attitude_at(log, offset_s);
+    if (!attitude) attitude = {heading_deg(*path.at(0), 0), 0, 0};
+    if (camera.follows_attitude) return turning(path, *attitude, has_attitudes, heading_deg);
     log.attitudes.clear();  // only that of the first frame counts
-    return trajectory::at_attitude(flight_log::local_path(log, placement), attitude);
+    return trajectory::at_attitude(flight_log::local_path(log, placement), *attitude);
   } catch (const Error& error) {
     throw Error(error.message(), camera.where);
   }
@@ -371,9 +371,11 @@ void warn_of_gaps(const scene::Camera& camera, double clip_s, const Warn& warn) 
     airtruth::warn(
         warn,
         fmt::format(
-            "{}: the clip lies over {} in the log's {} (the longest from {:.2f} to {:.2f} s "
+            "{}: the clip of about {:.1f} s lies over {} in the log's {} (the longest from {:.2f} "
+            "to {:.2f} s "
             "of the log, {:.2f} to {:.2f} s of the clip), across which they are interpolated",
             camera.log->string(),
+            clip_s,
             gaps.size() == 1 ? "a gap" : fmt::format("{} gaps", gaps.size()),
             what,
             longest->from_s,

@@ -166,32 +166,33 @@ void place_seen(scene::Scene& scene,
   }
 }
 
-void check_camera_path(const World& world, const video::StreamInfo& info) {
+void check_camera_path(const World& world, const video::StreamInfo& info, const Warn& warn) {
   const trajectory::Path& camera = world.camera;
-  const auto refuse = [&](const char* what, double path_s, double clip_s) {
-    throw Error(
-        fmt::format("the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
-                    "{:.3f} s; expected a path as long as the clip (of a log with attitudes "
-                    "that turn the camera these too), or a frame_count",
-                    what,
-                    path_s,
-                    clip_s),
-        world.camera_where);
-  };
   const double rate_hz = info.frame_rate.value();
-  // An estimated number may be any more than the clip's; moment_at() refuses where the path ends.
-  const std::int64_t frames = info.is_frame_count_stated ? info.frame_count_estimate : 0;
-  const std::int64_t last = std::max<std::int64_t>(0, frames - 1);
+  const std::int64_t last = std::max<std::int64_t>(0, info.frame_count_estimate - 1);
   const double clip_s = rate_hz > 0 ? static_cast<double>(last) / rate_hz : 0;
+  const auto words = [&](const char* what, double path_s) {
+    return fmt::format(
+        "the camera's path {} at {:.3f} s, but the clip goes from 0 to about "
+        "{:.3f} s; expected a path as long as the clip (of a log with attitudes "
+        "that turn the camera these too), or a frame_count",
+        what,
+        path_s,
+        clip_s);
+  };
   // A container may state some frames more than it holds.
   constexpr double kLengthError_s = 1;
-  if (!camera.at(0)) refuse("begins", camera.start_s(), clip_s);
-  if (camera.end_s() < clip_s - kLengthError_s) refuse("ends", camera.end_s(), clip_s);
+  if (!camera.at(0)) throw Error(words("begins", camera.start_s()), world.camera_where);
+  if (!(camera.end_s() < clip_s - kLengthError_s)) return;
+  const Error ends(words("ends", camera.end_s()), world.camera_where);
+  if (info.is_frame_count_stated) throw ends;
+  // An estimated number may be any more than the clip's; moment_at() refuses where the path ends.
+  airtruth::warn(warn, ends.what());
 }
 
 void check_paths(const scene::Scene& scene, const video::StreamInfo& info) {
   const World world = without_actors(scene, {info.width, info.height}, {});
-  check_camera_path(world, info);
+  check_camera_path(world, info, {});
   for (const scene::Intruder& intruder : scene.intruders) {
     if (is_aircraft(intruder))
       at_place(intruder.where, [&] { return fleet::aircraft_file(intruder.aircraft); });

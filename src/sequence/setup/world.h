@@ -94,8 +94,9 @@ void place_seen(scene::Scene& scene,
                 SharedInputs* shared = nullptr);
 
 // Throws Error where the camera's path begins after the clip, or ends earlier than the clip by more
-// than the uncertainty of the clip's stated length.
-void check_camera_path(const World& world, const video::StreamInfo& info);
+// than the uncertainty of the clip's stated length. Warns of the latter where the length is only
+// estimated.
+void check_camera_path(const World& world, const video::StreamInfo& info, const Warn& warn);
 
 // Makes the same check for a scene that is not loaded, including the intruders' paths and aircraft.
 // Throws Error where one of them is missing or cannot be read.

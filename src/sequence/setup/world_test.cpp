@@ -74,9 +74,12 @@ TEST(CameraPath, IsHeldAgainstAStatedNumberOfFramesAlone) {
   const World world = load_world(scene, {320, 240}, {});
   video::StreamInfo info;
   info.frame_count_estimate = 95;
-  EXPECT_NO_THROW(check_camera_path(world, info));
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::string& text) { warnings.push_back(text); };
+  EXPECT_NO_THROW(check_camera_path(world, info, warn));
+  EXPECT_EQ(warnings.size(), 1U);
   info.is_frame_count_stated = true;
-  EXPECT_THROW(check_camera_path(world, info), Error);
+  EXPECT_THROW(check_camera_path(world, info, warn), Error);
 }
 
 }  // namespace
