@@ -202,7 +202,8 @@ TEST_F(OwnLog, AGapOverWhichTheClipLiesIsWarnedOf) {
   EXPECT_THAT(warnings("log_offset_s = 8\n", 3, followed),
               testing::ElementsAre(
                   log.string() +
-                      ": the clip lies over a gap in the log's positions (the longest from 10.00 "
+                      ": the clip of about 3.0 s lies over a gap in the log's positions (the "
+                      "longest from 10.00 "
                       "to 15.00 s "
                       "of the log, 2.00 to 7.00 s of the clip), across which they are interpolated",
                   testing::HasSubstr("attitudes")));
