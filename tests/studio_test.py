@@ -120,7 +120,6 @@ class Server:
         self.process = subprocess.Popen([airtruth, "--quiet", "studio", what, "--out", "out", "--port", str(port)], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.address = self.process.stdout.readline().strip()
         self.port = self.address.partition("?")[0].rstrip("/").rpartition(":")[2]
-        Server.ended.discard(self.port)
         if not self.address.startswith("http://127.0.0.1:"):
             raise AssertionError(f"{self.address!r} {self.process.stderr.read()}")
 
