@@ -319,6 +319,26 @@ class ShippedNetwork(Case):
         made("detect", "one", "-d", "frame-difference", "-o", "below", "--backgrounds")
         self.assertEqual(sorted(os.listdir(path("below", "frame-difference", "backgrounds"))), ["clip.json", "clip.txt"])
 
+    def test_a_set_that_was_moved_stands_on_its_own_files_and_never_on_others(self):
+        os.makedirs(path("home", "backgrounds"))
+        made("synth", "-o", "home/backgrounds/sky.mkv", "--width", str(WIDTH), "--height", str(HEIGHT), "--frames", "4", "--no-own-aircraft")
+        shutil.copy(mask_over(0, 60, WIDTH, 130), path("home", "backgrounds", "sky.mask.png"))
+        write("home.toml", SCENE.replace('"clip.mkv"', '"home/backgrounds/sky.mkv"\nmask = "home/backgrounds/sky.mask.png"'))
+        made("render", "home.toml", "--out", "home/sequences", "--no-cache")
+        detect = lambda folder, out: made("detect", folder, "-d", "cmo", "-o", out, "--backgrounds").stderr
+        self.assertNotIn("sky.", detect("home", "as_made"))
+        os.rename(path("home"), path("away"))
+        shutil.copytree(path("away", "backgrounds"), path("home", "backgrounds"))
+        for name in ("sky.mkv", "sky.mask.png"):
+            with open(path("home", "backgrounds", name), "ab") as file:
+                file.write(b"more")  # another file with the same pictures
+        self.assertNotIn("sky.", detect("away", "as_moved"))
+        self.assertEqual(files_of("as_moved"), files_of("as_made"))
+        shutil.rmtree(path("away", "backgrounds"))
+        said = detect("away", "of_others")
+        self.assertIn("sky.mkv: the background of 'one' is another file now (its SHA-256 differs); it is left out", said)
+        self.assertIn("sky.mask.png: the mask of 'one' is another file now (its SHA-256 differs)", said)
+
     def test_a_part_of_a_video_below_a_set_is_named_by_its_frames(self):
         for name, first in (("a", 2), ("b", 5)):
             text = SCENE.replace('"one"', f'"{name}"').replace('"clip.mkv"', f'"clip.mkv"\nfirst_frame = {first}\nframe_count = 4')

@@ -29,6 +29,7 @@
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/render.h"
 #include "sequence/pipeline/resolved_scene.h"
+#include "sequence/replay/recorded_inputs.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
@@ -121,20 +122,23 @@ class Work {
   }
 
   // A sequence that was made of other files than are there now and those that follow would be a
-  // mixed set. Of a record, the first input is its background, which may have another name by now.
+  // mixed set. Of a record, the first input is its background, which may have another name by now;
+  // the files of a flight lie in the set's own folder, wherever that was when they were made.
   void check_inputs(std::size_t i) const {
     const fs::path& kept = kept_[i];
     if (kept.empty()) return;
     const catalogue::Background& background = catalogue_.backgrounds[i];
     const auto* given = std::get_if<fs::path>(&background.source);
-    // Empty for a flight that nothing is left to be made over.
-    const fs::path& video = given != nullptr ? *given : files_[i].video;
+    const catalogue::BackgroundFiles flown = files_of_flight(background, folder_);
+    const fs::path& video = given != nullptr ? *given : flown.video;
     const JsonDocument record(kept / "sequence.json");
+    const auto made = scene::parse_scene(record.text("scene_toml"), kept / "sequence.json");
     bool is_background = true;
     for (const JsonObject& input : record.objects("inputs")) {
-      const fs::path file = is_background && !video.empty() ? video : fs::path(input.text("name"));
-      is_background = false;
-      if (is_another(file, input.text("sha256"), *shared_))
+      fs::path file = input.text("name");
+      if (given == nullptr && made.background.mask == file) file = *flown.mask;
+      if (std::exchange(is_background, false)) file = video;
+      if (replay::is_another(file, input.text("sha256"), *shared_))
         throw Error(fmt::format("is another file than the one that '{}', which is kept, was made "
                                 "of (its SHA-256 differs); expected that file, or another folder "
                                 "for the set",
@@ -142,7 +146,6 @@ class Work {
                     {file.string()});
     }
     // --background leaves masks out. A flight brings its own.
-    const auto made = scene::parse_scene(record.text("scene_toml"), kept / "sequence.json");
     const bool has_mask = given == nullptr || background.mask;
     if (made.background.mask.has_value() != has_mask ||
         made.occluders.size() != background.occluders.size())

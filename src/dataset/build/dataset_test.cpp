@@ -14,6 +14,7 @@
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
 #include "sequence/demo/demo.h"
+#include "sequence/replay/recorded_inputs.h"
 #include "support/error_of.h"
 #include "support/small_catalogue.h"
 #include "support/temporary_folder.h"
@@ -400,12 +401,12 @@ TEST_F(Build, AnInputIsAnotherOneByItsBytesAndNotByItsEnding) {
   const fs::path log = root_ / "log.txt";  // a list of pictures has the same ending
   write_file(log, "time_s,latitude_deg\n");
   const std::string sha256 = sha256_of_file(log);
-  EXPECT_FALSE(is_another(log, sha256, inputs));
+  EXPECT_FALSE(replay::is_another(log, sha256, inputs));
   write_file(log, "time_s,latitude_deg,longitude_deg\n");
-  EXPECT_TRUE(is_another(log, sha256, inputs));
+  EXPECT_TRUE(replay::is_another(log, sha256, inputs));
   fs::remove(log);
-  EXPECT_FALSE(is_another(log, sha256, inputs));
-  EXPECT_FALSE(is_another(root_ / "frames" / "%04d.png", sha256, inputs));
+  EXPECT_FALSE(replay::is_another(log, sha256, inputs));
+  EXPECT_FALSE(replay::is_another(root_ / "frames" / "%04d.png", sha256, inputs));
 }
 
 TEST_F(Build, DeepVerificationNamesAnInputThatChanged) {
@@ -426,6 +427,32 @@ TEST_F(Build, DeepVerificationNamesAnInputThatChanged) {
     EXPECT_THAT(fault, HasSubstr("was made of another "));
     EXPECT_THAT(fault, HasSubstr("sky.mp4 than is there now"));
   }
+}
+
+// In its old place nothing is, and then another set.
+TEST_F(Build, ASetThatWasMovedStandsOnItsOwnBackgrounds) {
+  const catalogue::Catalogue catalogue =
+      catalogue::parse_catalogue(test_support::kCatalogue, "c.toml");
+  build_set(catalogue, root_ / "set", {});
+  const fs::path moved = root_ / "moved";
+  fs::rename(root_ / "set", moved);
+  VerifyOptions deep;
+  deep.deep_every = 30;
+  EXPECT_EQ(verify(moved, deep).faults, std::vector<std::string>{});
+  const fs::path elsewhere = root_ / "set" / "backgrounds";
+  fs::create_directories(elsewhere);
+  for (const char* name : {"sky.mp4", "sky.mask.png"})
+    write_file(elsewhere / name, read_file(moved / "backgrounds" / name) + "more");
+  EXPECT_EQ(verify(moved, deep).recomposed, 4);
+  fs::remove_all(moved / "sequences" / "sky-across-b737");
+  EXPECT_EQ(test_support::error_of([&] { build_set(catalogue, moved, {}); }), "no error");
+  EXPECT_EQ(verify(moved, deep).faults, std::vector<std::string>{});
+  const fs::path sequence = moved / "sequences" / "sky-across-c172";
+  setup::SharedInputs inputs;
+  EXPECT_EQ(replay::find_input(elsewhere / "sky.mp4", sequence, inputs).value().string(),
+            (moved / "backgrounds" / "sky.mp4").string());
+  change(moved / "backgrounds" / "sky.mp4");
+  EXPECT_FALSE(replay::find_input(elsewhere / "sky.mp4", sequence, inputs));
 }
 
 TEST_F(Build, AnImportedSetIsVerifiedByItsPicturesAndBoxes) {

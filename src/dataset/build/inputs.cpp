@@ -21,7 +21,6 @@
 #include "sequence/pipeline/resolved_scene.h"
 #include "sequence/setup/from_scene.h"
 #include "sequence/setup/level_camera.h"
-#include "sequence/setup/motion_source.h"
 #include "sequence/setup/world.h"
 
 namespace airtruth::build {
@@ -41,8 +40,7 @@ catalogue::BackgroundFiles fly(const catalogue::Background& background,
                                const catalogue::Folder& folder,
                                const BuildOptions& options) {
   const fs::path stem = folder.backgrounds() / background.name;
-  catalogue::BackgroundFiles files{.video = stem.string() + ".mp4",
-                                   .mask = stem.string() + ".mask.png"};
+  catalogue::BackgroundFiles files = files_of_flight(background, folder);
   // The video is the last file that appears.
   if (fs::exists(files.video)) return files;
   fs::create_directories(folder.backgrounds());
@@ -57,6 +55,12 @@ catalogue::BackgroundFiles fly(const catalogue::Background& background,
 }
 
 }  // namespace
+
+catalogue::BackgroundFiles files_of_flight(const catalogue::Background& background,
+                                           const catalogue::Folder& folder) {
+  const std::string stem = folder.backgrounds() / background.name;
+  return {.video = stem + ".mp4", .mask = stem + ".mask.png"};
+}
 
 catalogue::BackgroundFiles prepare(const catalogue::Background& background,
                                    const catalogue::Folder& folder,
@@ -175,17 +179,6 @@ void check_sources(const catalogue::Catalogue& catalogue) {
     setup::at_place(aircraft.where, [&] { return fleet::aircraft_file(aircraft.aircraft); });
   for (std::size_t i = 0; i < catalogue.backgrounds.size(); ++i) check_background(catalogue, i);
   check_names(catalogue);
-}
-
-bool is_another(const fs::path& input, const std::string& sha256, setup::SharedInputs& inputs) {
-  std::error_code ignored;
-  if (fs::is_regular_file(input, ignored) && inputs.sha256_of_file(input) == sha256) return false;
-  try {
-    const std::string now = setup::sha256_of_video(input, inputs);
-    return !now.empty() && now != sha256;
-  } catch (const Error&) {  // a text that is no list of pictures, or a series without any
-    return fs::exists(input, ignored);
-  }
 }
 
 catalogue::Catalogue with_videos(catalogue::Catalogue catalogue,

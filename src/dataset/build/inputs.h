@@ -8,10 +8,13 @@
 #include "dataset/catalogue/folder.h"
 #include "foundation/base/files.h"
 #include "picture/video/reader.h"
-#include "sequence/setup/shared_inputs.h"
 
 // What a catalogue needs on this machine: its backgrounds, aircraft and files.
 namespace airtruth::build {
+
+// Where the video and the mask of a virtual flight lie.
+catalogue::BackgroundFiles files_of_flight(const catalogue::Background& background,
+                                           const catalogue::Folder& folder);
 
 // Returns the files of a background: an existing video, or a virtual flight, which is made where it
 // does not exist yet. A flight's files appear whole or not at all. Two processes that make the same
@@ -36,10 +39,6 @@ video::StreamInfo stream_of(const catalogue::Background& background);
 // must fit its video and the catalogue's method. No two sequences may have the same name. Throws
 // Error at the line of the catalogue.
 void check_sources(const catalogue::Catalogue& catalogue);
-
-// Whether an input that a sequence was made of, a file or a series of pictures, is another one now
-// than the one with this recorded SHA-256. False where it is missing.
-bool is_another(const fs::path& input, const std::string& sha256, setup::SharedInputs& inputs);
 
 // The catalogue with these videos, by the background's name, in place of its own; the masks of
 // these backgrounds are left out, and the rate where it is no series of pictures. Throws Error for

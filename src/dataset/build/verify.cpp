@@ -32,6 +32,7 @@
 #include "sequence/insertion/masks.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
+#include "sequence/replay/recorded_inputs.h"
 #include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::build {
@@ -69,9 +70,13 @@ bool is_below(const fs::path& folder, const fs::path& name) {
 // that ask.
 class InputsNow {
  public:
-  bool is_another(const fs::path& input, const std::string& sha256) {
+  bool has(const fs::path& input, const fs::path& sequence) {
     const std::lock_guard lock(mutex_);
-    return build::is_another(input, sha256, inputs_);
+    return replay::find_input(input, sequence, inputs_).has_value();
+  }
+  scene::Scene scene_as_made(const replay::Finished& finished) {
+    const std::lock_guard lock(mutex_);
+    return replay::scene_as_made(finished, inputs_);
   }
 
  private:
@@ -111,9 +116,11 @@ class Check {
       const JsonDocument record(folder_ / "sequence.json");
       if (fs::exists(folder_ / sequences::kLabels)) return labelled(record);
       files(record);
-      const replay::Finished finished = replay::open_finished(folder_);
+      replay::Finished finished = replay::open_finished(folder_);
       truth(finished);
-      if (options_.deep_every > 0 && has_its_inputs()) deep(finished);
+      if (options_.deep_every == 0 || !has_its_inputs()) return;
+      finished.scene = inputs_now_.scene_as_made(finished);
+      deep(finished);
     } catch (const Error& error) {
       fault(error.what());
     }
@@ -222,7 +229,7 @@ class Check {
   bool has_its_inputs() {
     bool has = true;
     for (const auto& [name, input] : result_.inputs) {
-      if (!inputs_now_.is_another(name, input.sha256)) continue;
+      if (inputs_now_.has(name, folder_)) continue;
       has = false;
       fault("was made of another " + name +
             " than is there now (its SHA-256 differs); it is not drawn anew");

@@ -35,7 +35,8 @@ struct VerifyOptions {
   // Number of sequences that are verified at the same time; 0 means one per core.
   int jobs = 0;
   // Renders every n-th frame again and compares it (sequence/replay/finished.h), where the files
-  // that the sequence was made of are there as they were; 0 means none.
+  // that the sequence was made of are there as they were (sequence/replay/recorded_inputs.h); 0
+  // means none.
   std::int64_t deep_every = 0;
   std::function<void(std::int64_t done, std::int64_t total)> progress;
   std::stop_token stop;

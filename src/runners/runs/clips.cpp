@@ -18,6 +18,7 @@
 #include "picture/video/still.h"
 #include "scene/scene/scene.h"
 #include "sequence/replay/finished.h"
+#include "sequence/replay/recorded_inputs.h"
 
 namespace airtruth::runs {
 namespace {
@@ -46,6 +47,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
   clip.reading.picture_rate_hz = finished.picture_rate_hz;
   clip.lens = lens::lens_of(finished.truth.lens);
   if (finished.scene) clip.own_aircraft = finished.scene->background.mask;
+  clip.sequence = finished.folder;
   return clip;
 }
 
@@ -58,22 +60,29 @@ DetectionClip clip_of(const fs::path& video) {
 
 std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
                                           const std::vector<std::string>& names,
+                                          setup::SharedInputs& inputs,
                                           const Warn& warn) {
-  using Part = std::tuple<fs::path, std::int64_t, std::int64_t>;
+  using Part = std::tuple<fs::path, bool, std::int64_t, std::int64_t>;
   std::set<Part> seen;
   std::set<std::string> taken;
   std::vector<DetectionClip> clips;
   for (const std::string& name : names) {
     if (set.is_imported(name)) continue;
     const fs::path file = set.folder(name) / "sequence.json";
-    const scene::Background background =
+    scene::Background background =
         scene::parse_scene(JsonDocument(file).text("scene_toml"), file).background;
-    const Part part{background.video, background.first_frame, background.frame_count.value_or(-1)};
+    const auto found = replay::find_input(background.video, set.folder(name), inputs);
+    if (found) background.video = *found;
+    const Part part{background.video,
+                    found.has_value(),
+                    background.first_frame,
+                    background.frame_count.value_or(-1)};
     if (!seen.insert(part).second) continue;
-    if (!fs::exists(background.video) && background.video.string().find('%') == std::string::npos) {
+    const std::string video = background.video.string();
+    if (!found || (!fs::exists(background.video) && video.find('%') == std::string::npos)) {
+      const std::string why = found ? "not there" : "another file now (its SHA-256 differs)";
       airtruth::warn(warn,
-                     background.video.string() + ": the background of '" + name +
-                         "' is not there; it is left out");
+                     video + ": the background of '" + name + "' is " + why + "; it is left out");
       continue;
     }
     DetectionClip clip = clip_of(background.video);
@@ -84,6 +93,7 @@ std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
     for (int k = 2; !taken.insert(clip.name).second; ++k)
       clip.name = fmt::format("{}-{}", part_name, k);
     clip.own_aircraft = background.mask;
+    clip.sequence = set.folder(name);
     clip.reading.first_frame = background.first_frame;
     clip.reading.picture_rate_hz = background.frame_rate_hz;
     clip.reading.frame_count = background.frame_count;

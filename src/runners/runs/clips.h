@@ -15,6 +15,7 @@
 #include "picture/video/reader.h"
 #include "runners/detector/detector.h"
 #include "runners/results/results_folder.h"
+#include "sequence/setup/shared_inputs.h"
 
 // What detectors run over.
 namespace airtruth::runs {
@@ -34,6 +35,8 @@ struct DetectionClip {
   // By which the numbers in `frames` follow one another (exchange::frame_step()); the clip's frame
   // rate is the video's over it.
   std::int64_t frame_step = 1;
+  // The folder of the sequence whose record names `own_aircraft`; empty where none does.
+  fs::path sequence;
 };
 
 // A sequence of a set with all its frames. Throws Error where it has no video.
@@ -41,10 +44,12 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
 // The parts of background videos that the given sequences were made over, each once, in the order
 // of the sequences: pictures without any intruder of the scene. A part is named as its video, with
 // the first frame and the number of frames where it is not the whole ("sky.84-20"), and then with
-// "-2" and so on where another video has that name. Leaves out, with a warning, what is not there
-// any more; an imported sequence has none.
+// "-2" and so on where another video has that name. A video is the one
+// that replay::find_input() finds; what is not there any more, or is another file now, is left out
+// with a warning. An imported sequence has none.
 std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
                                           const std::vector<std::string>& names,
+                                          setup::SharedInputs& inputs,
                                           const Warn& warn);
 // A video as a clip of the name that video::clip_name() gives.
 DetectionClip clip_of(const fs::path& video);

@@ -32,6 +32,7 @@
 #include "runners/results/detections.h"
 #include "runners/results/results_folder.h"
 #include "runners/runs/clips.h"
+#include "sequence/replay/recorded_inputs.h"
 #include "sequence/setup/motion_source.h"
 #include "sequence/setup/shared_inputs.h"
 
@@ -374,7 +375,7 @@ class DetectorRun {
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
     open("detections.json", names);
     std::vector<DetectionClip> backgrounds;
-    if (options_.backgrounds) backgrounds = backgrounds_of(set, names, options_.warn);
+    if (options_.backgrounds) backgrounds = backgrounds_of(set, names, inputs_, options_.warn);
     in_parallel(names.size() + backgrounds.size(), options_, [&](std::size_t i) {
       if (i < names.size())
         return over("", names[i], set.sha256_of(names[i]), [&] { return clip_of(set, names[i]); });
@@ -412,13 +413,17 @@ class DetectorRun {
   }
 
   // The lens and the mask that the user states, for a clip that states none.
-  DetectionClip with_facts(DetectionClip clip) const {
+  DetectionClip with_facts(DetectionClip clip) {
     if (!options_.masks) clip.own_aircraft.reset();
-    if (clip.own_aircraft && !fs::exists(*clip.own_aircraft)) {
-      airtruth::warn(options_.warn,
-                     clip.own_aircraft->string() + ": the mask of '" + clip.name +
-                         "' is not there; the own aircraft is looked at as well");
-      clip.own_aircraft.reset();
+    if (clip.own_aircraft) {
+      const auto found = replay::find_input(*clip.own_aircraft, clip.sequence, inputs_);
+      if (!found || !fs::exists(*found)) {
+        const std::string why = found ? "not there" : "another file now (its SHA-256 differs)";
+        airtruth::warn(options_.warn,
+                       clip.own_aircraft->string() + ": the mask of '" + clip.name + "' is " + why +
+                           "; the own aircraft is looked at as well");
+      }
+      clip.own_aircraft = found && fs::exists(*found) ? found : std::nullopt;
     }
     if (!clip.own_aircraft && options_.masks) clip.own_aircraft = options_.mask;
     if (!clip.reading.picture_rate_hz) clip.reading.picture_rate_hz = options_.frame_rate_hz;

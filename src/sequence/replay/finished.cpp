@@ -20,7 +20,9 @@
 #include "sequence/insertion/paint.h"
 #include "sequence/pipeline/frame_maker.h"
 #include "sequence/pipeline/resolved_scene.h"
+#include "sequence/replay/recorded_inputs.h"
 #include "sequence/setup/moment.h"
+#include "sequence/setup/shared_inputs.h"
 #include "show/drawing/pictures.h"
 
 namespace airtruth::replay {
@@ -181,7 +183,6 @@ image::Rgb8 inspect(const Finished& sequence,
                     int zoom) {
   if (!sequence.scene)
     throw Error("was imported, so that its background is not known", {sequence.folder.string()});
-  const scene::Scene& scene = *sequence.scene;
   const auto count = static_cast<std::int64_t>(sequence.truth.frames.size());
   if (frame < 0 || frame >= count)
     throw Error("frame " + std::to_string(frame) + " does not exist; expected 0 to " +
@@ -189,6 +190,8 @@ image::Rgb8 inspect(const Finished& sequence,
                 {sequence.folder.string()});
   const annotation::Frame& truth = sequence.truth.frames[static_cast<std::size_t>(frame)];
   const std::size_t i = intruder_index(truth, intruder_id);
+  setup::SharedInputs inputs;
+  const scene::Scene scene = scene_as_made(sequence, inputs);
   const video::Frame before =
       frame_at(scene.background.video, scene.background.first_frame + frame);
   const video::Frame after = frame_at(sequence.video, frame);

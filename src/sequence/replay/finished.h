@@ -49,7 +49,7 @@ void write_overlay(const Finished& sequence, const fs::path& out, const OverlayO
 
 // Returns background, alpha and result of a frame around its intruder, enlarged by `zoom`. An empty
 // `intruder_id` selects the first intruder in view. Throws Error where the frame does not exist, no
-// intruder is in view in it, or the clip was imported.
+// intruder is in view in it, the clip was imported, or a file that it was made of is another now.
 image::Rgb8 inspect(const Finished& sequence,
                     std::int64_t frame,
                     const std::string& intruder_id,

@@ -224,6 +224,19 @@ TEST_F(TruthOf, ATruthOfAnotherLengthThanItsVideoIsRefused) {
               testing::HasSubstr("holds 8 frames; expected 9, one for each line of truth.jsonl"));
 }
 
+// The same frames in another file.
+TEST_F(TruthOf, ABackgroundThatIsAnotherFileIsNotShown) {
+  const Finished finished = rendered(
+      replayed_intruder("one", "c172/news", "[[100, -20, -150], [100, 20, -150]]"), kStill);
+  const auto shown = [&] { return test_support::error_of([&] { inspect(finished, 3, "", 2); }); };
+  EXPECT_EQ(shown(), "no error");
+  const fs::path video = root_ / "flight.mkv";
+  const std::string bytes = read_file(video);
+  write_file(video, bytes + "more");
+  EXPECT_THAT(shown(), testing::StartsWith(video.string() + ": is another file than the one that"));
+  write_file(video, bytes);
+}
+
 TEST_F(TruthOf, AnOverlayOfPicturesHasTheRateOfTheTruth) {
   Finished finished = rendered(
       replayed_intruder("one", "738/738-Ryanair", "[[80, 0, -150], [80, 60, -150]]"), kStill);
