@@ -21,7 +21,9 @@
 #include "scene/scene/camera_keys.h"
 #include "sequence/pipeline/encounter_record.h"
 #include "sequence/replay/finished.h"
+#include "sequence/replay/recorded_inputs.h"
 #include "sequence/setup/from_scene.h"
+#include "sequence/setup/shared_inputs.h"
 
 namespace airtruth::detector_evaluation {
 namespace {
@@ -128,15 +130,23 @@ bool was_asked(const std::vector<annotation::Frame>& frames,
 // The violation of a volume that the record does not have, of the same paths over the same time.
 void ask_paths(const replay::Finished& finished,
                const separation::Volume& volume,
+               setup::SharedInputs& inputs,
                scores::TruthEncounter& encounter) {
   const scene::Scene& scene = *finished.scene;
   const auto intruder = std::ranges::find(scene.intruders, encounter.name, &scene::Intruder::id);
   if (intruder == scene.intruders.end() || !intruder->seen.empty()) return;
   const double last_s = finished.truth.frames.back().time_s;
+  const auto as_made = [&](const fs::path& file) {
+    const auto found = replay::find_input(file, finished.folder, inputs);
+    if (!found) throw Error("is another file now", {file.string()});
+    return *found;
+  };
   try {
     scene::Camera camera = scene.camera;
+    for (const auto& file : {scene.camera.path_file, scene.camera.log, intruder->path_file})
+      if (file) as_made(*file);
     setup::state_clip_start(camera,
-                            scene.background.video,
+                            camera.log ? as_made(scene.background.video) : scene.background.video,
                             scene.background.first_frame,
                             scene.background.frame_rate_hz);
     const trajectory::Path own = setup::camera_path(camera);
@@ -149,13 +159,15 @@ void ask_paths(const replay::Finished& finished,
     encounter.has_volume = true;
     if (!found.empty()) encounter.violation_s = found.front().begin_s;
   } catch (const Error&) {
-    // The file of a path is not there any more: whether they violate the volume is unknown.
+    // The file of a path is not there any more, or is another one: whether they violate the volume
+    // is unknown.
   }
 }
 
 scores::TruthEncounter encounter_of(const replay::Finished& finished,
                                     std::int64_t id,
-                                    const std::string& volume) {
+                                    const std::string& volume,
+                                    setup::SharedInputs& inputs) {
   const std::vector<annotation::Frame>& frames = finished.truth.frames;
   const auto actor = static_cast<std::size_t>(id) - 1;
   scores::TruthEncounter encounter{.id = id, .name = frames.front().intruders[actor].id};
@@ -174,7 +186,7 @@ scores::TruthEncounter encounter_of(const replay::Finished& finished,
       if (one.volume == volume)
         first_s = std::min(first_s.value_or(one.time.begin_s), one.time.begin_s);
   } else if (const auto* named = separation::named_volume(volume)) {
-    ask_paths(finished, named->volume, encounter);
+    ask_paths(finished, named->volume, inputs, encounter);
   }
   return encounter;
 }
@@ -191,7 +203,8 @@ void add_times_to_approach(scores::TruthSequence& truth) {
 // Without its duration.
 scores::TruthSequence rendered_truth(const labelled::LabelledSet& set,
                                      const std::string& name,
-                                     const std::string& volume) {
+                                     const std::string& volume,
+                                     setup::SharedInputs& inputs) {
   const fs::path folder = set.folder(name);
   const replay::Finished finished = replay::open_finished(folder);
   const JsonDocument record(folder / "sequence.json");
@@ -217,7 +230,7 @@ scores::TruthSequence rendered_truth(const labelled::LabelledSet& set,
   else
     truth.frame_rate_hz = set.clip(name).frame_rate_hz.value_or(0);
   for (const auto& [id, category] : aircraft_in(truth))
-    truth.encounters.push_back(encounter_of(finished, id, volume));
+    truth.encounters.push_back(encounter_of(finished, id, volume, inputs));
   if (!truth.frames.empty())
     truth.never_seen = std::ranges::count_if(
         finished.encounters, [](const auto& one) { return !one.first_seen.has_value(); });
@@ -377,10 +390,12 @@ void expect_volume(const SetTruth& set, const std::string& volume) {
 SetTruth set_truth(const fs::path& folder, const std::string& volume, fs::path ignore) {
   const labelled::LabelledSet set(folder);
   SetTruth result;
+  setup::SharedInputs inputs;
   std::size_t weighted = 0;
   for (const std::string& name : set.names()) {
     scores::TruthSequence& truth = result.sequences.emplace_back(
-        set.is_imported(name) ? imported_truth(set, name) : rendered_truth(set, name, volume));
+        set.is_imported(name) ? imported_truth(set, name)
+                              : rendered_truth(set, name, volume, inputs));
     labelled::ClipFacts facts = set.facts(name);
     truth.categories = std::move(facts.categories);
     truth.distractors = std::move(facts.distractors);

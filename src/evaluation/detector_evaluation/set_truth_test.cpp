@@ -54,9 +54,11 @@ class OfRenderedSet : public testing::Test {
 
   static void render(const std::string& set, const std::string& name, const std::string& tables) {
     const std::string path =
-        set == "short" ? "waypoints_ned_m = [[1100, 60, -165], [1000, 60, -165]]\nspeed_mps = 55\n"
-                       : "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
-                         "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n";
+        set == "filed" ? "path_file = \"way.csv\"\n"
+        : set == "short"
+            ? "waypoints_ned_m = [[1100, 60, -165], [1000, 60, -165]]\nspeed_mps = 55\n"
+            : "[intruder.encounter]\ncpa_time_s = 8\ncpa_right_m = 60\n"
+              "cpa_above_m = 15\ncourse_deg = 180\nspeed_mps = 55\n";
     const std::string text = "name = \"" + name +
                              "\"\nweight = 3\n[background]\nvideo = \"flight.mkv\"\n" +
                              (set == "single" ? "frame_count = 1\n" : "") +
@@ -145,6 +147,15 @@ TEST_F(OfRenderedSet, KnowsTheViolationFromTheRecordAndFromThePaths) {
                   1e-6)
           << one.name;
     }
+}
+
+TEST_F(OfRenderedSet, OfAnotherPathThanThatOfTheRecordNoViolationIsKnown) {
+  const fs::path file = root_ / "way.csv";
+  write_file(file, "time_s,north_m,east_m,down_m\n0,640,60,-165\n9,145,60,-165\n");
+  render("filed", "plain", "");
+  EXPECT_TRUE(truth("f3442", "filed").sequences.at(0).encounters.at(0).has_volume);
+  write_file(file, "time_s,north_m,east_m,down_m\n0,640,60,-165\n8,145,60,-165\n");
+  EXPECT_FALSE(truth("f3442", "filed").sequences.at(0).encounters.at(0).has_volume);
 }
 
 TEST_F(OfRenderedSet, OneWhosePathEndsAfterTheClipFliesStraightOn) {
