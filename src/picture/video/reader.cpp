@@ -35,9 +35,6 @@ image::Siting siting_of(AVChromaLocation location) {
                                             : image::Siting::kLeft;
 }
 
-// More frames than a file holds.
-constexpr std::int64_t kAllFrames = std::int64_t{1} << 60;
-
 // Largest numerator and denominator of a stated frame rate: 30000/1001 is exact.
 constexpr int kMaxRateTerm = 100'000;
 
@@ -657,6 +654,14 @@ std::vector<double> Reader::times_s(std::int64_t most) const {
     times.push_back(static_cast<double>(index->pts[k] - *state_->first_pts) *
                     state_->info.time_base.value());
   return times;
+}
+
+bool are_of_rate(std::span<const double> times_s, double rate_hz) {
+  // Of a frame's interval.
+  constexpr double kMostOff = 0.25;
+  for (std::size_t k = 0; k < times_s.size(); ++k)
+    if (std::abs(times_s[k] * rate_hz - static_cast<double>(k)) > kMostOff) return false;
+  return true;
 }
 
 std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -154,6 +155,11 @@ class Reader {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+// A number of frames that is larger than that of any video.
+constexpr std::int64_t kAllFrames = std::int64_t{1} << 60;
+// Whether frames from 0 on at these times have this rate; rounded time stamps are no other rate.
+bool are_of_rate(std::span<const double> times_s, double rate_hz);
 
 // Time of a frame in seconds from the video's first frame. `options` states the frame and the rate
 // of numbered images. Errors as of Reader.

@@ -29,8 +29,6 @@ constexpr std::size_t kMostThumbnails = 1000;
 // Bytes of a video whose frames' times are read although its rate is said to be constant: a disk
 // gives them in some seconds. Dropped frames of a larger one are not seen.
 constexpr std::uintmax_t kMostIndexed = std::uintmax_t{1} << 30;
-// Of a frame's interval: rounded time stamps are no other rate.
-constexpr double kMostOff = 0.25;
 
 }  // namespace
 
@@ -50,11 +48,13 @@ Clip::Clip(const scene::Background& background, pipeline::Options options)
   std::error_code none;
   if (!info_.variable_frame_rate && fs::file_size(background.video, none) > kMostIndexed) return;
   read_on();
-  std::vector<double> times_s = reader_->times_s(frame_count());
-  bool is_even = true;
-  for (std::size_t k = 0; k < times_s.size(); ++k)
-    is_even = is_even && std::abs(times_s[k] * rate_hz() - static_cast<double>(k)) <= kMostOff;
-  if (is_even) return;
+  // Of a container that states no number of frames, the time stamps are counted: its length and
+  // rate tell too many or too few where the rate varies.
+  const bool is_counted = !info_.is_frame_count_stated;
+  std::vector<double> times_s = reader_->times_s(
+      is_counted ? background.frame_count.value_or(video::kAllFrames) : frame_count());
+  if (is_counted && !times_s.empty()) info_.frame_count_estimate = first + std::ssize(times_s);
+  if (video::are_of_rate(times_s, rate_hz())) return;
   times_s_ = std::move(times_s);
   if (first > 0) begin_s_ = video::time_of_first_frame_s(background.video, {.first_frame = first});
 }

@@ -28,9 +28,9 @@ class Clip {
  public:
   Clip(const scene::Background& background, pipeline::Options options);
 
-  // Of the whole video.
+  // Of the whole video; its number of frames at least up to the end of the clip.
   const video::StreamInfo& info() const { return info_; }
-  // Frames of the clip, as the container states it; at least 1.
+  // Frames of the clip, as the container states it or by its time stamps; at least 1.
   std::int64_t frame_count() const;
   double rate_hz() const { return info_.frame_rate.value(); }
   // When the video shows its first frame, in seconds from the video's beginning.

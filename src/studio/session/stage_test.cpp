@@ -268,6 +268,29 @@ TEST_F(OverAFlight, FramesOfAVariableRateHaveTheirTimes) {
   EXPECT_TRUE(stage.clip(scene_of(kSeen).background).times_s().empty());
 }
 
+// The same frames in a container that states 30 Hz and no number of frames: 39 of them would fill
+// its 1.3 s.
+TEST_F(OverAFlight, AClipEndsWithItsLastFrameWhereNoNumberIsStated) {
+  const std::string command =
+      "cd '" + folder_->path().string() +
+      "' && ffmpeg -nostdin -v error -y -i flight.mp4 -vf \"select='lt(n,20)+not(mod(n,2))'\" "
+      "-fps_mode vfr -c:v libx264 vfr.mkv";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  scene::Scene scene = scene_of(kSeen);
+  scene.background.video = *folder_ / "vfr.mkv";
+  EXPECT_GT(video::Reader(scene.background.video).info().frame_count_estimate, 30);
+  Stage stage(options());
+  stage.set(1, scene, {});
+  EXPECT_EQ(stage.frame_count(), 30);
+  EXPECT_EQ(stage.clip(scene.background).times_s().size(), 30u);
+  EXPECT_EQ(stage.clip(scene.background).frame(29)->index, 29);
+  EXPECT_EQ(plan_of(stage, tables_of(scene))["frames"].back(), 29);
+  scene.background.first_frame = 4;
+  EXPECT_EQ(stage.clip(scene.background).frame_count(), 26);
+  scene.background.frame_count = 20;
+  EXPECT_EQ(stage.clip(scene.background).frame_count(), 20);
+}
+
 TEST_F(OverAFlight, HandlesHaveTheRangeOfTheirOwnAircraft) {
   const scene::Scene scene =
       scene_of(kSeen + "[[intruder]]\nid = \"b\"\naircraft = \"c172/news\"\n" +
