@@ -538,7 +538,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
     return k < part.motion.size() ? motion::shake_of({part.motion[k]}, 0) : Shake{};
   };
   return fmt::format(
-      "# {}: {} frames of {}x{} at {:.4g} frames/s, {:.1f} s.\n"
+      "# {}: {}{} frames of {}x{} at {:.4g} frames/s, {:.1f} s.\n"
       "#     airtruth preview --motion THIS.toml   shows where the intruder will be\n"
       "#     airtruth render THIS.toml --out out\n"
       "# Every key: docs/formats/scene.md and examples/render.toml.\n\n"
@@ -554,6 +554,7 @@ std::string scene_text(const fs::path& video, const NewSceneOptions& options) {
       "sun_azimuth_deg = 180\nsun_elevation_deg = 45\n"
       "{}",
       video.filename().string(),
+      info.is_frame_count_stated ? "" : "about ",
       info.frame_count_estimate,
       info.width,
       info.height,

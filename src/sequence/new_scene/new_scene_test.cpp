@@ -163,6 +163,22 @@ TEST(NewScene, NamesOfFilesMayHoldQuotesAndNoControlCharacters) {
   EXPECT_THAT(fault_of(video, options), testing::HasSubstr("has a control character"));
 }
 
+// Matroska states no number of frames.
+TEST(NewScene, ANumberOfFramesThatIsNotStatedIsAbout) {
+  const test_support::TemporaryFolder folder;
+  synthetic::FlightOptions options;
+  options.frame_count = 4;
+  options.width = 160;
+  options.height = 120;
+  for (const auto& [name, words] : {std::pair("a.mp4", "# a.mp4: 4 frames of "),
+                                    std::pair("a.mkv", "# a.mkv: about 4 frames of ")}) {
+    demo::VirtualFlightOptions how;
+    how.format = video::format_of_file(folder / name);
+    demo::write_flight(synthetic::Flight(options), folder / name, how);
+    EXPECT_THAT(scene_text(folder / name, {}), testing::StartsWith(words));
+  }
+}
+
 TEST(NewScene, PicturesAskForTheirRate) {
   const test_support::TemporaryFolder folder;
   synthetic::FlightOptions options;

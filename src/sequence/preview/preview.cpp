@@ -47,9 +47,13 @@ class Previewer {
         motion_(known_motion()),
         painter_(opened_.stated.scene, world(), opened_.occluders, nullptr, options.stop),
         rate_hz_(opened_.info.frame_rate.value()),
-        duration_s_(
-            static_cast<double>(std::max<std::int64_t>(0, opened_.info.frame_count_estimate - 1)) /
-            rate_hz_) {
+        times_s_(
+            opened_.background->times_s(scene.background.frame_count.value_or(video::kAllFrames))),
+        duration_s_(video::are_of_rate(times_s_, rate_hz_)
+                        ? static_cast<double>(
+                              std::max<std::int64_t>(0, opened_.info.frame_count_estimate - 1)) /
+                              rate_hz_
+                        : times_s_.back()) {
     check_seen();
     if (motion_) pipeline::place_seen(opened_, *motion_, options.stop);
   }
@@ -151,11 +155,19 @@ class Previewer {
 
   Shake shake_at(double time_s) const { return motion_ ? motion_->nearest(time_s).shake : Shake{}; }
 
+  // The number of the last frame that does not begin after a time; empty where the video does not
+  // say when its frames are shown.
+  std::optional<std::int64_t> number_at(double time_s) const {
+    if (times_s_.empty()) return std::nullopt;
+    return std::max<std::int64_t>(
+        0, std::ranges::upper_bound(times_s_, time_s) - times_s_.begin() - 1);
+  }
+
   setup::Moment moment(double time_s) const {
-    return setup::moment_at(world(),
-                            static_cast<std::int64_t>(std::llround(time_s * rate_hz_)),
-                            time_s,
-                            shake_at(time_s));
+    // Reader::at() takes the frame that begins within half an interval after the time.
+    const auto number = number_at(time_s + 0.5 / rate_hz_);
+    return setup::moment_at(
+        world(), number.value_or(std::llround(time_s * rate_hz_)), time_s, shake_at(time_s));
   }
 
   // The camera alone: what a point of a path needs.
@@ -304,7 +316,7 @@ class Previewer {
       const setup::Moment here = moment(times[i]);
       const insertion::Painted painted =
           painter_.paint(frame.picture, here, ambient_in(frame.picture, here));
-      frame.index = here.frame;
+      frame.index = number_at(frame.time_s).value_or(here.frame);
       annotation::Frame truth = insertion::frame_truth(world(), frame, "none", {}, here, painted);
       sheet.add(frame.picture, truth);
     }
@@ -369,6 +381,7 @@ class Previewer {
   std::optional<setup::MotionSource> motion_;
   insertion::Painter painter_;
   double rate_hz_;
+  std::vector<double> times_s_;  // when the video shows each frame, as far as it says so
   double duration_s_;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequence/preview/preview.h"
 
+#include <cstdlib>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -177,6 +179,31 @@ TEST(Preview, ThePictureShowsTheIntruderWhereTheRowsSay) {
     EXPECT_THAT(
         error.what(),
         testing::HasSubstr("time_s is 4.400, where the clip has no frame: it ends at 4.300"));
+  }
+}
+
+// Frames 0 to 5 within 0.17 s, 6 and 7 at 1.17 and 2.17 s, in containers that state 30 Hz: frames
+// 30 and 60, which that rate has at 1 and 2 s, are none of the clip.
+TEST(Preview, FramesOfAVariableRateHaveTheirNumbers) {
+  const test_support::TemporaryFolder folder;
+  synthetic::FlightOptions flight;
+  flight.frame_count = 8;
+  flight.width = 320;
+  flight.height = 240;
+  demo::write_flight(synthetic::Flight(flight), folder / "flight.mp4", {});
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && ffmpeg -nostdin -v error -i flight.mp4 -vf "
+                              "\"setpts='if(lt(N,6),N/30,N-5+1/6)/TB'\" -fps_mode vfr -c:v ";
+  ASSERT_EQ(std::system((command + "libx264 vfr.mkv").c_str()), 0);
+  ASSERT_EQ(std::system((command + "libx264 vfr.mp4").c_str()), 0);
+  for (int k = 0; k < flight.frame_count; ++k)
+    write_file(folder / ("mask" + std::to_string(k) + ".pgm"),
+               "P5\n320 240\n255\n" + std::string(std::size_t{320} * 240, '\0'));
+  for (const char* name : {"vfr.mkv", "vfr.mp4"}) {
+    scene::Scene scene = head_on(folder / name);
+    // One mask for each frame: that of a frame beyond them is an error.
+    scene.occluders = {{50, folder / "mask%d.pgm", false, {}}};
+    EXPECT_EQ(preview_of(scene, {}).rows.size(), 3u) << name;
   }
 }
 
