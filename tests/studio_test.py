@@ -656,6 +656,30 @@ range_m = 250
     print(f"film: both at one frame, from frame {first} of the clip on, and the boxes of that frame")
 
 
+def test_log(airtruth, browser, root):
+    """The camera's panel has what a log gives at the first frame, and another yaw keeps the log's pitch and roll."""
+    flight(airtruth, root, frames=10, width=320, height=240, has_encounter=False)
+    # 20 m/s towards north: a degree of latitude is 111,172 m there.
+    rows = [f"{k / 10},{47 + 2 * k / 111172:.9f},8,500,80,30,5,10" for k in range(21)]
+    write(os.path.join(root, "log.csv"), "\n".join(["time_s,latitude_deg,longitude_deg,altitude_m,height_m,yaw_deg,pitch_deg,roll_deg", *rows, ""]))
+    write(os.path.join(root, "log.toml"), '[background]\nvideo = "flight.mp4"\n[lens]\nvertical_fov_deg = 60\n[camera]\nlog = "log.csv"\nlog_offset_s = 0.5\n')
+    server = Server(airtruth, root, "log.toml")
+    page = Page(browser)
+    page.open(server.address)
+    browser.key("3")
+    page.rest()
+    shown = lambda: [float(text) for text in browser.run("[...document.querySelectorAll('studio-camera input')].map((e) => e.value)")]
+    near("view, yaw, pitch, roll, height, north, east, down", shown(), (60, 30, 5, 10, 80, 20, 0, 0), 0.05)
+    expect("whose they are", any("by the log" in words for words in words_of(browser, "studio-camera .hint")), True)
+    type_into(browser, "Yaw, °", "31")
+    browser.key("Enter")
+    page.rest()
+    expect("attitude after another yaw", page.state()["scene"]["camera"]["attitude_yaw_pitch_roll_deg"], [31, 5, 10])
+    near("height and speed after it", shown()[4:], (80, 20, 0, 0), 0.05)
+    server.end()
+    print("log: its attitude, height and speed in the panel; another yaw keeps pitch and roll")
+
+
 def test_broken(airtruth, browser, root):
     """A file that is no scene, one that becomes so, and no connection."""
     flight(airtruth, root, frames=10, width=320, height=240)
@@ -960,7 +984,7 @@ def main():
     arguments = arguments.parse_args()
     airtruth = os.path.abspath(arguments.airtruth)
     program = browser_or_skip("studio_test")
-    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "near-miss": test_near_miss, "keys": test_keys, "film": test_film, "broken": test_broken, "edits": test_edits, "layout": test_layout,
+    tests = {"model": lambda _, *given: test_model(given[0], arguments.source, given[1]), "handles": test_handles, "near-miss": test_near_miss, "keys": test_keys, "film": test_film, "log": test_log, "broken": test_broken, "edits": test_edits, "layout": test_layout,
              "latency": lambda *given: test_latency(*given, arguments.drags), "monkey": lambda *given: test_monkey(*given, arguments.monkey)}
     for name, test in tests.items():
         if arguments.only not in (None, name):

@@ -203,6 +203,7 @@ class Planner {
       if (const auto line = horizon_in(moment)) horizon.push_back({moment.frame, *line});
     }
     const setup::Moment& first = moments_.front();
+    const YawPitchRoll attitude = yaw_pitch_roll(first.camera.world_from_body);
     Json tracks = Json::array();
     const std::vector<std::string> approaches = approach_words();
     for (std::size_t i = 0; i < parties_.size(); ++i) tracks.push_back(track(i, approaches[i]));
@@ -210,9 +211,13 @@ class Planner {
             {"frames", frames},
             {"own",
              {{"ned", own},
-              {"heading_deg", hundredths(yaw_pitch_roll(first.camera.world_from_body).yaw_deg)},
+              {"velocity_mps", ned(first.camera.velocity_in_world_mps)},
+              {"heading_deg", hundredths(attitude.yaw_deg)},
               {"attitude", stage_.attitude_words()},
-              {"attitude_deg", attitude()}}},
+              {"attitude_deg",
+               {hundredths(attitude.yaw_deg),
+                hundredths(attitude.pitch_deg),
+                hundredths(attitude.roll_deg)}}}},
             {"horizontal_fov_deg", hundredths(preview::view_deg(stage_.world()))},
             {"tracks", tracks},
             {"horizon", horizon},
@@ -221,13 +226,6 @@ class Planner {
   }
 
  private:
-  Json attitude() const {
-    const auto& stated = stage_.attitude();
-    if (!stated) return nullptr;
-    return {
-        hundredths(stated->yaw_deg), hundredths(stated->pitch_deg), hundredths(stated->roll_deg)};
-  }
-
   // Of the middles, as they say, with what is ever in view.
   std::vector<std::string> approach_words() const {
     std::vector<preview::Party> single;

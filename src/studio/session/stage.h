@@ -62,10 +62,7 @@ class Stage {
   std::int64_t frame_count() const { return clip_->frame_count(); }
   // The moments of [[intruder.seen]] as the scene states them, before they are placed.
   const std::vector<scene::Seen>& stated_seen(std::size_t actor) const { return seen_.at(actor); }
-  // Of the first frame, stated or found by the horizon; empty where a path or log has it.
-  const std::optional<YawPitchRoll>& attitude() const {
-    return camera_.attitude_yaw_pitch_roll_deg;
-  }
+  // How the attitude of the first frame was found by the horizon; "" where it was not looked for.
   const std::string& attitude_words() const { return attitude_words_; }
   // True where the camera's motion is measured, or the scene has none.
   bool has_motion() const { return has_motion_; }

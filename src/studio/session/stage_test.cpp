@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "encounter/passage/passage.h"
 #include "foundation/base/error.h"
+#include "foundation/base/files.h"
 #include "foundation/geometry/units.h"
 #include "sequence/pipeline/frame_by_frame.h"
 #include "sequence/pipeline/resolved_scene.h"
@@ -350,6 +352,27 @@ TEST_F(OverAFlight, ThePlanHasTheAttitudeThatIsInForce) {
   const auto first = yaw_pitch_roll(stage.world().camera.at(0)->world_from_body);
   EXPECT_NEAR(found[1].get<double>(), first.pitch_deg, 0.01);
   EXPECT_NEAR(found[2].get<double>(), first.roll_deg, 0.01);
+}
+
+// 20 m/s towards north: a degree of latitude is 111 km there.
+TEST_F(OverAFlight, ThePlanHasWhatALogGivesAtTheFirstFrame) {
+  std::string rows =
+      "time_s,latitude_deg,longitude_deg,altitude_m,height_m,yaw_deg,pitch_deg,roll_deg\n";
+  for (int k = 0; k <= 40; ++k)
+    rows += fmt::format("{},{:.9f},8,500,80,30,5,10\n", 0.1 * k, 47 + 0.1 * k * 20 / 111'172);
+  write_file(*folder_ / "log.csv", rows);
+  const scene::Scene scene = scene::parse_scene(
+      "[background]\nvideo = \"flight.mp4\"\n[lens]\nvertical_fov_deg = 60\n[camera]\nlog = "
+      "\"log.csv\"\nlog_offset_s = 0.5\n" +
+          kSeen,
+      *folder_ / "log.toml");
+  Stage stage(options());
+  stage.set(1, scene, {});
+  const auto own = plan_of(stage, tables_of(scene))["own"];
+  EXPECT_EQ(own["attitude_deg"], nlohmann::ordered_json({30.0, 5.0, 10.0}));
+  EXPECT_EQ(own["ned"][0], nlohmann::ordered_json({0.0, 0.0, -80.0}));
+  EXPECT_NEAR(own["velocity_mps"][0].get<double>(), 20, 0.1);
+  EXPECT_NEAR(own["velocity_mps"][2].get<double>(), 0, 0.01);
 }
 
 TEST_F(OverAFlight, TheClosestApproachOfAFlockSaysWhoseItIs) {

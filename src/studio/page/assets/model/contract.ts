@@ -93,8 +93,8 @@ export interface Volume {
 export interface Plan {
   complete: boolean;  // nothing is left to be measured
   frames: number[];
-  // attitude_deg: yaw, pitch and roll in the first frame; null where a path or log has them
-  own: {ned: Ned[]; heading_deg: number; attitude: string; attitude_deg: Ned | null};
+  // velocity_mps, and attitude_deg (yaw, pitch and roll): in the first frame
+  own: {ned: Ned[]; velocity_mps: Ned; heading_deg: number; attitude: string; attitude_deg: Ned};
   horizontal_fov_deg: number;
   tracks: Track[];
   horizon: [number, [number, number, number, number]][];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type {Change, Json, Table} from '../model/contract';
+import type {Change, Json, Ned, Plan, Table} from '../model/contract';
 import {numberOf, tableOf} from '../model/flyers';
 import {round} from '../model/geometry';
 import type {Member} from '../model/store';
@@ -23,7 +23,7 @@ const setsPart = (key: string, k: number, usual = [0, 0, 0]) => (value: number, 
 // The lens and the attitude of the camera; the horizon that follows from them is drawn over the frame while this is
 // shown.
 export class CameraPanel extends Part {
-  protected readonly watches: Member[] = ['state', 'plan', 'clip'];
+  protected readonly watches: Member[] = ['state', 'plan', 'planProblem', 'clip'];
   private rows: Row[] = [];
   private used = h('p', {class: 'hint'});
   private origin = h('p', {class: 'hint'});
@@ -48,20 +48,18 @@ export class CameraPanel extends Part {
               max: k === 1 ? 90 : 360,
               placeholder: 'not stated'
             },
-            (scene) => {
-              const attitude = tableOf(scene.camera).attitude_yaw_pitch_roll_deg;
-              return Array.isArray(attitude) ? Number(attitude[k]) : null;
-            },
-            (value, scene) => setsPart('attitude_yaw_pitch_roll_deg', k, this.now.plan?.own.attitude_deg ?? undefined)(
-                value, scene)));
-    const height = this.row(
-        {label: 'Height', unit: 'm', step: 1, min: -MOST_M, max: MOST_M},
-        (scene) => -numbers(tableOf(scene.camera).position_ned_m, [0, 0, -150])[2],
-        (value, scene) => setsPart('position_ned_m', 2, [0, 0, -150])(-value, scene));
+            (scene) => this.inForce(scene, 'attitude_yaw_pitch_roll_deg', k, (own) => own.attitude_deg),
+            (value, scene) =>
+                setsPart('attitude_yaw_pitch_roll_deg', k, this.now.plan?.own.attitude_deg)(value, scene)));
+    const height = this.row({label: 'Height', unit: 'm', step: 1, min: -MOST_M, max: MOST_M}, (scene) => {
+      const down_m = this.inForce(scene, 'position_ned_m', 2, (own) => own.ned[0], -150);
+      return down_m === null ? null : -down_m;
+    }, (value, scene) => setsPart('position_ned_m', 2, [0, 0, -150])(-value, scene));
     const velocity = ['North', 'East', 'Down'].map(
         (label, k) => this.row(
             {label, unit: 'm/s', step: 1, min: -MOST_MPS, max: MOST_MPS},
-            (scene) => numbers(tableOf(scene.camera).velocity_ned_mps, [0, 0, 0])[k], setsPart('velocity_ned_mps', k)));
+            (scene) => this.inForce(scene, 'velocity_ned_mps', k, (own) => own.velocity_mps, 0),
+            setsPart('velocity_ned_mps', k)));
     this.append(
         h('h2', {}, 'Clip'), this.used, h('h2', {}, 'Lens'), h('div', {class: 'grid'}, lens), this.origin,
         h('h2', {}, 'Attitude in the first frame'), h('div', {class: 'grid three'}, ...angles),
@@ -71,7 +69,7 @@ export class CameraPanel extends Part {
   }
 
   protected update(): void {
-    const {state, plan, clip} = this.now;
+    const {state, plan, planProblem, clip} = this.now;
     if (!state) return;
     const {scene, notes} = state;
     // The file's own words on where its numbers come from.
@@ -90,18 +88,34 @@ export class CameraPanel extends Part {
             Array.isArray(lens.focal_px) ?
                          `Focal lengths ${lens.focal_px.map((px) => round(Number(px), 1)).join(', ')} px.` :
                          said('lens', 'lens.model', 'lens.vertical_fov_deg'));
-    text(this.found, plan?.own.attitude || said('camera', 'camera.attitude_yaw_pitch_roll_deg'));
-    text(this.flight, said('camera.position_ned_m', 'camera.velocity_ned_mps'));
-    this.rows[0].field.input.disabled = !hasFov;
     const camera = tableOf(scene.camera);
     const isFile = 'path_file' in camera;
+    const by = isFile || 'log' in camera ? `What is not stated is by the ${isFile ? 'path file' : 'log'}.` : '';
+    text(this.found, plan?.own.attitude || by || said('camera', 'camera.attitude_yaw_pitch_roll_deg'));
+    text(this.flight, by ? `In the first frame. ${by}` : said('camera.position_ned_m', 'camera.velocity_ned_mps'));
+    this.rows[0].field.input.disabled = !hasFov;
     this.rows.slice(1).forEach(({field}) => {
       field.input.disabled = isFile;
+    });
+    // One angle that is entered states all three: the other two are the plan's.
+    this.rows.slice(1, 4).forEach(({field}) => {
+      field.input.disabled = isFile || !(plan || planProblem || 'attitude_yaw_pitch_roll_deg' in camera);
     });
     this.rows.slice(5).forEach(({field}) => {
       field.input.disabled = isFile || 'log' in camera;
     });
     this.forget.disabled = !('attitude_yaw_pitch_roll_deg' in camera);
+  }
+
+  // One number of a triple of the camera's: as stated, else by its log or path file in the first frame, else as usual.
+  private inForce(scene: Table, key: string, k: number, flown: (own: Plan['own']) => Ned, usual: number|null = null):
+      number|null {
+    const camera = tableOf(scene.camera);
+    const stated = camera[key];
+    if (Array.isArray(stated)) return Number(stated[k]);
+    if (!('log' in camera || 'path_file' in camera)) return usual;
+    const {plan} = this.now;
+    return plan ? flown(plan.own)[k] : null;
   }
 
   private row(
