@@ -80,6 +80,8 @@ std::optional<image::Rgb8> tinted_sky(const lens::Lens& lens,
       if (!ray || ray->dot(horizons[i]->up_in_cam) <= 0) continue;
       std::uint8_t* p = picture.at(x, y);
       p[0] = static_cast<std::uint8_t>(p[0] * 3 / 4 + 60);
+      p[1] = static_cast<std::uint8_t>(p[1] * 3 / 4);
+      p[2] = static_cast<std::uint8_t>(p[2] * 3 / 4);
     }
   return picture;
 }
