@@ -102,6 +102,7 @@ addEventListener('error', (e) => found.push(e.message || 'cannot load ' + e.targ
   await wait(100);
   out.byNameDown = names();
   out.vot = page.querySelectorAll('#vot tbody tr').length;
+  out.dashes = id('eao-caption').textContent.split('; ').pop();
   out.pairs = page.querySelectorAll('#pairs tbody tr').length;
   out.overflow = page.documentElement.scrollWidth - page.documentElement.clientWidth;
   out.found = frame.contentWindow.found;
@@ -276,6 +277,7 @@ def main():
             expect("a tracker can be hidden", out["hid"], True)
             expect("sorted by name", (out["byName"], out["byNameDown"]), (sorted(TRACKERS), sorted(TRACKERS, reverse=True)))
             expect("VOT's table", out["vot"], 2)
+            expect("dashes of the two protocols", out["dashes"], "full: restart, dashed: multi-start")
             expect("pairs", out["pairs"], 4)
             expect("wider than the screen by", out["overflow"], 0)
             if faults:

@@ -68,14 +68,15 @@
   const none = { display: false };
 
   // The plots are described by the program (evaluation/tracker_evaluation/page.h). They have no legends: the
-  // ranking says which style is whose.
+  // ranking says which style is whose, and the caption which dash is of which protocol.
   const drawPlots = () => {
     for (const canvas of document.querySelectorAll('canvas[data-plot]')) {
       const plot = data.plots[canvas.dataset.plot];
       canvas.closest('figure').hidden = !plot;
       if (plot) drawPlot(canvas, plot);
     }
-    byId('eao-caption').textContent = `Expected average overlap by length; the score is the mean over ${data.eao_range.join(' to ')} frames`;
+    const dashes = ['restart', 'multistart'].every((part) => trackers.some((t) => t[part])) ? '; full: restart, dashed: multi-start' : '';
+    byId('eao-caption').textContent = `Expected average overlap by length; the score is the mean over ${data.eao_range.join(' to ')} frames${dashes}`;
   };
 
   const drawPairs = () => {
