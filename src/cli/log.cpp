@@ -45,9 +45,9 @@ std::string records(const std::vector<Record>& list, const char* what) {
                 ", the longest gap from {:.3f} to {:.3f} s", longest->from_s, longest->to_s));
 }
 
-std::string range_of(const FlightLog& log, double flight_log::Fix::*member) {
+std::string range_of(const FlightLog& log, double flight_log::Fix::*member, int digits) {
   const auto [low, high] = std::ranges::minmax_element(log.fixes, {}, member);
-  return fmt::format("{:.6g} to {:.6g}", (*low).*member, (*high).*member);
+  return fmt::format("{:.{}g} to {:.{}g}", (*low).*member, digits, (*high).*member, digits);
 }
 
 // Distance flown and the highest speed over the path that a scene would take from the log.
@@ -74,10 +74,12 @@ std::string description(const FlightLog& log) {
                   name(log.format),
                   log.is_on_video_clock ? "the video's clock" : "a clock of its own");
   text += records(log.fixes, "positions") + "\n";
+  // Six decimals of up to 180 degrees: steps of 0.1 m.
+  constexpr int kDegreeDigits = 9;
   text += fmt::format("latitude: {} degrees\nlongitude: {} degrees\naltitude: {} m\n",
-                      range_of(log, &flight_log::Fix::latitude_deg),
-                      range_of(log, &flight_log::Fix::longitude_deg),
-                      range_of(log, &flight_log::Fix::altitude_m));
+                      range_of(log, &flight_log::Fix::latitude_deg, kDegreeDigits),
+                      range_of(log, &flight_log::Fix::longitude_deg, kDegreeDigits),
+                      range_of(log, &flight_log::Fix::altitude_m, 6));
   if (const auto& height_m = log.fixes.front().height_m)
     text += fmt::format("height above take-off: {:.1f} m at the first position\n", *height_m);
   text += flown(log) + "\n";

@@ -411,6 +411,14 @@ class Others(Case):
         os.remove(table)
         self.assert_refused(run("motion", "text.mkv", "-o", table), "text.mkv")
 
+    def test_degrees_of_a_log_tell_metres(self):
+        # From here to there 4 m north and 19 m east.
+        log = write("log.csv", "time_s,latitude_deg,longitude_deg,altitude_m\n" + "".join(
+            f"{k},{33.125401 + 1e-5 * k:.6f},{-117.331234 + 5e-5 * k:.6f},100\n" for k in range(5)))
+        said = run("log", "show", log).stdout
+        self.assertIn("latitude: 33.125401 to 33.125441 degrees", said)
+        self.assertIn("longitude: -117.331234 to -117.331034 degrees", said)
+
     def test_synth(self):
         for name in ("a", "b"):
             result = run("synth", "-o", os.path.join(self.out, name + ".mkv"), "--width", "64", "--height", "64",
