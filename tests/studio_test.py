@@ -884,6 +884,8 @@ def test_layout(airtruth, browser, root):
                     browser.press("button, select", [])
                 faults += [f"{size[0]} px, {'dark' if is_dark else 'light'}, {name}: {fault}" for fault in found]
             browser.run("airtruthStudio.studio.store.put({ dialog: null, tab: 'flyers' }); 1")
+    browser.looks((390, 844))
+    expect("least width, and how far a phone scrolls", browser.run("(scrollTo(768, 0), [document.querySelector('airtruth-studio').offsetWidth, scrollX])"), [768, 768 - 390])
     browser.looks((1600, 1000))
     expect("console", browser.errors, [])
     server.end()
