@@ -23,16 +23,16 @@ namespace airtruth::evaluation {
 
 // The truth and the tracker's answer in one frame.
 struct FramePair {
-  // Empty: the frame does not show the target.
+  // Empty, or with a number that is not finite: the frame does not show the target.
   std::optional<Box> truth;
-  // Empty: the tracker gave no box.
+  // Empty, or with a number that is not finite: the tracker gave no box.
   std::optional<Box> answer;
   // Time that the tracker took for the answer, in seconds.
   double seconds = 0;
 };
 
 // Intersection over union, within [0, 1]; exactly 1 for equal boxes, whatever the rounding of their
-// coordinates.
+// coordinates, and 0 where a number is not finite.
 AIRTRUTH_API double overlap(const Box& a, const Box& b);
 
 // Numbers of thresholds of the curves: overlaps 0, 0.05 .. 1 (kSuccessSteps); distances 0 .. 50 px

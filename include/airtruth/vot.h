@@ -23,7 +23,7 @@ enum class Mark { kUnknown = 0, kBegun = 1, kFailed = 2, kAnswer };
 
 struct VotFrame {
   Mark mark = Mark::kUnknown;
-  // The box of an answer; empty where the tracker gave none.
+  // The box of an answer; empty, or with a number that is not finite, where the tracker gave none.
   std::optional<Box> box;
 };
 using Trajectory = std::vector<VotFrame>;

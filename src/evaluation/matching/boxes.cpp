@@ -33,6 +33,7 @@ std::optional<double> angle_mrad(const lens::Lens& lens, const Box& a, const Box
 namespace airtruth::evaluation {
 
 double overlap(const Box& a, const Box& b) {
+  if (!is_finite(a) || !is_finite(b)) return 0;
   const auto common = intersection(a, b);
   if (!common) return 0;
   // By rounding, x + width - x differs from width. Equal boxes are therefore handled apart, and the

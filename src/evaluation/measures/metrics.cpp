@@ -143,15 +143,15 @@ Score score(std::span<const FramePair> frames, int width, int height) {
   Overlaps overlaps;
   add_rates(frames, score);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const FramePair& frame = frames[i];
-    if (!frame.truth) continue;
+    const auto truth = if_finite(frames[i].truth);
+    if (!truth) continue;
+    const auto answer = i == 0 ? truth : if_finite(frames[i].answer);
     ++score.counted;
-    add_curves(*frame.truth, i == 0 ? frame.truth : frame.answer, score);
+    add_curves(*truth, answer, score);
     if (i == 0) continue;
-    if (frame.answer) offsets.add(centre_of(*frame.answer) - centre_of(*frame.truth));
-    overlaps.add(frame.answer ? overlap(bounded(*frame.truth, width, height),
-                                        bounded(*frame.answer, width, height))
-                              : 0);
+    if (answer) offsets.add(centre_of(*answer) - centre_of(*truth));
+    overlaps.add(answer ? overlap(bounded(*truth, width, height), bounded(*answer, width, height))
+                        : 0);
   }
   offsets.write(score);
   overlaps.write(score);
@@ -188,7 +188,7 @@ std::optional<std::size_t> first_loss(std::span<const FramePair> frames) {
   int in_a_row = 0;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const FramePair& frame = frames[i];
-    if (!frame.truth) continue;
+    if (!if_finite(frame.truth)) continue;
     if (frame.answer && overlap(*frame.truth, *frame.answer) > kLostOverlap) {
       in_a_row = 0;
       first.reset();

@@ -67,6 +67,26 @@ TEST(Score, ExactAnswersGainNothingByRounding) {
 }
 
 // Perfect answers: the strict "more than" excludes the last of the 21 thresholds.
+// NaN stands for "no box" in files of results.
+TEST(Score, OfABoxOfNaNIsThatOfNoBox) {
+  const double nan = std::nan("");
+  const Box truth{0, 0, 9, 9};
+  const auto alike = [](const Score& score) {
+    return std::tuple(score.auc, score.average_overlap, score.centre_mean_px, score.precision);
+  };
+  const auto scored = [&](const std::optional<Box>& answer) {
+    const std::vector<FramePair> frames(12, {truth, answer, 0});
+    EXPECT_EQ(first_loss(frames), 1u);
+    return alike(score(frames, 640, 480));
+  };
+  for (const Box& none : {Box{nan, nan, nan, nan}, Box{nan, 0, 9, 9}, Box{0, 0, 9, nan}}) {
+    EXPECT_EQ(overlap(truth, none), 0);
+    EXPECT_EQ(overlap(none, truth), 0);
+    EXPECT_EQ(scored(none), scored(std::nullopt));
+    EXPECT_EQ(alike(score(std::vector<FramePair>{{none, truth, 0}}, 640, 480)), alike(Score{}));
+  }
+}
+
 TEST(Score, PerfectTracking) {
   const Box box{10, 20, 30, 40};
   const Score s = score(std::vector<FramePair>(5, {box, box, 0.01}), 640, 480);

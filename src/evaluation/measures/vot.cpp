@@ -7,6 +7,7 @@
 
 #include "evaluation/measures/outcome.h"
 #include "foundation/base/error.h"
+#include "foundation/geometry/box.h"
 
 namespace airtruth::evaluation {
 namespace {
@@ -40,10 +41,12 @@ double count(const Pixels& p) {
 }
 
 // The toolkit's empty region lies at the origin.
-double region_overlap(const std::optional<Box>& a,
-                      const std::optional<Box>& b,
+double region_overlap(const std::optional<Box>& stated_a,
+                      const std::optional<Box>& stated_b,
                       int width,
                       int height) {
+  const auto a = if_finite(stated_a);
+  const auto b = if_finite(stated_b);
   const Pixels of_a = a ? pixels(*a) : Pixels{};
   const Pixels of_b = b ? pixels(*b) : Pixels{};
   const Pixels both{std::min(of_a.left, of_b.left),

@@ -45,6 +45,19 @@ TEST(PixelOverlap, CountsWholePixelsAsTheToolkitDoes) {
   EXPECT_EQ(pixel_overlap({700, 0, 10, 10}, {700, 0, 10, 10}, 640, 480), 0);
 }
 
+// NaN stands for "no box" in files of results.
+TEST(PixelOverlap, OfABoxOfNaNIsThatOfNoBox) {
+  const double nan = std::nan("");
+  const VotFrame answer{Mark::kAnswer, kTruth};
+  for (const Box& none : {Box{nan, nan, nan, nan}, Box{nan, 100, 20, 5}}) {
+    EXPECT_EQ(pixel_overlap(kTruth, none, 640, 480), 0);
+    EXPECT_EQ(pixel_overlap(none, kTruth, 0, 0), 0);
+    EXPECT_EQ(frame_overlap({Mark::kAnswer, none}, kTruth, 640, 480), 0);
+    EXPECT_EQ(frame_overlap({Mark::kAnswer, none}, std::nullopt, 640, 480), 1);
+    EXPECT_EQ(frame_overlap(answer, none, 640, 480), 0);
+  }
+}
+
 TEST(Restart, ByHand) {
   // The run has 30 frames: begun, 11 answers of a third (9 of them in the burn-in), failed at 12,
   // begun again at 17, exact to the end.

@@ -30,7 +30,16 @@ inline PixelBox pixels_of(const Box& box) {
       x, y, whole_pixels(std::ceil(box.right())) - x, whole_pixels(std::ceil(box.bottom())) - y};
 }
 
-// Of two boxes of either kind.
+inline bool is_finite(const Box& box) {
+  return std::isfinite(box.x) && std::isfinite(box.y) && std::isfinite(box.width) &&
+         std::isfinite(box.height);
+}
+// A box with a NaN or an infinity is none, as in the files of results.
+inline std::optional<Box> if_finite(const std::optional<Box>& box) {
+  return box && is_finite(*box) ? box : std::nullopt;
+}
+
+// Of two boxes of either kind, whose numbers are finite: std::max drops a NaN.
 template <typename AnyBox = PixelBox>
 std::optional<AnyBox> intersection(const AnyBox& a, const AnyBox& b) {
   const auto x = std::max(a.x, b.x), y = std::max(a.y, b.y);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "foundation/geometry/box.h"
+
 namespace airtruth::results {
 namespace {
 
@@ -14,11 +16,6 @@ namespace {
 constexpr std::int64_t kMaxFrames = 500'000;
 // A frame with more is taken for an error of the detector.
 constexpr std::size_t kMaxPerFrame = 100'000;
-
-bool is_finite(const Box& box) {
-  return std::isfinite(box.x) && std::isfinite(box.y) && std::isfinite(box.width) &&
-         std::isfinite(box.height);
-}
 
 std::string text_of(const Box& box) {
   return fmt::format("{:.6g},{:.6g} {:.6g}x{:.6g}", box.x, box.y, box.width, box.height);
