@@ -71,7 +71,8 @@ struct RestartRuns {
 AIRTRUTH_API Restart restart_score(std::span<const RestartRuns> sequences,
                                    std::pair<int, int> eao_range);
 
-// A run from an anchor to the sequence's end or, backward, to its beginning.
+// A run from an anchor, a frame of the sequence, to the sequence's end or, backward, to its
+// beginning.
 struct AnchorRun {
   std::int64_t anchor = 0;
   bool is_backward = false;

@@ -163,6 +163,8 @@ std::pair<double, std::int64_t> accuracy_and_failures(const Trajectory& run,
 }
 
 std::vector<std::optional<Box>> truth_of(const VotTruth& truth, const AnchorRun& run) {
+  if (run.anchor < 0 || run.anchor >= std::ssize(truth.boxes))
+    throw Error("an anchor is not in its sequence");
   const auto at = truth.boxes.begin() + run.anchor;
   if (!run.is_backward) return {at, truth.boxes.end()};
   std::vector<std::optional<Box>> boxes(truth.boxes.begin(), at + 1);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <string>
+#include <tuple>
 
+#include <airtruth/error.h>
 #include <airtruth/metrics.h>
 #include <airtruth/vot.h>
 #include <gtest/gtest.h>
@@ -131,6 +134,15 @@ TEST(MultiStart, ByHand) {
 }
 
 // vot-toolkit 0.8.0: 0.625 and 0.8187074829931973.
+TEST(MultiStart, AnAnchorIsInItsSequence) {
+  for (const auto& [anchor, is_backward, frames] :
+       {std::tuple(20, true, 21), std::tuple(-1, false, 11), std::tuple(50, false, 10)}) {
+    const MultiStartRuns runs{
+        still(10), {{anchor, is_backward, run_of(std::string(std::size_t(frames), 'x'))}}};
+    EXPECT_THROW(multistart_score({&runs, 1}, {1, 1}), Error);
+  }
+}
+
 TEST(MultiStart, WhereTheTargetIsAbsentAsTheToolkitHasIt) {
   MultiStartRuns runs{still(8), {{0, false, run_of("bxxnxhxx")}}};
   for (std::size_t i = 3; i < 6; ++i) runs.truth.boxes[i].reset();
