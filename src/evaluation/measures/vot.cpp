@@ -210,7 +210,8 @@ Restart restart_score(std::span<const RestartRuns> sequences, std::pair<int, int
     double accuracy = 0;
     double failures = 0;
     for (const Trajectory& run : sequence.runs) {
-      check(run.size() == sequence.truth.boxes.size(), "a run is as long as its truth");
+      if (run.size() != sequence.truth.boxes.size())
+        throw Error("a run is not as long as its truth");
       const auto overlaps = overlaps_of(run, sequence.truth.boxes, sequence.truth);
       const auto [mean, failed] = accuracy_and_failures(run, overlaps);
       accuracy += mean;
@@ -250,7 +251,8 @@ RunFrames add_runs(const MultiStartRuns& sequence,
   RunFrames frames;
   for (const AnchorRun& run : sequence.runs) {
     const auto truth = truth_of(sequence.truth, run);
-    check(run.frames.size() == truth.size(), "a run goes to the sequence's end");
+    if (run.frames.size() != truth.size())
+      throw Error("a run is not as long as the sequence from its anchor");
     const auto overlaps = overlaps_of(run.frames, truth, sequence.truth);
     const std::size_t progress = progress_of(overlaps, truth);
     const bool failed = progress < overlaps.size();
@@ -298,7 +300,7 @@ MultiStart multistart_score(std::span<const MultiStartRuns> sequences,
 }
 
 std::vector<Anchor> anchors_of(const VotTruth& truth, int step) {
-  check(step > 0, "anchors lie apart");
+  if (step <= 0) throw Error("the step from anchor to anchor is not above 0");
   const std::int64_t length = std::ssize(truth.boxes);
   const auto shown = [&](std::int64_t frame) {
     return truth.boxes[static_cast<std::size_t>(frame)].has_value();

@@ -161,6 +161,14 @@ TEST(MultiStart, AFrameWithoutTargetIsNoFailure) {
   EXPECT_EQ(multistart_score({&runs, 1}, {1, 1}).robustness, 1);
 }
 
+TEST(Vot, RunsAndStepsThatDoNotFitAreErrorsOfTheArgument) {
+  const RestartRuns restarts{still(10), {run_of("bxx")}};
+  EXPECT_THROW(restart_score({&restarts, 1}, {1, 1}), Error);
+  const MultiStartRuns starts{still(10), {{0, false, run_of("bxx")}}};
+  EXPECT_THROW(multistart_score({&starts, 1}, {1, 1}), Error);
+  EXPECT_THROW(anchors_of(still(10), 0), Error);
+}
+
 TEST(Anchors, GoForwardInTheFirstHalfAndBackwardInTheSecond) {
   VotTruth truth = still(201);
   EXPECT_EQ(anchors_of(truth, 50),

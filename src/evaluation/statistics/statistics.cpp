@@ -50,11 +50,16 @@ double sign_test(const std::vector<double>& differences) {
   return static_cast<double>(as_far + 1) / (kSignDraws + 1);
 }
 
+void expect_pairs(std::span<const double> a, std::span<const double> b) {
+  if (a.size() != b.size()) throw Error("the two lists of values are not of one length");
+}
+
 }  // namespace
 
 std::optional<Interval> bootstrap_mean(std::span<const double> values,
                                        std::span<const double> weights) {
-  check(weights.empty() || weights.size() == values.size(), "each value has its weight");
+  if (!weights.empty() && weights.size() != values.size())
+    throw Error("there are not as many weights as values");
   if (values.size() < 2) return std::nullopt;
   Random random = Seed(1).stream("bootstrap");
   std::vector<double> means;
@@ -77,7 +82,7 @@ std::optional<Interval> bootstrap_mean(std::span<const double> values,
 }
 
 Paired paired(std::span<const double> a, std::span<const double> b) {
-  check(a.size() == b.size(), "pairs");
+  expect_pairs(a, b);
   Paired result;
   std::vector<double> differences;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -95,7 +100,7 @@ Paired paired(std::span<const double> a, std::span<const double> b) {
 }
 
 std::optional<double> kendall_tau(std::span<const double> a, std::span<const double> b) {
-  check(a.size() == b.size(), "two rankings of the same");
+  expect_pairs(a, b);
   const auto sign = [](double v) { return (v > 0) - (v < 0); };
   std::int64_t agree = 0;
   // Number of pairs that are not tied.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include <airtruth/error.h>
 #include <airtruth/statistics.h>
 #include <gtest/gtest.h>
 
@@ -92,6 +93,13 @@ TEST(KendallTau, ByHand) {
   EXPECT_DOUBLE_EQ(*kendall_tau(a, std::vector<double>{1, 2, 3, 3}), 5 / std::sqrt(30.0));
   EXPECT_FALSE(kendall_tau(a, std::vector<double>{1, 1, 1, 1}));
   EXPECT_FALSE(kendall_tau({}, {}));
+}
+
+TEST(Statistics, ListsOfOtherLengthsAreErrorsOfTheArgument) {
+  const std::vector<double> three = {1, 2, 3}, two = {1, 2};
+  EXPECT_THROW(bootstrap_mean(three, two), Error);
+  EXPECT_THROW(paired(three, two), Error);
+  EXPECT_THROW(kendall_tau(three, two), Error);
 }
 
 }  // namespace
