@@ -185,13 +185,15 @@ AIRTRUTH_API std::vector<Clip> read_clips(Format format,
 
 // A part of a set, for example "train".
 struct Part {
+  // A plain file name.
   std::string name;
   std::vector<Clip> clips;
 };
 
 // Writes a set of labels, without pictures, into a new folder. Classes are the categories of the
 // labels, sorted. Throws Error where the folder exists and is not empty, for a format that can only
-// be read, and where a file cannot be written.
+// be read, for a name of a part that is no plain file name and one of a clip that leads out of the
+// folder, and where a file cannot be written.
 AIRTRUTH_API void write_clips(Format format,
                               const std::filesystem::path& folder,
                               std::span<const Part> parts);

@@ -359,7 +359,25 @@ std::vector<Clip> read_clips(Format format,
   return clips;
 }
 
+namespace {
+
+// Names of files and folders below the set's folder are made of them. A clip that was read may lie
+// in folders of its own: "night/pass".
+void expect_names_below(const Part& part) {
+  if (part.name.empty() || part.name == "." || part.name == ".." ||
+      part.name.find('/') != std::string::npos)
+    throw Error("'" + part.name + "' is no name of a part; expected a plain file name");
+  for (const Clip& clip : part.clips)
+    if (const fs::path name(clip.name);
+        name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
+      throw Error("the clip's name '" + clip.name +
+                  "' leads out of the set's folder; expected a name below it");
+}
+
+}  // namespace
+
 void write_clips(Format format, const fs::path& folder, std::span<const Part> parts) {
+  for (const Part& part : parts) expect_names_below(part);
   if (fs::exists(folder) && (!fs::is_directory(folder) || !fs::is_empty(folder)))
     throw Error("exists and is not empty; expected a new folder", {folder.string()});
   make_folders(folder);

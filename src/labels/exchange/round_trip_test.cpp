@@ -213,6 +213,22 @@ TEST(RoundTrip, OfASetThatIsWrittenAtOnce) {
   EXPECT_THROW(write_clips(Format::kCsv, folder.path() / "csv", parts), Error);
 }
 
+TEST(RoundTrip, NoNameLeadsOutOfTheNewFolder) {
+  const Folder folder;
+  Clip clip;
+  const auto expect_refused = [&](const std::string& part) {
+    const Part written{part, {clip}};
+    EXPECT_THROW(write_clips(Format::kOtb, folder.path() / "new", {&written, 1}), Error) << part;
+    EXPECT_FALSE(fs::exists(folder.path() / "new"));
+  };
+  clip.name = "s";
+  for (const char* part : {"../other", "night/val", "..", ".", ""}) expect_refused(part);
+  for (const char* name : {"../../other", "/other", "a/../../../other"}) {
+    clip.name = name;
+    expect_refused("train");
+  }
+}
+
 // An import contains only boxes and tracks. Columns that a format requires are written all the same
 // and are read back as unknown.
 TEST(RoundTrip, WhatIsUnknownComesBackAsUnknown) {
