@@ -429,8 +429,9 @@ class Programs(Case):
               + '[output]\nvideo = "png"\n')
         made("render", "pictures.toml", "--out", ".", "--no-cache")
         write("told.sh", HELLO + 'read -r line; echo "$line" >&2; ' + LOOP[len(HELLO):])
-        made("detect", "pictures", "-d", f"told=exec:sh {path('told.sh')}", "-o", "told", "--frame-rate", "7")
+        made("detect", "pictures", "-d", f"told=exec:sh {path('told.sh')}", "-o", "told")
         self.assertAlmostEqual(json.loads(read("told", "told", "logs", "pictures.log"))["begin"]["frame_rate_hz"], 20, places=6)
+        self.assert_refused(run("detect", "pictures", "-d", "cmo", "-o", "untold", "--frame-rate", "7"), "--frame-rate has no effect")
 
 
 if __name__ == "__main__":

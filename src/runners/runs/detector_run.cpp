@@ -362,9 +362,12 @@ class DetectorRun {
         throw Error("two detectors are named '" + named.name +
                     "'; expected NAME=DETECTOR with a name for each");
       // An Error for what is no detector, before anything is made.
-      make_detector(named.command, options, threads_);
+      const auto detector = make_detector(named.command, options, threads_);
+      sees_own_aircraft_ |= !detector->leaves_out_own_aircraft();
       results_.push_back(std::make_unique<DetectorResults>(named, out, options));
     }
+    if (options.mask_results && !sees_own_aircraft_)
+      throw Error("--mask-results has no effect without a network or a program; leave it out");
   }
 
   std::vector<DetectSummary> over(const labelled::LabelledSet& set) {
@@ -372,6 +375,7 @@ class DetectorRun {
     for (const std::string& name : set.names())
       if (matches(options_.only, name)) names.push_back(name);
     if (names.empty()) throw Error("no sequence fits '" + options_.only + "'");
+    expect_effects(set);
     open("detections.json", names);
     std::vector<DetectionClip> backgrounds;
     if (options_.backgrounds) backgrounds = backgrounds_of(set, names, inputs_, options_.warn);
@@ -388,6 +392,7 @@ class DetectorRun {
     source_ = video::whole_path(video).string();
     require_utf8(source_);
     const DetectionClip clip = clip_of(video);
+    expect_mask(options_.mask.has_value());
     // Errors come before anything is made.
     video::expect_rate(
         video, ClipFrames(with_facts(clip), false, options_.warn).info(), options_.frame_rate_hz);
@@ -409,6 +414,31 @@ class DetectorRun {
                         name,
                         file));
     for (const auto& results : results_) results->open(coco_name);
+  }
+
+  void expect_mask(bool has_mask) const {
+    if (options_.mask_results && !has_mask)
+      throw Error("--mask-results has no effect without a mask; leave it out");
+  }
+
+  // Throws Error for a fact that every sequence of the whole set states itself, of which --only may
+  // take a few at a time: the results would be recorded as of it.
+  void expect_effects(const labelled::LabelledSet& set) const {
+    const auto has = [&](const auto& fits) {
+      return std::ranges::any_of(set.names(),
+                                 [&](const std::string& name) { return fits(clip_of(set, name)); });
+    };
+    const auto has_no_lens = [](const DetectionClip& clip) { return !clip.lens; };
+    const auto has_no_rate = [](const DetectionClip& clip) {
+      return !clip.reading.picture_rate_hz &&
+             video::Reader(clip.media, {.threads = 1}).info().is_of_pictures;
+    };
+    const auto has_mask = [](const DetectionClip& clip) { return clip.own_aircraft.has_value(); };
+    if (options_.lens && !has(has_no_lens))
+      throw Error("--lens has no effect over sequences that state their lens; leave it out");
+    if (options_.frame_rate_hz && !has(has_no_rate))
+      throw Error("--frame-rate has no effect over sequences that state their rate; leave it out");
+    if (options_.mask_results) expect_mask(options_.mask || has(has_mask));
   }
 
   // The lens and the mask that the user states, for a clip that states none.
@@ -475,8 +505,9 @@ class DetectorRun {
   }
 
   const DetectOptions& options_;
-  int threads_;         // of a network
-  std::string source_;  // of a video; "" for a set
+  int threads_;                     // of a network
+  bool sees_own_aircraft_ = false;  // one of the detectors at least
+  std::string source_;              // of a video; "" for a set
   setup::SharedInputs inputs_;
   std::vector<std::unique_ptr<DetectorResults>> results_;
 };
