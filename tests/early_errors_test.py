@@ -188,6 +188,8 @@ class EarlyErrors(unittest.TestCase):
             (("dataset", "verify", "made", "--every", "2"), "--every has no effect without --deep"),
             (("dataset", "import", "bad.csv", "-f", "coco", "-o", "i", "--origin", "1"), "--origin has no effect without --format csv"),
             (("evaluate", "made/clip", "made", "-o", "e", "--score", "1"), "--score has no effect without results of a detector"),
+            (("evaluate", "made/clip", "made/clip/sequence.json", "-o", "e", "--score", "1", "--false-alarms", "5"),
+             "--false-alarms has no effect with --score"),
             (("evaluate", "made/clip", "made/clip/sequence.json", "-o", "e", "--origin", "1"), "--origin has no effect without results of a tracker"),
             (("studio", "scene.toml", "--lens", "bad.yml"), "--lens has no effect on a scene"),
             (("compare", "--real", "short.mkv", "--boxes", "late.csv", "--scene", "scene.toml", "-o", "c", "--no-match", "--helicopter"),

@@ -150,7 +150,7 @@ void print_false_alarms(const scores::DetectorScore& detector, Console& console)
 
 constexpr const char* kOfDetectors = "Detectors' results";
 
-void add_detection_options(CLI::App& command, Evaluate& arguments) {
+void add_detection_options(CLI::App& command, Evaluate& arguments, Context& context) {
   detector_evaluation::AssessOptions& options = arguments.detections;
   command.add_option("--centre-px", options.centre_px)
       ->description(
@@ -167,6 +167,11 @@ void add_detection_options(CLI::App& command, Evaluate& arguments) {
           "0.1)")
       ->check(CLI::Range(0.0, 1e6))
       ->group(kOfDetectors);
+  expect_effect(
+      context,
+      command.get_option("--false-alarms"),
+      [&options] { return !options.score; },
+      "with --score");
   command.add_option("--volume", options.volume)
       ->description(
           "Volume to keep clear of: f3442, do365-non-cooperative and others, or the scenes' "
@@ -450,7 +455,7 @@ void add_evaluate(CLI::App& app, Context& context) {
           "tables, report.html and detection.html")
       ->required();
   add_measure_options(command, *arguments);
-  add_detection_options(*command, *arguments);
+  add_detection_options(*command, *arguments, context);
   expect_results(*command, *arguments, context);
   command->add_option("--against", arguments->against)
       ->description("Another evaluation.json: how far do the two rankings agree?");
