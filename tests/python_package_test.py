@@ -209,6 +209,8 @@ class Frames(unittest.TestCase):
         del frames
         copy = pickle.loads(pickle.dumps(frame))
         self.assertTrue(same_frame(copy, frame))
+        for one, other in ((frame, copy), (frame.truth, copy.truth), (frame.intruders[0], copy.intruders[0])):
+            self.assertEqual([one == one, one == other, one in [other, one]], [True, False, True])
         frame.planes[0][:] = 0
         self.assertGreater(copy.gray.max(), 0)
         self.assertEqual(lens.width, 160)
@@ -1009,6 +1011,9 @@ class Hostile(unittest.TestCase):
             point = [[0.3, -0.2, 1]]
             self.assertTrue(np.array_equal(copy.pixel_from_cam(point), lens.pixel_from_cam(point)))
             self.assertEqual(copy.max_angle_rad, lens.max_angle_rad)
+            self.assertEqual(copy, lens)
+            self.assertEqual(hash(copy), hash(lens))
+            self.assertNotEqual(lens, airtruth.Lens.pinhole((500, 511), (320, 240), 640, 480))
         self.assertEqual(copy.max_angle_rad, 0.5)
         moved = airtruth.Motion(640, 480, lens, *[np.zeros(0)] * 6, [], None)
         self.assertEqual(pickle.loads(pickle.dumps(moved)).lens.model, "fisheye")

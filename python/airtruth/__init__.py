@@ -6,7 +6,8 @@ the first pixel is (0.5, 0.5). The world is north, east, down in metres; the cam
 
 What is wrong with a file or a value is an airtruth.Error of one line; a wrong type is a TypeError, a wrong shape or number a
 ValueError. Long calls let other threads of Python run. Renderings and readers belong to the process that made them; frames,
-lenses, sequences and data sets can be sent to others.
+lenses, sequences and data sets can be sent to others. Lenses are equal by their facts, and objects that hold arrays to themselves
+alone.
 """
 
 import importlib as _importlib

@@ -14,7 +14,7 @@ from ._progress import Progress, shown
 from ._video import Path
 
 
-@dataclass
+@dataclass(eq=False)
 class Measured:
     """One quantity of a camera file."""
 
@@ -26,7 +26,7 @@ class Measured:
     doubt: str  # a measurement that contradicts the value by more than the errors allow
 
 
-@dataclass
+@dataclass(eq=False)
 class Calibration:
     """What a clip's camera and air do to light."""
 

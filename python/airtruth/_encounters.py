@@ -18,7 +18,7 @@ Range = Union[float, Sequence[float], Numbers]
 Choice = Union[int, Sequence[int]]
 
 
-@dataclass
+@dataclass(eq=False)
 class Encounters:
     """Encounters of aircraft: n encounters, and columns with a row for each of m states of an aircraft."""
 

@@ -57,7 +57,7 @@ class Encounter:
     volumes: List[Volume] = field(default_factory=list)
 
 
-@dataclass
+@dataclass(eq=False)
 class Intruder:
     """The truth of one intruder in one frame, under the names of truth.jsonl (docs/formats/truth.md). What is not defined is None.
 
@@ -115,7 +115,7 @@ class Intruder:
         return self.visible_box_px
 
 
-@dataclass
+@dataclass(eq=False)
 class FrameTruth:
     """The truth of one frame.
 
@@ -137,7 +137,7 @@ class FrameTruth:
     intruders: List[Intruder]  # in the order of the scene
 
 
-@dataclass
+@dataclass(eq=False)
 class Frame:
     """A picture, and where it is known its truth.
 

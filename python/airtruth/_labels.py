@@ -10,7 +10,7 @@ from ._frames import Numbers
 from ._video import Path
 
 
-@dataclass
+@dataclass(eq=False)
 class Label:
     """One object in one frame of labelled video. What a format does not state is None."""
 
@@ -28,7 +28,7 @@ class Label:
     mask: Optional[Dict[str, Any]]  # COCO's compressed run lengths: {"size": (height, width), "counts": text}
 
 
-@dataclass
+@dataclass(eq=False)
 class LabelledFrame:
     """The labels of one frame."""
 
@@ -38,7 +38,7 @@ class LabelledFrame:
     labels: List[Label]
 
 
-@dataclass
+@dataclass(eq=False)
 class Clip:
     """The labels of one video.
 

@@ -159,5 +159,11 @@ class Lens:
         arguments = (self.focal_px.tolist(), self.principal_point_px.tolist(), *distortion, self.width, self.height, *limit)
         return getattr(Lens, self.model), arguments
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Lens) and self.__reduce__() == other.__reduce__()
+
+    def __hash__(self) -> int:
+        return hash(repr(self))
+
     def __repr__(self) -> str:
         return f"<airtruth.Lens {self.model} {self.width}x{self.height}>"

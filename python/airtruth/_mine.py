@@ -21,7 +21,7 @@ _NEAR_PX = 10  # as far apart, or half of the longer side, two boxes are of one 
 _LEAST_WEIGHT = 0.001  # of a background
 
 
-@dataclass
+@dataclass(eq=False)
 class FalseAlarm:
     """A detection in a video in which nothing flies."""
 
@@ -46,7 +46,7 @@ class FalseAlarm:
         return np.concatenate([np.clip(corner, 0, whole - size), size])
 
 
-@dataclass
+@dataclass(eq=False)
 class HardNegatives:
     """What a detector takes for an aircraft in a video without one, which mine() finds.
 

@@ -25,7 +25,7 @@ class GyroAgreement:
     rms_dps: float
 
 
-@dataclass
+@dataclass(eq=False)
 class Motion:
     """How a clip's camera moved: columns with a row for each of n frames."""
 

@@ -19,7 +19,7 @@ from ._video import Path
 _MOST_INDEX = 2**40
 
 
-@dataclass
+@dataclass(eq=False)
 class Sample:
     """One picture to learn from, or several in a row of one flight, with their truth.
 

@@ -21,7 +21,7 @@ Interval = Tuple[float, float]
 Size = Tuple[int, int]
 
 
-@dataclass
+@dataclass(eq=False)
 class Score:
     """The measures of one sequence, or means over sequences. Curves are float64 arrays."""
 
@@ -47,7 +47,7 @@ class Score:
     frames_per_second_median: Optional[float]
 
 
-@dataclass
+@dataclass(eq=False)
 class Curve:
     """A curve of precision over recall."""
 
@@ -58,7 +58,7 @@ class Curve:
     truths: int  # that count
 
 
-@dataclass
+@dataclass(eq=False)
 class AveragePrecision:
     """The numbers that COCO prints, and those by the distance of centres."""
 
@@ -81,7 +81,7 @@ class AveragePrecision:
     curve_centre: Optional[Curve]
 
 
-@dataclass
+@dataclass(eq=False)
 class Froc:
     """The free-response operating characteristic: columns with a row for each of n thresholds, by falling score."""
 
@@ -98,7 +98,7 @@ class Froc:
     aircraft: int  # aircraft in images
 
 
-@dataclass
+@dataclass(eq=False)
 class Hota:
     """Higher order tracking accuracy and its parts, each the mean over 19 thresholds of overlap."""
 
@@ -144,7 +144,7 @@ class Paired:
     ties: int
 
 
-@dataclass
+@dataclass(eq=False)
 class Restart:
     """VOT's measures of a tracker that is restarted after each failure; without a run they are None."""
 
@@ -155,7 +155,7 @@ class Restart:
     eao_curve: Numbers
 
 
-@dataclass
+@dataclass(eq=False)
 class MultiStart:
     """VOT's measures of a tracker that starts at many frames; without a run they are None."""
 
