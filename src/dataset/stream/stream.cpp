@@ -68,7 +68,8 @@ struct Stream::State {
             *shared),
         frames(static_cast<std::size_t>(catalogue.stream.memory_mb) * 1'000'000),
         clips(catalogue.backgrounds.size()),
-        arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic) {
+        arena(options.threads > 0 ? pipeline::arena_threads(options.threads)
+                                  : tbb::task_arena::automatic) {
     options.shared = shared;
     options.threads = 1;  // of decoders
     if (options.warn)

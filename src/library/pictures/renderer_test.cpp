@@ -4,6 +4,7 @@
 #include <airtruth/dataset.h>
 #include <airtruth/renderer.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include "foundation/base/files.h"
@@ -105,6 +106,17 @@ TEST_F(InMemory, FramesAndTruthAreThoseOfTheFiles) {
     for (const int threads : {1, 3})
       expect_the_same(Renderer::from_text(scene, root_, without_cache(threads)), folder, name);
   }
+}
+
+TEST_F(InMemory, MoreThreadsThanThereAreAreNoWarningOnStandardError) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  testing::internal::CaptureStderr();
+  auto renderer = Renderer::from_text(
+      scene_text("many", "[motion]\nmodel = \"none\"\n"), root_, without_cache(3));
+  int frames = 0;
+  while (renderer.next()) ++frames;
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(frames, kFrames);
 }
 
 TEST_F(InMemory, AReadSequenceHasTheTruthAndTheBoxesOfItsFiles) {

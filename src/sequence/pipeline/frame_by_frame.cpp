@@ -16,7 +16,7 @@ struct FrameByFrame::State {
         threads(options.threads > 0 ? options.threads : tbb::info::default_concurrency()) {
     OpenedScene opened = open_scene(scene, options);
     if (opened.backdrop) threads = 1;  // OpenGL's context belongs to one thread
-    arena.initialize(threads);
+    arena.initialize(arena_threads(threads));
     arena.execute([&] { maker.emplace(resolve(std::move(opened), options), options.stop); });
   }
 

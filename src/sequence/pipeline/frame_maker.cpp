@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -62,6 +63,11 @@ void FrameMaker::describe(Work& work) const {
     work.masks = insertion::mask_files(work.truth, work.painted.layer, resolved_.world.lens.size());
   work.painted.layer = {};
   work.painted.visible = {};
+}
+
+int arena_threads(int wanted) {
+  const auto most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(wanted, static_cast<int>(most));
 }
 
 }  // namespace airtruth::pipeline

@@ -75,4 +75,8 @@ class FrameMaker {
   insertion::AmbientEstimator ambient_;
 };
 
+// The threads of an arena in which so many work: no more than oneTBB has, which warns on standard
+// error where it is asked for more.
+int arena_threads(int wanted);
+
 }  // namespace airtruth::pipeline
