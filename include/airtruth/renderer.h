@@ -19,8 +19,8 @@
 namespace airtruth {
 
 struct RenderOptions {
-  // Number of threads, and of frames that are made at the same time; 0: one for each core. Pictures
-  // and truth do not depend on it.
+  // Number of threads, and of frames that are made at the same time; 0: one for each core; at most
+  // 256. Pictures and truth do not depend on it.
   int threads = 0;
   // True: the measured motion and calibration of a clip are kept in a folder and read from it.
   bool use_cache = true;

@@ -22,8 +22,8 @@ namespace airtruth {
 struct StreamOptions {
   // With the catalogue it decides every sample; another seed gives other samples.
   std::uint64_t seed = 1;
-  // Number of threads that draw one sample. Samples do not depend on it. Loaders that run several
-  // workers take 1.
+  // Number of threads that draw one sample; 0: one for each core; at most 256. Samples do not
+  // depend on it. Loaders that run several workers take 1.
   int threads = 1;
   // As in RenderOptions.
   bool use_cache = true;

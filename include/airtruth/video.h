@@ -44,7 +44,7 @@ struct VideoFrame {
 class AIRTRUTH_API VideoReader {
  public:
   // Throws Error for a file that is missing, empty, no video or without a frame that decodes, and
-  // for a first_frame past the end.
+  // for a first_frame below 0 or past the end.
   explicit VideoReader(const std::filesystem::path& video,
                        std::int64_t first_frame = 0,
                        const Warn& warn = {});

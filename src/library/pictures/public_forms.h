@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
+#include <airtruth/error.h>
 #include <airtruth/picture.h>
 #include <airtruth/video.h>
 
@@ -23,9 +26,16 @@ pipeline::Options cache_options(const AnyOptions& wanted) {
   return options;
 }
 
-// What RenderOptions and StreamOptions have in common.
+// Frames in memory at a time; as in Python.
+constexpr int kMaxThreads = 256;
+
+// What RenderOptions and StreamOptions have in common. Throws Error for a number of threads that is
+// none.
 template <typename AnyOptions>
 pipeline::Options run_options(const AnyOptions& wanted) {
+  if (wanted.threads < 0 || wanted.threads > kMaxThreads)
+    throw Error("threads is " + std::to_string(wanted.threads) + "; expected 0 to " +
+                std::to_string(kMaxThreads));
   pipeline::Options options = cache_options(wanted);
   options.threads = wanted.threads;
   options.warn = wanted.warn;

@@ -119,6 +119,12 @@ TEST_F(InMemory, MoreThreadsThanThereAreAreNoWarningOnStandardError) {
   EXPECT_EQ(frames, kFrames);
 }
 
+TEST_F(InMemory, NumbersOutOfRangeAreErrorsOfTheArgument) {
+  for (const int threads : {-1, 257})
+    EXPECT_THROW(Renderer::from_text(scene_text("none", ""), root_, without_cache(threads)), Error);
+  EXPECT_THROW(VideoReader(root_ / "flight.mkv", -1), Error);
+}
+
 TEST_F(InMemory, AReadSequenceHasTheTruthAndTheBoxesOfItsFiles) {
   const fs::path folder = rendered(scene_text("read", "[motion]\nmodel = \"none\"\n"));
   const DataSet set(folder);

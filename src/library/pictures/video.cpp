@@ -15,6 +15,19 @@ VideoInfo public_info(const video::StreamInfo& info) {
           info.pixel_format};
 }
 
+namespace {
+
+video::Reader reader_from(const std::filesystem::path& video,
+                          std::int64_t first_frame,
+                          const Warn& warn) {
+  if (first_frame < 0)
+    throw Error("first_frame is " + std::to_string(first_frame) + "; expected 0 or more",
+                {video.string()});
+  return video::Reader(video, {.first_frame = first_frame}, warn);
+}
+
+}  // namespace
+
 struct VideoReader::State {
   video::Reader reader;
 };
@@ -22,7 +35,7 @@ struct VideoReader::State {
 VideoReader::VideoReader(const std::filesystem::path& video,
                          std::int64_t first_frame,
                          const Warn& warn)
-    : state_(new State{video::Reader(video, {.first_frame = first_frame}, warn)}) {}
+    : state_(new State{reader_from(video, first_frame, warn)}) {}
 VideoReader::~VideoReader() = default;
 VideoReader::VideoReader(VideoReader&&) noexcept = default;
 VideoReader& VideoReader::operator=(VideoReader&&) noexcept = default;
