@@ -433,6 +433,18 @@ class Programs(Case):
         self.assertAlmostEqual(json.loads(read("told", "told", "logs", "pictures.log"))["begin"]["frame_rate_hz"], 20, places=6)
         self.assert_refused(run("detect", "pictures", "-d", "cmo", "-o", "untold", "--frame-rate", "7"), "--frame-rate has no effect")
 
+    def test_a_rendered_sequence_whose_video_ends_before_its_truth_is_refused(self):
+        made("synth", "-o", "short.mkv", "--frames", "3", "--width", "320", "--height", "240")
+        write("short.toml", 'name = "short"\n[background]\nvideo = "short.mkv"\n[lens]\nvertical_fov_deg = 40\n[motion]\nmodel = "none"\n'
+              + '[output]\nvideo = "png"\n')
+        made("render", "short.toml", "--out", ".", "--no-cache")
+        last = max(os.path.join(place, name) for place, _, names in os.walk(path("short")) for name in names if name.endswith("000002.png"))
+        os.rename(last, path("last.png"))
+        detect = lambda: run("detect", "short", "-d", "frame-difference", "-o", "of-short")
+        self.assert_refused(detect(), "ends before the labels of short do")
+        os.rename(path("last.png"), last)
+        self.assertIn("in 3 frames of 1 sequences", detect().stdout)
+
 
 if __name__ == "__main__":
     EXAMPLE = os.path.abspath(sys.argv.pop())

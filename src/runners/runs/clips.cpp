@@ -44,6 +44,7 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
   }
   const replay::Finished finished = replay::open_finished(set.folder(name));
   clip.media = finished.video;
+  clip.frames_of_truth = std::ssize(finished.truth.frames);
   clip.reading.picture_rate_hz = finished.picture_rate_hz;
   clip.lens = lens::lens_of(finished.truth.lens);
   if (finished.scene) clip.own_aircraft = finished.scene->background.mask;
@@ -166,7 +167,7 @@ std::optional<detector::FrameInput> ClipFrames::next() {
   do {
     frame_ = reader_.next();
     if (!frame_) {
-      if (clip_.frames.empty()) return std::nullopt;
+      if (clip_.frames.empty() && index_ >= clip_.frames_of_truth) return std::nullopt;
       throw Error("ends before the labels of " + clip_.name + " do", {clip_.media.string()});
     }
     begins_shot = begins_shot || frame_->begins_shot;

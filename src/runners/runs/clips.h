@@ -37,6 +37,8 @@ struct DetectionClip {
   std::int64_t frame_step = 1;
   // The folder of the sequence whose record names `own_aircraft`; empty where none does.
   fs::path sequence;
+  // Of a rendered sequence that of its truth, which its video holds at least; else 0.
+  std::int64_t frames_of_truth = 0;
 };
 
 // A sequence of a set with all its frames. Throws Error where it has no video.
