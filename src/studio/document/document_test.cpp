@@ -2,11 +2,13 @@
 #include "studio/document/document.h"
 
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
@@ -140,6 +142,30 @@ TEST_F(OfAFile, ACrashLosesNothing) {
   document.undo();
   document.undo();
   EXPECT_EQ(document.text(), kText);
+}
+
+// A limit of the size of files stands for a full disk: a part of the second step still fits.
+TEST_F(OfAFile, AStepThatTheDiskHadNoRoomForIsWrittenWithTheNext) {
+  {
+    Document document = open();
+    document.edit(fov(61), "");
+    rlimit unlimited{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit full{fs::file_size(journal()) + 10, unlimited.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+    document.edit(fov(62), "");
+    document.edit(fov(63), "");
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+    std::signal(SIGXFSZ, handler);
+    document.edit(fov(64), "");
+    document.edit(fov(65), "");
+  }
+  Document document = open();
+  EXPECT_THAT(warnings_,
+              testing::ElementsAre(HasSubstr("cannot be written"),
+                                   HasSubstr("5 steps that were not saved")));
+  EXPECT_EQ(document.text(), with_fov("65"));
 }
 
 TEST_F(OfAFile, OneStudioAtATimeHasAFile) {

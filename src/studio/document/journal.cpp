@@ -194,7 +194,11 @@ void Journal::write(const std::string& line) {
   while (done < line.size()) {
     const ssize_t wrote = ::write(file_.get(), line.data() + done, line.size() - done);
     if (wrote < 0 && errno == EINTR) continue;
-    if (wrote <= 0) throw Error(std::generic_category().message(errno), {path_.string()});
+    if (wrote <= 0) {
+      const int reason = errno;
+      file_.reset();  // the next step writes the file anew, without the part of this line
+      throw Error(std::generic_category().message(reason), {path_.string()});
+    }
     done += static_cast<std::size_t>(wrote);
   }
   bytes_ += line.size();
