@@ -43,6 +43,19 @@ class Kept(program.Case):
         os.remove(path("of-anew", "opencv-kcf", "one.run.json"))  # as an older airtruth left it
         self.assertIn("2 were there", track().stdout)
 
+    def test_a_run_without_its_times_is_not(self):
+        imported("otb", "otb", "set")
+        restart = ["--protocol", "restart", "--repetitions", "1"]
+        for how, text, times in (([], "one.txt", "one_time.txt"), (restart, "restart/one/one_001.txt", "restart/one/one_001_time.value")):
+            track = lambda: made("track", "set", "--only", "one", "-t", "opencv-kcf", "-o", "untimed", *how).stdout
+            self.assertIn("1 runs tracked", track())
+            before = read("untimed", "opencv-kcf", text)
+            os.remove(path("untimed", "opencv-kcf", times))  # as a kill between the two leaves it
+            self.assertIn("1 runs tracked", track())
+            self.assertEqual(len(read("untimed", "opencv-kcf", times).split()), FRAMES)
+            self.assertEqual(read("untimed", "opencv-kcf", text), before)
+            self.assertIn("1 were there", track())
+
     def test_settings_of_a_call_without_results_are_not(self):
         write("blind/a.csv", "frame,x,y,w,h\n0,10,20,30,20\n1,10,20,30,20\n")
         made("dataset", "import", "blind", "-f", "csv", "--size", "320x240", "-o", "blind-set")

@@ -174,7 +174,7 @@ class TrackerRun {
                          {"first_frame", first_frame}};
     open_folder();
     if (fs::exists(file)) expect_begun_at(init, file);
-    if (is_there(file, origin)) return summary_;
+    if (is_there(file, results::Protocol::kOnePass, origin)) return summary_;
     follower.begin(*picture, init);
     follower.add(Mark::kAnswer, init);
     for (std::int64_t i = first_frame + 1;
@@ -265,10 +265,12 @@ class TrackerRun {
     write_file(summary_.folder / "tracker.json", record.dump(1) + "\n");
   }
 
-  // Counts a run that is there. Throws Error where it is of another origin.
-  bool is_there(const fs::path& file, const Json& origin) {
+  // Counts a run that is there, with its times: a process that was killed may have left the one
+  // without the other. Throws Error where it is of another origin.
+  bool is_there(const fs::path& file, results::Protocol protocol, const Json& origin) {
     if (!fs::exists(file)) return false;
     refuse_other(results::run_record(file), origin);
+    if (!fs::exists(results::times_file(file, protocol))) return false;
     const std::lock_guard lock(mutex_);
     ++summary_.kept;
     return true;
@@ -344,7 +346,7 @@ class TrackerRun {
                    const Json& origin) {
     const fs::path file =
         results::trajectory_file(summary_.folder, protocol, clip.name, anchor.frame);
-    if (is_there(file, origin)) return;
+    if (is_there(file, protocol, origin)) return;
     Follower follower(command_, options_, options_.seed);
     const std::int64_t way = anchor.is_backward ? -1 : 1;
     for (std::int64_t i = anchor.frame;
@@ -370,7 +372,7 @@ class TrackerRun {
                             const Json& origin) {
     const fs::path file = results::trajectory_file(
         summary_.folder, results::Protocol::kRestart, clip.name, repetition);
-    if (is_there(file, origin)) return;
+    if (is_there(file, results::Protocol::kRestart, origin)) return;
     Follower follower(
         command_, options_, options_.seed + static_cast<std::uint64_t>(repetition) - 1);
     bool is_begun = false;
