@@ -504,8 +504,17 @@ TEST_F(Build, AFolderBelongsToOneCatalogueAndOneBuild) {
   EXPECT_THAT(error_of_build(other), HasSubstr("catalogue"));
   EXPECT_EQ(error_of_build(catalogue), "no error");
   // While another process is at work in it: flock() counts two openings of one file as two.
-  const RunLock elsewhere = catalogue::lock_of(catalogue::Folder{root_ / "set"}, Sharing::kAlone);
-  EXPECT_THAT(error_of_build(catalogue), HasSubstr("at work"));
+  const catalogue::Folder folder{root_ / "set"};
+  for (const Sharing sharing : {Sharing::kAlone, Sharing::kShared}) {
+    const RunLock elsewhere = catalogue::lock_of(folder, sharing);
+    EXPECT_THAT(error_of_build(catalogue), HasSubstr("at work"));
+    EXPECT_TRUE(build::status(root_ / "set").at_work);
+  }
+  EXPECT_FALSE(build::status(root_ / "set").at_work);
+  // A lock that cannot be made is nobody's.
+  fs::remove(folder.lock());
+  fs::create_symlink(root_ / "nowhere" / "lock", folder.lock());
+  EXPECT_FALSE(build::status(root_ / "set").at_work);
 }
 
 }  // namespace

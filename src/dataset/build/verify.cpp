@@ -12,13 +12,16 @@
 #include <vector>
 
 #include <airtruth/labels.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include "camera/lens/lens.h"
 #include "dataset/build/inputs.h"
 #include "dataset/catalogue/expand.h"
 #include "dataset/sequences/layout.h"
+#include "foundation/base/descriptor.h"
 #include "foundation/base/error.h"
+#include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/in_parallel.h"
 #include "foundation/base/median.h"
@@ -50,12 +53,15 @@ constexpr double kSureContrast = 3;
 constexpr std::ptrdiff_t kMostlySeen = 5;
 constexpr double kCodecFactor = 10;
 
+// Of the lock of a set that cannot be written here nothing but another's hold on it is of interest.
 bool is_at_work(const catalogue::Folder& folder) {
+  const fs::path file = folder.lock();
+  Descriptor lock(::open(file.c_str(), O_RDWR | O_CLOEXEC));  // NFS locks what is open for writing
+  if (!lock.is_open()) lock.reset(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   try {
-    const RunLock lock = catalogue::lock_of(folder, Sharing::kAlone);
-    return false;
+    return lock.is_open() && try_lock(lock.get(), file) == Lock::kBusy;
   } catch (const Error&) {
-    return true;
+    return false;
   }
 }
 

@@ -58,8 +58,7 @@ Catalogue catalogue_of(const Folder& folder) {
 }
 
 RunLock lock_of(const Folder& folder, Sharing sharing, const Warn& to) {
-  return {
-      folder.root / ".lock", folder.root, to, sharing, "another build is at work in this folder"};
+  return {folder.lock(), folder.root, to, sharing, "another build is at work in this folder"};
 }
 
 }  // namespace airtruth::catalogue

@@ -32,6 +32,7 @@ struct Folder {
   fs::path cache() const { return root / ".cache"; }
   fs::path manifest() const { return root / "manifest"; }
   fs::path record() const { return root / "dataset.json"; }
+  fs::path lock() const { return root / ".lock"; }
   // The list of failures of a whole build, or of one share of it.
   fs::path failed(std::int64_t share, std::int64_t shares) const {
     return root / (shares > 1 ? "failed-" + std::to_string(share) + ".jsonl" : "failed.jsonl");
