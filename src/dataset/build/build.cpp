@@ -2,6 +2,9 @@
 #include "dataset/build/build.h"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <exception>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -9,6 +12,8 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -43,6 +48,15 @@ constexpr std::size_t kMaxOrdered = 4096;
 
 // Warnings that are remembered, in bounded memory.
 constexpr std::size_t kMaxSaid = 4096;
+
+// Every message about a file that cannot be written has the system's words for the reason. These
+// reasons are the same for the next sequence.
+bool is_of_a_full_disk(const std::exception& error) {
+  const std::string_view what = error.what();
+  return std::ranges::any_of(std::array{ENOSPC, EDQUOT, EROFS}, [&](int reason) {
+    return what.find(std::generic_category().message(reason)) != std::string_view::npos;
+  });
+}
 
 // One build: it makes its share of the catalogue on several threads.
 class Work {
@@ -215,6 +229,7 @@ class Work {
     } catch (const Interrupted&) {
       return;
     } catch (const std::exception& error) {
+      if (is_of_a_full_disk(error)) throw;
       const std::lock_guard lock(mutex_);
       summary_.failures.push_back({item.name, error.what()});
     }

@@ -69,7 +69,8 @@ struct BuildSummary {
 // is listed in `failures`, and the build continues with the others. Throws Error where `out` was
 // begun with another catalogue, another build is at work in it, the first whole sequence over a
 // background was made of other files than are there now, the video of a background cannot be read,
-// or no sequence's name matches the pattern. Throws Interrupted on stop.
+// no sequence's name matches the pattern, or the disk is full or read-only. Throws Interrupted on
+// stop.
 BuildSummary build_set(const catalogue::Catalogue& catalogue,
                        const fs::path& out,
                        const BuildOptions& options);
