@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <fmt/format.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/tracking.hpp>
@@ -18,6 +19,7 @@
 #include "camera/opencv_plugin/opencv_plugin.h"
 #include "foundation/image/colour.h"
 #include "foundation/image/mats.h"
+#include "runners/process/child.h"
 #include "runners/tracking/tracker.h"
 
 namespace airtruth::tracking {
@@ -126,15 +128,61 @@ class OpenCvTracker : public Tracker {
     return {.box_px = b};
   }
 
+ protected:
+  cv::Mat frame_;
+
  private:
   std::function<cv::Ptr<Library>()> make_;
   cv::Ptr<Library> tracker_;
   std::uint64_t seed_;
   double least_px_;
   Window window_;
-  cv::Mat frame_;
   Box last_;
   bool broken_ = false;
+};
+
+// OpenCV's TLD learns the surroundings of an object from windows of its shape that hardly overlap
+// it, of a grid over the picture, which is enlarged where the object is small. It draws for ever
+// where there is no such window, and reads past the grid where that has none at all.
+class Tld : public OpenCvTracker<cv::legacy::Tracker> {
+ public:
+  using OpenCvTracker::OpenCvTracker;
+  void init(const Box& box) override {
+    refuse_unsound(box, frame_.cols, frame_.rows);
+    if (!has_surroundings(Window(box, 0, frame_).window()))
+      throw process::Failure(
+          fmt::format("cannot begin on {} x {} px: a picture of {} x {} has no surroundings for it",
+                      box.width,
+                      box.height,
+                      frame_.cols,
+                      frame_.rows));
+    OpenCvTracker::init(box);
+  }
+
+ private:
+  // The grid as OpenCV 4 makes it, whose numbers these are.
+  bool has_surroundings(const Box& box) const {
+    constexpr double kLeastSidePx = 20;  // of a window
+    constexpr double kSizeStep = 1.2;
+    constexpr double kStep = 0.1;  // of a window's side
+    constexpr double kMostOverlap = 0.2;
+    const double least = std::min(box.width, box.height);
+    const double enlarged = std::max(1.0, kLeastSidePx / least);
+    const double columns = std::round(frame_.cols * enlarged);
+    const double rows = std::round(frame_.rows * enlarged);
+    const cv::Rect2d object(
+        box.x * enlarged, box.y * enlarged, box.width * enlarged, box.height * enlarged);
+    double width = std::trunc(box.width * kLeastSidePx / least);
+    double height = std::trunc(box.height * kLeastSidePx / least);
+    // OpenCV compares a side with the other side of the picture.
+    for (; height < columns && width < rows; width *= kSizeStep, height *= kSizeStep)
+      for (double x = 0; x + width + 1 <= columns; x += kStep * width)
+        for (double y = 0; y + height + 1 <= rows; y += kStep * height) {
+          const double both = (object & cv::Rect2d(x, y, width, height)).area();
+          if (both < kMostOverlap * (object.area() + width * height - both)) return true;
+        }
+    return false;
+  }
 };
 
 // OpenCV's Haar features, boosting and TLD draw from the C library's rand(), one sequence for the
@@ -207,7 +255,7 @@ std::unique_ptr<Tracker> make_opencv_tracker(std::string_view name, std::uint64_
   if (name == "opencv-csrt") return modern(opencv.csrt);
   if (name == "opencv-boosting") return with_own_rand(old(opencv.boosting, kMinHaarPx));
   if (name == "opencv-medianflow") return old(opencv.median_flow);
-  if (name == "opencv-tld") return with_own_rand(old(opencv.tld));
+  if (name == "opencv-tld") return with_own_rand(std::make_unique<Tld>(opencv.tld, state, 0));
   if (name == "opencv-mosse") return old(opencv.mosse);
   return nullptr;
 }

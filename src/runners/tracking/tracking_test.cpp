@@ -8,6 +8,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/seed.h"
+#include "runners/process/child.h"
 #include "runners/tracking/luma_window.h"
 #include "runners/tracking/tracker.h"
 
@@ -285,6 +286,23 @@ TEST(Trackers, AnswerOnAnObjectOfAFewPixels) {
       const Box found = tracker->update().box_px;
       EXPECT_TRUE(std::isfinite(found.area()) && found.area() > 0) << name;
     }
+}
+
+// Windows of 20 px lie at every second pixel, up to the picture's side less 21. One at 8, 8 has
+// with an object of 20 px in the corner 144 of 656 px in common, more than a fifth; one at 10, 10
+// has 100 of 700.
+TEST(Trackers, TldSaysThatAPictureIsTooSmallForIt) {
+  const auto begin = [](int width, int height, const Box& box) {
+    const auto tracker = make_tracker("opencv-tld", {});
+    tracker->load(image::make_picture(width, height, {}));
+    tracker->init(box);
+  };
+  EXPECT_THROW(begin(16, 16, {0, 0, 16, 16}), process::Failure);      // a grid without windows
+  EXPECT_THROW(begin(300, 8, {0, 0, 16, 16}), process::Failure);      // cut by the picture
+  EXPECT_THROW(begin(320, 64, {10, 10, 100, 20}), process::Failure);  // wider than 64
+  EXPECT_THROW(begin(16, 16, {0, 0, 15, 15}), process::Failure);      // one window, on the object
+  EXPECT_THROW(begin(30, 30, {0, 0, 20, 20}), process::Failure);
+  EXPECT_NO_THROW(begin(32, 32, {0, 0, 20, 20}));
 }
 
 TEST(Trackers, RefuseABoxWithoutArea) {
