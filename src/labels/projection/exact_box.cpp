@@ -94,8 +94,10 @@ class Sweep {
     for (int k = 0; k < moments; ++k) {
       const double share = moments > 1 ? static_cast<double>(k) / (moments - 1) - 0.5 : 0;
       const double into_exposure_s = share * shutter_.exposure_s;
-      const auto later = [&](double dt_s) { return pixel_at(into_exposure_s + dt_s); };
-      if (const auto pixel = later(shutter_.seen_s(later, size_.width, size_.height, kRounds)))
+      std::optional<Pixel> pixel = pixel_at(into_exposure_s);
+      for (int round = 0; shutter_.readout_s > 0 && pixel && round < kRounds; ++round)
+        pixel = pixel_at(linear_row_s(*pixel) + into_exposure_s);
+      if (pixel)
         bounds.add(*pixel);
       else
         partly_unseen = true;
@@ -104,6 +106,20 @@ class Sweep {
 
  private:
   static constexpr int kRounds = 6;
+
+  // The row time of a place, linear from the middle of one row (column) to that of the next, so
+  // that a box changes steadily with the place of what turns.
+  double linear_row_s(const Pixel& pixel) const {
+    const Pixel inside(std::clamp(pixel.x(), 0.0, double(size_.width)),
+                       std::clamp(pixel.y(), 0.0, double(size_.height)));
+    const bool is_by_row = shutter_.readout == Readout::kDown || shutter_.readout == Readout::kUp;
+    const double place = (is_by_row ? inside.y() : inside.x()) - 0.5;
+    const auto at = [&](double row) {
+      return shutter_.middle_s(Pixel(row, row), size_.width, size_.height);
+    };
+    const double first = std::floor(place);
+    return at(first) + (place - first) * (at(first + 1) - at(first));
+  }
 
   // At the beginning, the middle and the end of the frame's time; empty where one has no pixel.
   std::optional<std::array<Pixel, 3>> places_of(const Vector3& p_in_body) const {
