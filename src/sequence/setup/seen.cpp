@@ -154,13 +154,17 @@ void settle_boxes(scene::Intruder intruder,
                   std::vector<Ray>& rays) {
   // Largest number of rounds: it ends a search for a width that no range gives.
   constexpr int kMaxRounds = 200;
-  // From this round on the steps are halved, for attitudes that answer to the places.
+  // From this round on the steps are halved, and again after so many more, for attitudes, and the
+  // moments at which rows see a rotor, that answer to the places.
   constexpr int kDampedRound = 20;
+  constexpr int kRoundsOfStep = 60;
   // What is seen is the middle of a flock: its birds keep their places about it.
   intruder.offset_ned_m = Vector3::Zero();
   const Ray* off = nullptr;
   for (int round = 0; round < kMaxRounds; ++round) {
     const trajectory::Path path = path_of(through_places(intruder, rays), world.camera);
+    const double step =
+        round < kDampedRound ? 1 : std::pow(0.5, 1 + (round - kDampedRound) / kRoundsOfStep);
     off = nullptr;
     bool is_settled = true;
     for (Ray& ray : rays) {
@@ -168,12 +172,12 @@ void settle_boxes(scene::Intruder intruder,
       if (box && meets_frame({ray.seen->pixel.x(), ray.seen->pixel.y(), 0, 0}, world.lens.size())) {
         const Pixel miss = ray.seen->pixel - centre_of(*box);
         is_settled = is_settled && miss.norm() <= kMiddlePx;
-        aim(ray, world, ray.pixel + (round < kDampedRound ? 1.0 : 0.5) * miss);
+        aim(ray, world, ray.pixel + step * miss);
       }
       if (!ray.seen->width_px) continue;
       const double share = box ? box->width / *ray.seen->width_px : 2;
       if (std::abs(share - 1) > kWidthShare) off = &ray;
-      ray.range_m *= round < kDampedRound ? share : std::sqrt(share);
+      ray.range_m *= std::pow(share, step);
       ray.range_m = std::min(ray.range_m, kFarthestM);
     }
     if (off == nullptr && is_settled) return;
