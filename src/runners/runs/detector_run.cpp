@@ -206,6 +206,7 @@ class DetectorResults {
   }
 
   void add_broken(const std::string& sequence, const std::string& fault, const std::string& log) {
+    write_record();
     results::write_log(summary_.folder, sequence, log + "airtruth: the detector " + fault + "\n");
     const std::lock_guard lock(mutex_);
     ++summary_.broken;
