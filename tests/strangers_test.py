@@ -435,7 +435,7 @@ CASES = {
     "log-gpx-one-without-ele": log("oneele_missing.gpx", 29, "<ele>"),
     "log-gpx-one-without-time": log("onemissing_time.gpx", 29, "<time>"),
     "log-srt-bad-latitude": log("badlat.srt", 59, "947"),
-    "log-srt-comma-decimals": log("comma_decimals.srt", 60, "latitude: 47 to 47.0006"),
+    "log-srt-comma-decimals": log("comma_decimals.srt", 60, "latitude: 47 to 47.00059"),
     "log-srt-one-bad": log("teleport.srt", 59, "out of reach"),
     "log-ulog-corrupt-middle": log("ulg_corrupt_mid.ulg", 30, "damaged from byte"),
     "log-ulog-instance-1": log("ulg_gps_instance1.ulg", 32),
