@@ -84,9 +84,9 @@ class OfASession : public testing::Test {
     pictures_[picture.header["id"]].push_back(std::move(picture));
   }
 
-  // Runs what was posted until `is_done`; false where that takes too long.
+  // Runs what was posted until `is_done`; false where it hangs.
   bool wait_for(const std::function<bool()>& is_done) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(20);
     while (!is_done()) {
       std::unique_lock lock(mutex_);
       if (!changed_.wait_until(lock, end, [this] { return !posted_.empty(); })) return false;
