@@ -124,13 +124,18 @@ TEST(ExactBox, BeyondTheHorizonOfTheHomographyIsUnseen) {
   EXPECT_FALSE(pixel_from_world(sight, {-100, 0, 0}));
 }
 
-// A blade of 1 m that turns once a second about the nose: it is upright at 0 s and level at 0.25 s.
-TEST(ExactBox, TurnsWithASpinningPart) {
-  const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
+// A blade of 2 m that turns about the nose, upright at 0 s.
+Solid spinning_blade(double revolutions_per_s) {
   model::Part propeller;
   propeller.spins = true;
-  propeller.revolutions_per_s = 1;
-  Solid blade({{0, 0, -1}, {0, 0, 1}}, propeller);
+  propeller.revolutions_per_s = revolutions_per_s;
+  return Solid({{0, 0, -1}, {0, 0, 1}}, propeller);
+}
+
+// A blade that turns once a second about the nose: it is upright at 0 s and level at 0.25 s.
+TEST(ExactBox, TurnsWithASpinningPart) {
+  const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
+  Solid blade = spinning_blade(1);
   const Sight sight = looking_north(lens);
   expect_box(blade.seen(sight, at(96, 0, 0), 0).box, {640, 475, 0, 10}, 1e-4);
   expect_box(blade.seen(sight, at(96, 0, 0), 0.25).box, {635, 480, 10, 0}, 1e-4);
@@ -142,15 +147,12 @@ TEST(ExactBox, TurnsWithASpinningPart) {
              1e-4);
 }
 
-// A blade of 2 m that turns 25 times a second, 4.8 m ahead: its tips are 100 px from the middle.
+// The blade turns 25 times a second, 4.8 m ahead: its tips are 100 px from the middle.
 // The sensor is read within half a turn of it, in which time each row sees the blade where it then
 // is.
 TEST(ExactBox, OfASpinningPartIsWhereTheRowsSeeIt) {
   const lens::Lens lens = lens::pinhole_from_vertical_fov(90, kSize);
-  model::Part propeller;
-  propeller.spins = true;
-  propeller.revolutions_per_s = 25;
-  Solid blade({{0, 0, -1}, {0, 0, 1}}, propeller);
+  Solid blade = spinning_blade(25);
   for (const double exposure_s : {0.0, 0.002}) {
     Sight sight = looking_north(lens);
     sight.shutter = {exposure_s, 0.02, Readout::kDown};

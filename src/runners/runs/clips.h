@@ -46,9 +46,9 @@ DetectionClip clip_of(const labelled::LabelledSet& set, const std::string& name)
 // The parts of background videos that the given sequences were made over, each once, in the order
 // of the sequences: pictures without any intruder of the scene. A part is named as its video, with
 // the first frame and the number of frames where it is not the whole ("sky.84-20"), and then with
-// "-2" and so on where another video has that name. A video is the one
-// that replay::find_input() finds; what is not there any more, or is another file now, is left out
-// with a warning. An imported sequence has none.
+// "-2" and so on where another video has that name. A video is the one that replay::find_input()
+// finds; what is not there any more, or is another file now, is left out with a warning. An
+// imported sequence has none.
 std::vector<DetectionClip> backgrounds_of(const labelled::LabelledSet& set,
                                           const std::vector<std::string>& names,
                                           setup::SharedInputs& inputs,

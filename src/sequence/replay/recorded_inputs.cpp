@@ -47,8 +47,8 @@ bool is_another(const fs::path& input, const std::string& sha256, setup::SharedI
   try {
     const std::string now = setup::sha256_of_video(input, inputs);
     return !now.empty() && now != sha256;
-    // A text that is no list of pictures, a series without any, a folder of another user.
   } catch (const std::exception&) {
+    // It is a text that is no list of pictures, a series without any, or another user's folder.
     return fs::exists(input, ignored);
   }
 }
