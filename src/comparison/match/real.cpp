@@ -143,7 +143,7 @@ RealAircraft find_real(const fs::path& video,
                        std::int64_t most_frames,
                        const Warn& warn_to,
                        const std::stop_token& stop) {
-  video::Reader reader(video, {.with_cuts = true});
+  video::Reader reader(video, {.with_cuts = true}, warn_to);
   RealAircraft found;
   while (const auto frame = reader.next()) {
     if (stop.stop_requested()) throw Interrupted();

@@ -91,6 +91,9 @@ struct Reader::State {
   // True once a frame was decoded that refers to no missing one.
   bool has_whole_frame = false;
   std::int64_t corrupt = 0;
+  // Number of damaged frames among those that are handed out.
+  std::int64_t damaged = 0;
+  bool end_is_told = false;
   // Number of frames that the decoder has returned.
   std::int64_t decoded = 0;
   std::int64_t handed = 0;
@@ -480,6 +483,7 @@ struct Reader::State {
              "; expected one for all");
       if (!first_pts) first_pts = result.pts;
       result.index = handed++;
+      if (result.damaged) ++damaged;
       result.time_s = static_cast<double>(result.pts - *first_pts) * info.time_base.value();
       result.picture = oriented(picture_of(*frame, layout, coded_colour), orientation);
       return result;
@@ -519,6 +523,32 @@ struct Reader::State {
                       decoded));
     pts_shift += last_pts + pts_step - pts;
     return last_pts + pts_step;
+  }
+
+  bool ends_early() const {
+    if (!finished) return false;
+    if (read_failed) return true;
+    const AVStream& stream = *input->streams[stream_index];
+    if (stream.nb_frames > 0) return decoded + corrupt < shown_frames(stream);
+    // Matroska stores no number of frames, so the duration decides. One second of slack allows for
+    // sound that is longer than the picture.
+    if (input->duration <= 0 || !first_pts || options.first_frame > 0) return false;
+    // The duration counts from the time 0, or from a first frame that is shown before it.
+    const std::int64_t begin_pts = std::min<std::int64_t>(*first_pts, 0);
+    const double seen_s = static_cast<double>(last_pts - begin_pts) * info.time_base.value();
+    return seen_s + 1.0 < static_cast<double>(input->duration) / AV_TIME_BASE;
+  }
+
+  void tell_end() {
+    if (std::exchange(end_is_told, true)) return;
+    if (corrupt > 0 || damaged > 0)
+      airtruth::warn(warn,
+                     fmt::format("{}: {} corrupt packets; {} frames are flagged damaged",
+                                 path.string(),
+                                 corrupt,
+                                 damaged));
+    if (ends_early())
+      airtruth::warn(warn, fmt::format("{}: ends early, after {} frames", path.string(), handed));
   }
 
   Frame to_frame() {
@@ -607,7 +637,10 @@ std::optional<Frame> Reader::next() {
   const std::size_t held_back = state.options.with_cuts ? std::size_t{image::kCutNeighbours} : 0;
   while (state.ahead.size() < 1 + held_back && state.look_ahead()) {
   }
-  if (state.ahead.empty()) return std::nullopt;
+  if (state.ahead.empty()) {
+    state.tell_end();
+    return std::nullopt;
+  }
   Frame frame = std::move(state.ahead.front());
   state.ahead.pop_front();
   if (state.options.with_cuts) frame.begins_shot = !frame.damaged && state.begins_shot(frame.index);
@@ -662,23 +695,6 @@ bool are_of_rate(std::span<const double> times_s, double rate_hz) {
   for (std::size_t k = 0; k < times_s.size(); ++k)
     if (std::abs(times_s[k] * rate_hz - static_cast<double>(k)) > kMostOff) return false;
   return true;
-}
-
-std::int64_t Reader::corrupt_packets() const { return state_->corrupt; }
-
-bool Reader::ends_early() const {
-  if (!state_->finished) return false;
-  const State& s = *state_;
-  const AVStream& stream = *s.input->streams[s.stream_index];
-  if (s.read_failed) return true;
-  if (stream.nb_frames > 0) return s.decoded + s.corrupt < shown_frames(stream);
-  // Matroska stores no number of frames, so the duration decides. One second of slack allows for
-  // sound that is longer than the picture.
-  if (s.input->duration <= 0 || !s.first_pts || s.options.first_frame > 0) return false;
-  // The duration counts from the time 0, or from a first frame that is shown before it.
-  const std::int64_t begin_pts = std::min<std::int64_t>(*s.first_pts, 0);
-  const double seen_s = static_cast<double>(s.last_pts - begin_pts) * s.info.time_base.value();
-  return seen_s + 1.0 < static_cast<double>(s.input->duration) / AV_TIME_BASE;
 }
 
 }  // namespace airtruth::video

@@ -134,8 +134,8 @@ class Reader {
 
   const StreamInfo& info() const;
   // The next frame in presentation order; empty at the end. Corrupt packets are skipped, and the
-  // frames that they affect are flagged `damaged`. Throws Error only where the rest of the file
-  // cannot be read at all.
+  // frames that they affect are flagged `damaged`. At the end it warns of both, and of a file that
+  // ends early (truncated). Throws Error only where the rest of the file cannot be read at all.
   std::optional<Frame> next();
   // The frame that is shown at a time of the clip; the last one for a later time. It is decoded
   // from the key frame before it, so that a long clip costs no more than a short one; of MPEG's
@@ -146,10 +146,6 @@ class Reader {
   // After the first next(): when each of at most `most` frames from that one on is shown, in
   // seconds from it. They are found without decoding; empty where the file does not say.
   std::vector<double> times_s(std::int64_t most) const;
-  // After the end: the number of packets that could not be decoded, and whether the file ends early
-  // (truncated).
-  std::int64_t corrupt_packets() const;
-  bool ends_early() const;
 
  private:
   struct State;

@@ -301,25 +301,14 @@ void warn_never_seen(const scene::Intruder& intruder,
   warn(to_warn, text);
 }
 
-void warn_of_video(const Tally& tally,
-                   const scene::Background& background,
-                   const video::Reader& reader,
-                   const Warn& to_warn) {
+void warn_of_video(const Tally& tally, const scene::Background& background, const Warn& to_warn) {
   const std::string video = background.video.string();
-  if (reader.corrupt_packets() > 0 || tally.frames_damaged > 0)
-    warn(to_warn,
-         fmt::format("{}: {} corrupt packets; {} frames are flagged damaged",
-                     video,
-                     reader.corrupt_packets(),
-                     tally.frames_damaged));
   if (tally.frames_black > 0)
     warn(to_warn,
          fmt::format("{}: {} frames are black, and show no light; there the intruders have that of "
                      "an overcast sky, or what [light] states",
                      video,
                      tally.frames_black));
-  if (reader.ends_early())
-    warn(to_warn, fmt::format("{}: ends early, after {} frames", video, tally.frames));
   if (background.frame_count && tally.frames < *background.frame_count)
     warn(to_warn,
          fmt::format("{}: frame_count is {}, but the video holds {} frames from first_frame on",
@@ -358,9 +347,8 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
 void warn_of_run(const Tally& tally,
                  const scene::Scene& scene,
                  const setup::World& world,
-                 const video::Reader& reader,
                  const Warn& to_warn) {
-  warn_of_video(tally, scene.background, reader, to_warn);
+  warn_of_video(tally, scene.background, to_warn);
   warn_of_motion(tally, scene.background, to_warn);
   if (tally.frames_without_horizon > 0)
     warn(to_warn,
@@ -479,7 +467,7 @@ Summary render(const scene::Scene& scene, const fs::path& out, const Options& op
   clocks.end_s = process_cpu_seconds();
 
   maker.store_motion();
-  warn_of_run(tally, resolved.scene, resolved.world, *resolved.background, options.warn);
+  warn_of_run(tally, resolved.scene, resolved.world, options.warn);
   Summary summary{tally};
   summary.stages = times_of(clocks);
   summary.notes = resolved.notes;
