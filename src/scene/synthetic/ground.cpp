@@ -382,10 +382,11 @@ Ground::Ground(double texel_m,
       shadow_(clouds.ground_shadow(kShadowCells)),
       detail_(std::size_t{kDetailCells} * kDetailCells) {
   make_haze(sky);
+  auto detail = fractal_row<4>(kDetailCells / 16, seed + 41);
   for (int y = 0; y < kDetailCells; ++y)
     for (int x = 0; x < kDetailCells; ++x)
-      detail_[static_cast<std::size_t>(y * kDetailCells + x)] = fractal(
-          static_cast<float>(x) / 16, static_cast<float>(y) / 16, 4, kDetailCells / 16, seed + 41);
+      detail_[static_cast<std::size_t>(y * kDetailCells + x)] =
+          detail.at(static_cast<float>(x) / 16, static_cast<float>(y) / 16);
 }
 
 void Ground::make_haze(const Sky& sky) {

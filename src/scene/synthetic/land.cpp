@@ -69,23 +69,28 @@ Land::Land(std::uint32_t seed)
       centres_.length_m[i] = 170 + 260 * unit(mix(id + 3));
     }
   tbb::parallel_for(0, kSlow, [&](int row) {
+    PlaneNoise north_bend(16, seed + 1), east_bend(16, seed + 2);
+    auto wood = fractal_row<6>(4, seed + 21);
+    auto river = fractal_row<4>(2, seed + 31);
     for (int column = 0; column < kSlow; ++column) {
       const float x = static_cast<float>(column) / kSlow;
       const float y = static_cast<float>(row) / kSlow;
       slow_[static_cast<std::size_t>(row * kSlow + column)] = {
-          0.22F * (value_noise(x * 16, y * 16, 16, seed + 1) - 0.5F),
-          0.22F * (value_noise(x * 16, y * 16, 16, seed + 2) - 0.5F),
-          fractal(x * 4, y * 4, 6, 4, seed + 21),
-          fractal(x * 2, y * 2, 4, 2, seed + 31)};
+          0.22F * (north_bend.at(x * 16, y * 16) - 0.5F),
+          0.22F * (east_bend.at(x * 16, y * 16) - 0.5F),
+          wood.at(x * 4, y * 4),
+          river.at(x * 2, y * 2)};
     }
   });
   tbb::parallel_for(0, kSoil, [&](int row) {
+    auto coarse = fractal_row<3>(16, seed + 11);
+    auto fine = fractal_row<2>(128, seed + 12);
     for (int column = 0; column < kSoil; ++column) {
       const float x = static_cast<float>(column) / kSoil;
       const float y = static_cast<float>(row) / kSoil;
       const auto i = static_cast<std::size_t>(row * kSoil + column);
-      coarse_soil_[i] = fractal(x * 16, y * 16, 3, 16, seed + 11);
-      fine_soil_[i] = fractal(x * 128, y * 128, 2, 128, seed + 12);
+      coarse_soil_[i] = coarse.at(x * 16, y * 16);
+      fine_soil_[i] = fine.at(x * 128, y * 128);
     }
   });
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -47,56 +49,124 @@ inline int floor_int(float x) {
   return i - (x < static_cast<float>(i) ? 1 : 0);
 }
 
-// Value noise in [0, 1). It repeats after `period` lattice cells; `period` is a power of two.
+// Value noise in [0, 1) on a plane. It repeats after `period` lattice cells; `period` is a power of
+// two. The corners of the last lattice cell are kept: a row of near places costs few hashes.
+class PlaneNoise {
+ public:
+  PlaneNoise() = default;
+  PlaneNoise(int period, std::uint32_t seed) : wrap_(period - 1), seed_(seed) {}
+
+  float at(float x, float y) {
+    const int x0 = floor_int(x);
+    const int y0 = floor_int(y);
+    if (!has_corners_ || x0 != x0_ || y0 != y0_) take_corners(x0, y0);
+    const float fx = x - static_cast<float>(x0);
+    const float fy = y - static_cast<float>(y0);
+    const float sx = fx * fx * (3 - 2 * fx);
+    const float sy = fy * fy * (3 - 2 * fy);
+    return lerp(lerp(corners_[0], corners_[1], sx), lerp(corners_[2], corners_[3], sx), sy);
+  }
+
+ private:
+  void take_corners(int x0, int y0) {
+    const auto corner = [&](int i, int j) {
+      return unit(hash((x0 + i) & wrap_, (y0 + j) & wrap_, seed_));
+    };
+    corners_ = {corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)};
+    x0_ = x0;
+    y0_ = y0;
+    has_corners_ = true;
+  }
+
+  int wrap_ = 0;
+  std::uint32_t seed_ = 0;
+  bool has_corners_ = false;
+  int x0_ = 0, y0_ = 0;
+  std::array<float, 4> corners_{};
+};
+
+// Value noise in space, on its plane at z.
+class SpaceNoise {
+ public:
+  SpaceNoise() = default;
+  SpaceNoise(float z, int period, std::uint32_t seed) {
+    const int z0 = floor_int(z);
+    const float fz = z - static_cast<float>(z0);
+    const auto layer = [&](int i) {
+      return PlaneNoise(period, seed + 977U * static_cast<std::uint32_t>((z0 + i) & (period - 1)));
+    };
+    below_ = layer(0);
+    above_ = layer(1);
+    share_ = fz * fz * (3 - 2 * fz);
+  }
+  float at(float x, float y) { return lerp(below_.at(x, y), above_.at(x, y), share_); }
+
+ private:
+  PlaneNoise below_, above_;
+  float share_ = 0;
+};
+
 inline float value_noise(float x, float y, int period, std::uint32_t seed) {
-  const int x0 = floor_int(x);
-  const int y0 = floor_int(y);
-  const float fx = x - static_cast<float>(x0);
-  const float fy = y - static_cast<float>(y0);
-  const float sx = fx * fx * (3 - 2 * fx);
-  const float sy = fy * fy * (3 - 2 * fy);
-  const int wrap = period - 1;
-  const auto at = [&](int i, int j) { return unit(hash((x0 + i) & wrap, (y0 + j) & wrap, seed)); };
-  return lerp(lerp(at(0, 0), at(1, 0), sx), lerp(at(0, 1), at(1, 1), sx), sy);
+  return PlaneNoise(period, seed).at(x, y);
 }
 
-inline float value_noise(float x, float y, float z, int period, std::uint32_t seed) {
-  const int z0 = floor_int(z);
-  const float fz = z - static_cast<float>(z0);
-  const auto layer = [&](int i) {
-    return value_noise(
-        x, y, period, seed + 977U * static_cast<std::uint32_t>((z0 + i) & (period - 1)));
-  };
-  return lerp(layer(0), layer(1), fz * fz * (3 - 2 * fz));
-}
-
-// Sum of octaves of noise(scale, period, seed), each half as strong and twice as fine as the one
-// before; about [0, 1], with a mean of 0.5.
+// Sum of octaves of noise(octave, scale), each half as strong and twice as fine as the one before;
+// about [0, 1], with a mean of 0.5.
 template <typename Noise>
-inline float sum_of_octaves(int octaves, int period, std::uint32_t seed, const Noise& noise) {
+inline float sum_of_octaves(int octaves, const Noise& noise) {
   float sum = 0;
   float weight = 0.5F;
   float total = 0;
   float scale = 1;
   for (int i = 0; i < octaves; ++i) {
-    sum += weight * noise(scale, period, seed + 131U * static_cast<std::uint32_t>(i));
+    sum += weight * noise(i, scale);
     total += weight;
     weight *= 0.5F;
     scale *= 2;
-    period *= 2;
   }
   return sum / total;
 }
 
+inline std::uint32_t seed_of_octave(std::uint32_t seed, int octave) {
+  return seed + 131U * static_cast<std::uint32_t>(octave);
+}
+
 inline float fractal(float x, float y, int octaves, int period, std::uint32_t seed) {
-  return sum_of_octaves(octaves, period, seed, [=](float scale, int cells, std::uint32_t id) {
-    return value_noise(x * scale, y * scale, cells, id);
+  return sum_of_octaves(octaves, [=](int i, float scale) {
+    return value_noise(x * scale, y * scale, period << i, seed_of_octave(seed, i));
   });
 }
 
-inline float fractal(float x, float y, float z, int octaves, int period, std::uint32_t seed) {
-  return sum_of_octaves(octaves, period, seed, [=](float scale, int cells, std::uint32_t id) {
-    return value_noise(x * scale, y * scale, z * scale, cells, id);
+// The same for a row of near places.
+template <typename Noise, int kOctaves>
+class FractalRow {
+ public:
+  // make(i): the noise of an octave.
+  template <typename Make>
+  explicit FractalRow(const Make& make) {
+    for (int i = 0; i < kOctaves; ++i) octaves_[static_cast<std::size_t>(i)] = make(i);
+  }
+  float at(float x, float y) {
+    return sum_of_octaves(kOctaves, [&](int i, float scale) {
+      return octaves_[static_cast<std::size_t>(i)].at(x * scale, y * scale);
+    });
+  }
+
+ private:
+  std::array<Noise, kOctaves> octaves_;
+};
+
+template <int kOctaves>
+FractalRow<PlaneNoise, kOctaves> fractal_row(int period, std::uint32_t seed) {
+  return FractalRow<PlaneNoise, kOctaves>(
+      [=](int i) { return PlaneNoise(period << i, seed_of_octave(seed, i)); });
+}
+
+// In space, at z.
+template <int kOctaves>
+FractalRow<SpaceNoise, kOctaves> fractal_row(float z, int period, std::uint32_t seed) {
+  return FractalRow<SpaceNoise, kOctaves>([=](int i) {
+    return SpaceNoise(z * static_cast<float>(1 << i), period << i, seed_of_octave(seed, i));
   });
 }
 

@@ -2,6 +2,7 @@
 #include "scene/synthetic/sky.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <tbb/blocked_range.h>
@@ -91,13 +92,12 @@ Clouds::Clouds(const Sky& sky, double cover, std::uint32_t seed)
       detail_(std::size_t{kDetail} * kDetail * kDetail) {
   if (cover <= 0) return;
   tbb::parallel_for(0, kDetail, [&](int z) {
+    const float scale = 8.0F / kDetail;
+    const auto f = [&](int i) { return static_cast<float>(i) * scale; };
+    auto noise = fractal_row<3>(f(z), 8, seed_ + 5);
     for (int y = 0; y < kDetail; ++y)
-      for (int x = 0; x < kDetail; ++x) {
-        const float scale = 8.0F / kDetail;
-        const auto f = [&](int i) { return static_cast<float>(i) * scale; };
-        detail_[static_cast<std::size_t>((z * kDetail + y) * kDetail + x)] =
-            fractal(f(x), f(y), f(z), 3, 8, seed_ + 5);
-      }
+      for (int x = 0; x < kDetail; ++x)
+        detail_[static_cast<std::size_t>((z * kDetail + y) * kDetail + x)] = noise.at(f(x), f(y));
   });
   fill(cover);
   light_up();
@@ -106,34 +106,37 @@ Clouds::Clouds(const Sky& sky, double cover, std::uint32_t seed)
 void Clouds::fill(double cover) {
   const float threshold = lerp(0.72F, 0.36F, static_cast<float>(std::min(cover, 1.0)));
   tbb::parallel_for(0, kCells, [&](int y) {
+    // Clouds come in groups (5 km) of single ones (1.3 km).
+    auto groups = fractal_row<2>(kCells / 128, seed_ + 1);
+    auto single = fractal_row<4>(kCells / 32, seed_ + 2);
+    std::array<float, kCells> strength;
     for (int x = 0; x < kCells; ++x) {
       const float u = static_cast<float>(x) / 64;
       const float v = static_cast<float>(y) / 64;
-      // Clouds come in groups (5 km) of single ones (1.3 km).
-      const float groups = fractal(u * 0.5F, v * 0.5F, 2, kCells / 128, seed_ + 1);
-      const float single = fractal(u * 2, v * 2, 4, kCells / 32, seed_ + 2);
-      const float strength = (0.42F * groups + 0.58F * single - threshold) / 0.22F;
-      if (strength <= -0.3F) continue;
-      bool used = false;
-      for (int level = 0; level < kLevels; ++level) {
-        const float height = (static_cast<float>(level) + 0.5F) / kLevels;
-        const float room = strength - 1.25F * height * (0.55F + 0.45F * height);
-        if (room < -0.45F) break;
-        const float noise = fractal(static_cast<float>(x) / 16,
-                                    static_cast<float>(y) / 16,
-                                    static_cast<float>(level) * kLevel_m / kCell_m / 16,
-                                    4,
-                                    kCells / 16,
-                                    seed_ + 3);
-        const float base = smoothstep(0.0F, 0.06F, height);
-        const float density = clamp01((room + 1.7F * (noise - 0.5F)) * 1.9F) * base;
-        if (density <= 0) continue;
-        used = true;
-        voxels_[voxel_index(x, y, level)].density = static_cast<std::uint8_t>(density * 255 + 0.5F);
-      }
-      column_used_[static_cast<std::size_t>(y * kCells + x)] = used ? 1 : 0;
+      strength[static_cast<std::size_t>(x)] =
+          (0.42F * groups.at(u * 0.5F, v * 0.5F) + 0.58F * single.at(u * 2, v * 2) - threshold) /
+          0.22F;
     }
+    for (int level = 0; level < kLevels; ++level) fill_row(y, level, strength);
   });
+}
+
+void Clouds::fill_row(int y, int level, std::span<const float> strength) {
+  const float height = (static_cast<float>(level) + 0.5F) / kLevels;
+  const float base = smoothstep(0.0F, 0.06F, height);
+  auto noise =
+      fractal_row<4>(static_cast<float>(level) * kLevel_m / kCell_m / 16, kCells / 16, seed_ + 3);
+  for (int x = 0; x < kCells; ++x) {
+    if (strength[static_cast<std::size_t>(x)] <= -0.3F) continue;
+    const float room =
+        strength[static_cast<std::size_t>(x)] - 1.25F * height * (0.55F + 0.45F * height);
+    if (room < -0.45F) continue;
+    const float here = noise.at(static_cast<float>(x) / 16, static_cast<float>(y) / 16);
+    const float density = clamp01((room + 1.7F * (here - 0.5F)) * 1.9F) * base;
+    if (density <= 0) continue;
+    column_used_[static_cast<std::size_t>(y * kCells + x)] = 1;
+    voxels_[voxel_index(x, y, level)].density = static_cast<std::uint8_t>(density * 255 + 0.5F);
+  }
 }
 
 // Works from the top down: the optical depth of each level towards the sun follows from the level
@@ -162,7 +165,9 @@ void Clouds::light_up() {
             lerp(lerp(at(i, j), at(i + 1, j), fx), lerp(at(i, j + 1), at(i + 1, j + 1), fx), fy);
         Voxel& voxel = voxels_[voxel_index(x, y, level)];
         const float own = per_level * voxel.density;
-        voxel.sunlit = static_cast<std::uint8_t>(255 * std::exp(-0.25F * (depth + 0.5F * own)));
+        const float in_front = depth + 0.5F * own;
+        voxel.sunlit =
+            in_front > 0 ? static_cast<std::uint8_t>(255 * std::exp(-0.25F * in_front)) : 255;
         here[static_cast<std::size_t>(y * kCells + x)] = depth + own;
       }
     });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "foundation/geometry/box.h"
@@ -63,6 +64,8 @@ class Clouds {
   };
   Crossed crossed(const Vector3& direction, float up) const;
   void fill(double cover);
+  // The voxels of one row; `strength` of the clouds over each cell along it.
+  void fill_row(int y, int level, std::span<const float> strength);
   void light_up();
   Sample sample(float north_m, float east_m, float height) const;
   Sample eroded_sample(float distance_m, float north_m, float east_m, float height_m) const;
