@@ -79,7 +79,7 @@ motion = { model = "none" }
 camera = { position_ned_m = [0, 0, -300], velocity_ned_mps = [25, 0, 0] }
 [[random]]
 count = 100
-aircraft = ["c172/*"]
+aircraft = ["c172/news"]
 size_px = [10, 30]
 azimuth_deg = [-20, 20]
 elevation_deg = [-10, 10]

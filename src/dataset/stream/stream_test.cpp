@@ -74,7 +74,8 @@ class StreamOfFlights : public testing::Test {
            more;
   }
   static constexpr const char* kRule =
-      "[[random]]\ncount = 100\naircraft = [\"738/*\", \"c172/*\"]\nsize_px = [10, 60]\n"
+      "[[random]]\ncount = 100\naircraft = [\"738/738-Ryanair\", \"c172/news\"]\nsize_px = [10, "
+      "60]\n"
       "azimuth_deg = [-25, 25]\nelevation_deg = [-15, 15]\nnegatives = 0.2\n";
 
   static catalogue::Catalogue catalogue_of(const std::string& text) {
@@ -294,10 +295,10 @@ TEST_F(StreamOfFlights, SoAreSeveralFramesWithACameraAndDistractors) {
 TEST_F(StreamOfFlights, SoAreEncountersFromWhereTheyAreInView) {
   const std::string encounters =
       "[[encounter_model]]\nname = \"e{index}\"\nkind = \"geometric\"\ncount = 50\n"
-      "frame_count = 120\naircraft = [\"c172/*\", \"738/*\"]\nhmd_m = [0, 100]\n"
+      "frame_count = 120\naircraft = [\"c172/news\", \"738/738-Ryanair\"]\nhmd_m = [0, 100]\n"
       "vmd_m = [0, 50]\ncpa_time_s = [2, 4]\n"
       "[[random]]\nname = \"r{index}\"\ncount = 50\nframe_count = 60\naircraft = "
-      "[\"c172/*\"]\n[random.encounter]\ncpa_right_m = [-40, 40]\ncpa_above_m = [-10, 10]\n";
+      "[\"c172/news\"]\n[random.encounter]\ncpa_right_m = [-40, 40]\ncpa_above_m = [-10, 10]\n";
   const Stream stream = stream_of(background("flight3") + encounters +
                                   "[stream]\nsize_px = [128, 96]\nframes = 2\nreuse = 2\n");
   int seen = 0;
@@ -363,7 +364,7 @@ TEST_F(StreamOfFlights, RulesOfTheSameTypesFlyTheSameFewAircraft) {
 TEST_F(StreamOfFlights, PropellersOfEachIntruderStandAtAPlaceOfTheirOwn) {
   const Stream stream = stream_of(
       background("flight3") +
-      "[[random]]\ncount = 100\naircraft = [\"Dromader/*\"]\nsize_px = [120, 150]\nazimuth_deg = "
+      "[[random]]\ncount = 100\naircraft = [\"FK9MK2/*\"]\nsize_px = [60, 75]\nazimuth_deg = "
       "[-5, 5]\nelevation_deg = [-5, 5]\n[stream]\npicture = \"frame\"\nintruders = [2, 2]\n");
   std::set<double> times;
   for (std::int64_t index = 0; index < 8; ++index)

@@ -300,12 +300,12 @@ double worst_against_oracle(const Stand& stand, double size_px, const YawPitchRo
 // The aircraft passes through the eye: parts lie in front of and behind the plane of the lens.
 TEST(Quality3, HoldsAlphaWhereTheAircraftReachesBehindTheEye) {
   const Stand stand("733/733-AirBaltic");
-  const lens::BrownConrady distorted{{20, 20}, {20, 20}, {-0.1, 0.01, 0.001, 0.001}};
-  for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(90, {40, 40}),
-                                 lens::Lens(distorted, {40, 40}),
-                                 lens::fisheye_from_vertical_fov(170, {40, 40})}) {
+  const lens::BrownConrady distorted{{12, 12}, {12, 12}, {-0.1, 0.01, 0.001, 0.001}};
+  for (const lens::Lens& lens : {lens::pinhole_from_vertical_fov(90, {24, 24}),
+                                 lens::Lens(distorted, {24, 24}),
+                                 lens::fisheye_from_vertical_fov(170, {24, 24})}) {
     const View view = view_through(lens);
-    const Box whole{0, 0, 40, 40};
+    const Box whole{0, 0, 24, 24};
     for (const Vector3& place : {Vector3(0.5, 3, 1), Vector3(-4, 8, 4), Vector3(8, -10, -15)}) {
       const Rigid world_from_body{airtruth::world_from_body({170, -7, 3}), place};
       const std::vector<Instance> one = {{&stand.model, world_from_body, 0}};
