@@ -34,17 +34,17 @@ endfunction()
 
 # add_module(NAME [APART] SOURCES a.cpp ... [DEPENDS module ...] [LIBRARIES target ...] [PRIVATE_LIBRARIES target ...]
 #            [TESTS a_test.cpp ...] [TEST_DEPENDS target ...] [SLOW_TESTS b_test.cpp ...]
-#            [UNSANITIZED Suite.Name ...] [OPTIMISATION flag ...])
+#            [SANITIZED_BEFORE_A_RELEASE Suite.Name ...] [OPTIMISATION flag ...])
 # makes the library airtruth_NAME, and keeps its tests for the test programs of its wing (add_wing_tests). DEPENDS are the
 # modules that its sources include, and no others (tests/layers_test.cpp). With AIRTRUTH_UNITY the module's sources are compiled
 # with those of its wing, unless it stands APART: what goes into libairtruth-evaluation.so or into a child program without its
 # wing, what the demo does without, and what has sources or definitions of its own making. OPTIMISATION is what inner loops are
 # compiled with beyond the usual, which precompiled headers would undo. SLOW_TESTS are left out with sanitizers, under which they
-# take hours. UNSANITIZED Suite.Name ... names tests that are left out with sanitizers: they repeat, for their statistics or in
-# whole runs, what other tests run.
+# take hours. SANITIZED_BEFORE_A_RELEASE Suite.Name ... names tests that take seconds with sanitizers and repeat, for their
+# statistics or in whole runs, what other tests run: with sanitizers they are tests of their own, labelled slow.
 function(add_module name)
   cmake_parse_arguments(arg "APART" ""
-    "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;UNSANITIZED;OPTIMISATION" ${ARGN})
+    "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPENDS;SLOW_TESTS;SANITIZED_BEFORE_A_RELEASE;OPTIMISATION" ${ARGN})
   set(owner airtruth_${name})
   if(NOT arg_SOURCES)
     add_library(airtruth_${name} INTERFACE)
@@ -83,7 +83,7 @@ function(add_module name)
   set(libraries airtruth_${name} ${arg_TEST_DEPENDS} ${arg_PRIVATE_LIBRARIES})
   if(arg_TESTS)
     keep_tests(test "${arg_TESTS}" "${libraries}")
-    set_property(GLOBAL APPEND PROPERTY AIRTRUTH_UNSANITIZED ${arg_UNSANITIZED})
+    set_property(GLOBAL APPEND PROPERTY AIRTRUTH_SANITIZED_BEFORE_A_RELEASE ${arg_SANITIZED_BEFORE_A_RELEASE})
   endif()
   if(arg_SLOW_TESTS AND NOT AIRTRUTH_SANITIZE)
     keep_tests(slow_test "${arg_SLOW_TESTS}" "${libraries}")
@@ -181,10 +181,14 @@ function(add_wing_test target sources libraries)
     "AIRTRUTH_MODEL_READER=${PROJECT_BINARY_DIR}/src/cli/airtruth-model-reader"
     "AIRTRUTH_NETWORK_RUNNER=${PROJECT_BINARY_DIR}/src/cli/airtruth-network-runner")
   if(AIRTRUTH_SANITIZE)
-    get_property(unsanitized GLOBAL PROPERTY AIRTRUTH_UNSANITIZED)
-    list(JOIN unsanitized ":" left_out)
+    get_property(names GLOBAL PROPERTY AIRTRUTH_SANITIZED_BEFORE_A_RELEASE)
+    list(JOIN names ":" later)
     list(APPEND environment "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/lsan.supp:print_suppressions=0"
-      "ASAN_OPTIONS=detect_leaks=1" "GTEST_FILTER=-${left_out}")
+      "ASAN_OPTIONS=detect_leaks=1")
+    add_test(NAME ${target}_before_a_release COMMAND ${target})
+    set_tests_properties(${target}_before_a_release PROPERTIES LABELS slow TIMEOUT 3600 ENVIRONMENT
+      "${environment};GTEST_FILTER=${later}")
+    list(APPEND environment "GTEST_FILTER=-${later}")
   endif()
   set_tests_properties(${target} PROPERTIES ENVIRONMENT "${environment}")
 endfunction()
