@@ -414,6 +414,14 @@ struct Reader::State {
     return rewind() && find_packet(key);
   }
 
+  // A decoder of several threads answers a packet, and the end of them, with the fault of an
+  // earlier one.
+  void take_result(int sent) {
+    if (sent >= 0 || sent == AVERROR(EAGAIN)) return;
+    ++corrupt;
+    broken = true;
+  }
+
   // Fills `frame`; false at the end.
   bool decode_one() {
     for (;;) {
@@ -438,16 +446,12 @@ struct Reader::State {
       if (read < 0) {
         read_failed = read != AVERROR_EOF || (input->pb != nullptr && input->pb->error < 0);
         draining = true;
-        avcodec_send_packet(codec.get(), nullptr);
+        take_result(avcodec_send_packet(codec.get(), nullptr));
         continue;
       }
       if (packet->stream_index == stream_index) {
         if ((packet->flags & AV_PKT_FLAG_CORRUPT) != 0) ++corrupt;
-        const int sent = avcodec_send_packet(codec.get(), packet.get());
-        if (sent < 0 && sent != AVERROR(EAGAIN)) {
-          ++corrupt;
-          broken = true;
-        }
+        take_result(avcodec_send_packet(codec.get(), packet.get()));
       }
       av_packet_unref(packet.get());
     }

@@ -463,6 +463,26 @@ TEST_F(Video, TruncatedStreamEndsEarly) {
               testing::HasSubstr("cut.mp4: ends early, after " + std::to_string(frames)));
 }
 
+// Which frames are damaged, in order.
+std::vector<bool> damaged_frames(const fs::path& video, int threads) {
+  Reader reader(video, {.threads = threads});
+  std::vector<bool> damaged;
+  while (const auto frame = reader.next()) damaged.push_back(frame->damaged);
+  return damaged;
+}
+
+// The decoder tells a fault of the last packets as soon as it knows it, which depends on its
+// threads.
+TEST_F(Video, TheSameFramesOfATruncatedStreamAreDamagedForAnyNumberOfThreads) {
+  ffmpeg("-f lavfi -i testsrc2=s=320x240:r=25:d=3 -c:v libx264 -movflags +faststart whole.mp4");
+  const std::string bytes = read_file(folder_ / "whole.mp4");
+  write_file(folder_ / "cut.mp4", bytes.substr(0, bytes.size() * 2 / 3));
+  const std::vector<bool> one = damaged_frames(folder_ / "cut.mp4", 1);
+  EXPECT_THAT(one, testing::Contains(true));
+  for (int threads = 2; threads <= 5; ++threads)
+    EXPECT_EQ(damaged_frames(folder_ / "cut.mp4", threads), one) << threads;
+}
+
 TEST_F(Video, TruncatedMatroskaEndsEarlyToo) {
   ffmpeg("-f lavfi -i testsrc2=s=160x120:r=25:d=4 -c:v libx264 -g 5 whole.mkv");
   const std::string bytes = read_file(folder_ / "whole.mkv");
