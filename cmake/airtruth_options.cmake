@@ -27,11 +27,6 @@ target_compile_options(airtruth_options INTERFACE -ffile-prefix-map=${PROJECT_SO
 if(AIRTRUTH_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(airtruth_options INTERFACE -fpch-preprocess)  # for ccache
 endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # GCC collects its garbage once its heap has grown by so many percent, and not below so many KiB. Sources that are compiled as
-  # one pass its own bounds (100 %, 128 MiB) all the time: these save a twentieth to a tenth of its time, for a third more memory.
-  target_compile_options(airtruth_options INTERFACE "SHELL:--param ggc-min-expand=400" "SHELL:--param ggc-min-heapsize=1048576")
-endif()
 if(AIRTRUTH_UNITY)
   # What these find between two sources that are compiled as one is no fault. The file-by-file builds keep both.
   target_compile_options(airtruth_options INTERFACE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
