@@ -74,9 +74,8 @@ class StreamOfFlights : public testing::Test {
            more;
   }
   static constexpr const char* kRule =
-      "[[random]]\ncount = 100\naircraft = [\"738/738-Ryanair\", \"c172/news\"]\nsize_px = [10, "
-      "60]\n"
-      "azimuth_deg = [-25, 25]\nelevation_deg = [-15, 15]\nnegatives = 0.2\n";
+      "[[random]]\ncount = 100\naircraft = [\"738/738-Ryanair\", \"c172/news\"]\n"
+      "size_px = [10, 60]\nazimuth_deg = [-25, 25]\nelevation_deg = [-15, 15]\nnegatives = 0.2\n";
 
   static catalogue::Catalogue catalogue_of(const std::string& text) {
     return catalogue::parse_catalogue(text, folder_->path() / "c.toml");

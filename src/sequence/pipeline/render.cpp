@@ -341,7 +341,7 @@ void warn_of_motion(const Tally& tally, const scene::Background& background, con
              tally.frames_turned));
 }
 
-// Warns of what a user should know about a finished run: corrupt or missing frames, bridged motion,
+// Warns of what a user should know about a finished run: black or missing frames, bridged motion,
 // cuts, horizons that were not found, intruders that fly below the ground or beyond their type's
 // limits, that come nearer than their stated closest approach, and that are never visible.
 void warn_of_run(const Tally& tally,
