@@ -283,7 +283,7 @@ void draw(const Disc& disc, int y, int width, Row& row) {
     const float edge = 1 - std::sqrt(dx * dx + dy * dy) / disc.radius;
     if (edge <= 0) continue;
     const float scale = 4.5F / disc.radius;
-    const float mottle = fractal(dx * scale + 64, dy * scale + 64, 2, 128, disc.seed);
+    const float mottle = fractal<2>(128, disc.seed).at(dx * scale + 64, dy * scale + 64);
     const LinearRgb tone = linear_rgb(0.75F, 0.72F, 0.66F) * (mottle * mottle * 1.5F);
     const float covered = smoothstep(0.0F, 0.25F, edge);
     const auto i = static_cast<std::size_t>(x);

@@ -382,7 +382,7 @@ Ground::Ground(double texel_m,
       shadow_(clouds.ground_shadow(kShadowCells)),
       detail_(std::size_t{kDetailCells} * kDetailCells) {
   make_haze(sky);
-  auto detail = fractal_row<4>(kDetailCells / 16, seed + 41);
+  auto detail = fractal<4>(kDetailCells / 16, seed + 41);
   for (int y = 0; y < kDetailCells; ++y)
     for (int x = 0; x < kDetailCells; ++x)
       detail_[static_cast<std::size_t>(y * kDetailCells + x)] =

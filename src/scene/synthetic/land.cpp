@@ -70,8 +70,8 @@ Land::Land(std::uint32_t seed)
     }
   tbb::parallel_for(0, kSlow, [&](int row) {
     PlaneNoise north_bend(16, seed + 1), east_bend(16, seed + 2);
-    auto wood = fractal_row<6>(4, seed + 21);
-    auto river = fractal_row<4>(2, seed + 31);
+    auto wood = fractal<6>(4, seed + 21);
+    auto river = fractal<4>(2, seed + 31);
     for (int column = 0; column < kSlow; ++column) {
       const float x = static_cast<float>(column) / kSlow;
       const float y = static_cast<float>(row) / kSlow;
@@ -83,8 +83,8 @@ Land::Land(std::uint32_t seed)
     }
   });
   tbb::parallel_for(0, kSoil, [&](int row) {
-    auto coarse = fractal_row<3>(16, seed + 11);
-    auto fine = fractal_row<2>(128, seed + 12);
+    auto coarse = fractal<3>(16, seed + 11);
+    auto fine = fractal<2>(128, seed + 12);
     for (int column = 0; column < kSoil; ++column) {
       const float x = static_cast<float>(column) / kSoil;
       const float y = static_cast<float>(row) / kSoil;

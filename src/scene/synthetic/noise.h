@@ -106,66 +106,49 @@ class SpaceNoise {
   float share_ = 0;
 };
 
-inline float value_noise(float x, float y, int period, std::uint32_t seed) {
-  return PlaneNoise(period, seed).at(x, y);
-}
-
-// Sum of octaves of noise(octave, scale), each half as strong and twice as fine as the one before;
-// about [0, 1], with a mean of 0.5.
-template <typename Noise>
-inline float sum_of_octaves(int octaves, const Noise& noise) {
-  float sum = 0;
-  float weight = 0.5F;
-  float total = 0;
-  float scale = 1;
-  for (int i = 0; i < octaves; ++i) {
-    sum += weight * noise(i, scale);
-    total += weight;
-    weight *= 0.5F;
-    scale *= 2;
-  }
-  return sum / total;
-}
-
-inline std::uint32_t seed_of_octave(std::uint32_t seed, int octave) {
-  return seed + 131U * static_cast<std::uint32_t>(octave);
-}
-
-inline float fractal(float x, float y, int octaves, int period, std::uint32_t seed) {
-  return sum_of_octaves(octaves, [=](int i, float scale) {
-    return value_noise(x * scale, y * scale, period << i, seed_of_octave(seed, i));
-  });
-}
-
-// The same for a row of near places.
+// Octaves of noise, each half as strong and twice as fine as the one before; about [0, 1], with a
+// mean of 0.5.
 template <typename Noise, int kOctaves>
-class FractalRow {
+class Fractal {
  public:
   // make(i): the noise of an octave.
   template <typename Make>
-  explicit FractalRow(const Make& make) {
+  explicit Fractal(const Make& make) {
     for (int i = 0; i < kOctaves; ++i) octaves_[static_cast<std::size_t>(i)] = make(i);
   }
   float at(float x, float y) {
-    return sum_of_octaves(kOctaves, [&](int i, float scale) {
-      return octaves_[static_cast<std::size_t>(i)].at(x * scale, y * scale);
-    });
+    float sum = 0;
+    float weight = 0.5F;
+    float total = 0;
+    float scale = 1;
+    for (Noise& octave : octaves_) {
+      sum += weight * octave.at(x * scale, y * scale);
+      total += weight;
+      weight *= 0.5F;
+      scale *= 2;
+    }
+    return sum / total;
   }
 
  private:
   std::array<Noise, kOctaves> octaves_;
 };
 
+inline std::uint32_t seed_of_octave(std::uint32_t seed, int octave) {
+  return seed + 131U * static_cast<std::uint32_t>(octave);
+}
+
+// On a plane.
 template <int kOctaves>
-FractalRow<PlaneNoise, kOctaves> fractal_row(int period, std::uint32_t seed) {
-  return FractalRow<PlaneNoise, kOctaves>(
+Fractal<PlaneNoise, kOctaves> fractal(int period, std::uint32_t seed) {
+  return Fractal<PlaneNoise, kOctaves>(
       [=](int i) { return PlaneNoise(period << i, seed_of_octave(seed, i)); });
 }
 
 // In space, at z.
 template <int kOctaves>
-FractalRow<SpaceNoise, kOctaves> fractal_row(float z, int period, std::uint32_t seed) {
-  return FractalRow<SpaceNoise, kOctaves>([=](int i) {
+Fractal<SpaceNoise, kOctaves> fractal(float z, int period, std::uint32_t seed) {
+  return Fractal<SpaceNoise, kOctaves>([=](int i) {
     return SpaceNoise(z * static_cast<float>(1 << i), period << i, seed_of_octave(seed, i));
   });
 }

@@ -103,7 +103,7 @@ Point normal(const Point& p) {
 // The paint: white wings with orange tips and dark hinge lines, a grey body, a black nose and black
 // wheels.
 LinearRgb paint(const Point& p, Part part) {
-  const float grime = 0.90F + 0.14F * fractal(p[0] * 9 + 40, p[1] * 9 + 40, 4, 256, 99);
+  const float grime = 0.90F + 0.14F * fractal<4>(256, 99).at(p[0] * 9 + 40, p[1] * 9 + 40);
   if (part == Part::kWheel) return linear_rgb(0.03F, 0.03F, 0.032F);
   if (part == Part::kNose) return linear_rgb(0.07F, 0.07F, 0.075F);
   if (part == Part::kBoom) return grime * linear_rgb(0.50F, 0.51F, 0.52F);

@@ -94,7 +94,7 @@ Clouds::Clouds(const Sky& sky, double cover, std::uint32_t seed)
   tbb::parallel_for(0, kDetail, [&](int z) {
     const float scale = 8.0F / kDetail;
     const auto f = [&](int i) { return static_cast<float>(i) * scale; };
-    auto noise = fractal_row<3>(f(z), 8, seed_ + 5);
+    auto noise = fractal<3>(f(z), 8, seed_ + 5);
     for (int y = 0; y < kDetail; ++y)
       for (int x = 0; x < kDetail; ++x)
         detail_[static_cast<std::size_t>((z * kDetail + y) * kDetail + x)] = noise.at(f(x), f(y));
@@ -107,8 +107,8 @@ void Clouds::fill(double cover) {
   const float threshold = lerp(0.72F, 0.36F, static_cast<float>(std::min(cover, 1.0)));
   tbb::parallel_for(0, kCells, [&](int y) {
     // Clouds come in groups (5 km) of single ones (1.3 km).
-    auto groups = fractal_row<2>(kCells / 128, seed_ + 1);
-    auto single = fractal_row<4>(kCells / 32, seed_ + 2);
+    auto groups = fractal<2>(kCells / 128, seed_ + 1);
+    auto single = fractal<4>(kCells / 32, seed_ + 2);
     std::array<float, kCells> strength;
     for (int x = 0; x < kCells; ++x) {
       const float u = static_cast<float>(x) / 64;
@@ -125,7 +125,7 @@ void Clouds::fill_row(int y, int level, std::span<const float> strength) {
   const float height = (static_cast<float>(level) + 0.5F) / kLevels;
   const float base = smoothstep(0.0F, 0.06F, height);
   auto noise =
-      fractal_row<4>(static_cast<float>(level) * kLevel_m / kCell_m / 16, kCells / 16, seed_ + 3);
+      fractal<4>(static_cast<float>(level) * kLevel_m / kCell_m / 16, kCells / 16, seed_ + 3);
   for (int x = 0; x < kCells; ++x) {
     if (strength[static_cast<std::size_t>(x)] <= -0.3F) continue;
     const float room =
@@ -296,11 +296,11 @@ void Clouds::add_cirrus(const Vector3& direction, LinearRgb& colour) const {
   const float up = static_cast<float>(-direction.z());
   const float x = static_cast<float>(direction.x()) * kCirrus_m / up;
   const float y = static_cast<float>(direction.y()) * kCirrus_m / up;
-  const float bend = 1800 * (fractal(x / 9000, y / 9000, 2, 256, seed_ + 21) - 0.5F);
+  const float bend = 1800 * (fractal<2>(256, seed_ + 21).at(x / 9000, y / 9000) - 0.5F);
   const float along = 0.85F * x + 0.53F * y;
   const float across = -0.53F * x + 0.85F * y + bend;
-  const float patches = fractal(x / 14000, y / 14000, 3, 256, seed_ + 22);
-  const float streaks = fractal(along / 6000, across / 1300, 5, 256, seed_ + 23);
+  const float patches = fractal<3>(256, seed_ + 22).at(x / 14000, y / 14000);
+  const float streaks = fractal<5>(256, seed_ + 23).at(along / 6000, across / 1300);
   const float amount = smoothstep(0.42F, 0.72F, patches) * smoothstep(0.30F, 0.95F, streaks);
   const float kept = 0.34F * amount * smoothstep(0.03F, 0.2F, up);
   colour += kept * (sky_.sunlight() * 0.82F + linear_rgb(0.05F, 0.06F, 0.08F) - colour).max(0.0F);
@@ -350,11 +350,11 @@ void cover(const Vector3& direction,
     const float azimuth = turn * static_cast<float>(range.layer);
     const int period = 16 * range.layer;
     const float shape =
-        fractal(azimuth, 0.5F, 7, period, seed + 31 * static_cast<std::uint32_t>(range.layer));
+        fractal<7>(period, seed + 31 * static_cast<std::uint32_t>(range.layer)).at(azimuth, 0.5F);
     const float top = range.height * clamp01(2.2F * (shape - 0.30F));
     const float covered = smoothstep(-0.7F * texel_rad, 0.7F * texel_rad, top - up);
     const float folds =
-        0.8F + 0.5F * fractal(azimuth * 8, up / range.height * 3, 3, period * 8, seed + 7);
+        0.8F + 0.5F * fractal<3>(period * 8, seed + 7).at(azimuth * 8, up / range.height * 3);
     // The share of airlight in the light of the hills.
     const auto veil =
         static_cast<float>(1 - std::exp(-range.distance_km * hills.extinction_per_km));
