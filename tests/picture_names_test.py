@@ -202,7 +202,8 @@ class Names(unittest.TestCase):
                 self.assertEqual(sorted(map(len, clips_of(os.path.join(folder, "set")).values())), [4, 4])
 
     def test_names_that_no_list_holds_or_that_lead_outside_are_refused(self):
-        for form, name, words in (("yolo", "a\nb.png", "line end"), ("voc", "a\nb.png", "line end"), ("coco", "../../x.png", "leads out")):
+        for form, name, words in (("yolo", "a\nb.png", "control character"), ("voc", "a\tb.png", "control character"),
+                                  ("coco", "../../x.png", "leads out")):
             with self.subTest(form=form), tempfile.TemporaryDirectory() as folder:
                 WRITERS[form](os.path.join(folder, "theirs"), {0: name})
                 done = subprocess.run([PROGRAM, "dataset", "import", "theirs", "--format", form, "--out", "set"], cwd=folder, text=True,

@@ -14,6 +14,7 @@
 #include "foundation/base/file_state.h"
 #include "foundation/base/files.h"
 #include "foundation/base/names.h"
+#include "foundation/base/text.h"
 #include "foundation/run_files/run_files.h"
 #include "labels/annotation/object_class.h"
 #include "labels/exchange/pictures.h"
@@ -157,17 +158,19 @@ std::string free_name(const std::string& wanted, std::set<std::string>& taken) {
   const bool is_utf8 = utf8_fault(name) == std::string::npos;
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);
-    if (c == '/' || byte < 0x20 || (byte >= 0x80 && !is_utf8)) c = '-';
+    if (c == '/' || is_control(c) || (byte >= 0x80 && !is_utf8)) c = '-';
   }
   if (name.empty() || name == "." || name == "..") name = "clip";
   if (name.front() == '.') name.front() = '-';  // the folder would be hidden
-  if (name.size() > 200) {
-    std::size_t end = 200;
-    while (is_utf8 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;
-    name.resize(end);
-  }
-  std::string unique = name;
-  for (int i = 2; !taken.insert(unique).second; ++i) unique = name + "-" + std::to_string(i);
+  // A plain file name has at most 200 bytes.
+  const auto with = [&](const std::string& ending) {
+    std::size_t end = std::min(name.size(), 200 - ending.size());
+    while (is_utf8 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80)
+      --end;
+    return name.substr(0, end) + ending;
+  };
+  std::string unique = with("");
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = with("-" + std::to_string(i));
   return unique;
 }
 
@@ -213,13 +216,15 @@ void classify(std::vector<exchange::Clip>& clips, const ImportOptions& options) 
   }
 }
 
-// The list of pictures has a path on each line.
+// The list of pictures has a path on each line, and labels.jsonl refuses other names.
 void expect_one_line(const exchange::Clip& clip) {
   for (const exchange::LabelledFrame& frame : clip.frames)
     if (const std::string path = (clip.media / frame.picture).string();
-        path.find_first_of("\n\r") != std::string::npos)
-      throw Error("the picture " + Json(path).dump() + " of " + clip.name +
-                  " has a line end in its name; expected a name without");
+        !frame.picture.empty() && (path.find_first_of("\n\r") != std::string::npos ||
+                                   std::ranges::any_of(frame.picture, is_control)))
+      throw Error("the picture " + Json(path).dump(-1, ' ', false, Json::error_handler_t::replace) +
+                  " of " + clip.name +
+                  " has a control character in its name; expected a name without");
 }
 
 // Gives each clip its video, its numbers of frames and a name of its own.
@@ -239,10 +244,10 @@ void complete(std::vector<exchange::Clip>& clips,
     if (has_pictures(clip)) {
       // The frames of pictures are numbered by their places.
       for (std::int64_t i = 0; exchange::LabelledFrame & frame : clip.frames) frame.frame = i++;
-      expect_one_line(clip);
     } else if (video != options.videos.end()) {
       say_first_frame(clip, options.warn);
     }
+    expect_one_line(clip);
     ask_video(clip, options.warn);
     leave_out_outside(clip, left_out);
     if (!clip.frame_rate_hz) clip.frame_rate_hz = options.frame_rate_hz;

@@ -212,6 +212,13 @@ TEST(PartPath, HidesAndKeepsTheExtension) {
   EXPECT_EQ(part_path("out/a.mp4"), fs::path("out/.a.part.mp4"));
 }
 
+TEST(WriteFile, ANameThatHoldsANulIsRefused) {
+  const test_support::TemporaryFolder folder;
+  const fs::path file = folder.path() / std::string("a\0b", 3);
+  for (int i = 0; i < 2; ++i) EXPECT_THROW(write_file(file, "x"), Error);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
 TEST(WriteFile, OfWritersAtOnceTheBytesOfOneStay) {
   const test_support::TemporaryFolder folder;
   const fs::path file = folder / "a.txt";

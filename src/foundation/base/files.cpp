@@ -18,6 +18,7 @@
 #include "foundation/base/descriptor.h"
 #include "foundation/base/error.h"
 #include "foundation/base/file_state.h"
+#include "foundation/base/text.h"
 #include "foundation/base/unfinished.h"
 
 namespace airtruth {
@@ -140,6 +141,9 @@ std::string random_digits() {
 // A new file of the writer's own, locked while it is open: under part_path(), or with random digits
 // where that name is another writer's.
 Descriptor new_part(const fs::path& path, fs::path& part) {
+  // The system takes a name as ended there: another file, and one for all parts.
+  if (path.native().find('\0') != std::string::npos)
+    throw Error("cannot create: the name holds a NUL", {printable(path.native(), 200)});
   part = part_path(path);
   remove_dead_part(part);
   for (;;) {
@@ -226,6 +230,11 @@ std::string sha256_of(std::string_view bytes) {
   Sha256 sha;
   sha.add(bytes);
   return sha.hex();
+}
+
+bool is_plain_file_name(std::string_view name) {
+  return !name.empty() && name.size() <= 200 && name.front() != '.' &&
+         name.find('/') == std::string_view::npos && std::ranges::none_of(name, is_control);
 }
 
 std::size_t utf8_fault(std::string_view text) {

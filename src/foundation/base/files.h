@@ -66,6 +66,13 @@ std::vector<fs::path> files_with(const fs::path& folder, std::string_view extens
 std::string sha256_of_file(const fs::path& path);
 std::string sha256_of(std::string_view bytes);
 
+// True where a file in any folder could have this name and be seen there: it is not empty, does not
+// begin with a dot (entries() leaves out such files), has at most 200 bytes, and holds no slash and
+// no control character.
+bool is_plain_file_name(std::string_view name);
+inline constexpr const char* kPlainFileName =
+    "a plain file name: no slash, no dot in front, at most 200 bytes";
+
 // Is the text well-formed UTF-8? Returns the byte offset of the first fault, or npos.
 std::size_t utf8_fault(std::string_view text);
 

@@ -707,6 +707,30 @@ TEST(Labels, NumbersOutOfRangeAreOneLine) {
   EXPECT_EQ(of_head(R"("width":640,"height":480,"frame_rate_hz":29.97)"), "no error");
 }
 
+// Exports and runs name their files by it.
+TEST(Labels, NamesLeadNowhereElse) {
+  const Folder folder;
+  const auto is_read = [&](const std::string& name, const std::string& picture) {
+    try {
+      read_labels(folder.file("labels.jsonl",
+                              R"({"format":"airtruth labels 1","name":")" + name +
+                                  "\"}\n{\"frame\":0,\"picture\":\"" + picture +
+                                  "\",\"labels\":[]}\n"));
+      return true;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where().line, picture == "p" ? 1 : 2) << error.what();
+      return false;
+    }
+  };
+  EXPECT_TRUE(is_read("night-1.b", "p"));
+  for (const std::string name :
+       {"../x", "/x", "a/b", "..", ".", "", ".hid", "a\\nb", "a\\u0000b", "a\\u007f"})
+    EXPECT_FALSE(is_read(name, "p")) << name;
+  EXPECT_FALSE(is_read(std::string(201, 'a'), "p"));
+  EXPECT_TRUE(is_read("a", "part/p.png"));
+  EXPECT_FALSE(is_read("a", "p\\u0000.png"));
+}
+
 TEST(Labels, ATrackIsOnceInAFrame) {
   const Folder folder;
   const auto of = [&](const std::string& second) {

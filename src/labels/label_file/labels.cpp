@@ -9,6 +9,7 @@
 
 #include "foundation/base/error.h"
 #include "foundation/base/files.h"
+#include "foundation/base/text.h"
 #include "foundation/json/json_object.h"
 #include "foundation/json/or_null.h"
 #include "labels/annotation/object_class.h"
@@ -96,6 +97,8 @@ LabelledFrame frame_of(const JsonObject& json) {
   frame.frame = json.count("frame");
   frame.time_s = json.maybe_number("time_s");
   frame.picture = json.maybe_text("picture").value_or("");
+  if (std::ranges::any_of(frame.picture, is_control))
+    json.fail("picture", "a name without control characters");
   frame.image_id = json.maybe_integer("image_id");
   for (const JsonObject& label : json.objects("labels"))
     frame.labels.push_back(label_of_json(label));
@@ -107,6 +110,8 @@ Clip clip_of(const JsonObject& json) {
   if (json.text("format") != kFormat) json.fail("format", std::string("'") + kFormat + "'");
   Clip clip;
   clip.name = json.text("name");
+  // Files and folders of exports and runs have it; a manipulated one must not lead out of theirs.
+  if (!is_plain_file_name(clip.name)) json.fail("name", kPlainFileName);
   clip.media = json.maybe_text("media").value_or("");
   clip.width = side(json, "width");
   clip.height = side(json, "height");

@@ -33,7 +33,7 @@ std::string name_in_record(const fs::path& folder) {
     throw Error("is not a record of airtruth", {file.string()});
   const auto name = record["name"].get<std::string>();
   // A manipulated record must not name files outside its folder.
-  if (name.empty() || fs::path(name).filename() != name)
+  if (!is_plain_file_name(name))
     throw Error("name is '" + name.substr(0, 80) + "'; expected a plain file name",
                 {file.string()});
   return name;

@@ -62,11 +62,6 @@ void call_on_key_use(std::function<void(const std::string& path, const KeyUse& u
 
 TableReader::Keys keys(std::string_view words) { return words_in<std::string_view>(words); }
 
-bool is_plain_file_name(std::string_view name) {
-  return !name.empty() && name.size() <= 200 && name.front() != '.' &&
-         name.find('/') == std::string_view::npos && !has_control_character(name);
-}
-
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char c : text.substr(0, 60)) result += is_control(c) ? '?' : c;
@@ -235,10 +230,7 @@ std::optional<std::vector<std::string>> TableReader::texts(std::string_view key)
 std::optional<std::string> TableReader::file_name(std::string_view key) const {
   const auto name = text(key);
   if (name && !is_plain_file_name(*name))
-    fail_at(where(key),
-            key,
-            in_quotes(*name),
-            "a plain file name: no slash, no dot in front, at most 200 bytes");
+    fail_at(where(key), key, in_quotes(*name), kPlainFileName);
   return name;
 }
 

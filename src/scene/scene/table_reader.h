@@ -147,11 +147,6 @@ class TableReader {
 // Keys from one text, with blanks between them: keys("name seed weight").
 TableReader::Keys keys(std::string_view words);
 
-// True where a file in any folder could have this name and be seen there: it is not empty, does not
-// begin with a dot (entries() in foundation/base/files.h leaves out such files), and holds no slash
-// and no control character.
-bool is_plain_file_name(std::string_view name);
-
 // A text of the file as messages show it: in quotes, shortened to fit one line and without control
 // characters.
 std::string in_quotes(std::string_view text);

@@ -116,7 +116,7 @@ Finished open_finished(const fs::path& folder) {
   const JsonDocument record(record_file);
   finished.name = record.text("name");
   // A manipulated record must not name files outside its folder.
-  if (finished.name.empty() || fs::path(finished.name).filename() != finished.name)
+  if (!is_plain_file_name(finished.name))
     throw Error("name is '" + finished.name.substr(0, 80) + "'; expected a plain file name",
                 {record_file.string()});
   finished.encounters = pipeline::read_encounter_records(record);
